@@ -10,9 +10,9 @@ from dataclasses import replace
 import pytest
 
 import pellicle as pl
-from pellicle.fitting.curves.origin import CurveOrigin
-from pellicle.fitting.fit import fit_problem
-from pellicle.fitting.problem import FitProblem
+from pellicle_fit.curves.origin import CurveOrigin
+from pellicle_fit.one_curve import fit_problem
+from pellicle_fit.problem import FitProblem
 
 
 def share_fits(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -36,4 +36,4 @@ def share_fits(monkeypatch: pytest.MonkeyPatch) -> None:
         return fits[key.getvalue()]
 
     for module in ("fit", "many"):
-        monkeypatch.setattr(f"pellicle.fitting.{module}.fit_problem", shared)
+        monkeypatch.setattr(f"pellicle_fit.{module}.fit_problem", shared)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import pellicle as pl
-from pellicle.fitting.report.figures import save_figure
+from pellicle_fit.report.figures import save_figure
 
 
 def main() -> None:

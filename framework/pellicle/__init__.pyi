@@ -1,6 +1,17 @@
 __all__: list[str]
 
 from . import analysis as analysis
+from .applications import Curve as Curve
+from .applications import Estimate as Estimate
+from .applications import Fit as Fit
+from .applications import FitConfig as FitConfig
+from .applications import PooledCurve as PooledCurve
+from .applications import PooledFit as PooledFit
+from .applications import fit as fit
+from .applications import fit_many as fit_many
+from .applications import fit_map as fit_map
+from .applications import fit_pooled as fit_pooled
+from .applications import read_curves as read_curves
 from .components import AreaCorrection as AreaCorrection
 from .components import Case as Case
 from .components import Depth as Depth
@@ -34,17 +45,6 @@ from .factories import indenter as indenter
 from .factories import interaction as interaction
 from .factories import kernel as kernel
 from .factories import solver as solver
-from .fitting.config import FitConfig as FitConfig
-from .fitting.curves.curve import Curve as Curve
-from .fitting.curves.sources import read_curves as read_curves
-from .fitting.fit import Fit as Fit
-from .fitting.fit import fit as fit
-from .fitting.many import fit_many as fit_many
-from .fitting.maps import fit_map as fit_map
-from .fitting.pooled import PooledCurve as PooledCurve
-from .fitting.pooled import PooledFit as PooledFit
-from .fitting.pooled import fit_pooled as fit_pooled
-from .fitting.statistics.profile import Estimate as Estimate
 from .grid import Grid as Grid
 from .hookspecs import hookimpl as hookimpl
 from .numerics.operators import displacement as displacement

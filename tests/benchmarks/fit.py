@@ -16,8 +16,8 @@ import numpy as np
 
 import pellicle as pl
 from pellicle.components import HasForceCurve
-from pellicle.fitting.models.simulation import simulate
-from pellicle.fitting.models.solid import solid
+from pellicle_fit.models.simulation import simulate
+from pellicle_fit.models.solid import solid
 
 CURVES = 100
 _RADIUS, _MODULUS, _LENGTH = 5e-6, 2e3, 3e-6

@@ -14,9 +14,9 @@ import numpy as np
 
 import pellicle as pl
 from pellicle.components import HasForceCurve
-from pellicle.fitting.models.force_model import tension_model
-from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
-from pellicle.fitting.statistics.likelihood import Likelihood
+from pellicle_fit.models.force_model import tension_model
+from pellicle_fit.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
+from pellicle_fit.statistics.likelihood import Likelihood
 
 NOISE, DEPTH, BEFORE = 0.005, 0.3, 0.3
 """Noise over the largest force; largest depth over R; range before contact over that in it."""

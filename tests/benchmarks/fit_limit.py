@@ -19,8 +19,9 @@ from fit_rivals import DEPTH, MARGINS, MODULUS_, RADIUS, Array, path
 from matplotlib.figure import Figure
 from scipy.special import ndtr, ndtri
 
-from pellicle.fitting.models.force_model import tension_model
-from pellicle.fitting.parameters import (
+from pellicle.plotting import save_figure
+from pellicle_fit.models.force_model import tension_model
+from pellicle_fit.parameters import (
     CONTACT_POINT,
     MODULUS,
     OFFSET,
@@ -28,10 +29,9 @@ from pellicle.fitting.parameters import (
     TENSION,
     Coordinates,
 )
-from pellicle.fitting.statistics.chi_squared import ChiSquared
-from pellicle.fitting.statistics.likelihood import Likelihood
-from pellicle.fitting.statistics.rivals import MARGIN, rivals
-from pellicle.plotting import save_figure
+from pellicle_fit.statistics.chi_squared import ChiSquared
+from pellicle_fit.statistics.likelihood import Likelihood
+from pellicle_fit.statistics.rivals import MARGIN, rivals
 
 NOISES = 0.003, 0.0055, 0.01
 ERRORS = 3.0, 5.0, 5.0 * np.sqrt(2), 9.0

@@ -19,10 +19,10 @@ import numpy as np
 from fit_rivals import DEPTH, MODULUS_, NOISE, RADIUS, Sample, Truth, path
 from kept_outcomes import outcomes_of
 
-from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
-from pellicle.fitting.models.force_model import ClosedFormModel
-from pellicle.fitting.models.relaxing import EXPONENT, PowerLawModel
-from pellicle.fitting.parameters import (
+from pellicle_fit.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
+from pellicle_fit.models.force_model import ClosedFormModel
+from pellicle_fit.models.relaxing import EXPONENT, PowerLawModel
+from pellicle_fit.parameters import (
     CONTACT_POINT,
     MODULUS,
     OFFSET,
@@ -31,13 +31,13 @@ from pellicle.fitting.parameters import (
     Coordinates,
     Parameter,
 )
-from pellicle.fitting.statistics.checks import fit_single, judged
-from pellicle.fitting.statistics.chi_squared import ChiSquared, Minimum
-from pellicle.fitting.statistics.likelihood import Likelihood
-from pellicle.fitting.statistics.pooled_likelihood import Pool
-from pellicle.fitting.statistics.profile import chi_squared_threshold
-from pellicle.fitting.statistics.rival import Rival
-from pellicle.fitting.statistics.rivals import rivals
+from pellicle_fit.statistics.checks import fit_single, judged
+from pellicle_fit.statistics.chi_squared import ChiSquared, Minimum
+from pellicle_fit.statistics.likelihood import Likelihood
+from pellicle_fit.statistics.pooled_likelihood import Pool
+from pellicle_fit.statistics.profile import chi_squared_threshold
+from pellicle_fit.statistics.rival import Rival
+from pellicle_fit.statistics.rivals import rivals
 from pellicle_plugins.analytic.adhesion import Adhesion
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 

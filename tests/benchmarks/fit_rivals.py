@@ -24,14 +24,14 @@ from scipy.special import beta, betainc
 
 import pellicle as pl
 from pellicle.components import HasForceCurve, HasLayerForceCurve
-from pellicle.fitting.curves import curve as read_curve
-from pellicle.fitting.curves.sources import Source
-from pellicle.fitting.models.force_model import tension_model
-from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
-from pellicle.fitting.pooled import pool_sources
-from pellicle.fitting.statistics.likelihood import Likelihood
-from pellicle.fitting.verdict import decision
 from pellicle.units import Quantity
+from pellicle_fit.curves import curve as read_curve
+from pellicle_fit.curves.sources import Source
+from pellicle_fit.models.force_model import tension_model
+from pellicle_fit.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
+from pellicle_fit.pooled import pool_sources
+from pellicle_fit.statistics.likelihood import Likelihood
+from pellicle_fit.verdict import decision
 from pellicle_plugins.analytic.adhesion import Adhesion
 
 Array = NDArray[np.float64]

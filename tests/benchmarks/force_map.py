@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle_plugins.indenters.paraboloid import Paraboloid
-from tests.framework.fitting import instruments
+from tests.plugins.fit import instruments
 
 Array = NDArray[np.float64]
 BEAD, SPRING, NOISE, PITCH = Paraboloid(radius=10e-6), 0.05, 0.003, 0.5e-6

@@ -24,10 +24,10 @@ import numpy as np
 
 import pellicle as pl
 from pellicle.errors import PellicleError
-from pellicle.fitting.curves.cleaning import clean
-from pellicle.fitting.curves.columns import Calibration
-from pellicle.fitting.curves.curve import Curve
-from pellicle.fitting.curves.readers import SUFFIXES, read
+from pellicle_fit.curves.cleaning import clean
+from pellicle_fit.curves.columns import Calibration
+from pellicle_fit.curves.curve import Curve
+from pellicle_fit.curves.readers import SUFFIXES, read
 
 RADIUS, RATIO = 10e-6, 0.5
 CALIBRATION = Calibration(spring_constant=0.05, sensitivity=50e-9)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.framework.fitting.conftest import skip_rivals
+from tests.plugins.fit.conftest import skip_rivals
 
 BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
 SCRIPTS = {

@@ -14,8 +14,8 @@ import pellicle as pl
 from pellicle.cli import app
 from pellicle.cli.encoding import encode_readably
 from pellicle.files import read_text
-from pellicle.fitting.curves.readers import read as read_curves
 from pellicle.model.toml import read_toml
+from pellicle_fit.curves.readers import read as read_curves
 
 RUN = """
 title = "Δτ₀ ≤ 3 µm² ☺"

@@ -25,9 +25,9 @@ from pellicle.cli.exits import BAD_INPUT, CRASHED
 from pellicle.cli.printing import Column, table_lines
 from pellicle.components import FAMILIES, Case
 from pellicle.config.explain import explanations
-from pellicle.fitting.config import FitConfig
 from pellicle.runs import validation
 from pellicle.runs.validation import Verdict
+from pellicle_fit.config import FitConfig
 
 RUN: dict[str, Any] = {
     "title": "Δ layer",

@@ -10,11 +10,20 @@ from zipfile import ZipFile
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-PACKAGES = ("framework/pellicle", "plugins/pellicle_plugins")
+PACKAGES = (
+    "framework/pellicle",
+    "plugins/pellicle_plugins",
+    "plugins/pellicle_fit",
+    "plugins/pellicle_explore",
+)
 DATA = {
     "pellicle/py.typed",
     "pellicle/cli/starter.toml",
-    "pellicle/explore/start.toml",
+    "pellicle/applications.pyi",
+    "pellicle_explore/py.typed",
+    "pellicle_explore/start.toml",
+    "pellicle_fit/__init__.pyi",
+    "pellicle_fit/py.typed",
     "pellicle_plugins/py.typed",
 } | {
     path.relative_to(ROOT / "framework").as_posix()
@@ -69,16 +78,15 @@ def test_wheel_holds_every_module(wheel: set[str]) -> None:
 
 def test_wheel_holds_its_data(wheel: set[str]) -> None:
     """What is no module is installed too: starter file, templates, parts of a page, markers."""
-    assert len(DATA) == 4 + 2 + 8 * 3 + 3
+    assert len(DATA) == 8 + 2 + 8 * 3 + 3
     assert wheel >= DATA
 
 
-def test_wheel_installs_two_packages_and_nothing_else(wheel: set[str]) -> None:
+def test_wheel_installs_its_packages_and_nothing_else(wheel: set[str]) -> None:
     """Tests and docs do not land in a user's site-packages."""
     tops = {name.partition("/")[0] for name in wheel}
     assert {top for top in tops if not top.endswith(".dist-info")} == {
-        "pellicle",
-        "pellicle_plugins",
+        Path(package).name for package in PACKAGES
     }
 
 

@@ -17,8 +17,10 @@ from typer.core import TyperCommand, TyperGroup
 
 from pellicle.errors import PellicleError
 from pellicle.version import CITATION, __version__
+from pellicle_explore import command as explore
+from pellicle_fit import command as fit
 
-from . import check, explain, explore, fit, new, plot, plugins, run, schema, show, validate
+from . import check, explain, new, plot, plugins, run, schema, show, validate
 from .encoding import encode_readably
 from .exits import BAD_INPUT, CRASHED, INTERRUPTED
 from .printing import echo, only_json, print_warning

@@ -31,7 +31,7 @@ def explain(
 ) -> None:
     """Print the fields of a component or of a table, with unit, default, meaning and an example."""
     from pellicle.config.explain import explanations
-    from pellicle.fitting.config import FitConfig
+    from pellicle_fit.config import FitConfig
 
     tables = {"fit": FitConfig}
     if type_ is None:

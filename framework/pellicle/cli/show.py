@@ -8,7 +8,6 @@ from typing import Annotated
 import typer
 
 from .exits import NOT_CONVERGED
-from .print_fits import print_fits
 from .printing import echo, print_json
 from .results import (
     exit_by_convergence,
@@ -74,8 +73,9 @@ def show(
 
 def _show_fits(directory: Path, *, si: bool, json: bool) -> None:
     """Print the tables that ``pellicle fit`` left in a folder."""
-    from pellicle.fitting.many import ManyFits
-    from pellicle.fitting.record import content_of
+    from pellicle_fit.many import ManyFits
+    from pellicle_fit.print_fits import print_fits
+    from pellicle_fit.record import content_of
 
     content = content_of(directory / "fits.json")
     fits = ManyFits(content.get("curves", []), notes=content.get("notes", []))

@@ -22,19 +22,19 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import pellicle as pl
-from pellicle.fitting.config import FitConfig
-from pellicle.fitting.curves.curve import Curve
-from pellicle.fitting.curves.sources import Source, SourceStream
-from pellicle.fitting.fit import fit_source
-from pellicle.fitting.many import fit_sources
-from pellicle.fitting.parameters import TENSION, Coordinates
-from pellicle.fitting.pooled import pool_sources
-from pellicle.fitting.population.table import table
-from pellicle.fitting.problem import FitProblem, problems
-from pellicle.fitting.statistics.checks import judged
-from pellicle.fitting.statistics.likelihood import Likelihood
-from pellicle.fitting.statistics.pooled_likelihood import Pool
-from pellicle.fitting.statistics.rivals import rivals, sloped
+from pellicle_fit.config import FitConfig
+from pellicle_fit.curves.curve import Curve
+from pellicle_fit.curves.sources import Source, SourceStream
+from pellicle_fit.many import fit_sources
+from pellicle_fit.one_curve import fit_source
+from pellicle_fit.parameters import TENSION, Coordinates
+from pellicle_fit.pooled import pool_sources
+from pellicle_fit.population.table import table
+from pellicle_fit.problem import FitProblem, problems
+from pellicle_fit.statistics.checks import judged
+from pellicle_fit.statistics.likelihood import Likelihood
+from pellicle_fit.statistics.pooled_likelihood import Pool
+from pellicle_fit.statistics.rivals import rivals, sloped
 from tests import adhesive_paths
 from tests.physics.frozen.fit_curves import RADIUS, Case
 from tests.physics.frozen.not_frozen import VARIABLES

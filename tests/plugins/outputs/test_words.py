@@ -18,14 +18,14 @@ from matplotlib.text import Text
 
 import pellicle as pl
 from pellicle.config.coordinates import Coordinate, tell_apart
-from pellicle.fitting.curves.sources import SourceStream
-from pellicle.fitting.many import fit_sources
-from pellicle.fitting.report.page import save_report
 from pellicle.model.paths import walk
 from pellicle.results.variables import VARIABLES
 from pellicle.results.wording import wording
+from pellicle_fit.curves.sources import SourceStream
+from pellicle_fit.many import fit_sources
+from pellicle_fit.report.page import save_report
 from pellicle_plugins.outputs.base import scaled
-from tests.framework.fitting.conftest import skip_rivals
+from tests.plugins.fit.conftest import skip_rivals
 
 RUN: dict[str, Any] = {
     "title": "Layer under a skin",

@@ -1,0 +1,11 @@
+from pellicle_fit import Curve as Curve
+from pellicle_fit import Estimate as Estimate
+from pellicle_fit import Fit as Fit
+from pellicle_fit import FitConfig as FitConfig
+from pellicle_fit import PooledCurve as PooledCurve
+from pellicle_fit import PooledFit as PooledFit
+from pellicle_fit import fit as fit
+from pellicle_fit import fit_many as fit_many
+from pellicle_fit import fit_map as fit_map
+from pellicle_fit import fit_pooled as fit_pooled
+from pellicle_fit import read_curves as read_curves

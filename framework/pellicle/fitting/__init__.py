@@ -1,1 +1,0 @@
-"""Fits of reduced modulus and tension to measured force curves."""

@@ -1,0 +1,5 @@
+"""Fits of reduced modulus and tension to measured force curves."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,299 @@
+"""``pellicle fit``."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from pellicle.cli.exits import INTERRUPTED, NOT_CONVERGED
+from pellicle.cli.printing import echo, print_json
+from pellicle.errors import ConfigError
+
+from .print_fits import print_fit, print_fits, print_notes
+
+if TYPE_CHECKING:
+    from pellicle_fit.config import FitConfig
+    from pellicle_fit.many import ManyFits
+    from pellicle_fit.one_curve import Fit
+    from pellicle_fit.pooled import PooledFit
+    from pellicle_fit.record import Repetition
+
+
+def fit(
+    files: Annotated[
+        list[Path] | None,
+        typer.Argument(
+            metavar="[CONFIG.toml] CURVES",
+            help="A configuration, whose values the options replace. Curves: files or a folder of "
+            "them: tables with a header such as position (um),force (nN); HDF5; formats of "
+            "instruments. Or a table file,radius (um) that lists files.",
+        ),
+    ] = None,
+    indenter: Annotated[
+        str | None,
+        typer.Option(
+            "--indenter",
+            "-i",
+            help="Type: sphere (a bead), paraboloid (Hertz, to 0.1 R), cone, flat_punch, …",
+        ),
+    ] = None,
+    radius: Annotated[
+        list[str] | None,
+        typer.Option(help='Radius with its unit: "5 um"; repeat it to give one for each file.'),
+    ] = None,
+    half_angle: Annotated[
+        str | None, typer.Option(help='Angle between axis and side of a cone: "70 degree".')
+    ] = None,
+    poissons_ratio: Annotated[
+        float | None, typer.Option(help="Poisson's ratio, to get Young's modulus as well.")
+    ] = None,
+    thickness: Annotated[
+        str | None,
+        typer.Option(
+            help='Thickness of a layer on a rigid base: "50 um", or free to fit it; with '
+            "--poissons-ratio."
+        ),
+    ] = None,
+    fix: Annotated[
+        list[str] | None,
+        typer.Option(help='Fix a parameter: --fix tension=0, --fix reduced_modulus="10 kPa".'),
+    ] = None,
+    baseline: Annotated[
+        str | None,
+        typer.Option(
+            help="Part of the force before contact to fit: none (default), offset, slope."
+        ),
+    ] = None,
+    segment: Annotated[
+        str | None, typer.Option(help="Pass to fit: approach (default), retract, both.")
+    ] = None,
+    spring_constant: Annotated[
+        str | None,
+        typer.Option(help='That of the cantilever, to subtract its bending: "0.05 N/m".'),
+    ] = None,
+    sensitivity: Annotated[
+        str | None, typer.Option(help='Deflection over the signal in volts: "50 nm/V".')
+    ] = None,
+    speed: Annotated[
+        list[str] | None,
+        typer.Option(
+            help='Speed where a file holds no time: "2 um/s"; repeat it to give one for each file.'
+        ),
+    ] = None,
+    columns: Annotated[
+        str | None,
+        typer.Option(
+            help="What columns of other names are, with their units, by name, number or path in "
+            'the file: "Z = extension nm, Defl = deflection nm". Roles: position, depth, height, '
+            "extension; force, deflection; time; curve.",
+        ),
+    ] = None,
+    pool: Annotated[
+        bool, typer.Option("--pool", help="Fit one modulus and one tension to all curves.")
+    ] = False,
+    compare: Annotated[
+        bool, typer.Option("--compare", help="Compare what else can bend the curve, in full.")
+    ] = False,
+    contact_points: Annotated[
+        bool,
+        typer.Option("--contact-points", help="With --pool: intervals of contact points, too."),
+    ] = False,
+    accept: Annotated[
+        list[str] | None,
+        typer.Option(help='Rule for the curves of a population: --accept "r_squared > 0.95".'),
+    ] = None,
+    accepted: Annotated[
+        Path | None, typer.Option(help="File that names the only curves that can be accepted.")
+    ] = None,
+    rejected: Annotated[
+        Path | None, typer.Option(help="File that names curves that are rejected.")
+    ] = None,
+    group_by: Annotated[
+        str | None,
+        typer.Option(help='Column of a table of files, or a pattern of names: "{group}_*.csv".'),
+    ] = None,
+    executor: Annotated[
+        str | None,
+        typer.Option(help="Executor of many fits and of runs: serial, processes, dask."),
+    ] = None,
+    kernel: Annotated[
+        str | None, typer.Option(help="Type of the solid, if it is not a half-space: coated, …")
+    ] = None,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help='Any other value: --set indenter.radius_x="5 um", --set executor.type=processes',
+        ),
+    ] = None,
+    grid_points: Annotated[
+        int | None, typer.Option(help="Cells along each edge of simulated contacts.")
+    ] = None,
+    cache: Annotated[
+        Path | None, typer.Option(help="Folder that keeps simulated force curves.")
+    ] = None,
+    directory: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Folder for JSON, table and figure."),
+    ] = None,
+    report: Annotated[
+        bool,
+        typer.Option(
+            "--report", help="Write a web page, to the folder of --output or the current one."
+        ),
+    ] = False,
+    again: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FIT.json",
+            help="Repeat the fit that a JSON file records, and say if files or versions differ.",
+        ),
+    ] = None,
+    si: Annotated[bool, typer.Option("--si", help="Print tables in SI units.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Print errors and warnings only.")
+    ] = False,
+) -> None:
+    """Fit reduced modulus, tension and contact point to measured curves, with intervals.
+
+    Exit code 0 only if every curve was fitted, 1 if some could not be fitted.
+    """
+    from pellicle_fit.config import FitConfig
+    from pellicle_fit.many import ManyFits
+    from pellicle_fit.record import repetition
+
+    files = files or []
+    configs = [path for path in files if path.suffix.lower() == ".toml"]
+    if len(configs) > 1:
+        raise ConfigError(
+            f"{', '.join(map(str, configs))}: several configurations; give one, and name curves "
+            "with the suffix .toml in it (curves = […])"
+        )
+    repeated = None if again is None else repetition(again)
+    if repeated is not None and configs:
+        raise ConfigError(f"{configs[0]}: --again has a configuration of its own; leave one out")
+    config = FitConfig.merged(
+        configs[0] if configs else repeated and repeated.config,
+        [*map(_override, fix or ()), *(set_ or ())],
+        curves=tuple(path for path in files if path not in configs) or None,
+        indenter=indenter,
+        radius=radius[0] if radius and len(radius) == 1 else radius or None,
+        half_angle=half_angle,
+        poissons_ratio=poissons_ratio,
+        thickness=thickness,
+        baseline=baseline,
+        segment=segment,
+        spring_constant=spring_constant,
+        sensitivity=sensitivity,
+        speed=speed[0] if speed and len(speed) == 1 else speed or None,
+        columns=columns,
+        pool=pool or None,
+        compare=compare or None,
+        contact_points=contact_points or None,
+        accept=tuple(accept) if accept else None,
+        accepted=accepted and accepted.absolute(),
+        rejected=rejected and rejected.absolute(),
+        group_by=group_by,
+        executor=executor,
+        kernel=kernel,
+        grid_points=grid_points,
+        cache=cache,
+    )
+    result, name, title = _fit(config, directory, quiet=quiet)
+    if json:
+        print_json(result.to_dict())
+    elif isinstance(result, ManyFits):
+        print_fits(result, quiet=quiet, directory=directory, si=si)
+    elif quiet:
+        print_notes(result)
+    else:
+        print_fit(result, si=si)
+    for difference in _differences(repeated, result) if repeated else ():
+        echo(f"warning: {difference}", err=True)
+    written = _write(result, name, title, directory, report=report)
+    if not quiet:
+        if isinstance(result, ManyFits) and result.resumed:
+            echo(f"{result.resumed} of {len(result.rows)} fits were done before", err=json)
+        for path in written:
+            echo(f"wrote {path}", err=json)
+    if isinstance(result, ManyFits) and result.failed:
+        echo(f"{result.failed} of {len(result.rows)} curves could not be fitted", err=True)
+        raise typer.Exit(NOT_CONVERGED)
+
+
+def _fit(
+    config: FitConfig, directory: Path | None, *, quiet: bool
+) -> tuple[Fit | PooledFit | ManyFits, str, str]:
+    """Return the fit of the curves, the name of its files and the title of its page."""
+    from pellicle_fit.curves.sources import SourceStream
+    from pellicle_fit.many import fit_sources
+    from pellicle_fit.one_curve import fit_source
+    from pellicle_fit.pooled import pool_sources
+
+    progress, curves = not quiet and sys.stderr.isatty(), config.files()
+    if config.pool:
+        sources = [source for file in curves for source in file.open()]
+        return pool_sources(config, sources, progress=progress), "pool", "Pooled fit"
+    if [file.path for file in curves] == [config.curves[0]]:
+        opened = curves[0].open()
+        if opened.is_single:
+            (source,) = opened
+            stem = config.curves[0].stem
+            return fit_source(config, source, progress=progress), f"{stem}-fit", stem
+    try:
+        fits = fit_sources(config, SourceStream(curves), directory, progress=not quiet)
+    except KeyboardInterrupt:
+        hint = f"; finished fits are in {directory}, and the same command continues"
+        echo(f"interrupted{hint if directory else ''}", err=True)
+        raise typer.Exit(INTERRUPTED) from None
+    return fits, "fits", f"Fits of {len(fits.rows)} curves"
+
+
+def _differences(repeated: Repetition, result: Fit | PooledFit | ManyFits) -> Iterator[str]:
+    """Yield how data and versions differ from those of the fit that is repeated."""
+    from pellicle_fit.many import ManyFits
+
+    if isinstance(result, ManyFits):
+        return repeated.differences([row["data"] for row in result.rows if "data" in row], None)
+    return repeated.differences(result.record.data if result.record else [], result.record)
+
+
+def _write(
+    result: Fit | PooledFit | ManyFits,
+    name: str,
+    title: str,
+    directory: Path | None,
+    *,
+    report: bool,
+) -> list[Path]:
+    """Write the page, JSON and figure unless `fit_sources` did; return the paths of all files."""
+    from pellicle_fit.many import ManyFits
+    from pellicle_fit.report.figures import save_figure
+    from pellicle_fit.report.page import save_report
+
+    written: list[Path] = []
+    if isinstance(result, ManyFits):
+        written += result.files
+    elif directory is not None:
+        written.append(result.save(directory / f"{name}.json"))
+        written.append(save_figure(result, directory / f"{name}.png"))
+    if report:
+        written.append(save_report(result, (directory or Path()) / f"{name}.html", title))
+    return written
+
+
+def _override(text: str) -> str:
+    """Return ``name=value`` of ``--fix`` in the form of ``--set``; a bare number is in SI."""
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise ConfigError(f"{text!r} is not of the form name=value, e.g. tension=0", "fix")
+    with suppress(ValueError):
+        value = repr(float(value))
+    return f"fix.{name.strip()}={value.strip()}"

@@ -1,0 +1,371 @@
+"""Fits of many curves by an executor, and the table with a row for each."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import json
+import pickle
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import closing, nullcontext
+from dataclasses import dataclass, field
+from importlib.metadata import version
+from operator import length_hint
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pellicle.components import Component, Say
+from pellicle.components.calls import outcomes_of
+from pellicle.errors import PellicleError
+from pellicle.files import atomic_write, check_writable, write_json
+from pellicle.plugins import registry
+from pellicle.results import storage
+from pellicle.results.variables import header
+from pellicle.runs.lock import locked
+from pellicle.runs.progress import StudyProgress
+
+from .config import FitConfig
+from .curves.sources import Curves, Source, SourceStream
+from .one_curve import fit_problem
+from .population.images import force_maps
+from .population.judgement import Row, group_of, group_pattern, judge, read_names
+from .population.sketch import Sketch, from_json, of_curve, to_json
+from .population.summary import Quartiles, summary
+from .population.table import table
+from .problem import FitProblem, problems
+from .record import Stopwatch, components_of, data_of
+from .statistics.chi_squared import Minimum
+from .statistics.profile import curvature_interval, estimate_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FITTED = "fitted"
+FAILED = "failed: "
+_NOT_RUN = "not run"
+_JOURNAL = "curves"
+_WITHOUT_EFFECT = {
+    "curves",
+    "per_file",
+    "pool",
+    "contact_points",
+    "executor",
+    "cache",
+    "accept",
+    "accepted",
+    "rejected",
+    "group_by",
+}
+"""Fields of a configuration that do not change the fit of a curve."""
+_BYTES_PER_POINT = 2000
+"""Memory of a fit, approximately."""
+_BATCH = 4_000_000
+"""Points of the curves that are in memory at once."""
+
+
+@dataclass(frozen=True)
+class FitTask:
+    """The fit of one curve; it pickles to workers."""
+
+    row: int
+    problem: FitProblem
+    path: Path | None
+    """File that keeps the fit."""
+
+    @property
+    def name(self) -> str:
+        """Name in a progress bar."""
+        return self.problem.name
+
+    @property
+    def memory(self) -> int:
+        """Estimated peak memory of the fit [bytes]."""
+        return _BYTES_PER_POINT * self.problem.curve.force.size
+
+
+@dataclass
+class ManyFits:
+    """The fits of many curves."""
+
+    rows: list[Row]
+    files: tuple[Path, ...] = ()
+    resumed: int = 0
+    """Number of fits that an earlier call had finished."""
+    notes: list[str] = field(default_factory=list)
+    """Notes on the population: rejected curves, outliers, lists with wrong names."""
+    sketches: dict[int, Sketch] = field(default_factory=dict)
+    """Some points of each curve, by its row."""
+    maps: dict[str, xr.Dataset] = field(default_factory=dict)
+    """Images of each force map, by its file."""
+
+    @property
+    def failed(self) -> int:
+        """Number of curves that could not be fitted."""
+        return sum(row["status"].startswith(FAILED) for row in self.rows)
+
+    def summary(self) -> list[Quartiles]:
+        """Return median and quartiles of each parameter in each group."""
+        return summary(self.rows)
+
+    def _repr_html_(self) -> str:
+        """Return HTML for a notebook: sentences, the quartiles of each group, a picture."""
+        from .report.notebook import html_of_population
+
+        return html_of_population(self)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the fits as JSON data."""
+        groups = [part._asdict() for part in self.summary()]
+        return {"curves": self.rows, "groups": groups, "notes": self.notes}
+
+
+def fit_many(
+    curves: Curves | None = None,
+    *,
+    config: FitConfig | str | Path | None = None,
+    directory: str | Path | None = None,
+    progress: bool = True,
+    **options: Any,
+) -> xr.Dataset:
+    """Fit each of many curves on its own and return a table with a row for each.
+
+    A curve that cannot be fitted does not stop the others: its row has the reason.
+
+    Parameters
+    ----------
+    curves
+        A folder; a file, which may hold several curves; a pattern such as ``"beads/*.csv"``; a
+        table that lists files, with a header such as ``file,radius [um]``; several of these; or
+        position [m] and force [N] of each curve by its name, ``{"first": (position, force)}``.
+        Those of the configuration if not given.
+    directory
+        Folder for the table, as ``fits.h5``, ``fits.csv`` and ``fits.json``, and a file for each
+        curve in ``curves``. A fit that it contains already is not repeated.
+    progress
+        Show a bar on a terminal or in a notebook; elsewhere, a line for each curve.
+    config, **options
+        As for `fit`.  A list for a field of the indenter, for spring_constant or for sensitivity
+        has a value for each file: ``radius=["5 um", "20 um"]``.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``curve``: each parameter as value, ``_low``, ``_high`` (NaN: open) and ``_bound``,
+        with noise, χ² and the messages. ``status`` is ``fitted``, or why there is no fit.
+
+    Raises
+    ------
+    ConfigError, PluginError
+        An argument is not allowed, or there is no curve; nothing was fitted.
+    StorageError
+        The folder cannot be used.
+    """
+    config = FitConfig.merged(config, **options)
+    folder = None if directory is None else Path(directory)
+    sources = SourceStream(config.files(curves))
+    return table(fit_sources(config, sources, folder, progress=progress).rows)
+
+
+def fit_sources(
+    config: FitConfig, sources: Iterable[Source], directory: Path | None, *, progress: bool
+) -> ManyFits:
+    """Fit each curve that is not fitted yet, and write the files.
+
+    Curves are read in batches, so that a population does not have to fit in memory.  If
+    interrupted, the table has all fits that were finished.
+
+    Raises
+    ------
+    StorageError
+        The folder cannot be written, or another process uses it.
+    """
+    from .report.population import save_population
+
+    lists = read_names(config.accepted), read_names(config.rejected)
+    fits, watch = ManyFits([]), Stopwatch()
+    with nullcontext() if directory is None else locked(directory, "fits"):
+        if directory is not None:
+            check_writable(directory / "fits.h5")
+            check_writable(directory / _JOURNAL / "fit.json")
+        try:
+            with StudyProgress(length_hint(sources), 0, progress) as bar:
+                for batch in _batches(sources):
+                    _fit_batch(config, batch, directory, fits, bar, length_hint(sources), progress)
+        except BaseException:
+            # A table without any fit would replace an earlier one.
+            if directory is not None and any(row["status"] == FITTED for row in fits.rows):
+                judge(fits.rows, config.accept, *lists)
+                _write(fits, config, watch, directory)
+            raise
+        notes = judge(fits.rows, config.accept, *lists)
+        fits.maps, of_maps = force_maps(fits.rows)
+        fits.notes = [*notes, *of_maps]
+        if directory is not None:
+            tables = _write(fits, config, watch, directory)
+            fits.files = (*tables, *save_population(fits, directory))
+    return fits
+
+
+def _batches(sources: Iterable[Source]) -> Iterator[list[Source]]:
+    """Yield the curves in batches that fit in memory."""
+    batch: list[Source] = []
+    points = 0
+    for source in sources:
+        batch.append(source)
+        if not isinstance(source.curve, PellicleError):
+            points += int(np.size(source.curve.force))
+        if points > _BATCH:
+            yield batch
+            batch, points = [], 0
+    if batch:
+        yield batch
+
+
+def _fit_batch(
+    config: FitConfig,
+    sources: list[Source],
+    directory: Path | None,
+    fits: ManyFits,
+    bar: StudyProgress,
+    total: int,
+    progress: bool,
+) -> None:
+    """Fit each curve of a batch that is not fitted yet, and add a row for each."""
+    rows, first, pattern = fits.rows, len(fits.rows), group_pattern(config.group_by)
+    for source in sources:
+        group = group_of(pattern, source.file, source.group)
+        row: Row = {"curve": source.name, "status": _NOT_RUN, "group": group}
+        if not isinstance(source.curve, PellicleError) and source.curve.site is not None:
+            x, y, grid = source.curve.site
+            row["site"] = {"map": source.map, "x": x, "y": y, "grid": grid}
+        rows.append(row)
+    tasks: list[FitTask] = []
+    for number, problem in enumerate(problems(config, sources), first):
+        source = sources[number - first]
+        if (sketch := of_curve(source.curve)) is not None:
+            fits.sketches[number] = sketch
+        try:
+            if isinstance(problem, PellicleError):
+                raise problem
+            rows[number]["data"] = data_of(problem.curve, config)
+            path = None
+            if directory is not None:
+                name = f"{_identity(config, source, problem)[:16]}.json"
+                path = directory / _JOURNAL / name
+                if (earlier := _read(path)) is not None:
+                    _keep(fits, number, earlier)
+                    fits.resumed += 1
+                    continue
+            tasks.append(FitTask(number, problem.simulated(config, progress=progress), path))
+        except PellicleError as error:
+            rows[number]["status"] = _failure(error, source)
+    bar.expect(total, len(sources) - len(tasks))
+    with closing(outcomes_of(config.executor, work, tasks, bar.report, dict)) as outcomes:
+        for task, outcome in outcomes:
+            if isinstance(outcome, Exception):
+                rows[task.row]["status"] = _failure(outcome, sources[task.row - first])
+            else:
+                if task.path is not None:
+                    write_json(outcome, task.path)
+                _keep(fits, task.row, outcome)
+            status = str(rows[task.row]["status"])
+            bar.finished(task, status, status != FITTED)
+
+
+def _keep(fits: ManyFits, number: int, outcome: dict[str, Any]) -> None:
+    """Put the fit of a curve into its row, and its points beside the rows."""
+    sketch = from_json(outcome.get("sketch", {}))
+    if sketch is not None:
+        fits.sketches[number] = sketch
+    fits.rows[number] |= {k: v for k, v in outcome.items() if k != "sketch"} | {"status": FITTED}
+
+
+def work(task: FitTask, say: Say) -> dict[str, Any]:
+    """Fit a curve in a worker, and return its row: the chosen model, and the verdict on a tension.
+
+    Where that is not an elastic solid under tension, the estimates of one are under ``elastic``.
+    """
+    fit = fit_problem(task.problem)
+    row, likelihood, best = fit.to_dict(), fit.likelihood, fit.parameters
+    if fit.chosen is not None:
+        likelihood, best = fit.chosen.rival.of_curve(likelihood), fit.chosen.parameters
+        row["elastic"] = {name: row[name] for name in fit.estimates()}
+        row["chi_squared"] = likelihood.chi_squared(best)
+        minimum, bounds = Minimum(best, row["chi_squared"]), likelihood.deviations(best)
+        for p in likelihood.parameters:
+            if p.name in row["elastic"]:
+                # A comparison seeks no interval of contact point and baseline.
+                ends = curvature_interval(p, minimum, bounds, fit.rise)
+                row[p.name] = estimate_of(p, likelihood, minimum, ends, bounds).to_dict()
+        row |= row["chosen"]["parameters"]
+    residuals = likelihood.misfit(best)
+    scatter = likelihood.force - np.mean(likelihood.force)
+    _, force = likelihood.fitted(best)
+    return row | {
+        "r_squared": 1 - float(residuals @ residuals) / float(scatter @ scatter),
+        "indentation": float(np.max(likelihood.depth(best))),
+        "largest_force": float(np.max(force)),
+        "sketch": to_json(likelihood.position, likelihood.force, force),
+    }
+
+
+def _identity(config: FitConfig, source: Source, problem: FitProblem) -> str:
+    """Return a hash that is equal for fits with equal results."""
+    options = config.model_dump(mode="json", exclude=_WITHOUT_EFFECT, fallback=str)
+    curve = problem.curve
+    of_curve = (dict(source.fields), curve.is_depth, curve.stiffness, curve.messages)
+    plugins = registry().versions(components_of(config) - {type(config.executor)})
+    versions = version("pellicle"), sorted(plugins.items())
+    digest = hashlib.sha256(repr((versions, options, of_curve)).encode())
+    if not isinstance(config.indenter, (Component, Mapping)):
+        digest.update(pickle.dumps(config.indenter))
+    for values in (curve.position, curve.force, *([] if curve.time is None else [curve.time])):
+        digest.update(values.tobytes())
+    return digest.hexdigest()
+
+
+def _read(path: Path) -> Row | None:
+    """Return the fit that a file stores; None if it stores none."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return content if isinstance(content, dict) else None
+
+
+def _failure(error: Exception, source: Source) -> str:
+    """Return the status of a curve that could not be fitted."""
+    reason = "; ".join(source.reason(error).splitlines()) or "no reason given"
+    kind = "" if isinstance(error, PellicleError) else f"{type(error).__name__}: "
+    return f"{FAILED}{kind}{reason}"
+
+
+def _write(
+    fits: ManyFits, config: FitConfig, watch: Stopwatch, directory: Path
+) -> tuple[Path, ...]:
+    """Write the tables of the curves and of the groups, and return their paths."""
+    record = watch.record(config, [row["data"] for row in fits.rows if "data" in row])
+    attributes = {
+        "configuration": config.to_json(),
+        "versions": ", ".join(f"{name} {number}" for name, number in record.versions.items()),
+        "date": record.date,
+    }
+    dataset = table(fits.rows).assign_attrs(attributes)
+    hdf5, text, groups = (directory / f"fits{end}" for end in (".h5", ".csv", "-groups.csv"))
+    storage.write(dataset, hdf5)
+    columns = ["curve", *dataset.data_vars]
+    heads = [*(header(str(name), dataset[name]) for name in columns), *attributes]
+    cells = zip(*(dataset[name].values.tolist() for name in columns), strict=True)
+    _write_csv(text, heads, ((*row, *attributes.values()) for row in cells))
+    _write_csv(groups, Quartiles._fields, fits.summary())
+    content = fits.to_dict() | {"configuration": config.to_dict()} | record.to_dict()
+    return hdf5, text, groups, write_json(content, directory / "fits.json")
+
+
+def _write_csv(path: Path, heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
+    with atomic_write(path) as part, part.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(heads)
+        writer.writerows(rows)

@@ -1,0 +1,49 @@
+"""What tests of fits share: the command."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from pellicle.cli import app
+from tests.shared_fits import share_fits
+
+
+@pytest.fixture
+def cli(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Result]:
+    """Return a function that calls ``pellicle fit`` in an empty folder and checks its exit code."""
+    monkeypatch.chdir(tmp_path)
+
+    def call(*arguments: str, code: int = 0) -> Result:
+        result = CliRunner().invoke(app, ["fit", *arguments])
+        assert result.exit_code == code, result.output
+        assert "Traceback" not in result.output
+        return result
+
+    return call
+
+
+def skip_rivals(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let fits of this process skip rivals: most of their time, and tested elsewhere."""
+
+    def skipped(*arguments: Any, **options: Any) -> None:
+        """Compare nothing."""
+
+    for module in ("fit", "pooled"):
+        monkeypatch.setattr(f"pellicle_fit.{module}.compare", skipped)
+
+
+@pytest.fixture
+def no_rivals(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let fits of a test skip rivals."""
+    skip_rivals(monkeypatch)
+
+
+@pytest.fixture
+def shared_fits(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let fits of a test have the result of an earlier one of an equal problem."""
+    share_fits(monkeypatch)

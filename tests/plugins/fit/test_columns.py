@@ -1,0 +1,373 @@
+"""Files as laboratories have them: columns of other names, odd headers, MATLAB, nested HDF5."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.io import savemat
+
+import pellicle as pl
+from pellicle_fit.curves.cleaning import clean
+from pellicle_fit.curves.columns import Calibration
+from pellicle_fit.curves.curve import Curve
+from pellicle_fit.curves.readers import read
+from pellicle_fit.curves.roles import column_map
+
+pytestmark = pytest.mark.usefixtures("no_rivals")
+
+Array = NDArray[np.float64]
+Z = np.array([1.5, 2.5, 3.5, 4.5])
+"""[um]"""
+F = np.array([0.25, 0.5, 1.25, 2.0])
+"""[nN]"""
+BY_NUMBER = "1 = position um, 2 = force nN"
+
+
+def curves(path: Path, columns: str | None = None, **calibration: str) -> dict[str, Curve]:
+    """Return the curves of a file; an error is raised."""
+    contents = read(path, Calibration(columns=columns, **calibration))
+    result = {}
+    for label, curve in contents.items():
+        assert isinstance(curve, Curve), curve
+        result[label] = curve
+    return result
+
+
+def is_the_curve(curve: Curve) -> bool:
+    """Whether a curve has the numbers above."""
+    return bool(np.allclose(curve.position, 1e-6 * Z) and np.allclose(curve.force, 1e-9 * F))
+
+
+def rows(separator: str = ",", comma: bool = False, end: str = "\n") -> str:
+    """Return the numbers as lines."""
+    lines = [f"{z:.4f}{separator}{f:.4f}" for z, f in zip(Z, F, strict=True)]
+    text = end.join(lines) + end
+    return text.replace(".", ",") if comma else text
+
+
+TABLES: dict[str, tuple[str, str | None]] = {
+    "comment header": (f"# position [um],force [nN]\n{rows()}", None),
+    "last comment": (f"# by A. Nother\n# position [um] force [nN]\n{rows(' ')}", None),
+    "header below a preamble": (
+        f"Instrument: X\nk (N/m);0,05\n\nposition (um);force (nN)\n{rows(';', True)}",
+        None,
+    ),
+    "row of units": (f"position,force\n[um],[nN]\n{rows()}", None),
+    "row of units, semicolons": (f"Position;Force\nµm;nN\n{rows(';', True)}", None),
+    "tabs and decimal commas": (f"position [um]\tforce [nN]\n{rows(chr(9), True)}", None),
+    "decimal commas without header": (rows("\t", True), BY_NUMBER),
+    "no header": (rows(), BY_NUMBER),
+    "no header, spaces": ("  " + rows("   "), BY_NUMBER),
+    "no header, a comment": (f"# whatever was measured\n{rows()}", BY_NUMBER),
+    "carriage returns, empty lines": (
+        f"position [um],force [nN]\r\n\r\n{rows(end=chr(13) + chr(10) * 2)}",
+        None,
+    ),
+    "mark of byte order": (f"\ufeffposition [um],force [nN]\n{rows()}", None),
+    "Greek mu": (f"position [μm],force [nN]\n{rows()}", None),
+    "micro sign": (f"position [µm],force [nN]\n{rows()}", None),
+    "names of the user": (f"Z,Defl\n{rows()}", "z = position um, Defl = force nN"),
+    "unit of the header": (f"Z [um],Defl [nN]\n{rows()}", "Z = position, Defl = force"),
+    "whole heads": (f"Z (raw) (um),x,\n{rows()}", "Z (raw) (um) = position um, 2 = force nN"),
+    "quoted name": (f'"Z, raw";F\n{rows(";")}', '"Z, raw" = position um, F = force nN'),
+    "doubled name by number": (f"force [nN],force [nN]\n{rows()}", BY_NUMBER),
+    "columns of one name, one wanted": (f"Z,F,F\n{rows()}", "Z = position um, 2 = force nN"),
+}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_tables(tmp_path: Path, name: str) -> None:
+    """Each table has the same numbers, whatever its form."""
+    text, columns = TABLES[name]
+    path = tmp_path / "Kürve 1 [µ].csv"
+    path.write_bytes(text.encode())
+    (curve,) = curves(path, columns).values()
+    assert is_the_curve(curve)
+
+
+def test_code_page_of_western_europe(tmp_path: Path) -> None:
+    """A micro sign of one byte is understood."""
+    path = tmp_path / "a.txt"
+    path.write_bytes(f"position [µm];force [nN]\n{rows(';')}".encode("latin-1"))
+    assert is_the_curve(curves(path)[""])
+
+
+@pytest.mark.parametrize("mark", ["\t", ";", ","])
+def test_thousands_are_no_decimals(tmp_path: Path, mark: str) -> None:
+    """Where a column has points, a comma groups thousands, or the cell is no number."""
+    path = tmp_path / "a.tsv"
+    for grouped, expected in (("1,000", 1e-6), ("-1,234,567.5", -1.2345675e-3), ("1,5", np.nan)):
+        cell = f'"{grouped}"' if mark == "," else grouped
+        path.write_text(f"position [nm]{mark}force [nN]\n999.5{mark}1\n{cell}{mark}2\n")
+        position = curves(path)[""].position.tolist()
+        assert position == pytest.approx([0.9995e-6, expected], rel=1e-12, nan_ok=True)
+
+
+def test_decimal_commas_between_commas_are_refused(tmp_path: Path) -> None:
+    """They would split numbers: 1,5 at 2,7 was a position of 1 at a force of 5."""
+    path = tmp_path / "curve.csv"
+    path.write_text("position [um],force [nN]\n1,5,2,7\n1,6,2,9\n", encoding="utf-8")
+    with pytest.raises(pl.ConfigError, match=r"has 4 numbers below 2 names \(1,5,2,7\)"):
+        dict(read(path))
+    path.write_text("position [um],force [nN]\n1.5,2.7,,a remark\n1.6,2.9\n", encoding="utf-8")
+    measured = read(path)[""]
+    assert isinstance(measured, Curve)
+    assert measured.force == pytest.approx([2.7e-9, 2.9e-9])
+
+
+def test_thousands_that_may_be_decimals_are_refused(tmp_path: Path) -> None:
+    """Whole nanometres up to 1,200 are not read as 1.2 nm, which would leave the deep rows out."""
+    path = tmp_path / "a.tsv"
+    lines = [f"{z:,}\t{z**1.5 * 1e-3:.3f}" for z in range(0, 1250, 50)]
+    path.write_text("position [nm]\tforce [nN]\n" + "\n".join(lines))
+    with pytest.raises(pl.ConfigError, match="column position has '1,000' beside '50', so"):
+        curves(path)
+    path.write_text("position [um]\tforce [nN]\n0\t1\n0,125\t2\n1,125\t3\n")
+    assert curves(path)[""].position.tolist() == pytest.approx([0, 0.125e-6, 1.125e-6])
+
+
+@pytest.mark.parametrize("header", ["time [ms]", "time", "t [m]", "time [s]"])
+def test_time(tmp_path: Path, header: str) -> None:
+    """A time that grows is kept; one without a unit is not needed, so it is no error."""
+    path = tmp_path / "a.csv"
+    lines = [f"{line},{number}" for number, line in enumerate(rows().split(), 1)]
+    path.write_text(f"position [um],force [nN],{header}\n" + "\n".join(lines), encoding="utf-8")
+    time = curves(path)[""].time
+    if header.startswith("time ["):
+        assert time is not None
+        assert time.tolist() == pytest.approx(
+            np.arange(1, 5) * (1e-3 if header == "time [ms]" else 1.0)
+        )
+    else:
+        assert time is None
+
+
+@pytest.mark.parametrize(
+    ("header", "times", "reason"),
+    [("time", "1 2 3 4", "has no unit"), ("time [s]", "1 1 1 1", "stands still")],
+)
+def test_time_that_does_not_serve(tmp_path: Path, header: str, times: str, reason: str) -> None:
+    """A time that is not used is not silently left out: relaxation depends on it."""
+    path = tmp_path / "a.csv"
+    lines = [f"{line},{time}" for line, time in zip(rows().split(), times.split(), strict=True)]
+    path.write_text(f"position [um],force [nN],{header}\n" + "\n".join(lines), encoding="utf-8")
+    curve = curves(path)[""]
+    assert curve.time is None
+    (note,) = curve.messages
+    assert reason in note
+    assert "time" not in curve.origin.columns
+
+
+def test_labels_and_deflection(tmp_path: Path) -> None:
+    """Rows are told apart by a column of another name; a deflection gets force and position."""
+    path = tmp_path / "a.csv"
+    lines = [f"{z},{f},{n // 2}" for n, (z, f) in enumerate(zip(Z, F, strict=True))]
+    path.write_text("Zsnsr,Defl,Nr\n" + "\n".join(lines), encoding="utf-8")
+    columns = "Zsnsr = extension um, Defl = deflection V, Nr = curve"
+    both = curves(path, columns, spring_constant="0.1 N/m", sensitivity="100 nm/V")
+    assert list(both) == ["0", "1"]
+    bending = 100e-9 * F
+    assert both["1"].force == pytest.approx(0.1 * bending[2:])
+    assert both["1"].position == pytest.approx(1e-6 * Z[2:] - bending[2:])
+
+
+def _asylum(path: Path) -> str:
+    with h5py.File(path, "w") as file:
+        for number in range(2):
+            group = file.create_group(f"ForceMap/Segments/{number}")
+            group["ZSnsr"], group["Defl"] = 1e-6 * Z, 1e-9 * F
+            group["ZSnsr"].attrs["unit"] = "m"
+        file["ForceMap/Segments/broken"] = h5py.SoftLink("/nowhere")
+    return "ForceMap/Segments/*/ZSnsr = position, ForceMap/Segments/*/Defl = force N"
+
+
+def _bruker(path: Path) -> str:
+    with h5py.File(path, "w") as file:
+        file["Z"], file["data/F"] = Z, np.tile(F, (2, 1))
+    return "/Z = position um, data/F = force nN"
+
+
+def _compound(path: Path) -> str:
+    with h5py.File(path, "w") as file:
+        table = np.zeros((2, 4), dtype=[("z", float), ("f", float)])
+        table["z"], table["f"] = Z, F
+        file["scan"] = table
+    return "scan/z = position um, scan/f = force nN"
+
+
+@pytest.mark.parametrize("write", [_asylum, _bruker, _compound])
+def test_hdf5_by_path(tmp_path: Path, write: Callable[[Path], str]) -> None:
+    """Arrays anywhere in a file are named by their paths; * stands for each of several groups."""
+    path = tmp_path / "converted.h5"
+    both = curves(path, write(path))
+    assert len(both) == 2
+    assert all(map(is_the_curve, both.values()))
+
+
+@pytest.mark.slow
+def test_thousands_of_groups(tmp_path: Path) -> None:
+    """Thousands of curves are read; a wrong path is refused with a few of the right ones."""
+    path = tmp_path / "map.h5"
+    with h5py.File(path, "w") as file:
+        for number in range(3000):
+            group = file.create_group(f"curve{number:04d}")
+            group["z"], group["f"] = Z, F
+    assert len(curves(path, "*/z = position um, */f = force nN")) == 3000
+    with pytest.raises(pl.ConfigError, match=r"no array of numbers at 'z' \(it has 'curve0000/f',"):
+        curves(path, "z = position um, f = force nN")
+    (error,) = read(path).values()
+    assert "--columns" in str(error)
+
+
+def _plain_mat(path: Path) -> str:
+    savemat(path, {"z": Z[:, None], "f": F})
+    return "z = position um, f = force nN"
+
+
+def _struct_mat(path: Path) -> str:
+    savemat(path, {"data": {"raw": {"z": Z, "f": F}, "who": "me"}})
+    return "data.raw.z = position um, data.raw.f = force nN"
+
+
+def _struct_array_mat(path: Path) -> str:
+    element = {"z": Z, "f": F}
+    savemat(path, {"curves": np.array([element, element], dtype=object)})
+    return "curves/*/z = position um, curves/*/f = force nN"
+
+
+def _matrix_mat(path: Path) -> str:
+    savemat(path, {"z": Z, "f": np.column_stack([F, F])})
+    return "z = position um, f = force nN"
+
+
+def _new_mat(path: Path) -> str:
+    with h5py.File(path, "w", userblock_size=512) as file:
+        # MATLAB stores columns of cells as references to arrays with reversed axes.
+        cells = file.create_group("#refs#")
+        cells["a"], cells["b"] = F[None], F[None]
+        file["z"] = Z[None]
+        references = np.array([[cells["a"].ref, cells["b"].ref]], dtype=h5py.ref_dtype)
+        file.create_dataset("f", data=references, dtype=h5py.ref_dtype)
+    return "z = position um, f/* = force nN"
+
+
+@pytest.mark.parametrize(
+    ("write", "count"),
+    [(_plain_mat, 1), (_struct_mat, 1), (_struct_array_mat, 2), (_matrix_mat, 2), (_new_mat, 2)],
+)
+def test_matlab(tmp_path: Path, write: Callable[[Path], str], count: int) -> None:
+    """Variables, structures, cells and matrices of curves are read, from old files and new."""
+    path = tmp_path / "measured.mat"
+    read_curves = curves(path, write(path))
+    assert len(read_curves) == count
+    assert all(map(is_the_curve, read_curves.values()))
+    with pytest.raises(pl.ConfigError, match="does not hold units; it has '"):
+        curves(path)
+
+
+@pytest.mark.parametrize(
+    ("columns", "words"),
+    [
+        ("Z extension nm", "is not of the form"),
+        ("", "is not of the form"),
+        ("Z = piezo nm", "'piezo' is not a role; "),
+        (
+            "Z = extension nN",
+            "is not a unit of extension; give it in m or a multiple, e.g. 'extension [nm]'",
+        ),
+        ("Z = force V", "a signal in volts is a column deflection"),
+        ("a = force N, b = force N", "'a' and 'b' are both force"),
+        ("a = force N, a = time s", "names a column twice"),
+        ({"a": 1}, "columns.a: 1 is not a role"),
+        (3, "is not a table or a text"),
+    ],
+)
+def test_bad_columns(columns: object, words: str) -> None:
+    """Roles and units that do not exist are refused before any file is read."""
+    with pytest.raises(pl.ConfigError, match="columns") as raised:
+        Calibration(columns=columns)
+    assert words in str(raised.value)
+
+
+def test_columns_have_one_order() -> None:
+    """The same roles in another order or form are the same configuration."""
+    text = 'Defl=deflection nm,  "Z" = Extension  nm'
+    assert column_map(text) == column_map({"Z": "extension nm", "Defl": "deflection nm"})
+    assert list(column_map(text)) == ["Z", "Defl"]
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "columns", "words"),
+    [
+        (
+            "a.csv",
+            b"Z,F\n1,2\n",
+            "Y = position um, F = force nN",
+            "no column 'Y' (it has 'Z', 'F')",
+        ),
+        ("a.csv", b"1,2\n1,2\n", "1 = position um, 3 = force nN", "its number from 1 to 2"),
+        ("a.csv", b"Z,F,F\n1,2,3\n", "Z = position um, F = force nN", "has 2 columns 'F'"),
+        ("a.csv", b"Z,F\n1,2\n", "Z = position um", "has to name each column"),
+        ("a.csv", b"1,2\n3,4\n", None, "name its columns (--columns"),
+        ("a.xlsx", b"PK\x03\x04", None, "is a spreadsheet; save the sheet of each curve as CSV"),
+        ("a.ods", b"PK\x03\x04", "1 = force N", "is a spreadsheet"),
+        ("a.mat", b"no such thing", "z = force N", "cannot be read as a MATLAB file"),
+        ("a.mat", b"MATLAB 5.0 MAT-file" + bytes(200), "z = force N", "cannot be read as"),
+        ("a.h5", b"\x89HDF\r\n\x1a\nbroken", "z = force N", "cannot be read as an HDF5 file"),
+        ("a.ibw", b"", "z = force N", "states what its columns are; leave columns out"),
+    ],
+)
+def test_bad_files(
+    tmp_path: Path, name: str, content: bytes, columns: str | None, words: str
+) -> None:
+    """What a file lacks is said with what it has."""
+    (tmp_path / name).write_bytes(content)
+    error: object
+    try:
+        (error,) = read(tmp_path / name, Calibration(columns=columns)).values()
+    except pl.PellicleError as raised:
+        error = raised
+    assert isinstance(error, pl.PellicleError)
+    assert words in str(error)
+
+
+def _ramp(pause: str, noise: float) -> tuple[Array, Array]:
+    """Return position [m] and force [N] of an approach, a pause and a retract."""
+    up = np.linspace(0, 3e-6, 400)
+    rest = np.full(300, up[-1])
+    if pause == "creep":
+        rest += np.linspace(0, 1e-7, rest.size)
+    position = np.concatenate([up, rest, rest[-1] * np.linspace(1, 0, 400)])
+    position += noise * np.random.default_rng(0).standard_normal(position.size)
+    depth = np.clip(position - 1e-6, 0, None)
+    force = 1e3 * depth**1.5
+    force[400:700] *= np.linspace(1, 0.7, 300)
+    force[700:] *= 0.7
+    return position, force
+
+
+@pytest.mark.parametrize(("pause", "noise"), [("hold", 0.0), ("hold", 2e-9), ("creep", 1e-9)])
+def test_pauses_are_left_out(pause: str, noise: float) -> None:
+    """Approach and retract end where the pause between them begins and ends."""
+    position, force = _ramp(pause, noise)
+    approach = clean(Curve(position, force))
+    assert approach.position.size == pytest.approx(400, abs=10)
+    assert any("are the approach" in text for text in approach.messages)
+    retract = clean(Curve(position, force), "retract")
+    assert retract.position.size == pytest.approx(400, abs=10)
+    # Without a retract, the pause ends the file.
+    alone = clean(Curve(position[:700], force[:700]))
+    assert alone.position.size == pytest.approx(400, abs=10)
+
+
+@pytest.mark.parametrize("motion", ["triangle", "sine"])
+def test_a_pass_without_a_pause_is_whole(motion: str) -> None:
+    """A steady motion loses no row, and neither does one that slows down as a sine."""
+    share = np.linspace(0, 1, 400)
+    depth = 3e-6 * (share if motion == "triangle" else (1 - np.cos(np.pi * share)) / 2) - 1e-6
+    assert clean(Curve(depth, np.clip(depth, 0, None) ** 1.5)).position.size == 400

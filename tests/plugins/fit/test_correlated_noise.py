@@ -1,0 +1,98 @@
+"""Noise whose power falls as f^(−2d), and the differences that make it independent."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fit_rivals import pink_noise
+
+import pellicle as pl
+from pellicle_fit.parameters import Coordinates
+from pellicle_fit.statistics import checks
+from pellicle_fit.statistics.likelihood import Likelihood
+from pellicle_fit.statistics.long_memory import differenced, exponent_of
+from pellicle_fit.statistics.noise import FailedCheck, NoiseEstimate
+
+
+def test_differences_of_order_one_and_their_composition() -> None:
+    """(1 − B)^1 takes differences of neighbours, and two powers follow each other."""
+    values = np.random.default_rng(1).standard_normal((50, 2))
+    assert differenced(values, 1.0)[1:] == pytest.approx(np.diff(values, axis=0))
+    assert differenced(values, 0.0) == pytest.approx(values)
+    twice = differenced(differenced(values, 0.3), 0.7)
+    assert twice == pytest.approx(differenced(values, 1.0))
+
+
+@pytest.mark.parametrize("exponent", [0.2, 0.5, 0.8])
+def test_exponent_of_fractional_noise(exponent: float) -> None:
+    """The exponent of noise is recovered; its standard error is 0.78 / √n, here 0.008."""
+    random = np.random.default_rng(2)
+    noise = differenced(random.standard_normal((10_000, 1)), -exponent)[:, 0]
+    assert exponent_of(noise) == pytest.approx(exponent, abs=0.03)
+
+
+def test_exponent_of_1_over_f_noise() -> None:
+    """Noise with a power of 1/f up to its last frequency is close to that of exponent 1/2."""
+    random = np.random.default_rng(2)
+    exponents = [exponent_of(pink_noise(random, 1000)) for _ in range(10)]
+    assert np.median(exponents) == pytest.approx(0.5, abs=0.1)
+
+
+@pytest.mark.parametrize("size", [1e-12, 1.0, 1e6])
+def test_other_noise_has_no_exponent(size: float) -> None:
+    """Independent noise, a moving average, hum, few rows and no noise at all have none."""
+    random = np.random.default_rng(3)
+    white = size * random.standard_normal(300)
+    assert exponent_of(white) == 0
+    assert exponent_of(np.convolve(white, np.ones(15), "valid")) == 0
+    assert exponent_of(white + 2 * size * np.sin(np.arange(300) / 3)) == 0
+    assert exponent_of(white[:50].cumsum()) == 0
+    assert exponent_of(np.zeros(300)) == 0
+
+
+def test_a_bent_baseline_is_not_the_noise_of_the_contact() -> None:
+    """A wandering baseline, and steps in contact: differences left a modulus 170 times too high."""
+    random = np.random.default_rng(0)
+    depth, radius, modulus = np.linspace(-0.4e-6, 0.4e-6, 400), 5e-6, 6e3
+    top = 4 / 3 * modulus * np.sqrt(radius) * 0.4e-6**1.5
+    share = np.maximum(depth / 0.4e-6, 0.0)
+    steps = 0.15 * share * np.sign(np.sin(120 * depth / 0.4e-6))
+    wander = 1e-3 * random.standard_normal(400).cumsum()
+    fit = pl.fit(
+        depth,
+        top * (share**1.5 + steps + wander),
+        indenter="paraboloid",
+        radius=radius,
+        baseline="offset",
+        fix={"tension": 0},
+    )
+    assert fit.reduced_modulus.value == pytest.approx(modulus, rel=0.1)
+    assert "misfit" in {check.code for check in fit.failed_checks}
+
+
+@pytest.mark.parametrize("code", ["misfit", "pattern"])
+def test_differences_that_the_model_does_not_describe_are_left(
+    code: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A contact of irregular steps vanishes among differences: a modulus was 1e-14 Pa."""
+    judged = checks.judged
+
+    def judged_with_failure(
+        likelihood: Likelihood, parameters: Coordinates
+    ) -> tuple[NoiseEstimate, str]:
+        estimate, source = judged(likelihood, parameters)
+        if likelihood.memory:
+            estimate = estimate._replace(failed=(FailedCheck(code, ""), *estimate.failed))
+        return estimate, source
+
+    depth = np.linspace(-0.4e-6, 0.4e-6, 600)
+    force = 1e-9 * np.maximum(depth / 0.4e-6, 0) ** 1.5
+    force += 1e-11 * pink_noise(np.random.default_rng(1), 600)
+
+    def noise_from() -> str:
+        fit = pl.fit(depth, force, indenter="paraboloid", radius=5e-6, baseline="offset")
+        return fit.noise_from
+
+    assert "f^-" in noise_from()
+    monkeypatch.setattr(checks, "judged", judged_with_failure)
+    assert "f^-" not in noise_from()

@@ -1,0 +1,193 @@
+"""Force maps: images of what was fitted, from files that know where curves were measured."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree as Xml
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+import xarray as xr
+from force_map import NAMES, PITCH, recordings, truth
+from PIL import Image
+
+import pellicle as pl
+from pellicle.errors import ConfigError
+from pellicle_fit.curves.curve import Axis
+from pellicle_fit.population.images import force_maps
+from tests.plugins.fit import instruments
+from tests.plugins.fit.conftest import skip_rivals
+from tests.plugins.fit.test_many import curve, save
+from tests.plugins.fit.test_population import row
+from tests.plugins.outputs.test_contact import decoded
+
+COLUMNS, ROWS, BROKEN, EMPTY = 4, 3, 5, 10
+OPTIONS: dict[str, Any] = {"indenter": "paraboloid", "radius": "10 um", "progress": False}
+
+
+@pytest.fixture(scope="module")
+def mapped(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of a map of 4 × 3 curves, one without contact and one empty, fitted."""
+    folder = tmp_path_factory.mktemp("map")
+    curves = recordings(COLUMNS, ROWS, points=60)
+    curves[BROKEN] = replace(curves[BROKEN], force=0 * curves[BROKEN].force)
+    nothing = curves[EMPTY].force[:0]
+    curves[EMPTY] = replace(curves[EMPTY], force=nothing, height=nothing)
+    instruments.jpk(folder / "cell.jpk-force-map", *curves)
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        skip_rivals(monkeypatch)
+        pl.fit_map(folder / "cell.jpk-force-map", directory=folder / "out", **OPTIONS)
+    return folder
+
+
+@pytest.mark.slow
+def test_images(mapped: Path) -> None:
+    """Most intervals hold the truth of their pixel, and nothing is made up where there is none."""
+    expected = truth(COLUMNS, ROWS)
+    for name in NAMES:
+        stem = mapped / "out" / "maps" / f"cell-{name}"
+        image, low, high = (np.load(f"{stem}{end}.npy") for end in ("", "_low", "_high"))
+        assert image.shape == (ROWS, COLUMNS)
+        missing = np.isnan(image)
+        assert missing.flat[[BROKEN, EMPTY]].all()
+        assert missing.sum() <= 3
+        assert np.array_equal(missing, np.isnan(low) | np.isnan(high))
+        inside = (np.nan_to_num(low, nan=-1e9) <= expected[name]) & (
+            expected[name] <= np.nan_to_num(high, nan=1e9)
+        )
+        assert inside.sum() >= 0.8 * image.size
+        with Image.open(f"{stem}.tif") as opened:
+            picture = np.array(opened)
+        assert picture.dtype == np.float32
+        assert np.allclose(picture[::-1], image, rtol=1e-6, equal_nan=True)
+    assert (mapped / "out" / "maps" / "cell.png").stat().st_size > 10_000
+
+
+def test_vti(mapped: Path) -> None:
+    """ParaView's file has every image with its unit, on the pixels of the map."""
+    root = Xml.parse(mapped / "out" / "maps" / "cell.vti").getroot()
+    whole = next(root.iter("ImageData")).attrib
+    assert whole["WholeExtent"] == f"0 {COLUMNS - 1} 0 {ROWS - 1} 0 0"
+    assert [float(v) for v in whole["Spacing"].split()] == pytest.approx([PITCH, PITCH, 1])
+    arrays = {entry.attrib["Name"]: decoded(entry) for entry in root.iter("DataArray")}
+    image = np.load(mapped / "out" / "maps" / "cell-tension_high.npy")
+    assert np.array_equal(arrays["tension_high [N/m]"].reshape(ROWS, COLUMNS), image, True)
+
+
+@pytest.mark.slow
+def test_killed_and_resumed(mapped: Path) -> None:
+    """Killed without warning, the same command goes on, and ends with the same numbers."""
+    source, folder = mapped / "cell.jpk-force-map", mapped / "killed"
+    command = [sys.executable, "-m", "pellicle", "fit", str(source), "-i", "paraboloid"]
+    command += ["--radius", "10 um", "-o", str(folder), "--fix", "tension=0", "--quiet"]
+    child = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+    try:
+        while len(list((folder / "curves").glob("*.json"))) < 2 and child.poll() is None:
+            time.sleep(0.002)
+    finally:
+        os.kill(child.pid, signal.SIGTERM if os.name == "nt" else signal.SIGKILL)
+        child.wait()
+    finished = {path: path.stat().st_mtime_ns for path in (folder / "curves").glob("*.json")}
+    assert 2 <= len(finished) < COLUMNS * ROWS - 2
+    images = pl.fit_map(source, directory=folder, fix={"tension": 0}, **OPTIONS)
+    assert all(path.stat().st_mtime_ns == at for path, at in finished.items())
+    assert not list(folder.rglob("*.part"))
+    xr.testing.assert_identical(images, pl.fit_map(source, fix={"tension": 0}, **OPTIONS))
+
+
+@pytest.mark.slow
+def test_places_as_text(tmp_path: Path) -> None:
+    """Places may be texts with units, in a file of afmformats or in a table of files."""
+    curves = [replace(c, place=None, grid=None) for c in recordings(3, 1, points=60)]
+    instruments.hdf5(tmp_path / "line.h5", *curves)
+    with h5py.File(tmp_path / "line.h5", "r+") as file:
+        for number, x in enumerate(("0 nm", "500 nm", "1 um")):
+            file[str(number)].attrs.update({"position x": x, "position y": "2 um"})
+    images = pl.fit_map(tmp_path / "line.h5", fix={"tension": 0}, directory=tmp_path, **OPTIONS)
+    assert images["x"].values == pytest.approx([0, 5e-7, 1e-6])
+    assert images["y"].values == pytest.approx([2e-6])
+    assert np.isfinite(images["reduced_modulus"]).all()
+    assert "tension" not in images
+    with Image.open(tmp_path / "maps" / "line-contact_height.tif") as picture:
+        assert picture.size == (3, 1)
+    lines = ["file,x [nm],y [nm]"]
+    for number in range(4):
+        save(tmp_path / f"{number}.csv", *curve(number))
+        lines.append(f"{number}.csv,{100 * (number % 2)},{300 * (number // 2)}")
+    (tmp_path / "table.csv").write_text("\n".join(lines))
+    images = pl.fit_map(tmp_path / "table.csv", fix={"tension": 0}, **OPTIONS)
+    assert images["reduced_modulus"].shape == (2, 2)
+    assert images["y"].values == pytest.approx([0, 3e-7])
+
+
+def placed(places: list[tuple[float, float]], grid: object = None) -> list[dict[str, Any]]:
+    """Return accepted rows at places [µm], their moduli in order."""
+    return [
+        row(f"m:{k}", 1e3 + k, accepted=True)
+        | {"site": {"map": "m", "x": 1e-6 * x, "y": 1e-6 * y, "grid": grid}}
+        for k, (x, y) in enumerate(places)
+    ]
+
+
+def only_image(rows: list[dict[str, Any]]) -> tuple[list[list[float]], list[str]]:
+    """Return the modulus of the only map less 1000, -1 where there is none, and the notes."""
+    maps, notes = force_maps(rows)
+    (images,) = maps.values()
+    return (np.nan_to_num(images["reduced_modulus"].values, nan=999) - 1e3).tolist(), notes
+
+
+def test_two_at_one_place() -> None:
+    """Of two curves at one place the last accepted one is shown, and the user is told."""
+    rows = placed([(0, 0), (1, 0), (0, 1), (1, 1), (0, 0), (1, 0)])
+    rows[5]["accepted"] = False
+    image, notes = only_image(rows)
+    assert image == [[4, 1], [2, 3]]
+    assert "2 curves are at places that have another, such as m:4" in notes[0]
+
+
+def test_open_intervals_have_no_pixel() -> None:
+    """The value of an open interval is one of many."""
+    rows = placed([(0, 0), (1, 0)])
+    rows[0]["reduced_modulus"]["high"] = None
+    assert only_image(rows)[0] == [[-1, 1]]
+
+
+def test_odd_grids() -> None:
+    """Noise of the stage, a missing column and a map that is not square change no pixel."""
+    noise = 0.05 * np.random.default_rng(1).standard_normal((6, 2))
+    snake = [(0, 0), (1, 0), (3, 0), (3, 1), (1, 1), (0, 1)]
+    rows = placed([(x + a, y + b) for (x, y), (a, b) in zip(snake, noise.tolist(), strict=True)])
+    image, notes = only_image(rows)
+    assert (image, notes) == ([[0, 1, -1, 2], [5, 4, -1, 3]], [])
+
+
+def test_stated_grid() -> None:
+    """A scan that was stopped has the size that its file states, unless curves are elsewhere."""
+    axes = Axis(0.0, 1e-6, 3), Axis(0.0, 1e-6, 3)
+    image, _ = only_image(placed([(0, 0), (1, 0), (2, 0), (0, 1)], axes))
+    assert image == [[0, 1, 2], [3, -1, -1], [-1, -1, -1]]
+    image, _ = only_image(placed([(0.5, 0), (1.5, 0), (0.5, 1), (1.5, 1)], axes))
+    assert image == [[0, 1], [2, 3]]
+
+
+def test_no_grid(tmp_path: Path) -> None:
+    """Places of a rotated scan, or at random, make no image, which is said."""
+    turned = np.exp(0.3j) * np.add.outer(np.arange(5), 1j * np.arange(5)).ravel()
+    scattered = np.random.default_rng(2).random((12, 2)) @ np.array([1, 1j])
+    for points in (turned, scattered):
+        maps, notes = force_maps(placed([(z.real, z.imag) for z in points.tolist()]))
+        assert not maps
+        assert notes == ["m: its places are not on a grid, so there is no image"]
+    # One place is not a map.
+    assert force_maps(placed([(0, 0), (0, 0)])) == ({}, [])
+    save(tmp_path / "a.csv", *curve(1))
+    with pytest.raises(ConfigError, match="hold 0 force maps"):
+        pl.fit_map(tmp_path / "a.csv", fix={"tension": 0}, **OPTIONS)

@@ -1,0 +1,392 @@
+"""Curves from files, the command, and what is said of input that cannot be fitted."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+from click.testing import Result
+from numpy.typing import NDArray
+
+import pellicle as pl
+from pellicle_fit.curves.cleaning import clean
+from pellicle_fit.curves.curve import Curve
+from pellicle_fit.curves.readers import read
+from pellicle_plugins.indenters.paraboloid import Paraboloid
+from tests.pictures import drawn_width
+
+Array = NDArray[np.float64]
+MODULUS, TENSION, RADIUS, POINT = 5e3, 7.5e-3, 10e-6, 1e-6
+HEADER = "position [um],force [nN]"
+OPTIONS = ("--indenter", "paraboloid", "--radius", "10 um")
+Cli = Callable[..., Result]
+
+
+def _curve(points: int = 300) -> tuple[Array, Array]:
+    depth = np.linspace(-1e-6, 3e-6, points)
+    paraboloid = Paraboloid(radius=RADIUS)
+    force = MODULUS * paraboloid.force_curve(depth, 2 * TENSION / MODULUS).force
+    noise = np.random.default_rng(4).standard_normal(points)
+    return depth + POINT, force + 0.005 * force.max() * noise
+
+
+def _write(position: Array, force: Array, header: str = HEADER, separator: str = ",") -> None:
+    values = np.column_stack([position * 1e6, force * 1e9])
+    np.savetxt("curve.csv", values, delimiter=separator, header=header, comments="", fmt="%.12g")
+
+
+def _holds(estimate: dict[str, Any], truth: float) -> bool:
+    return bool(estimate["low"] <= truth <= estimate["high"])
+
+
+@pytest.mark.slow
+def test_command_gives_json(cli: Cli) -> None:
+    """JSON has value, interval and unit of each parameter, and the words."""
+    _write(*_curve())
+    report = json.loads(cli("curve.csv", *OPTIONS, "--poissons-ratio", "0.5", "--json").stdout)
+    assert _holds(report["reduced_modulus"], MODULUS)
+    assert _holds(report["tension"], TENSION)
+    assert _holds(report["contact_point"], POINT)
+    assert [report[name]["unit"] for name in ("reduced_modulus", "tension", "contact_point")] == [
+        "Pa",
+        "N/m",
+        "m",
+    ]
+    youngs = report["youngs_modulus"]
+    assert youngs["value"] == pytest.approx(0.75 * report["reduced_modulus"]["value"])
+    assert report["tension_needed"]
+    assert report["comparison"].startswith("tension is needed")
+    assert "Cramér–Rao" in report["advice"]
+
+
+def test_an_upper_bound_of_no_tension_has_a_prefix(cli: Cli) -> None:
+    """A tension of 0 has no size of its own, so its unit is that of the end of its interval."""
+    depth = np.linspace(-1e-6, 1e-6, 200)
+    force = MODULUS * Paraboloid(radius=RADIUS).force_curve(depth, 0.0).force
+    errors = np.random.default_rng(3).standard_normal(depth.size)
+    _write(depth, force + 0.005 * force.max() * errors)
+    (line,) = [
+        line
+        for line in cli("curve.csv", *OPTIONS).stdout.splitlines()
+        if line.startswith("tension ")
+    ]
+    assert re.fullmatch(r"tension +0 +open to \d+(\.\d+)? +µN/m", line.rstrip())
+
+
+@pytest.mark.usefixtures("no_rivals")
+def test_command_leaves_files(cli: Cli) -> None:
+    """A folder gets JSON and figure, named after the curve; an open interval is null there."""
+    position, force = _curve()
+    _write(position, force)
+    shown = cli("curve.csv", "-i", "flat_punch", "--radius", "10 um", "-o", "out").stdout
+    assert "wrote out/curve-fit.json" in shown
+    figure = Path("out/curve-fit.png")
+    # Data with the fit, residuals below them, beside both the confidence region.
+    assert drawn_width(figure, columns=(0, 0.5), rows=(0, 0.68)) > 0.6
+    assert drawn_width(figure, columns=(0, 0.5), rows=(0.72, 1)) > 0.3
+    assert drawn_width(figure, columns=(0.5, 0.88)) > 0.2
+    report = json.loads(Path("out/curve-fit.json").read_text(encoding="utf-8"))
+    assert report["tension"]["low"] is None
+    assert any("does not describe the curve" in message for message in report["messages"])
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("no_rivals")
+def test_command_leaves_a_page(cli: Cli) -> None:
+    """The page has what was found and what to be careful of, and loads nothing."""
+    position, force = _curve(100)
+    _write(position, force + 3e-9)
+    assert "wrote curve-fit.html" in cli("curve.csv", *OPTIONS, "--report").stdout
+    page = Path("curve-fit.html").read_text(encoding="utf-8")
+    for words in ("reduced modulus", "Cramér–Rao", "baseline", "paraboloid", "data:image/svg+xml"):
+        assert words in page
+    assert not re.search(r"""(?:src|href)=["'](?!data:|#)""", page)
+    cli("curve.csv", *OPTIONS, "--report", "-o", "out", "--fix", "tension=0")
+    assert Path("out/curve-fit.html").is_file()
+
+
+@pytest.mark.usefixtures("no_rivals")
+def test_fields_of_any_indenter(cli: Cli) -> None:
+    """Fields that have no option of their own are set by their names."""
+    _write(*_curve())
+    by_name = cli("curve.csv", "-i", "paraboloid", "--set", "indenter.radius=10 um", "--json")
+    fits = [json.loads(by_name.stdout), json.loads(cli("curve.csv", *OPTIONS, "--json").stdout)]
+    for fit in fits:
+        del fit["date"], fit["wall_time"]
+    assert fits[0] == fits[1]
+
+
+@pytest.mark.parametrize("dwell", [1, 20])
+def test_rows_at_the_turn_belong_to_the_pass_that_has_them(dwell: int) -> None:
+    """Of rows at the greatest position the first ends the approach, the last begins the retract."""
+    position, force = _curve()
+    relaxed = 0.9 * force[::-1]
+    dwelling = np.full(dwell, position[-1]), np.full(dwell, relaxed[0])
+    both = np.r_[position, dwelling[0], position[-2::-1]], np.r_[force, dwelling[1], relaxed[1:]]
+    assert np.array_equal(clean(Curve(*both)).force, force)
+    assert np.array_equal(clean(Curve(*both), "retract").force, relaxed[::-1])
+
+
+def test_held_parameters(cli: Cli) -> None:
+    """What is fixed stays, with its unit, and is said to be held; Hertz is the fit without."""
+    _write(*_curve())
+    report = json.loads(cli("curve.csv", *OPTIONS, "--fix", "tension=7.5 mN/m", "--json").stdout)
+    assert report["tension"]["held"]
+    assert report["tension"]["value"] == TENSION
+    assert _holds(report["reduced_modulus"], MODULUS)
+    hertz = json.loads(cli("curve.csv", *OPTIONS, "--fix", "tension=0", "--json").stdout)
+    assert hertz["reduced_modulus"]["value"] > 1.2 * MODULUS
+
+
+@pytest.mark.usefixtures("no_rivals")
+@pytest.mark.parametrize(
+    ("header", "separator"),
+    [
+        ("position [um]\tforce [nN]", "\t"),
+        ("Position (um); Force (nN)", ";"),
+        ("# from the instrument\nposition [um],force [nN]", ","),
+    ],
+)
+def test_tables(cli: Cli, header: str, separator: str) -> None:
+    """Separators, comments, round brackets and capitals are understood."""
+    position, force = _curve()
+    _write(position, force, header, separator)
+    measured = read(Path("curve.csv"))[""]
+    assert isinstance(measured, Curve)
+    assert measured.position == pytest.approx(position)
+    assert measured.force == pytest.approx(force, abs=1e-18)
+
+
+@pytest.mark.usefixtures("no_rivals")
+def test_columns_of_other_names(cli: Cli) -> None:
+    """A table whose columns nobody knows is refused with what its first line has."""
+    _write(*_curve(), "Indentation (um),Force (nN)")
+    message = cli("curve.csv", *OPTIONS, code=2).stderr
+    assert "has no column position or depth" in message
+    assert "'indentation', 'force'" in message
+
+
+@pytest.mark.usefixtures("no_rivals")
+def test_decimal_commas(cli: Cli) -> None:
+    """Between semicolons a comma is decimal."""
+    Path("curve.csv").write_text("depth [nm];force [nN]\n1,5;2,25\n2,5;\n", encoding="utf-8")
+    measured = read(Path("curve.csv"))[""]
+    assert isinstance(measured, Curve)
+    assert measured.is_depth
+    assert measured.position == pytest.approx([1.5e-9, 2.5e-9])
+    assert measured.force == pytest.approx([2.25e-9, np.nan], nan_ok=True)
+
+
+@pytest.mark.usefixtures("no_rivals")
+def test_hdf5_and_depth(cli: Cli) -> None:
+    """An HDF5 file with units is read; depth holds the contact point at 0."""
+    position, force = _curve()
+    with h5py.File("curve.h5", "w") as file:
+        for name, values, unit in (("depth", position - POINT, "m"), ("force", force * 1e9, "nN")):
+            file[name] = values
+            file[name].attrs["units"] = unit
+    report = json.loads(cli("curve.h5", *OPTIONS, "--json").stdout)
+    assert report["contact_point"]["held"]
+    assert report["contact_point"]["value"] == 0
+    assert _holds(report["tension"], TENSION)
+
+
+def test_result_of_a_run_is_a_curve(cli: Cli) -> None:
+    """The file that ``pellicle run`` leaves can be fitted as it is."""
+    run = pl.Run(
+        grid={"points": 48, "size": "0.2 mm", "boundary": "free"},
+        kernel={"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 0.1},
+        indenter={"type": "paraboloid", "radius": "1 mm"},
+        loading={"depth": np.linspace(0.2e-6, 5e-6, 12).tolist()},
+    )
+    pl.run(run, progress=False).save("run.h5")
+    report = json.loads(cli("run.h5", "-i", "paraboloid", "--radius", "1 mm", "--json").stdout)
+    assert report["reduced_modulus"]["value"] == pytest.approx(1e4, rel=0.02)
+    assert report["tension"]["value"] == pytest.approx(0.1, rel=0.02)
+
+
+@pytest.mark.usefixtures("no_rivals")
+def test_baseline(cli: Cli) -> None:
+    """An offset is pointed out; with offset and slope fitted the truth comes back."""
+    position, force = _curve()
+    drift = 3e-9 + 2e-3 * (position - position[0])
+    _write(position, force + drift)
+    plain = json.loads(cli("curve.csv", *OPTIONS, "--json").stdout)
+    assert any("baseline" in message for message in plain["messages"])
+    report = json.loads(cli("curve.csv", *OPTIONS, "--baseline", "slope", "--json").stdout)
+    for name, truth in (
+        ("reduced_modulus", MODULUS),
+        ("tension", TENSION),
+        ("offset", 3e-9),
+        ("slope", 2e-3),
+    ):
+        assert _holds(report[name], truth)
+
+
+@pytest.mark.usefixtures("no_rivals")
+def test_wild_rows_are_left_out(cli: Cli) -> None:
+    """Rows without a number, and the way back, are left out and counted."""
+    position, force = _curve()
+    force[::10] = np.nan
+    _write(np.append(position, position[::-1]), np.append(force, force[::-1]))
+    report = json.loads(cli("curve.csv", *OPTIONS, "--json").stdout)
+    assert report["points"] == pytest.approx(270, abs=2)
+    assert any("60 of 600 rows hold no finite number" in message for message in report["messages"])
+    assert any("are the approach" in message for message in report["messages"])
+    assert _holds(report["tension"], TENSION)
+
+
+@pytest.mark.usefixtures("no_rivals")
+def test_repeated_positions(cli: Cli) -> None:
+    """Several forces at one position are several measurements."""
+    position, force = _curve(600)
+    paraboloid = Paraboloid(radius=RADIUS)
+    coarse = np.round(position, 7)
+    force = force + MODULUS * (
+        paraboloid.force_curve(coarse - POINT, 2 * TENSION / MODULUS).force
+        - paraboloid.force_curve(position - POINT, 2 * TENSION / MODULUS).force
+    )
+    fit = pl.fit(coarse, force, indenter=paraboloid)
+    assert _holds(fit.tension.to_dict(), TENSION)
+
+
+@pytest.mark.usefixtures("no_rivals")
+def test_all_in_contact() -> None:
+    """Without a point before contact the fit goes on, and says what cannot be told."""
+    position, force = _curve()
+    touching = position > POINT + 0.3e-6
+    fit = pl.fit(position[touching], force[touching], indenter="paraboloid", radius=RADIUS)
+    assert any("0 points lie before contact" in message for message in fit.messages)
+    assert _holds(fit.contact_point.to_dict(), POINT)
+
+
+@pytest.mark.usefixtures("no_rivals")
+def test_ten_points() -> None:
+    """Ten points are fitted, with intervals as wide as they must be."""
+    position, force = _curve(10)
+    fit = pl.fit(position, force, indenter="paraboloid", radius=RADIUS)
+    assert any("only 10 points" in message for message in fit.messages)
+    assert _holds(fit.reduced_modulus.to_dict(), MODULUS)
+
+
+@pytest.mark.usefixtures("no_rivals")
+@pytest.mark.parametrize("factor", [1e-3, 1e3])
+def test_wrong_radius_is_noticed(factor: float) -> None:
+    """A radius wrong by a thousand is doubted."""
+    fit = pl.fit(*_curve(), indenter="paraboloid", radius=RADIUS * factor)
+    assert any("are radius and units right?" in message for message in fit.messages)
+
+
+@pytest.mark.usefixtures("no_rivals")
+def test_sphere_is_not_sunk() -> None:
+    """The sphere's curve ends at its equator."""
+    with pytest.raises(pl.ConfigError, match="are radius and units right"):
+        pl.fit(*_curve(), indenter="sphere", radius=RADIUS / 1000)
+
+
+@pytest.mark.parametrize(
+    ("header", "words"),
+    [
+        ("position,force", "no unit"),
+        ("position [um],force [V]", "spring constant"),
+        ("position [um],force [nm]", "not a unit of force"),
+        ("position [um],load [nN]", "no column force"),
+        ("height [um],force [nN]", "spring_constant: is missing"),
+        ("1.0,2.0", "no column force"),
+        ("force [nN],force [nN]", "several columns force"),
+    ],
+)
+def test_bad_headers(cli: Cli, header: str, words: str) -> None:
+    """A header that lacks something says what, in words."""
+    _write(*_curve(), header=header)
+    assert words in cli("curve.csv", *OPTIONS, code=2).stderr
+
+
+def _changed(what: str) -> tuple[Array, Array]:
+    position, force = _curve()
+    match what:
+        case "retract":
+            return position[::-1], force[::-1]
+        case "pulls":
+            return position, -force
+        case "backwards":
+            return -position, force
+        case "flat":
+            return position, 1e-9 * np.random.default_rng(1).standard_normal(position.size)
+        case "still":
+            return np.full_like(position, 1e-6), force
+        case "several":
+            return np.tile(position, 3), np.tile(force, 3)
+        case "few":
+            return position[-5:], force[-5:]
+        case "zero":
+            return position, np.zeros_like(force)
+        case "nan":
+            return position, np.full_like(force, np.nan)
+    raise AssertionError(what)
+
+
+@pytest.mark.parametrize(
+    ("what", "words"),
+    [
+        ("retract", "this is a retract"),
+        ("pulls", "negative stiffness"),
+        ("backwards", "negative stiffness"),
+        ("flat", "no contact in the curve"),
+        ("still", "give a curve that moves"),
+        ("several", "several curves"),
+        ("few", "at least 8"),
+        ("zero", "no contact in the curve"),
+        ("nan", "at least 8"),
+    ],
+)
+def test_bad_curves(cli: Cli, what: str, words: str) -> None:
+    """A curve that cannot be fitted is refused in words."""
+    _write(*_changed(what))
+    assert words in cli("curve.csv", *OPTIONS, code=2).stderr
+
+
+@pytest.mark.usefixtures("no_rivals")
+def test_retract_on_request() -> None:
+    """A retract is fitted if asked for, with a caution."""
+    fit = pl.fit(*_changed("retract"), indenter="paraboloid", radius=RADIUS, segment="retract")
+    assert _holds(fit.tension.to_dict(), TENSION)
+    assert any("adhered" in message for message in fit.messages)
+    with pytest.raises(pl.ConfigError, match="into the solid: this is an approach, and"):
+        pl.fit(*_curve(), indenter="paraboloid", radius=RADIUS, segment="retract")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("nothing.csv", *OPTIONS), "cannot be read"),
+        (("curve.csv", "-i", "paraboloid"), "indenter.radius: is missing"),
+        (("curve.csv", "-i", "paraboloid", "--radius", "10"), "text without a unit"),
+        (("curve.csv", "-i", "ball", "--radius", "10 um"), "'ball' is not an indenter"),
+        (("curve.csv", "-i", "self_affine", "--radius", "10 um"), "indenter"),
+        (("curve.csv", *OPTIONS, "--fix", "tension"), "name=value"),
+        (("curve.csv", *OPTIONS, "--fix", "modulus=1"), "is not a parameter"),
+        (("curve.csv", *OPTIONS, "--fix", "tension=-1"), "≥ 0"),
+        (("curve.csv", *OPTIONS, "--fix", "tension=1 V"), "is a voltage, not a tension"),
+        (("curve.csv", *OPTIONS, "--spring-constant", "1 N"), "is a force, not a spring constant"),
+        (("curve.csv", *OPTIONS, "--fix", "tension=1e300"), "≤ 1e+30 N/m"),
+        (("curve.csv", *OPTIONS, "--fix", "reduced_modulus=1e300"), "≤ 1e+30 Pa"),
+        (("curve.csv", *OPTIONS, "--fix", "contact_point=-1e300"), "≥ -1e+30 m"),
+        (("curve.csv", *OPTIONS, "--baseline", "cubic"), "not allowed"),
+        (("curve.csv", *OPTIONS, "--segment", "all"), "not allowed"),
+        (("curve.csv", *OPTIONS, "--poissons-ratio", "0.7"), "≤ 0.5"),
+        (("curve.csv", *OPTIONS, "--set", "grid.points=9"), "grid: is not a field here"),
+        (("curve.csv", *OPTIONS, "--kernel", "winkler"), "kernel: 'winkler' has no field"),
+        (("curve.csv", *OPTIONS, "--kernel", "bonded_layer"), "put it under a skin"),
+    ],
+)
+def test_bad_options(cli: Cli, arguments: tuple[str, ...], words: str) -> None:
+    """Options that are not allowed say what is."""
+    _write(*_curve())
+    assert words in cli(*arguments, code=2).stderr

@@ -1,0 +1,295 @@
+"""Curves in the formats of instruments, and tables of what a cantilever sees."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import pellicle as pl
+from pellicle_fit.curves.columns import Calibration
+from pellicle_fit.curves.curve import Curve, Note
+from pellicle_fit.curves.readers import read
+from pellicle_fit.models.force_model import tension_model
+from pellicle_fit.parameters import CONTACT_POINT, OFFSET, SLOPE, TENSION, Coordinates
+from pellicle_fit.parameters import MODULUS as REDUCED_MODULUS
+from pellicle_fit.report.figures import save_figure
+from pellicle_fit.statistics.likelihood import Likelihood
+from pellicle_plugins.indenters.paraboloid import Paraboloid
+from tests.pictures import drawn_width
+from tests.plugins.fit import instruments
+
+pytestmark = pytest.mark.usefixtures("no_rivals")
+
+Array = NDArray[np.float64]
+MODULUS, LENGTH, RADIUS, SPRING, SENSITIVITY = 5e3, 3e-6, 10e-6, 0.05, 50e-9
+GIVEN = Calibration(spring_constant=SPRING, sensitivity=SENSITIVITY)
+BEAD = Paraboloid(radius=RADIUS)
+
+
+POSITION = np.linspace(-1e-6, 3e-6, 300)
+FORCE = MODULUS * BEAD.force_curve(POSITION, LENGTH).force
+NOISE = 0.005 * FORCE.max() * np.random.default_rng(4).standard_normal(FORCE.size)
+SEEN = POSITION - NOISE / SPRING, FORCE + NOISE
+"""Position and force that are to be read: noise of the deflection is in both."""
+
+
+@pytest.fixture(scope="module")
+def recording() -> instruments.Recording:
+    """Return what an instrument sees of the curve."""
+    return instruments.record(POSITION, FORCE, NOISE, SPRING)
+
+
+def only(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Curve:
+    """Return the only curve of a file."""
+    (curve,) = read(path, calibration, segment).values()
+    if isinstance(curve, Exception):
+        raise curve
+    return curve
+
+
+def is_curve(measured: Curve, position: Array, force: Array) -> bool:
+    """Whether a curve is this one, but for where position is 0."""
+    moved = measured.position - position
+    same = np.ptp(moved) < 1e-6 * np.ptp(position)
+    return bool(same and np.allclose(measured.force, force, atol=1e-6 * np.ptp(force)))
+
+
+@pytest.mark.parametrize("name", instruments.WRITERS)
+def test_formats(tmp_path: Path, recording: instruments.Recording, name: str) -> None:
+    """Approach and retract are told apart, and the bending of the cantilever is subtracted."""
+    path = tmp_path / name
+    instruments.WRITERS[name](path, recording)
+    calibration = GIVEN if name in instruments.UNCALIBRATED else None
+    position, force = SEEN
+    approach = only(path, calibration)
+    if name == "curve.ibw":
+        # The file does not say where the approach ends: that is found from the position.
+        assert approach.force.size == 2 * force.size
+        first = slice(force.size)
+        approach = Curve(approach.position[first], approach.force[first])
+    else:
+        retract = only(path, calibration, "retract").position
+        assert retract[0] - retract[-1] == pytest.approx(np.ptp(position), rel=0.03)
+    assert is_curve(approach, position, force)
+
+
+def test_approach_of_an_unlabelled_file_is_fitted(
+    tmp_path: Path, recording: instruments.Recording
+) -> None:
+    """A file of both passes is fitted by its approach, and the truth is found."""
+    instruments.ibw(tmp_path / "curve.ibw", recording)
+    measured = only(tmp_path / "curve.ibw")
+    fit = pl.fit(
+        measured.position, measured.force, indenter=BEAD, spring_constant=measured.stiffness
+    )
+    # The turn is found exactly, because the base of the cantilever has no noise.
+    assert fit.points == 300
+    for estimate, truth in ((fit.reduced_modulus, MODULUS), (fit.tension, MODULUS * LENGTH / 2)):
+        assert estimate.low is not None
+        assert estimate.high is not None
+        assert estimate.low < truth < estimate.high
+
+
+def test_time_that_does_not_serve(tmp_path: Path, recording: instruments.Recording) -> None:
+    """A time that stands still is left out with a note, as from a table; one that grows is kept."""
+    path = tmp_path / "chiaro.txt"
+    instruments.chiaro(path, recording)
+    kept = only(path)
+    assert kept.time is not None
+    assert not kept.messages
+    header, _, table = path.read_text(encoding="ISO-8859-1").partition("Time (s)")
+    names, *rows = table.splitlines()
+    rows = ["0\t" + row.partition("\t")[2] for row in rows]
+    path.write_text("\n".join([f"{header}Time (s){names}", *rows]) + "\n", encoding="ISO-8859-1")
+    curve = only(path)
+    assert curve.time is None
+    assert "time" not in curve.origin.columns
+    (note,) = curve.messages
+    assert isinstance(note, Note)
+    assert "column time falls, stands still" in note
+
+
+@pytest.mark.parametrize("name", instruments.MAPS)
+def test_maps(tmp_path: Path, recording: instruments.Recording, name: str) -> None:
+    """A file of several curves has each by its number."""
+    instruments.MAPS[name](tmp_path / name, [recording, recording])
+    curves = read(tmp_path / name)
+    assert list(curves) == ["0", "1"]
+    assert all(isinstance(curve, Curve) and is_curve(curve, *SEEN) for curve in curves.values())
+
+
+@pytest.mark.parametrize("name", instruments.UNCALIBRATED)
+def test_calibration_is_asked_for(
+    tmp_path: Path, recording: instruments.Recording, name: str
+) -> None:
+    """A signal in volts needs spring constant and sensitivity, and the message says so."""
+    instruments.WRITERS[name](tmp_path / name, recording)
+    with pytest.raises(pl.ConfigError, match="--spring-constant and --sensitivity"):
+        read(tmp_path / name)
+
+
+def test_calibration_is_not_given_twice(tmp_path: Path, recording: instruments.Recording) -> None:
+    """A spring constant beside the one in the file is refused where it cannot be replaced."""
+    instruments.tab(tmp_path / "curve.tab", recording)
+    with pytest.raises(pl.ConfigError, match=r"holds a spring constant of 0\.05 already"):
+        only(tmp_path / "curve.tab", Calibration(spring_constant=0.1))
+    assert is_curve(only(tmp_path / "curve.tab", Calibration(spring_constant=SPRING)), *SEEN)
+
+
+def test_damaged_file(tmp_path: Path, recording: instruments.Recording) -> None:
+    """A file that was cut off is said to be unreadable."""
+    path = tmp_path / "curve.jpk-force"
+    instruments.jpk(path, recording)
+    path.write_bytes(path.read_bytes()[:2000])
+    with pytest.raises(pl.StorageError, match="afmformats cannot read it"):
+        read(path)
+
+
+def test_neither_text_nor_known(tmp_path: Path) -> None:
+    """A file that nothing can read is to be exported as a table."""
+    (tmp_path / "curve.spm").write_bytes(bytes(range(256)))
+    with pytest.raises(pl.StorageError, match="export it as a table"):
+        read(tmp_path / "curve.spm")
+
+
+@pytest.mark.parametrize("name", ["curve.jpk-force", "export.h5"])
+def test_without_the_extra(
+    tmp_path: Path,
+    recording: instruments.Recording,
+    monkeypatch: pytest.MonkeyPatch,
+    name: str,
+) -> None:
+    """Where afmformats is not installed, the message says how to get it."""
+    instruments.WRITERS[name](tmp_path / name, recording)
+    monkeypatch.setitem(sys.modules, "afmformats", None)
+    with pytest.raises(pl.PellicleError, match=r"pip install 'pellicle\[afm\]'"):
+        only(tmp_path / name)
+
+
+COLUMNS = {
+    "height [um],force [nN]": (-1e6, 0.0),
+    "height [um],deflection [nm]": (-1e6, 1e9),
+    "extension [nm],deflection [mV]": (1e9, 1e3 / SENSITIVITY),
+    "extension [nm],deflection [nm],force [nN]": (1e9, 1e9),
+}
+
+
+@pytest.mark.parametrize("header", COLUMNS)
+def test_columns_of_a_cantilever(tmp_path: Path, header: str) -> None:
+    """Height or extension, less the deflection, is the position; force is its spring's."""
+    position, force = SEEN
+    bending = force / SPRING
+    place, signal = COLUMNS[header]
+    values = {"deflection": bending * signal, "force": force * 1e9}
+    names = [column.split()[0] for column in header.split(",")]
+    rows = np.column_stack([(position + bending) * place, *(values[name] for name in names[1:])])
+    path = tmp_path / "curve.csv"
+    np.savetxt(path, rows, delimiter=",", header=header, comments="", fmt="%.12g")
+    assert is_curve(only(path, GIVEN), position, force)
+    if header != "extension [nm],deflection [nm],force [nN]":
+        with pytest.raises(pl.ConfigError, match=r"spring_constant|sensitivity"):
+            only(path)
+    else:
+        assert is_curve(only(path), position, force)
+
+
+TRUTH: Coordinates = {
+    CONTACT_POINT: 0.0,
+    REDUCED_MODULUS: float(np.log(MODULUS)),
+    TENSION: MODULUS * LENGTH / 2,
+    OFFSET: 0.0,
+    SLOPE: 0.0,
+}
+
+
+@pytest.mark.slow
+def test_noise_of_the_deflection_is_in_the_position_too() -> None:
+    """With a spring as soft as the contact errors are those of the bound, and nothing is widened.
+
+    Without its spring constant the same curve is thought not to be described by the model.
+    """
+    random = np.random.default_rng(7)
+    errors = []
+    for _ in range(8):
+        noise = 0.005 * FORCE.max() * random.standard_normal(FORCE.size)
+        seen = POSITION - noise / SPRING, FORCE + noise
+        fit = pl.fit(*seen, indenter=BEAD, spring_constant=SPRING)
+        assert not fit.failed_checks
+        bound = fit.likelihood.deviations(TRUTH)
+        errors += [
+            np.log(fit.reduced_modulus.value / MODULUS) / bound[REDUCED_MODULUS],
+            (fit.tension.value - TRUTH[TENSION]) / bound[TENSION],
+        ]
+    assert 0.4 < np.sqrt(np.mean(np.square(errors))) < 1.6
+    blind = pl.fit(*seen, indenter=BEAD)
+    assert any("does not describe the curve" in message for message in blind.messages)
+
+
+def test_balance_of_cantilever_and_solid() -> None:
+    """At the truth nothing is left but the noise, and slopes are derivatives of the residuals."""
+    noise = 0.01 * float(FORCE.max())
+    likelihood = Likelihood(*SEEN, tension_model(BEAD), noise, tuple(TRUTH), SPRING)
+    assert likelihood.residuals(TRUTH) * noise == pytest.approx(-NOISE, abs=1e-8 * FORCE.max())
+    here = {p: value + 0.01 * likelihood.ranges[p].scale for p, value in TRUTH.items()}
+    here[REDUCED_MODULUS] = TRUTH[REDUCED_MODULUS] + 0.1
+    away = np.abs(POSITION - here[CONTACT_POINT]) > 0.1e-6
+    for column, parameter in enumerate(likelihood.parameters):
+        step = 1e-5 * likelihood.ranges[parameter].scale
+        above, below = (
+            likelihood.residuals(here | {parameter: here[parameter] + change})
+            for change in (step, -step)
+        )
+        slope = likelihood.jacobian(here)[:, column]
+        derivative = (above - below) / (2 * step)
+        assert derivative[away] == pytest.approx(slope[away], abs=1e-4 * np.abs(slope).max())
+
+
+@pytest.mark.parametrize("points", [SEEN[0].size, 500])
+def test_fitted_curve_of_a_cantilever_has_no_noise(points: int) -> None:
+    """At the truth it is the true curve, at the measured and at other positions of the base."""
+    likelihood = Likelihood(*SEEN, tension_model(BEAD), 1e-10, tuple(TRUTH), SPRING)
+    position, force = likelihood.resampled(points).fitted(TRUTH)
+    true = MODULUS * BEAD.force_curve(position, LENGTH).force
+    assert force == pytest.approx(true, abs=1e-8 * FORCE.max())
+    assert position[[0, -1]] == pytest.approx(
+        POSITION[[0, -1]], abs=3 * np.abs(NOISE).max() / SPRING
+    )
+    assert likelihood.fitted(TRUTH)[0] == pytest.approx(POSITION, abs=1e-8 * FORCE.max() / SPRING)
+
+
+@pytest.mark.parametrize("points", [2 * SEEN[0].size, 501])
+def test_fitted_curve_of_both_passes_reaches_the_deepest_point(points: int) -> None:
+    """It goes in and back out along the true curve, also between the measured positions."""
+    path, pull = (np.concatenate([values, values[::-1]]) for values in (POSITION, FORCE))
+    likelihood = Likelihood(path, pull, tension_model(BEAD), 1e-10, tuple(TRUTH), segment="both")
+    position, force = likelihood.resampled(points).fitted(TRUTH)
+    assert force == pytest.approx(MODULUS * BEAD.force_curve(position, LENGTH).force)
+    assert position[[0, -1]] == pytest.approx(POSITION[0])
+    assert position.max() == pytest.approx(POSITION[-1])
+    assert (np.diff(position) >= 0).sum() == pytest.approx(points / 2, abs=2)
+
+
+def test_fits_of_cantilevers_are_drawn(tmp_path: Path) -> None:
+    """Figures of one curve and of a pool know positions that hold the deflection."""
+    options: dict[str, Any] = {
+        "indenter": BEAD,
+        "spring_constant": SPRING,
+        "baseline": "slope",
+        "fix": {"tension": TRUTH[TENSION]},
+    }
+    one = save_figure(pl.fit(*SEEN, **options), tmp_path / "one.png")
+    pool = save_figure(pl.fit_pooled({"a": SEEN, "b": SEEN}, **options), tmp_path / "pool.png")
+    for figure, columns in ((one, (0.0, 1.0)), (pool, (0.0, 0.5))):
+        for rows in ((0.0, 0.68), (0.75, 1.0)):
+            assert drawn_width(figure, columns, rows) > 0.6
+
+
+def test_bad_calibration() -> None:
+    """A calibration of another dimension is refused."""
+    with pytest.raises(pl.ConfigError, match="is a length, not a spring constant"):
+        Calibration(spring_constant="5 um")

@@ -1,0 +1,335 @@
+"""Folders and files of many curves: one row each, whatever becomes of the others."""
+
+from __future__ import annotations
+
+import json
+import pickle
+from collections.abc import Callable, Collection, Iterator, Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+import h5py
+import numpy as np
+import pytest
+import xarray as xr
+from click.testing import Result
+from numpy.typing import NDArray
+
+import pellicle as pl
+from pellicle.components import AnyTask, Executor, Outcome, Report, Say
+from pellicle.plugins import Registry
+from pellicle_fit.alternatives import reported_estimates
+from pellicle_fit.comparison import Comparison, RivalFit
+from pellicle_fit.config import FitConfig
+from pellicle_fit.many import fit_sources
+from pellicle_fit.models.force_model import tension_model
+from pellicle_fit.population.judgement import judge
+from pellicle_fit.population.summary import summary
+from pellicle_fit.population.table import table
+from pellicle_fit.statistics.chi_squared import Minimum
+from pellicle_fit.statistics.likelihood import Likelihood
+from pellicle_fit.statistics.rivals import NONE
+from pellicle_plugins.indenters.paraboloid import Paraboloid
+
+pytestmark = pytest.mark.usefixtures("no_rivals")
+
+Array = NDArray[np.float64]
+MODULUS, LENGTH, RADIUS = 5e3, 3e-6, 10e-6
+HEADER = "position [um],force [nN]"
+OPTIONS = ("-i", "paraboloid", "--radius", "10 um")
+Cli = Callable[..., Result]
+
+
+def curve(seed: int, *, radius: float = RADIUS, points: int = 60) -> tuple[Array, Array]:
+    """Return position and force under a paraboloid."""
+    depth = np.linspace(-0.1, 0.3, points) * radius
+    bead = Paraboloid(radius=radius)
+    force = MODULUS * bead.force_curve(depth, LENGTH).force
+    noise = np.random.default_rng(seed).standard_normal(points)
+    return depth + 1e-6, force + 0.005 * force.max() * noise
+
+
+def save(path: Path, position: Array, force: Array, header: str = HEADER) -> None:
+    """Write a table."""
+    path.parent.mkdir(exist_ok=True)
+    rows = np.column_stack([position * 1e6, force * 1e9])
+    np.savetxt(path, rows, delimiter=",", header=header, comments="")
+
+
+def folder(tmp_path: Path) -> Path:
+    """Return a folder of two curves that can be fitted and of four that cannot."""
+    day = tmp_path / "day"
+    position, force = curve(1)
+    save(day / "a.csv", position, force)
+    save(day / "b.csv", *curve(2))
+    save(day / "c.csv", position, force, "position [um],force [V]")
+    save(day / "d.csv", position[::-1], force[::-1])
+    save(day / "e.csv", position, 1e-3 * force.max() * np.sin(1e9 * position))
+    save(day / "f.csv", np.tile(position, 3), np.tile(force, 3))
+    (day / "notes.md").write_text("not a curve", encoding="utf-8")
+    return day
+
+
+def test_folder(cli: Cli, tmp_path: Path) -> None:
+    """A row for each file; those that cannot be fitted say why, and the exit code does."""
+    folder(tmp_path)
+    result = cli("day", *OPTIONS, "--fix", "tension=0", "-o", "out", "--report", code=1)
+    assert "4 of 6 curves could not be fitted" in result.stderr
+    rows = json.loads(Path("out/fits.json").read_text(encoding="utf-8"))["curves"]
+    assert [Path(row["curve"]).name for row in rows] == [f"{letter}.csv" for letter in "abcdef"]
+    statuses = [row["status"] for row in rows]
+    assert statuses[:2] == ["fitted", "fitted"]
+    reasons = ["sensitivity [m/V]", "this is a retract", "no contact", "several curves"]
+    for status, words in zip(statuses[2:], reasons, strict=True):
+        assert status.startswith("failed: ")
+        assert words in status
+        assert words in result.stderr
+    with xr.open_dataset("out/fits.h5", engine="h5netcdf") as table:
+        assert table["reduced_modulus"].attrs["units"] == "Pa"
+        assert np.isfinite(table["reduced_modulus"].values).tolist() == [True] * 2 + [False] * 4
+        assert (table["reduced_modulus_low"] < table["reduced_modulus"])[:2].all()
+    lines = Path("out/fits.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[0].startswith("curve,status,reduced_modulus [Pa],reduced_modulus_low [Pa],")
+    assert len(lines) == 7
+    page = Path("out/fits.html").read_text(encoding="utf-8")
+    for words in ("2 of 6 curves were fitted", "10 µm", "fixed", "no contact", "svg+xml"):
+        assert words in page
+    assert page.count(">failed</td>") == 4
+
+
+def test_same_as_alone(tmp_path: Path) -> None:
+    """The row of a curve is what `fit` says of it."""
+    position, force = curve(1)
+    save(tmp_path / "a.csv", position, force)
+    table = pl.fit_many(tmp_path / "a.csv", indenter="paraboloid", radius="10 um", progress=False)
+    position = np.round(position * 1e6, 12) * 1e-6
+    alone = pl.fit(position, force, indenter="paraboloid", radius="10 um")
+    for name in ("reduced_modulus", "tension", "contact_point"):
+        estimate = getattr(alone, name)
+        assert table[name].item() == pytest.approx(estimate.value, rel=1e-6)
+        assert table[f"{name}_low"].item() == pytest.approx(estimate.low, rel=1e-3)
+        assert table[f"{name}_high"].item() == pytest.approx(estimate.high, rel=1e-3)
+    assert table["status"].item() == "fitted"
+    assert table["comparison"].item() == alone.comparison
+
+
+def test_what_is_done_is_kept(cli: Cli, tmp_path: Path) -> None:
+    """The same command goes on; another question is asked anew."""
+    for seed, name in enumerate(("a", "b")):
+        save(tmp_path / "day" / f"{name}.csv", *curve(seed))
+    common = ("day", *OPTIONS, "--fix", "tension=0", "-o", "out")
+    assert "done before" not in cli(*common).output
+    save(tmp_path / "day" / "c.csv", *curve(5))
+    again = cli(*common)
+    assert "2 of 3 fits were done before" in again.output
+    assert "done before" not in cli(*common, "--baseline", "offset").output
+    assert len(list(Path("out/curves").iterdir())) == 6
+
+
+def test_a_row_is_that_of_the_chosen_model(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Here a solid without tension is chosen, whose figures are those of a fit without one."""
+
+    def compared(likelihood: Likelihood, best: Minimum, without: Minimum, **_: Any) -> Comparison:
+        """Choose the solid without tension."""
+        parts = without.chi_squared, 0.0, 0.0, without.parameters
+        chosen = RivalFit(NONE, *parts, reported_estimates(NONE.of(likelihood), without, {}))
+        return Comparison((chosen,), "other", "", "", (), chosen)
+
+    monkeypatch.setattr("pellicle_fit.one_curve.compare", compared)
+    curves = {"a": curve(1), "b": curve(2)}
+    config = FitConfig(indenter=Paraboloid(radius=RADIUS))
+    row, *_ = fits = fit_sources(config, config.sources(curves), None, progress=False).rows
+    fixed = pl.fit_many(curves, config=config, fix={"tension": 0}, progress=False)
+    assert row["chosen"]["model"] == "none"
+    for name in ("reduced_modulus", "contact_point", "tension"):
+        assert row[name]["value"] == pytest.approx(float(fixed[name][0]), rel=1e-4)
+        assert row["elastic"][name]["value"] != row[name]["value"]
+    for name in ("r_squared", "indentation", "largest_force"):
+        assert row[name] == pytest.approx(float(fixed[name][0]), rel=1e-4)
+    # Intervals are by the noise of the solid under tension here.
+    low, high = (row["contact_point"][end] for end in ("low", "high"))
+    assert low < row["contact_point"]["value"] < high
+    judge(fits, [], None, None)
+    assert {part.parameter for part in summary(fits)} == {"reduced_modulus"}
+    assert str(table(fits)["chosen_model"].values[0]) == "none"
+
+
+def test_another_version_of_a_plugin_is_another_fit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is kept of an indenter is not that of its next version; that of an executor is."""
+    releases: dict[type, str] = {Paraboloid: "1", Keeps: "1"}
+
+    def versions(self: object, used: Collection[type]) -> dict[str, str]:
+        """Return the releases of the distributions of components."""
+        return {kind.__name__: releases[kind] for kind in releases if kind in used}
+
+    def fits() -> int:
+        """Fit a curve, and return how many fits are kept."""
+        bead, fixed = Paraboloid(radius=RADIUS), {"tension": 0}
+        options: dict[str, Any] = {"directory": tmp_path, "progress": False, "executor": Keeps()}
+        pl.fit_many({"a": curve(1)}, indenter=bead, fix=fixed, **options)
+        return len(list((tmp_path / "curves").iterdir()))
+
+    monkeypatch.setattr(Registry, "versions", versions)
+    monkeypatch.setattr("pellicle_fit.report.population.save_population", lambda *_: ())
+    assert fits() == 1
+    releases[Keeps] = "2"
+    assert fits() == 1
+    releases[Paraboloid] = "2"
+    assert fits() == 2
+
+
+class Stiffer:
+    """A paraboloid on which forces are a multiple of the true ones."""
+
+    depth_limit = np.inf
+
+    def __init__(self, factor: float) -> None:
+        self.factor = factor
+
+    def force_curve(self, depth: Array, length: float) -> pl.ForceCurve:
+        """Return the multiple."""
+        curve = Paraboloid(radius=RADIUS).force_curve(depth, length)
+        return pl.ForceCurve(*(self.factor * values for values in curve))
+
+
+@pytest.mark.slow
+def test_each_change_is_another_fit(tmp_path: Path) -> None:
+    """Radius, indenter and solid make another fit of the same curve; an executor does not."""
+    common: dict[str, Any] = {"fix": {"tension": 0}, "directory": tmp_path, "progress": False}
+    bead: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS}
+    moduli = set()
+    for options in (
+        bead,
+        bead | {"executor": Keeps()},
+        bead | {"radius": 2 * RADIUS},
+        bead | {"radius": [3 * RADIUS]},
+        bead | {"fix": {"tension": 1e-3}},
+        {"indenter": Stiffer(2.0)},
+        {"indenter": Stiffer(5.0)},
+    ):
+        table = pl.fit_many({"a": curve(1)}, **common | options)
+        moduli.add(table["reduced_modulus"].item())
+    assert len(moduli) == len(list((tmp_path / "curves").iterdir())) == 6
+
+
+class Stops(Executor):
+    """Is interrupted after the first task."""
+
+    type: Literal["stops"] = "stops"
+
+    def map(
+        self,
+        work: Callable[[AnyTask, Say], Outcome],
+        tasks: Sequence[AnyTask],
+        report: Report[AnyTask],
+    ) -> Iterator[tuple[AnyTask, Outcome | Exception]]:
+        """Yield one task."""
+        yield tasks[0], work(tasks[0], lambda _: None)
+        raise KeyboardInterrupt
+
+
+def test_interrupted(tmp_path: Path) -> None:
+    """What was finished is in the table, and the rest is said not to have run."""
+    curves = {str(seed): curve(seed) for seed in range(3)}
+    config = pl.FitConfig.merged(indenter="paraboloid", radius=RADIUS, fix={"tension": 0})
+    sources = config.sources(curves)
+    stops = pl.FitConfig.merged(config, executor=Stops())
+    with pytest.raises(KeyboardInterrupt):
+        fit_sources(stops, sources, tmp_path, progress=False)
+    rows = json.loads((tmp_path / "fits.json").read_text(encoding="utf-8"))["curves"]
+    assert [row["status"] for row in rows] == ["fitted", "not run", "not run"]
+    fits = fit_sources(config, sources, tmp_path, progress=False)
+    assert (fits.resumed, fits.failed) == (1, 0)
+
+
+class Keeps(Executor):
+    """Carries out what was pickled, as another process would."""
+
+    type: Literal["keeps"] = "keeps"
+
+    def map(
+        self,
+        work: Callable[[AnyTask, Say], Outcome],
+        tasks: Sequence[AnyTask],
+        report: Report[AnyTask],
+    ) -> Iterator[tuple[AnyTask, Outcome | Exception]]:
+        """Yield the tasks in another order."""
+        for task in reversed(tasks):
+            assert task.memory > 0
+            copy, moved = pickle.loads(pickle.dumps((work, task)))
+            yield task, pickle.loads(pickle.dumps(copy(moved, lambda _: None)))
+
+
+def test_tasks_travel(tmp_path: Path) -> None:
+    """Curves, questions and answers pickle, and rows keep their order."""
+    curves = {str(seed): curve(seed) for seed in range(3)}
+    common: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS, "fix": {"tension": 0}}
+    copy = pl.fit_many(curves, executor=Keeps(), progress=False, **common)
+    here = pl.fit_many(curves, progress=False, **common)
+    xr.testing.assert_identical(copy, here)
+
+
+def test_simulated_once_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What has to be simulated is so before the fits, by the same executor; tasks take it along."""
+    requests = []
+
+    def simulate(indenter: pl.Indenter, solid: object, deepest: float, **settings: Any) -> Any:
+        requests.append(settings["executor"])
+        assert isinstance(indenter, pl.HasForceCurve)
+        return tension_model(indenter)
+
+    monkeypatch.setattr("pellicle_fit.problem.simulate", simulate)
+    curves = {str(seed): curve(seed) for seed in range(2)}
+    common: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS, "fix": {"tension": 0}}
+    copy = pl.fit_many(curves, kernel="tensed_membrane", executor=Keeps(), progress=False, **common)
+    assert requests == [Keeps(), Keeps()]
+    xr.testing.assert_identical(copy, pl.fit_many(curves, progress=False, **common))
+
+
+def test_labelled_curves(cli: Cli) -> None:
+    """Rows of a table that differ in the column curve are different curves."""
+    parts = [curve(seed) for seed in (1, 2)]
+    lines = [
+        f"{number},{z * 1e6:.9g},{f * 1e9:.9g}"
+        for number in (0, 1)
+        for z, f in zip(*parts[number], strict=True)
+    ]
+    Path("map.csv").write_text("\n".join([f"curve,{HEADER}", *lines]), encoding="utf-8")
+    statuses = json.loads(cli("map.csv", *OPTIONS, "--fix", "tension=0", "--json").stdout)["curves"]
+    assert [row["curve"] for row in statuses] == ["map.csv:0", "map.csv:1"]
+    assert all(row["status"] == "fitted" for row in statuses)
+
+
+def test_groups(tmp_path: Path) -> None:
+    """Groups of an HDF5 file are curves; one that lacks a unit does not stop the others."""
+    with h5py.File(tmp_path / "map.h5", "w") as file:
+        for seed, name in enumerate(("first", "second")):
+            for column, values in zip(("position", "force"), curve(seed), strict=True):
+                file[f"{name}/{column}"] = values
+                if (name, column) != ("second", "force"):
+                    file[f"{name}/{column}"].attrs["units"] = "m" if column == "position" else "N"
+    table = pl.fit_many(
+        tmp_path / "map.h5",
+        indenter="paraboloid",
+        radius=RADIUS,
+        fix={"tension": 0},
+        progress=False,
+    )
+    first, second = table["status"].values
+    assert first == "fitted"
+    assert "curve second: column force has no unit" in second
+
+
+@pytest.mark.parametrize("listed", [True, False])
+def test_radius_of_each(cli: Cli, listed: bool) -> None:
+    """Each file has its own radius: of a list of files, or of the command line."""
+    for radius in (5, 20):
+        save(Path(f"{radius}.csv"), *curve(radius, radius=radius * 1e-6, points=200))
+    Path("beads.csv").write_text("file;radius [um]\n5.csv;5\n20.csv;20\n", encoding="utf-8")
+    files = (
+        ("beads.csv",) if listed else ("5.csv", "20.csv", "--radius", "5 um", "--radius", "20 um")
+    )
+    for row in json.loads(cli(*files, "-i", "paraboloid", "--json").stdout)["curves"]:
+        assert row["reduced_modulus"]["low"] < MODULUS < row["reduced_modulus"]["high"]

@@ -1,0 +1,314 @@
+"""Populations: which curves count, their groups, their files, and how they come to harm."""
+
+from __future__ import annotations
+
+import csv
+import errno
+import json
+import os
+import weakref
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import Result
+from numpy.typing import NDArray
+from typer.testing import CliRunner
+
+import pellicle as pl
+from pellicle.cli import app
+from pellicle.errors import ConfigError, StorageError
+from pellicle.runs.lock import locked
+from pellicle_fit import many
+from pellicle_fit.curves.curve import Curve
+from pellicle_fit.curves.sources import Source
+from pellicle_fit.many import ManyFits, fit_sources
+from pellicle_fit.population.judgement import (
+    group_of,
+    group_pattern,
+    judge,
+    outliers,
+    read_names,
+)
+from pellicle_fit.population.rules import Rule, values
+from pellicle_fit.population.summary import summary
+from pellicle_fit.report.contact_sheet import sheets
+from pellicle_fit.report.distributions import drawable
+from pellicle_fit.report.sentences import sentences_of_population
+from tests.plugins.fit.test_many import OPTIONS, curve, save
+
+pytestmark = pytest.mark.usefixtures("no_rivals")
+
+Cli = Callable[..., Result]
+Row = dict[str, Any]
+FIXED = (*OPTIONS, "--fix", "tension=0")
+
+
+def row(name: str, modulus: float | None = 1e3, *, is_open: bool = False, **others: Any) -> Row:
+    """Return the row of a curve."""
+    result: Row = {"curve": name, "status": "fitted", "group": "", **others}
+    if modulus is None:
+        return result | {"status": "failed: no contact"}
+    high = None if is_open else 1.1 * modulus
+    estimate = {"value": modulus, "low": 0.9 * modulus, "high": high, "bound": 1.0}
+    result["reduced_modulus"] = estimate | {"unit": "Pa", "held": False}
+    return {"r_squared": 0.99, "chi_squared": 50.0, "points": 50} | result
+
+
+@pytest.mark.parametrize(
+    ("rule", "holds"),
+    [
+        ("r_squared > 0.95", True),
+        ("r_squared>=0.995", False),
+        ("reduced_modulus < 1.1 kPa", True),
+        ("0.5 kPa < reduced_modulus < 900 Pa", False),
+        ("900 < reduced_modulus", True),
+        ("1e-3 MPa >= reduced_modulus_low", True),
+        ("reduced_modulus_high < 1 MPa", False),
+        ("reduced_modulus_high != 1 MPa", False),
+        ("chi_squared / points < 1.5", True),
+        ("2 * reduced_modulus - reduced_modulus_low < 1.2 kPa", True),
+        ("abs(log10(r_squared)) < 1", True),
+        ("tension / reduced_modulus < 10 um", False),
+    ],
+)
+def test_rules(rule: str, holds: bool) -> None:
+    """A rule compares numbers and quantities; no rule holds of an open end or a missing number."""
+    Rule(rule).check()
+    objection = Rule(rule).objection(values(row("a", is_open=True)))
+    assert (not objection) == holds
+    assert holds or objection.endswith(f"against {rule}")
+
+
+@pytest.mark.parametrize(
+    ("rule", "words"),
+    [
+        ("reduced_modulus < 1 mN/m", "compares reduced_modulus"),
+        ("tension / reduced_modulus < 1 kPa", "compares tension / reduced_modulus"),
+        ("reduced_modulus < 1 parsnip", "'1 parsnip' in 'reduced_modulus < 1 parsnip' has an unk"),
+        ("r_square > 0.9", "did you mean 'r_squared'"),
+        ("r_squared", "does not compare a number of the fit"),
+        ("0.9 < 0.95", "does not compare a number of the fit"),
+        ("1 < r_squared < 2 < 3", "does not compare a number of the fit"),
+        ("r_squared > ", "does not compare a number of the fit"),
+        ("log(reduced_modulus) > 3", "cannot be evaluated"),
+        ("r_squared > __import__('os')", "__import__"),
+        ("reduced_modulus < 1 Pa*9**9**9**9", "unknown unit"),
+    ],
+)
+def test_bad_rules(rule: str, words: str) -> None:
+    """A rule that means nothing is refused before any curve is fitted."""
+    with pytest.raises(ConfigError) as caught:
+        pl.FitConfig.merged(indenter="paraboloid", radius="1 um", accept=rule)
+    assert words in str(caught.value)
+
+
+def test_lists(tmp_path: Path) -> None:
+    """Lists name curves by the end of their path, their label or a pattern; typing errors show."""
+    listed = tmp_path / "rejected.txt"
+    listed.write_text("curve,reason\n# a comment\na.csv, a bubble\nmap.h5:1\nold/*\nzz.csv\n")
+    rows = [row(n) for n in ("day/a.csv", "day/aa.csv", "map.h5:1", "map.h5:11", "x/old/b.csv")]
+    notes = judge(rows, [], None, read_names(listed))
+    assert [r["accepted"] for r in rows] == [False, True, False, True, False]
+    assert rows[0]["reason"] == "in rejected.txt: a bubble"
+    assert any("'zz.csv', which is none of the curves" in note for note in notes)
+    judge(rows, [], read_names(listed), None)
+    assert [r["accepted"] for r in rows] == [True, False, True, False, True]
+    assert rows[1]["reason"] == "not in rejected.txt"
+    with pytest.raises(StorageError, match="cannot be read as a list"):
+        read_names(tmp_path / "none.txt")
+
+
+@pytest.mark.parametrize(
+    ("pattern", "file", "group"),
+    [
+        ("{group}_*.csv", "day/control_01.csv", "control"),
+        ("{group}_*.csv", "day\\drug_a_01.csv", "drug"),
+        ("{group}/*", "data/day 1/a.csv", "day 1"),
+        ("cell[1]{group}.csv", "cell[1]x.csv", "x"),
+        ("{group}_*.csv", "day/control.csv", ""),
+        ("column", "any", "a/b"),
+    ],
+)
+def test_groups(pattern: str, file: str, group: str) -> None:
+    """A group is part of a file name, or the text of a column with whatever is in it."""
+    assert group_of(group_pattern(pattern), file, "a/b") == group
+
+
+def test_outliers_are_kept() -> None:
+    """A modulus far from the median of its group is named, and counts all the same."""
+    spread = np.exp(0.1 * np.random.default_rng(1).standard_normal(20))
+    rows = [row(f"{k}", 1e3 * s, group="soft/1") for k, s in enumerate(spread)]
+    rows += [row(f"s{k}", 1e5 * s, group="stiff") for k, s in enumerate(spread)]
+    rows[3]["reduced_modulus"]["value"] = 1e5
+    notes = judge(rows, [], None, None)
+    assert [r["curve"] for r in rows if r["outlier"]] == ["3"]
+    assert rows[3]["accepted"]
+    assert any("nothing was left out: 3" in note for note in notes)
+    parts = {part.group: part for part in summary(rows)}
+    assert (parts["soft/1"].n, parts["soft/1"].outliers, parts["all"].n) == (20, 1, 40)
+    soft = [r["reduced_modulus"]["value"] for r in rows[:20]]
+    assert parts["soft/1"].median == np.median(soft)
+    assert parts["soft/1"].upper_quartile == np.quantile(soft, 0.75)
+    # Equal moduli have no deviation to compare with, and four have no majority.
+    assert not outliers([row("a")] * 9 + [row("b", 2e3)])
+    assert not outliers([row("a", v) for v in (1e3, 1.01e3, 0.99e3, 1e6)])
+
+
+def test_open_intervals_have_no_median() -> None:
+    """Their values are some of many: they are counted, and change no statistics."""
+    rows = [row(f"{k}", modulus) for k, modulus in enumerate((1e3, 1.1e3, 1.2e3, 1.3e3, 1.4e3))]
+    rows += [row(f"open {k}", 1e6, is_open=True) for k in range(5)]
+    judge(rows, [], None, None)
+    assert not any(r["outlier"] for r in rows)
+    (part,) = summary(rows)
+    assert (part.n, part.open, part.median, part.maximum) == (10, 5, 1.2e3, 1.4e3)
+    assert "1.2 kPa (1.1 to 1.3; open in 5 of 10)" in sentences_of_population(ManyFits(rows))
+    (part,) = summary(rows[5:])
+    assert (part.n, part.open, np.isnan(part.median)) == (5, 5, True)
+    for r in rows:
+        r["tension"] = r["reduced_modulus"] | {"unit": "N/m"}
+    assert [r["curve"] for r in drawable(rows)] == list("01234")
+
+
+def test_nothing_is_left() -> None:
+    """That no curve is accepted is said; statistics and figures then have nothing to show."""
+    rows = [row("a"), row("b", None)]
+    notes = judge(rows, ["r_squared > 1"], None, None)
+    assert notes == ["none of 2 curves was accepted"]
+    assert rows[1]["reason"] == "failed: no contact"
+    assert summary(rows) == []
+    assert len(sheets(ManyFits(rows))) == 1
+    assert len(sheets(ManyFits(rows * 30))) == 3
+
+
+def test_files(cli: Cli, tmp_path: Path) -> None:
+    """Tables, sheet, distributions and page have every curve, with its group and its judgement."""
+    for name, seed, scale in (
+        ("soft/$a_1", 1, 1),
+        ("soft/$a_2", 2, 1),
+        ("b_1", 3, 2),
+        ("b_2", 4, 2),
+    ):
+        position, force = curve(seed)
+        (tmp_path / "day" / name).parent.mkdir(parents=True, exist_ok=True)
+        save(tmp_path / "day" / f"{name}.csv", position, scale * force)
+    save(tmp_path / "day" / "c.csv", position, 0 * force)
+    Path("bad.txt").write_text("b_2.csv, slipped\n")
+    arguments = ("day/soft/*.csv", "day/*.csv", *FIXED, "-o", "out", "--quiet")
+    rules = ("--group-by", "{group}_*.csv", "--rejected", "bad.txt", "--report")
+    result = cli(*arguments, *rules, "--accept", "reduced_modulus < 15 kPa", code=1)
+    assert result.stdout == ""
+    assert "1 fitted curve was rejected" in result.stderr
+    with Path("out/fits.csv").open(encoding="utf-8", newline="") as file:
+        table = {Path(line["curve"]).name: line for line in csv.DictReader(file)}
+    assert [line["group"] for line in table.values()] == ["$a", "$a", "b", "b", ""]
+    assert [line["accepted"] for line in table.values()] == ["True"] * 3 + ["False"] * 2
+    assert table["b_2.csv"]["reason"] == "in bad.txt: slipped"
+    assert "no contact" in table["c.csv"]["reason"]
+    assert 0.99 < float(table["b_1.csv"]["r_squared"]) < 1
+    assert float(table["b_1.csv"]["indentation [m]"]) == pytest.approx(3e-6, rel=0.1)
+    with Path("out/fits-groups.csv").open(encoding="utf-8", newline="") as file:
+        groups = [(line["group"], line["n"]) for line in csv.DictReader(file)]
+    assert groups == [("$a", "2"), ("b", "1"), ("all", "3")]
+    sheet = Path("out/fits-curves.pdf").read_bytes()
+    assert sheet.startswith(b"%PDF")
+    # Of the letters of a font of Type 3 beyond Latin-1, and of ligatures, no text can be copied.
+    assert b"/Type3" not in sheet
+    assert Path("out/fits.png").is_file()
+    page = Path("out/fits.html").read_text(encoding="utf-8")
+    for words in ("slipped", "lower quartile", "Each curve with its fit"):
+        assert words in page
+    shown = CliRunner().invoke(app, ["show", "out"])
+    assert shown.exit_code == 1
+    assert [Path(line.split()[0]).name for line in shown.stdout.splitlines()[1:6]] == list(table)
+    assert "1 fitted curve was rejected" in shown.stderr
+    as_json = CliRunner().invoke(app, ["show", "out", "--json"])
+    assert json.loads(as_json.stdout) == json.loads(Path("out/fits.json").read_bytes())
+    for command in (["show", "out/fits.h5"], ["plot", "out"]):
+        refusal = CliRunner().invoke(app, command)
+        assert refusal.exit_code == 2
+        assert "the table of fits" in refusal.stderr
+    # Another choice costs no fit.
+    notes = cli(*arguments, "--accept", "r_squared > 2", code=1).stderr
+    assert "none of 5 curves was accepted" in notes
+    content = json.loads(Path("out/fits.json").read_text(encoding="utf-8"))
+    assert "r_squared is 0.99" in content["curves"][0]["reason"]
+    assert content["configuration"]["accept"] == ["r_squared > 2"]
+    assert len(list(Path("out/curves").glob("*.json"))) == 4
+
+
+def test_group_by_column(tmp_path: Path) -> None:
+    """A column of the table of files is a group, and may be a field of the indenter as well."""
+    for radius in (5, 10):
+        save(tmp_path / f"{radius}.csv", *curve(radius, radius=radius * 1e-6))
+    listed = tmp_path / "list.csv"
+    listed.write_text("file,radius [um],day\n5.csv,5,May/1\n10.csv,10,\n")
+    common: dict[str, Any] = {"indenter": "paraboloid", "fix": {"tension": 0}, "progress": False}
+    table = pl.fit_many(listed, group_by="Day", **common)
+    assert table["group"].values.tolist() == ["May/1", ""]
+    listed.write_text("file,radius [um]\n5.csv,5\n10.csv,10\n")
+    table = pl.fit_many(listed, group_by="radius", **common)
+    assert table["group"].values.tolist() == ["5 um", "10 um"]
+    assert (table["status"] == "fitted").all()
+
+
+def test_curves_do_not_pile_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only a batch of curves is in memory at once, and the table is that of all at once."""
+    curves: list[weakref.ref[NDArray[np.float64]]] = []
+    most = 0
+
+    def sources() -> Iterator[Source]:
+        nonlocal most
+        for seed in range(9):
+            position, force = curve(seed)
+            curves.append(weakref.ref(force))
+            most = max(most, sum(force() is not None for force in curves))
+            yield Source(str(seed), Curve(position, force), {})
+            del position, force
+
+    config = pl.FitConfig.merged(indenter="paraboloid", radius="10 um", fix={"tension": 0})
+    whole = fit_sources(config, list(sources()), None, progress=False)
+    assert most == 9
+    monkeypatch.setattr(many, "_BATCH", 100)
+    curves.clear()
+    most = 0
+    parts = fit_sources(config, sources(), None, progress=False)
+    assert parts.rows == whole.rows
+    assert len(parts.sketches) == 9
+    assert most <= 5
+
+
+def test_two_at_once(cli: Cli, tmp_path: Path) -> None:
+    """A second process in the folder is refused in words, and nothing of the first is touched."""
+    save(tmp_path / "day" / "a.csv", *curve(1))
+    with locked(tmp_path / "out", "fits"):
+        result = cli("day", *FIXED, "-o", "out", code=2)
+    assert "is locked by process" in result.stderr
+    assert not Path("out/fits.csv").exists()
+    # One curve alone is a population too.
+    assert "1 of 1" not in cli("day", *FIXED, "-o", "out").stdout
+    assert Path("out/fits-curves.pdf").is_file()
+
+
+def test_full_disk(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A full disk ends the fits in words; what was written stays, and the same command goes on."""
+    for seed in range(3):
+        save(tmp_path / "day" / f"{seed}.csv", *curve(seed))
+    synchronise, calls = os.fsync, 0
+
+    def full(file: int) -> None:
+        nonlocal calls
+        calls += 1
+        if calls > 1:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        synchronise(file)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "fsync", full)
+        result = cli("day", *FIXED, "-o", "out", code=2)
+    assert "cannot be written (No space left on device)" in result.stderr
+    assert [path.suffix for path in Path("out/curves").iterdir()] == [".json"]
+    assert "1 of 3 fits were done before" in cli("day", *FIXED, "-o", "out").output

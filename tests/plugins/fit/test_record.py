@@ -1,0 +1,289 @@
+"""The record of a fit: what went in, bytes that are equal however it is started, the fit again."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import html
+import json
+import os
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from click.testing import Result
+from matplotlib import pyplot
+
+import pellicle as pl
+from pellicle_fit.curves.readers import read
+from pellicle_fit.curves.text_table import read_cells
+from pellicle_fit.report.page import save_report
+from tests.pictures import drawn_width
+from tests.plugins.fit.conftest import skip_rivals
+
+Cli = Callable[..., Result]
+TOML = """
+curves = ["Bead 1 µ.csv"]
+poissons_ratio = 0.5
+baseline = "offset"
+spring_constant = "0.1 N/m"
+sensitivity = "50 nm/V"
+columns = "Z = extension um, D = deflection V"
+[indenter]
+type = "sphere"
+radius = "5 um"
+"""
+FILE = Path("Bead 1 µ.csv")
+OPTIONS = (
+    *("--indenter", "sphere", "--radius", "5 um", "--poissons-ratio", "0.5"),
+    *("--baseline", "offset", "--spring-constant", "0.1 N/m", "--sensitivity", "50 nm/V"),
+    *("--columns", "D = deflection V,Z=extension um"),
+)
+ARGUMENTS: dict[str, Any] = {
+    "indenter": "sphere",
+    "radius": "5 um",
+    "poissons_ratio": 0.5,
+    "baseline": "offset",
+    "spring_constant": "0.1 N/m",
+    "sensitivity": "50 nm/V",
+    "columns": {"Z": "extension um", "D": "deflection V"},
+}
+
+
+def measure(path: Path, seed: int = 0, length: float = 5e-6) -> None:
+    """Write extension [um] and deflection [V] of a bead on 2 kPa under 5 mN/m, s = 5 µm.
+
+    Without tension no rival of one is fitted, which takes most of the time.
+    """
+    depth = np.linspace(-0.4e-6, 1.5e-6, 80)
+    sphere = pl.indenter("sphere", radius=5e-6)
+    force = 2e3 * sphere.force_curve(depth, length).force  # type: ignore[attr-defined]
+    force += 0.005 * force.max() * np.random.default_rng(seed).standard_normal(depth.size)
+    rows = np.column_stack([(depth + force / 0.1) * 1e6, force / 0.1 / 50e-9])
+    np.savetxt(path, rows, delimiter=",", header="Z,D", comments="", fmt="%.12g")
+
+
+def timeless(text: str) -> str:
+    """Return JSON without date and wall time, every other byte as it is."""
+    return re.sub(r'\n *"(date|wall_time)": .*', "", text)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("no_rivals")
+def test_three_ways_give_the_same_bytes(cli: Cli) -> None:
+    """Configuration, options and Python leave the same JSON but for date and wall time."""
+    measure(FILE)
+    Path("bead.toml").write_text(TOML, encoding="utf-8")
+    printed = cli("bead.toml", "--json").stdout
+    assert '"date": "' in printed
+    assert '"wall_time": ' in printed
+    text = timeless(printed)
+    assert text == timeless(cli(str(FILE), *OPTIONS, "-o", "out", "--json").stdout)
+    assert text == timeless(pl.fit(FILE, **ARGUMENTS).to_json())
+    assert text == timeless(pl.fit("bead.toml").to_json())
+    assert text == timeless(Path("out/Bead 1 µ-fit.json").read_text(encoding="ascii"))
+    # Arrays have the same numbers; only their origin differs.
+    (curve,) = pl.read_curves(
+        FILE, **{k: ARGUMENTS[k] for k in ("columns", "sensitivity")}, spring_constant="0.1 N/m"
+    ).values()
+    options = {k: v for k, v in ARGUMENTS.items() if k not in ("columns", "sensitivity")}
+    arrays = pl.fit(curve.position, curve.force, **options).to_dict()
+    other = json.loads(text)
+    for key in ("date", "wall_time", "data", "configuration"):
+        del arrays[key]
+        other.pop(key, None)
+    assert arrays == other
+
+
+def test_record(cli: Cli) -> None:
+    """JSON has file, hash, columns, calibration, segment, baseline, versions and options."""
+    measure(FILE, length=0.0)
+    content = json.loads(cli(str(FILE), *OPTIONS, "--json").stdout)
+    assert content["data"] == {
+        "file": str(FILE),
+        "curve": None,
+        "sha256": hashlib.sha256(FILE.read_bytes()).hexdigest(),
+        "columns": {"extension": "Z [um]", "deflection": "D [V]"},
+        "sensitivity": 50e-9,
+        "library": None,
+        "spring_constant": 0.1,
+        "segment": "approach",
+        "baseline": "offset",
+        "poissons_ratio": 0.5,
+    }
+    assert content["versions"]["pellicle"] == pl.__version__
+    assert content["versions"]["numpy"] == np.__version__
+    assert "scipy" in content["versions"]
+    assert pl.FitConfig.from_json(json.dumps(content)) == pl.FitConfig.merged(
+        curves=FILE, **ARGUMENTS
+    )
+
+
+@pytest.mark.slow
+def test_record_of_many(cli: Cli) -> None:
+    """The tables have the same of every curve, and the page has it too."""
+    Path("beads").mkdir()
+    for number in range(2):
+        measure(Path(f"beads/{number}.csv"), number, length=0.0)
+    cli("beads", *OPTIONS, "-o", "out")
+    with xr.open_dataset("out/fits.h5", engine="h5netcdf") as table:
+        digests = [hashlib.sha256(Path(f"beads/{n}.csv").read_bytes()).hexdigest() for n in "01"]
+        assert table["sha256"].values.tolist() == digests
+        assert table["spring_constant"].values.tolist() == [0.1, 0.1]
+        assert table["spring_constant"].attrs["units"] == "N/m"
+        assert json.loads(table.attrs["configuration"])["indenter"]["radius"] == 5e-6
+        assert f"pellicle {pl.__version__}" in table.attrs["versions"]
+    with Path("out/fits.csv").open(encoding="utf-8", newline="") as file:
+        row = next(csv.DictReader(file))
+    assert row["file"] == os.path.join("beads", "0.csv")
+    assert row["sensitivity [m/V]"] == "5e-08"
+    assert row["columns"] == "extension = Z [um]; deflection = D [V]"
+    assert json.loads(row["configuration"])["baseline"] == "offset"
+    # Fits that are kept from an earlier call have the record of the files as they are now.
+    Path("beads/0.csv").rename("beads/9.csv")
+    cli("beads", *OPTIONS, "-o", "out")
+    rows = json.loads(Path("out/fits.json").read_text(encoding="utf-8"))["curves"]
+    assert [row["data"]["file"] for row in rows] == [
+        str(Path("beads") / name) for name in ("1.csv", "9.csv")
+    ]
+    again = cli("--again", "out/fits.json", "--json").stdout
+    assert [row["tension"] for row in json.loads(again)["curves"]] == [r["tension"] for r in rows]
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("no_rivals", "shared_fits")
+def test_again(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same fit gives the same numbers, from another folder too; a change of file is told."""
+    measure(FILE)
+    cli(str(FILE), *OPTIONS, "-o", "out", "--report")
+    first = Path("out/Bead 1 µ-fit.json")
+    text = first.read_text(encoding="utf-8")
+    page = Path("out/Bead 1 µ-fit.html").read_text(encoding="utf-8")
+    assert json.loads(text)["data"]["sha256"] in page
+    same = cli("--again", str(first), "--json")
+    assert timeless(same.stdout) == timeless(text)
+    assert "warning" not in same.stderr
+    Path("elsewhere").mkdir()
+    monkeypatch.chdir("elsewhere")
+    moved = cli("--again", str(".." / first), "--json")
+    assert json.loads(moved.stdout)["tension"] == json.loads(text)["tension"]
+    assert "warning" not in moved.stderr
+    monkeypatch.chdir("..")
+    # Options replace what is recorded.
+    hertz = json.loads(cli("--again", str(first), "--fix", "tension=0", "--json").stdout)
+    assert hertz["tension"]["held"]
+    measure(FILE, seed=1)
+    first.write_text(text.replace(f'"numpy": "{np.__version__}"', '"numpy": "0.1"'), "utf-8")
+    changed = cli("--again", str(first))
+    assert f"{FILE}: is not the file that was fitted then: its SHA-256 is" in changed.stderr
+    assert f"numpy is version {np.__version__}, and was 0.1" in changed.stderr
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (None, "cannot be read"),
+        ("{", "is not the JSON of a fit"),
+        ("[]", "is not the JSON of a fit"),
+        ('{"configuration": {"indenter": {"type": "cone"}}}', "holds no fit of a file"),
+        (
+            '{"configuration": {"indenter": {"type": "cone"}}, "data": {"file": "gone.csv"}}',
+            "gone.csv: is not there, nor in the folder of fit.json",
+        ),
+        (
+            '{"configuration": {"indenter": {"type": "ball"}}, "data": {"file": "a.csv"}}',
+            "'ball' is not an indenter",
+        ),
+    ],
+)
+def test_bad_records(cli: Cli, content: str | None, words: str) -> None:
+    """A file that is no record, or whose curves are gone, is refused in words."""
+    measure(Path("a.csv"))
+    if content is not None:
+        Path("fit.json").write_text(content, encoding="utf-8")
+    assert words in cli("--again", "fit.json", code=2).stderr
+
+
+def test_file_that_is_replaced_while_it_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A hash never belongs to another content than the numbers."""
+    path = tmp_path / "a.csv"
+    path.write_text("position [um],force [nN]\n1,2\n", encoding="utf-8")
+
+    def replaced(file: Path, *arguments: Any) -> Any:
+        cells = read_cells(file, *arguments)
+        other = tmp_path / "other"
+        other.write_text("position [um],force [nN]\n1,3\n", encoding="utf-8")
+        other.replace(file)
+        return cells
+
+    monkeypatch.setattr("pellicle_fit.curves.readers.read_cells", replaced)
+    with pytest.raises(pl.StorageError, match="was changed while it was read"):
+        read(path)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("no_rivals")
+def test_read_curves_and_draw_them(tmp_path: Path) -> None:
+    """Curves are read by name, drawn, fitted; one that cannot be read is warned of."""
+    measure(tmp_path / "a.csv")
+    (tmp_path / "b.csv").write_text("position [um]\n1\n", encoding="utf-8")
+    reading = {"columns": ARGUMENTS["columns"], "spring_constant": 0.1, "sensitivity": 50e-9}
+    with pytest.warns(UserWarning, match=r"b\.csv: has no column 'Z'"):
+        curves = pl.read_curves(tmp_path, **reading)
+    ((name, curve),) = curves.items()
+    assert name == str(tmp_path / "a.csv")
+    axes = curve.plot()
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("position [µm]", "force [nN]")
+    line = axes.get_lines()[0]
+    assert line.get_ydata() == pytest.approx(curve.force * 1e9)
+    figure = pl.fit(curve.position, curve.force, indenter="sphere", radius=5e-6).plot()
+    figure.savefig(tmp_path / "fit.png")
+    assert drawn_width(tmp_path / "fit.png") > 0.5
+    pyplot.close("all")
+    with pytest.raises(pl.ConfigError, match="has no column"):
+        pl.read_curves(tmp_path / "b.csv", **reading)
+
+
+def _visible(page: Path) -> str:
+    """Return the text of a page above its JSON, without markup."""
+    body = page.read_text(encoding="utf-8").partition("As JSON</h2>")[0].partition("<body")[2]
+    return html.unescape(re.sub(r"\s+", " ", re.sub(r"<[^>]*>", " ", body)))
+
+
+@pytest.mark.slow
+def test_page_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The page begins with the answer in units of its size; an open interval is a bound."""
+    depth = np.linspace(-0.5e-6, 1.5e-6, 300)
+    both = np.r_[depth, depth[::-1]] + 3e-6
+    sphere = pl.indenter("sphere", radius=5e-6)
+    texts = []
+    for length, share in ((5e-6, 0.01), (0.0, 0.005)):
+        force = 2e3 * sphere.force_curve(np.r_[depth, depth[::-1]], length).force  # type: ignore[attr-defined]
+        force += share * force.max() * np.random.default_rng(1).standard_normal(force.size)
+        fit = pl.fit(both, force, indenter=sphere, poissons_ratio=0.5)
+        texts.append(_visible(save_report(fit, tmp_path / "fit.html", "Bead")))
+    number = r"[\d.]+"
+    interval = rf"\({number} to {number}\)"
+    modulus = rf"Young's modulus {number} kPa {interval}, tension"
+    point = rf"contact point {number} µm {interval}, with 95 % intervals"
+    tied = f"over 4 models that .* apart, Young's modulus is {number} to {number} kPa"
+    assert re.search(rf"Result {modulus} {number} mN/m {interval} and {point}; {tied}", texts[0])
+    assert re.search(rf"Result {modulus} < {number} µN/m and {point}\.", texts[1])
+    assert re.search(rf"does not show tension .* it is below {number} µN/m", texts[1])
+    assert re.search(rf"tension 0 < {number} µN/m none", texts[1])
+    for text in texts:
+        notes = text.partition("Notes:")[2]
+        assert "rows 1 to 300 are the approach" in notes
+        assert "Warnings:" not in text
+        assert "numbers given in Python" in text
+    # The warning is of a check of residuals, before rivals.
+    skip_rivals(monkeypatch)
+    warned = pl.fit(both, force + 1e-9, indenter=sphere)
+    text = _visible(save_report(warned, tmp_path / "fit.html", "Bead"))
+    assert "baseline" in text.partition("Warnings:")[2].partition("Notes:")[0]

@@ -1,0 +1,223 @@
+"""Force curves of indenters and solids that have no master curve: planned, simulated, kept."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import pellicle as pl
+from pellicle_fit.models import simulation
+from pellicle_fit.models.interpolated import SimulatedCurve
+from pellicle_fit.models.simulation import half_widths, plan, simulate
+from pellicle_fit.models.solid import scaled, solid
+
+pytestmark = pytest.mark.usefixtures("no_rivals")
+
+Array = NDArray[np.float64]
+LAYER = {"type": "bonded_layer", "thickness": "4 um"}
+RADIUS = 2e-6
+
+
+@pytest.fixture
+def few_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Make studies of few runs, a little further apart than they really are."""
+    monkeypatch.setattr(simulation, "_OCTAVES", 3)
+    monkeypatch.setattr(simulation, "_RATIOS", 0.1 * np.expm1(np.linspace(0, 2.7, 4)))
+
+
+@pytest.fixture(scope="module")
+def exact_nodes() -> SimulatedCurve:
+    """Return a curve through exact forces of a sphere, at the nodes of its plan."""
+    sphere = pl.indenter("sphere", radius=1.0)
+    assert isinstance(sphere, pl.HasForceCurve)
+    material = solid("tensed_membrane")
+    planned = plan(sphere, material, 0.4)
+    slope, intercept = planned.width
+    widths = np.exp(intercept + slope * np.log(planned.depths))
+    forces = np.array(
+        [
+            [sphere.force_curve(np.array([depth]), x * width).force[0] for x in simulation._RATIOS]
+            for depth, width in zip(planned.depths, widths, strict=True)
+        ]
+    )
+    return SimulatedCurve(
+        sphere,
+        material.table,
+        planned.depths,
+        simulation._RATIOS,
+        np.log(forces),
+        planned.width,
+        RADIUS,
+    )
+
+
+@pytest.mark.parametrize("ratio", [0.0, 1e-3, 0.03, 0.5, 8.0])
+def test_between_the_nodes(exact_nodes: SimulatedCurve, ratio: float) -> None:
+    """Between exact nodes the curve of a sphere errs by some 1e-4."""
+    exact = pl.indenter("sphere", radius=RADIUS)
+    assert isinstance(exact, pl.HasForceCurve)
+    depth = RADIUS * np.geomspace(0.01, 0.4, 50)
+    here = exact_nodes.force_curve(depth, ratio * RADIUS).force
+    assert here == pytest.approx(exact.force_curve(depth, ratio * RADIUS).force, rel=3e-4)
+
+
+@pytest.mark.parametrize("depth", [1e-4, 0.03, 0.3, 0.9])
+@pytest.mark.parametrize("ratio", [1e-3, 0.3, 100.0])
+def test_sensitivities(exact_nodes: SimulatedCurve, depth: float, ratio: float) -> None:
+    """Sensitivities are derivatives, beyond the nodes too; there is no force before contact."""
+    at, length = np.array([-1.0, depth]) * RADIUS, ratio * RADIUS
+    curve = exact_nodes.force_curve(at, length)
+    assert all(values[0] == 0 for values in curve)
+    h = 1e-5
+    by_depth = [exact_nodes.force_curve(at * (1 + e), length).force[1] for e in (h, -h)]
+    by_length = [exact_nodes.force_curve(at, length * (1 + e)).force[1] for e in (h, -h)]
+    assert np.subtract(*by_depth) / (2 * h * at[1]) == pytest.approx(curve.by_depth[1], rel=1e-6)
+    assert np.subtract(*by_length) / (2 * h * length) == pytest.approx(
+        curve.by_length[1], rel=1e-6, abs=1e-9 * curve.force[1] / length
+    )
+
+
+@pytest.mark.parametrize(
+    ("indenter", "depth", "expected"),
+    [
+        ({"type": "paraboloid", "radius": 2.0}, 1e-4, (0.02, 0.02)),
+        ({"type": "quadric", "radius_x": 2.0, "radius_y": 0.02}, 1.0, (2.0, 0.2)),
+        ({"type": "cone", "half_angle": np.pi / 4}, 3e-9, (3e-9, 3e-9)),
+        ({"type": "flat_punch", "radius": 5.0}, 1e-3, (5.0, 5.0)),
+    ],
+)
+def test_extent(indenter: dict[str, Any], depth: float, expected: tuple[float, float]) -> None:
+    """The width of an indenter at a depth is found whatever its shape, a little wide at most."""
+    body = pl.indenter(indenter.pop("type"), **indenter)
+    for width, half in zip(half_widths(body, depth), expected, strict=True):
+        assert 0.99 * half <= width <= 1.03 * half
+
+
+def test_plan_knows_no_units() -> None:
+    """Problems of the same proportions are one study, and about the same depth is the same."""
+    small = solid({"type": "coated", "substrate": LAYER}, 0.5)
+    large = solid({"type": "coated", "substrate": LAYER | {"thickness": "4 mm"}}, 0.5)
+    shapes = [pl.indenter("quadric", radius_x=3 * unit, radius_y=7 * unit) for unit in (1e-6, 1e-3)]
+    one = plan(shapes[0], small, 1.1e-6).study({"type": "serial"})
+    two = plan(shapes[1], large, 1.3e-3).study({"type": "serial"})
+    assert [point.run.identity for point in one.points] == [p.run.identity for p in two.points]
+    other = plan(shapes[0], large, 1.1e-6).study({"type": "serial"})
+    assert other.points[0].run.identity != one.points[0].run.identity
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("few_nodes")
+def test_quadric_is_simulated_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Curves of an independent run are recovered; the study serves every size and then is there."""
+    fields: dict[str, Any] = {"radius_x": "3 um", "radius_y": "7 um"}
+    modulus, tension = 3e3, 3e-3
+    depths = np.linspace(0.1e-6, 0.6e-6, 8)
+    run = pl.Run(
+        grid={"points": 48, "size": ["4.2 um", "6.3 um"]},
+        kernel={"type": "tensed_membrane", "reduced_modulus": modulus, "tension": tension},
+        indenter={"type": "quadric", **fields},
+        loading={"depth": depths.tolist()},
+    )
+    forces = pl.run(run, progress=False).dataset["force"].values
+    depth = np.concatenate([np.linspace(-0.2e-6, -0.01e-6, 60), np.repeat(depths, 40)])
+    force = np.concatenate([np.zeros(60), np.repeat(forces, 40)])
+    force = force + 0.003 * force.max() * np.random.default_rng(3).standard_normal(force.size)
+    options: dict[str, Any] = {"indenter": "quadric", "cache": tmp_path, "grid_points": 24}
+    fit = pl.fit(depth, force, fix={"contact_point": 0}, **fields, **options)
+    for estimate, truth in ((fit.reduced_modulus, modulus), (fit.tension, tension)):
+        assert estimate.low is not None
+        assert estimate.high is not None
+        assert estimate.low <= truth <= estimate.high
+        assert estimate.high / estimate.low < 1.5
+    assert "the force curve is simulated" in fit.messages[-1]
+    assert fit.to_dict()["model"]["kernel"] == {"type": "tensed_membrane"}
+    monkeypatch.setattr(simulation, "execute", None)
+    again = pl.fit(
+        depth * 1e3,
+        force * 1e6,
+        fix={"contact_point": 0},
+        radius_x="3 mm",
+        radius_y="7 mm",
+        **options,
+    )
+    assert again.tension.value == pytest.approx(1e3 * fit.tension.value, rel=1e-3)
+
+
+def test_simulated_curve_is_an_indenter(exact_nodes: SimulatedCurve) -> None:
+    """A curve that was made before is fitted with as it is, in a wider interval if it is rough."""
+    depth = np.linspace(-0.2e-6, 0.6e-6, 300)
+    exact = pl.indenter("sphere", radius=RADIUS)
+    assert isinstance(exact, pl.HasForceCurve)
+    force = 5e3 * exact.force_curve(depth, 0.5e-6).force
+    force = force + 0.005 * force.max() * np.random.default_rng(1).standard_normal(300)
+    fine = pl.fit(depth, force, indenter=exact_nodes)
+    true = pl.fit(depth, force, indenter=exact)
+    assert fine.tension.value == pytest.approx(true.tension.value, rel=0.01)
+    with pytest.raises(pl.ConfigError, match="with a force curve"):
+        pl.fit(depth, force, indenter=exact_nodes, kernel="tensed_membrane")
+
+
+@pytest.mark.parametrize(
+    ("kernel", "words"),
+    [
+        ("winkler", "has no field reduced_modulus"),
+        ("bonded_layer", "put it under a skin"),
+        ({"type": "tensed_membrane", "tension": 1}, "kernel.tension: is determined by the fit"),
+        ({"type": "coated", "substrate": LAYER}, "kernel.substrate.poissons_ratio: is missing"),
+        ({"type": "bendy"}, "'bendy' is not a kernel"),
+        ({"type": "layered", "layers": [{}]}, "'layered' has no field reduced_modulus"),
+        (
+            {"type": "coated", "substrate": LAYER | {"youngs_modulus": 1e3}},
+            "kernel.substrate.youngs_modulus: is determined by the fit",
+        ),
+    ],
+)
+def test_bad_kernels(kernel: Any, words: str) -> None:
+    """A kernel that cannot be fitted says what it lacks, or has too much of."""
+    with pytest.raises(pl.ConfigError) as caught:
+        solid(kernel)
+    assert words in str(caught.value)
+
+
+def test_poissons_ratio_is_the_kernels() -> None:
+    """One ratio is enough: the kernel's is used for Young's modulus, and the other way round."""
+    skin = {"type": "coated", "substrate": LAYER}
+    assert solid(skin, 0.3).kernel.substrate.poissons_ratio == 0.3  # type: ignore[attr-defined]
+    own = {"type": "coated", "substrate": LAYER | {"poissons_ratio": 0.4}}
+    assert solid(own).poissons_ratio == 0.4
+    assert solid(own, 0.4).poissons_ratio == 0.4
+    with pytest.raises(pl.ConfigError, match=r"kernel\.substrate\.poissons_ratio: is 0\.4, and "):
+        solid(own, 0.5)
+    assert solid("tensed_membrane", 0.2).poissons_ratio == 0.2
+
+
+def test_what_counts_against_the_modulus_is_refused() -> None:
+    """A bending stiffness has no meaning while the modulus is not known."""
+    material = solid({"type": "bending_skin", "bending": "1 pN*m"})
+    with pytest.raises(pl.ConfigError, match="scales with the modulus"):
+        scaled(material.kernel, 1e-6, (material.modulus, material.tension))
+
+
+@pytest.mark.parametrize(
+    ("indenter", "points", "words"),
+    [
+        (
+            {"type": "self_affine", "rms_height": 1e-6, "hurst": 0.8},
+            64,
+            "no force curve of its own",
+        ),
+        ({"type": "paraboloid", "radius": 1e-6}, 15, "even number"),
+    ],
+)
+def test_what_cannot_be_simulated(
+    indenter: dict[str, Any], points: int, words: str, tmp_path: Path
+) -> None:
+    """Rough surfaces have no size of their own; a grid has cells to be halved."""
+    fields = indenter | ({"cutoff_wavelength": 1e-6} if indenter["type"] == "self_affine" else {})
+    body = pl.indenter(fields.pop("type"), **fields)
+    with pytest.raises(pl.ConfigError, match=words):
+        simulate(body, solid("tensed_membrane"), 1e-6, cache=tmp_path, grid_points=points)
