@@ -17,6 +17,8 @@ from .foreign_code import diverted_output, noted_interrupts
 
 GROUP = "pellicle"
 DISABLE = "PELLICLE_DISABLE_PLUGINS"
+COMMAND = "command."
+"""What the names of entry points of commands begin with."""
 _OWN = "pellicle"
 Loaded = TypeVar("Loaded")
 
@@ -60,9 +62,12 @@ class Broken:
     origin: Origin
     error: str
 
+    def __str__(self) -> str:
+        return f"{self.origin}: {self.error}"
 
-def isolated(origin: Origin, load: Callable[[], Loaded]) -> Loaded | Broken:
-    """Return what a function that runs code of a plugin returns, or the error.
+
+def isolated(entry: EntryPoint, load: Callable[[], Loaded]) -> Loaded | Broken:
+    """Return what a function that runs code of the plugin of an entry point returns, or the error.
 
     A plugin may fail in any way, even by sys.exit() or KeyboardInterrupt; only a Ctrl-C of the user
     ends the command.
@@ -74,7 +79,7 @@ def isolated(origin: Origin, load: Callable[[], Loaded]) -> Loaded | Broken:
                 loaded = load()
         except BaseException as error:
             kind = "" if isinstance(error, PluginError) else f"{type(error).__name__}: "
-            loaded = Broken(origin, f"{kind}{error}".removesuffix(": "))
+            loaded = Broken(Origin.of(entry), f"{kind}{error}".removesuffix(": "))
     if interrupt.is_set():
         raise KeyboardInterrupt
     return loaded
@@ -83,7 +88,8 @@ def isolated(origin: Origin, load: Callable[[], Loaded]) -> Loaded | Broken:
 @cache
 def _name_and_version(distribution: Distribution) -> tuple[str, str]:
     """Return what the metadata of a distribution say, which are parsed at each access."""
-    return distribution.name, distribution.version
+    metadata = distribution.metadata
+    return metadata["Name"], metadata["Version"]
 
 
 def _same(name: str) -> str:

@@ -22,11 +22,11 @@ from .components import FAMILIES, Component, Prescription, Suite
 from .errors import ConfigError, PellicleError, PluginError, shown
 from .loading import OPTIONS
 from .model.messages import nearest
+from .origins import COMMAND, isolated
 from .origins import DISABLE as DISABLE
 from .origins import GROUP as GROUP
 from .origins import Broken as Broken
 from .origins import Origin as Origin
-from .origins import isolated
 from .units import quantity_of
 
 _HOOK_OF_FAMILY = {family: f"register_{family}s" for family in FAMILIES}
@@ -78,7 +78,7 @@ class Registry:
             )
         for broken in self.broken:
             if broken.origin.entry_point == f"{family}.{type_}":
-                raise PluginError(f"{family} {type_!r} is broken: {broken.origin}: {broken.error}")
+                raise PluginError(f"{family} {type_!r} is broken: {broken}")
         for origin in self.disabled:
             if origin.entry_point == f"{family}.{type_}":
                 raise PluginError(f"{family} {type_!r} of {origin} is switched off by {DISABLE}")
@@ -156,7 +156,9 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
         if origin.is_disabled(disable):
             disabled.append(origin)
             continue
-        registration = isolated(origin, partial(_call_hooks, entry, origin))
+        if entry.name.startswith(COMMAND):
+            continue
+        registration = isolated(entry, partial(_call_hooks, entry, origin))
         if isinstance(registration, Broken):
             broken.append(registration)
             continue

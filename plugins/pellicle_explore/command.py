@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from pellicle.cli.printing import echo
+from pellicle.cli import echo
 from pellicle.errors import ConfigError, PellicleError
 
 if TYPE_CHECKING:

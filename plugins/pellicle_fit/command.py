@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from pellicle.cli.exits import INTERRUPTED, NOT_CONVERGED
-from pellicle.cli.printing import echo, print_json
+from pellicle.cli import Command, echo, exits, print_json
 from pellicle.errors import ConfigError
 
-from .print_fits import print_fit, print_fits, print_notes
+from .print_fits import print_fit, print_fits, print_notes, show_fits
 
 if TYPE_CHECKING:
     from pellicle_fit.config import FitConfig
@@ -225,7 +224,10 @@ def fit(
             echo(f"wrote {path}", err=json)
     if isinstance(result, ManyFits) and result.failed:
         echo(f"{result.failed} of {len(result.rows)} curves could not be fitted", err=True)
-        raise typer.Exit(NOT_CONVERGED)
+        raise typer.Exit(exits.NOT_CONVERGED)
+
+
+COMMAND = Command(fit, file="pellicle_fit.config:FitConfig", show=show_fits)
 
 
 def _fit(
@@ -252,7 +254,7 @@ def _fit(
     except KeyboardInterrupt:
         hint = f"; finished fits are in {directory}, and the same command continues"
         echo(f"interrupted{hint if directory else ''}", err=True)
-        raise typer.Exit(INTERRUPTED) from None
+        raise typer.Exit(exits.INTERRUPTED) from None
     return fits, "fits", f"Fits of {len(fits.rows)} curves"
 
 

@@ -21,7 +21,7 @@ import pytest
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.components import AreaCorrection, Executor, Indenter, Kernel, Output, Solver
 from pellicle.model import ranges as axes
 from tests.docs.blocks import DOCS, PAGES, ROOT, Block, blocks

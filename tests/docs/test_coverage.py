@@ -9,15 +9,14 @@ from typing import Any
 
 import generated
 import pytest
-import typer.main
 
 import pellicle as pl
 from pellicle import hookspecs
-from pellicle.cli import app
+from pellicle.commands import commands, typer_command
 from tests.docs.blocks import DOCS, PAGES, ROOT
 
 HOOKS = [name for name in vars(hookspecs) if name.startswith("register_")]
-COMMANDS: dict[str, Any] = vars(typer.main.get_command(app))["commands"]
+COMMANDS: dict[str, Any] = {name: typer_command(name) for name in commands()}
 COMPONENTS = [
     registered for family in pl.registry().components.values() for registered in family.values()
 ]

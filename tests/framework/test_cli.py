@@ -14,7 +14,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.cli.app import app
 from tests.pictures import drawn_width
 
 SMALL = ["--set", "grid.points=32", "--set", "loading.depth=['10 um', '20 um']"]
@@ -221,7 +221,7 @@ def test_help_imports_nothing_heavy() -> None:
     """`pellicle --help` does not wait for the numerical libraries."""
     heavy = {"numpy", "scipy", "pydantic", "xarray", "matplotlib", "pint", "h5py"}
     code = (
-        "import sys\nfrom pellicle.cli import app\n"
+        "import sys\nfrom pellicle.cli.app import app\n"
         "try:\n    app(['--help'])\nexcept SystemExit:\n    pass\n"
         f"print('heavy:', sorted({heavy!r} & set(sys.modules)))"
     )

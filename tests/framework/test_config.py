@@ -13,7 +13,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.components import AreaCorrection, Output
 from pellicle.plugins import registry
 

@@ -6,7 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 from pellicle import ConfigError, StorageError
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.cli.scaffold import write_plugin
 from pellicle.components import FAMILIES
 

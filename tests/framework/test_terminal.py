@@ -20,7 +20,8 @@ from rich.cells import cell_len
 from typer.testing import CliRunner, Result
 
 import pellicle as pl
-from pellicle.cli import app, new
+from pellicle.cli import new
+from pellicle.cli.app import app
 from pellicle.cli.exits import BAD_INPUT, CRASHED
 from pellicle.cli.printing import Column, table_lines
 from pellicle.components import FAMILIES, Case
@@ -323,7 +324,7 @@ def test_fit_tells_failed_curves_from_unusable_input(cli: Cli, folder: Path) -> 
 
 _SESSION = """
 import json, sys
-from pellicle.cli import app
+from pellicle.cli.app import app
 for words in json.loads(sys.argv[1]):
     print("$", *words)
     try:

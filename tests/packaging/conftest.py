@@ -20,7 +20,7 @@ PACKAGES = (
 COMMAND_LINE = """
 import json, os, sys
 from typer.testing import CliRunner
-from pellicle.cli import app
+from pellicle.cli.app import app
 
 for line in sys.stdin:
     folder, arguments = json.loads(line)

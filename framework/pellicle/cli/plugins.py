@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from typing import Annotated
 
 import typer
+
+from pellicle.commands import claims_on, commands, file_models, typer_command
+from pellicle.origins import Broken, Origin
 
 from .printing import echo, print_json, print_table
 
@@ -25,6 +29,7 @@ def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = 
         for family, members in contents.components.items()
         for registered in members.values()
     ]
+    rows += _commands()
     broken = [
         {
             "entry_point": broken.origin.entry_point,
@@ -32,7 +37,7 @@ def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = 
             "version": broken.origin.version,
             "error": broken.error,
         }
-        for broken in contents.broken
+        for broken in (*contents.broken, *_broken_commands())
     ] + [
         {
             "entry_point": f"{family}.{type_}",
@@ -52,3 +57,25 @@ def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = 
         print_table(["entry_point", "origin", "version", "error"], broken)
     for origin in disabled:
         echo(f"switched off: {origin}")
+
+
+def _commands() -> Iterator[dict[str, str]]:
+    """Yield a row for each command that can be used."""
+    for name, (entry, *_) in commands().items():
+        command, origin = typer_command(name), Origin.of(entry)
+        if not isinstance(command, Broken):
+            yield {
+                "family": "command",
+                "type": name,
+                "origin": origin.distribution,
+                "version": origin.version,
+                "description": (command.help or "").partition("\n")[0],
+            }
+
+
+def _broken_commands() -> Iterable[Broken]:
+    """Return what is wrong with commands, with their parameters and with the models of files."""
+    claims = [claim for name in commands() for claim in (*claims_on(name), typer_command(name))]
+    return dict.fromkeys(
+        claim for claim in (*claims, *file_models().values()) if isinstance(claim, Broken)
+    )

@@ -7,8 +7,10 @@ from typing import Annotated
 
 import typer
 
+from pellicle.commands import Command, commands, load_command
+
 from .exits import NOT_CONVERGED
-from .printing import echo, print_json
+from .printing import echo
 from .results import (
     exit_by_convergence,
     exit_by_status,
@@ -36,7 +38,6 @@ def show(
     ] = False,
 ) -> None:
     """Print the steps of a result, or the runs of a study, and its origin; or the table of fits."""
-    from pellicle.files import is_file
     from pellicle.results.result import load
     from pellicle.studies.runner import is_table, read
     from pellicle.studies.summary import caveats
@@ -52,9 +53,10 @@ def show(
             echo(message, err=True)
         exit_by_status(table)
         return
-    if is_file(results / "fits.json"):
-        _show_fits(results, si=si, json=json)
-        return
+    for name in commands():
+        command = load_command(name)
+        if isinstance(command, Command) and command.show and command.show(results, si, json):
+            return
     result = load(results)
     total, done = result.planned_steps, result.dataset.sizes["step"]
     if json:
@@ -69,18 +71,3 @@ def show(
     if done < total:
         echo(f"interrupted: {done} of {total} steps are finished; run it again", err=True)
         raise typer.Exit(NOT_CONVERGED)
-
-
-def _show_fits(directory: Path, *, si: bool, json: bool) -> None:
-    """Print the tables that ``pellicle fit`` left in a folder."""
-    from pellicle_fit.many import ManyFits
-    from pellicle_fit.print_fits import print_fits
-    from pellicle_fit.record import content_of
-
-    content = content_of(directory / "fits.json")
-    fits = ManyFits(content.get("curves", []), notes=content.get("notes", []))
-    if json:
-        print_json(content)
-    else:
-        print_fits(fits, quiet=False, directory=directory, si=si)
-    raise typer.Exit(NOT_CONVERGED if fits.failed else 0)

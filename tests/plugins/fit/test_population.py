@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.errors import ConfigError, StorageError
 from pellicle.runs.lock import locked
 from pellicle_fit import many
