@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from importlib.metadata import EntryPoint, entry_points
@@ -17,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from .errors import ConfigError, PluginError
+from .errors import ConfigError, PellicleError, PluginError
 from .origins import COMMAND, DISABLE, GROUP, Broken, Origin, isolated
 
 if TYPE_CHECKING:
@@ -112,6 +113,19 @@ def typer_command(name: str, **options: Any) -> Any:
     return isolated(commands()[name][0], partial(typer.main.get_command, app))
 
 
+@contextmanager
+def errors_attributed_to(name: str) -> Iterator[None]:
+    """Add a note that names a command of a plugin to its errors, but for those meant for users."""
+    try:
+        yield
+    except (PellicleError, typer.Exit, typer.Abort):
+        raise
+    except Exception as error:
+        if not (origin := Origin.of(commands()[name][0])).is_own:
+            error.add_note(f"command {name!r} of {origin} failed")
+        raise
+
+
 def file_models() -> Mapping[str, type[BaseModel] | Broken]:
     """Return the model of the file of each command that takes one, or why it cannot be used."""
     models: dict[str, type[BaseModel] | Broken] = {}
@@ -154,5 +168,5 @@ def refuse_file_of_another(model: type[BaseModel], keys: Collection[str]) -> Non
             raise ConfigError(
                 f"makes this a file for `pellicle {name}`; `pellicle explain {name}` lists its "
                 "keys",
-                next(key for key in unknown if key in known),
+                min(known.intersection(unknown), key=lambda key: (key not in required, key)),
             ) from None

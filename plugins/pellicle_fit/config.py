@@ -294,12 +294,6 @@ class FitConfig(FromFile, Calibration):
                 return cls.merged(_from_folder(data, folder), overrides, **options)
         if isinstance(base, FitConfig):
             base = {name: getattr(base, name) for name in base.model_fields_set}
-        if "loading" in (base or {}):
-            raise ConfigError(
-                "makes this a run, not the configuration of a fit: use run in place of fit "
-                "(`pellicle run` in a shell); `pellicle explain fit` lists the keys of a fit",
-                "loading",
-            )
         options = {name: value for name, value in options.items() if value is not None}
         shared = cls.model_fields.keys() - Calibration.model_fields.keys()
         data = {**(base or {}), **{name: options[name] for name in shared & options.keys()}}

@@ -14,7 +14,13 @@ import typer
 from rich.markup import escape
 from typer.core import TyperCommand, TyperGroup
 
-from pellicle.commands import Command, commands, load_command, typer_command
+from pellicle.commands import (
+    Command,
+    commands,
+    errors_attributed_to,
+    load_command,
+    typer_command,
+)
 from pellicle.errors import PellicleError, PluginError
 from pellicle.origins import Broken
 
@@ -46,7 +52,8 @@ class _Command(TyperCommand):
         return _named_by_use(super().get_params(ctx))
 
     def invoke(self, ctx: Any) -> Any:
-        with only_json() if ctx.params.get("json") else nullcontext():
+        quiet = only_json() if ctx.params.get("json") else nullcontext()
+        with errors_attributed_to(str(self.name)), quiet:
             return super().invoke(ctx)
 
 

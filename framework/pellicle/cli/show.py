@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from pellicle.commands import Command, commands, load_command
+from pellicle.commands import Command, commands, errors_attributed_to, load_command
+from pellicle.errors import StorageError
 
 from .exits import NOT_CONVERGED
 from .printing import echo
@@ -53,11 +54,12 @@ def show(
             echo(message, err=True)
         exit_by_status(table)
         return
-    for name in commands():
-        command = load_command(name)
-        if isinstance(command, Command) and command.show and command.show(results, si, json):
+    try:
+        result = load(results)
+    except StorageError:
+        if _shown_by_a_command(results, si=si, json=json):
             return
-    result = load(results)
+        raise
     total, done = result.planned_steps, result.dataset.sizes["step"]
     if json:
         print_result_json(result)
@@ -71,3 +73,14 @@ def show(
     if done < total:
         echo(f"interrupted: {done} of {total} steps are finished; run it again", err=True)
         raise typer.Exit(NOT_CONVERGED)
+
+
+def _shown_by_a_command(results: Path, *, si: bool, json: bool) -> bool:
+    """Let the command that left something at a path show it; return whether one did."""
+    for name in commands():
+        command = load_command(name)
+        if isinstance(command, Command) and command.show:
+            with errors_attributed_to(name):
+                if command.show(results, si, json):
+                    return True
+    return False
