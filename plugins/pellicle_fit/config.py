@@ -124,21 +124,32 @@ class FitConfig(FromFile, Calibration):
 
     curves: Annotated[
         tuple[Path, ...],
-        BeforeValidator(lambda value: [value] if isinstance(value, (str, Path)) else value),
-        Field(description="files, folders, patterns such as beads/*.csv, or tables of files"),
+        BeforeValidator(
+            lambda value: [value] if isinstance(value, (str, Path)) else value,
+            json_schema_input_type=tuple[Path, ...] | Path,
+        ),
+        Field(
+            description="files, folders, patterns such as beads/*.csv, or tables of files",
+            examples=[["beads/*.csv"]],
+        ),
     ] = ()
     indenter: Annotated[
         Indenter | HasForceCurve | dict[str, Any],
         PlainValidator(_indenter, json_schema_input_type=dict[str, Any] | str),
         PlainSerializer(described),
-        Field(description="the indenter: its type and fields"),
+        Field(
+            description="the indenter: its type and fields",
+            examples=[{"type": "sphere", "radius": "5 um"}],
+        ),
     ]
     poissons_ratio: PoissonsRatio | None = Field(
-        None, description="of the solid, to get Young's modulus as well, or if the kernel needs it"
+        None,
+        description="of the solid, to get Young's modulus as well, or if the kernel needs it",
+        examples=[0.5],
     )
     kernel: Annotated[
         dict[str, Any] | None,
-        BeforeValidator(_component),
+        BeforeValidator(_component, json_schema_input_type=dict[str, Any] | str | None),
         Field(description="the solid without its modulus and tension; a half-space if not given"),
     ] = None
     thickness: Annotated[
@@ -151,7 +162,7 @@ class FitConfig(FromFile, Calibration):
     ] = None
     fix: Annotated[
         dict[str, float],
-        BeforeValidator(_fixed),
+        BeforeValidator(_fixed, json_schema_input_type=dict[str, float | str]),
         Field(description=f"values of parameters that are not fitted: {', '.join(FIXABLE)}"),
     ] = Field(default_factory=dict)
     baseline: Baseline = Field(
@@ -172,7 +183,10 @@ class FitConfig(FromFile, Calibration):
     )
     accept: Annotated[
         tuple[str, ...],
-        BeforeValidator(lambda value: [value] if isinstance(value, str) else value),
+        BeforeValidator(
+            lambda value: [value] if isinstance(value, str) else value,
+            json_schema_input_type=tuple[str, ...] | str,
+        ),
         AfterValidator(rules),
         Field(description="rules for the curves of a population, such as r_squared > 0.95"),
     ] = ()

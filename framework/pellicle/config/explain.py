@@ -106,7 +106,7 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
 
 def words_by_kind(tables: Mapping[str, type[BaseModel]]) -> dict[str, list[str]]:
     """Return what `explanations` knows: tables, these further ones too, and types by family."""
-    return {"table": [*_TABLES, *tables]} | {
+    return {"table": [*{**_TABLES, **tables}]} | {
         family: list(members) for family, members in registry().components.items()
     }
 
@@ -117,8 +117,10 @@ def _of_table(name: str, model: type[BaseModel]) -> Explanation:
     ]
     if model is Loading:
         rows = [*_prescription_rows(), *rows]
-    table = _EXAMPLES.get(model, {})
-    return Explanation(name, "table", "", _documentation(model), rows, _toml(table))
+    example = _toml(_EXAMPLES.get(model, {}))
+    if name not in _TABLES:
+        example = _lines(dict(example_values(model)))
+    return Explanation(name, "table", "", _documentation(model), rows, example)
 
 
 def _prescription_rows() -> Iterator[FieldRow]:
@@ -254,10 +256,12 @@ def _toml(tables: Mapping[str, Any], path: str = "") -> str:
         if all(isinstance(inner, Mapping) for inner in table.values()) and name == "study":
             parts.append(_toml(table, f"{name}."))
         else:
-            parts.append(
-                "\n".join([head, *(f"{_key(key)} = {_inline(v)}" for key, v in table.items())])
-            )
+            parts.append(f"{head}\n{_lines(table)}")
     return "\n".join(parts)
+
+
+def _lines(table: Mapping[str, Any]) -> str:
+    return "\n".join(f"{_key(key)} = {_inline(value)}" for key, value in table.items())
 
 
 def _inline(value: Any) -> str:
