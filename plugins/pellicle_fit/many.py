@@ -354,7 +354,7 @@ def _write(
     }
     dataset = table(fits.rows).assign_attrs(attributes)
     hdf5, text, groups = (directory / f"fits{end}" for end in (".h5", ".csv", "-groups.csv"))
-    storage.write(dataset, hdf5)
+    storage.write(dataset.assign_attrs(command="fit"), hdf5)
     columns = ["curve", *dataset.data_vars]
     heads = [*(header(str(name), dataset[name]) for name in columns), *attributes]
     cells = zip(*(dataset[name].values.tolist() for name in columns), strict=True)

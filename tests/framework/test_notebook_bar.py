@@ -77,7 +77,7 @@ def test_a_study_has_one_live_bar(cell: Cell, capfd: pytest.CaptureFixture[str])
 
 def test_a_fit_shows_its_stage(cell: Cell) -> None:
     """How long a fit takes is not known: the bar has no value."""
-    with status_line(enabled=True) as report:
+    with status_line("fitting", enabled=True) as report:
         report("noise")
         assert "fitting <progress style=" in cell[-1]
         assert "noise" in cell[-1]
@@ -95,6 +95,6 @@ def test_short_or_quiet_work_shows_nothing(
         bar.step(0)(3, 1e6)
     with StudyProgress(2, 0, enabled=enabled) as study:
         study.finished(Job("a"), "converged", failed=False)
-    with status_line(enabled=enabled) as report:
+    with status_line("fitting", enabled=enabled) as report:
         report("noise")
     assert cell == []

@@ -30,7 +30,8 @@ def show(
     results: Annotated[
         Path,
         typer.Argument(
-            metavar="RESULTS", help="Folder of a run, study or fits, result (.h5) or study.h5."
+            metavar="RESULTS",
+            help="Folder of a run, a study or another command; result (.h5) or study.h5.",
         ),
     ],
     si: Annotated[bool, typer.Option("--si", help="Print numbers in SI units.")] = False,
@@ -38,7 +39,7 @@ def show(
         bool, typer.Option("--json", help="Print the result as JSON, in SI units.")
     ] = False,
 ) -> None:
-    """Print the steps of a result, or the runs of a study, and its origin; or the table of fits."""
+    """Print the steps of a result, or the runs of a study, and its origin, or another table."""
     from pellicle.results.result import load
     from pellicle.studies.runner import is_table, read
     from pellicle.studies.summary import caveats

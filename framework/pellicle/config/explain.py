@@ -83,7 +83,7 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
     ConfigError
         There is nothing of that name; the message names similar ones.
     """
-    entries = {**_TABLES, **tables}
+    entries = {**tables, **_TABLES}
     name = re.sub(r"[\s-]+", "_", word.strip().strip("[]").lower())
     families = registry().components
     if name in entries:

@@ -227,8 +227,8 @@ def _monitor(index: int, steps: int, show: Callable[[ProgressMessage], None]) ->
 
 
 @contextmanager
-def status_line(enabled: bool) -> Iterator[Callable[[str], None]]:
-    """Show the stage of a fit while it runs; yield a function that sets its description.
+def status_line(work: str, enabled: bool) -> Iterator[Callable[[str], None]]:
+    """Show at which stage some work is; yield a function that sets the stage.
 
     It is shown on a terminal and in a notebook.
     """
@@ -237,14 +237,14 @@ def status_line(enabled: bool) -> Iterator[Callable[[str], None]]:
         from .notebook_bar import NotebookBar
 
         with NotebookBar() as bar:
-            task = bar.add_task("fitting", total=None, message="")
+            task = bar.add_task(work, total=None, message="")
             yield lambda stage: bar.update(task, message=stage)
         return
     if not (enabled and console.is_terminal):
         yield lambda stage: None
         return
-    with console.status("fitting") as line:
-        yield lambda stage: line.update(f"fitting: {stage}")
+    with console.status(work) as line:
+        yield lambda stage: line.update(f"{work}: {stage}")
 
 
 class _Lasting:
