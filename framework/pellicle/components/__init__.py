@@ -25,6 +25,7 @@ from .executor import Task as Task
 from .executor import Threads as Threads
 from .executor import Work as Work
 from .executor import Workers as Workers
+from .from_registry import FromRegistry as FromRegistry
 from .indenter import ContactRadius as ContactRadius
 from .indenter import Footprint as Footprint
 from .indenter import ForceCurve as ForceCurve
