@@ -335,8 +335,21 @@ def _call_hooks(plugin: object, origin: Origin) -> tuple[list[Registered], list[
 
 
 def family_of(component: type[Component]) -> type[Component]:
-    """Return the base class of a component's family, which is the one that names it."""
-    return next(base for base in component.__mro__ if "family" in vars(base))
+    """Return the base class of a component that declares its family.
+
+    Raises
+    ------
+    PluginError
+        None of the base classes does, or not one alone.
+    """
+    declaring = [base for base in component.__mro__ if "family" in vars(base)]
+    if not declaring:
+        raise PluginError(f"{component.__name__} is of no family; derive it from a base with one")
+    first, base = declaring[0], declaring[-1]
+    if first is not base or base is component:
+        owner = "a base class" if base is component else base.__name__
+        raise PluginError(f"{first.__name__}.family is {first.family!r}; leave it to {owner}")
+    return base
 
 
 def checked_type(component: Any) -> str:
@@ -349,8 +362,12 @@ def checked_type(component: Any) -> str:
     """
     if not (isinstance(component, type) and issubclass(component, Component)):
         raise PluginError(f"{component!r} is not a subclass of pellicle.components.Component")
-    name = component.__name__
-    _check_family(component)
+    name, base = component.__name__, family_of(component)
+    if not isinstance(getattr(base, "place", None), str):
+        raise PluginError(
+            f"{base.__name__} lacks the class variable place: where files have its components, "
+            'such as "rivals[]"'
+        )
     info = component.model_fields.get("type")
     names = get_args(info.annotation) if info else ()
     one_text = len(names) == 1 and isinstance(names[0], str)
@@ -372,22 +389,6 @@ def checked_type(component: Any) -> str:
     # Raises if JSON cannot represent the type of a field, which would break the whole schema.
     component.model_json_schema()
     return str(names[0])
-
-
-def _check_family(component: type[Component]) -> None:
-    """Raise PluginError if a component has not one base class that declares its family."""
-    declaring = [base for base in component.__mro__ if "family" in vars(base)]
-    if not declaring:
-        raise PluginError(f"{component.__name__} is of no family; derive it from a base with one")
-    first, base = declaring[0], declaring[-1]
-    if first is not base or base is component:
-        owner = "a base class" if base is component else base.__name__
-        raise PluginError(f"{first.__name__}.family is {first.family!r}; leave it to {owner}")
-    if not isinstance(getattr(base, "place", None), str):
-        raise PluginError(
-            f"{base.__name__} lacks the class variable place: where files have its components, "
-            'such as "rivals[]"'
-        )
 
 
 def _check_prescription(component: type[Prescription], type_: str) -> None:
