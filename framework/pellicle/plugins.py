@@ -342,13 +342,17 @@ def family_of(component: type[Component]) -> type[Component]:
     PluginError
         None of the base classes does, or not one alone.
     """
-    declaring = [base for base in component.__mro__ if "family" in vars(base)]
+    mro = component.__mro__
+    declaring = [c for c in mro if issubclass(c, Component) and "family" in vars(c)]
     if not declaring:
         raise PluginError(f"{component.__name__} is of no family; derive it from a base with one")
     first, base = declaring[0], declaring[-1]
-    if first is not base or base is component:
-        owner = "a base class" if base is component else base.__name__
-        raise PluginError(f"{first.__name__}.family is {first.family!r}; leave it to {owner}")
+    if first is not base:
+        raise PluginError(
+            f"{first.__name__}.family is {first.family!r}; leave it to {base.__name__}"
+        )
+    if base is component:
+        raise PluginError(f"{base.__name__} is the base class of a family; derive from it")
     return base
 
 

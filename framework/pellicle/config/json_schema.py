@@ -52,7 +52,7 @@ def _models_in(model: type[BaseModel]) -> list[type[BaseModel]]:
     models = [model]
     for one in models:
         _, generated = models_json_schema([(one, "validation")])
-        found = [
+        found: list[type[BaseModel]] = [
             registered.component
             for family in _families_in(generated)
             for registered in registry().components.get(family, {}).values()
