@@ -276,7 +276,9 @@ def test_a_family_whose_application_is_not_installed(
     for table in ({"type": "drift"}, {}):
         with pytest.raises(PluginError, match="no installed plugin brings the family 'effect'; Kn"):
             import_module(stranger).Fit(rivals=[table])
-    with pytest.raises(ConfigError, match="'effect' is neither a type nor a table"):
+    with pytest.raises(
+        ConfigError, match="'effect' is neither a type, a family nor a table of what is"
+    ):
         explanations("effect", {})
     with pytest.raises(PluginError, match="effect 'drift' is broken"):
         load([plugin("raise OSError", name="effect.drift")]).find("effect", "drift")

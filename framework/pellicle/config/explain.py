@@ -99,7 +99,10 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
     if not matches:
         types = {type_ for members in families.values() for type_ in members}
         hint = similar(name, types | {*entries, *families}) or "see `pellicle plugins`"
-        raise ConfigError(f"{shown(word)} is neither a type nor a table; {hint}", "TYPE")
+        raise ConfigError(
+            f"{shown(word)} is neither a type, a family nor a table of what is installed; {hint}",
+            "TYPE",
+        )
     return [_of_component(match) for match in matches]
 
 
