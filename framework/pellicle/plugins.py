@@ -233,8 +233,6 @@ def _load_one(
 ) -> tuple[list[Registered], list[Suite]] | Broken:
     """Return the components and suites that one plugin registers, or its error.
 
-    The families that it brings are added to ``families``.
-
     A plugin may fail in any way, even by sys.exit() or KeyboardInterrupt; only a Ctrl-C of the user
     ends the command.
     """
@@ -242,8 +240,7 @@ def _load_one(
     with noted_interrupts() as interrupt:
         try:
             with diverted_output():
-                registration = _call_hooks(_plugin_of(entry.load()), origin)
-                _add_families(registration[0], families)
+                registration = _call_hooks(entry, origin, families)
         except BaseException as error:
             kind = "" if isinstance(error, PluginError) else f"{type(error).__name__}: "
             registration = Broken(origin, f"{kind}{error}".removesuffix(": "))
@@ -297,8 +294,10 @@ def _full_name(component: type[Component]) -> str:
     return f"{component.__module__}.{component.__qualname__}"
 
 
-def _call_hooks(plugin: object, origin: Origin) -> tuple[list[Registered], list[Suite]]:
-    """Return the components and suites that one plugin registers.
+def _call_hooks(
+    entry: EntryPoint, origin: Origin, families: dict[str, type[Component]]
+) -> tuple[list[Registered], list[Suite]]:
+    """Return the components and suites that one plugin registers, and add its families.
 
     Raises
     ------
@@ -307,6 +306,7 @@ def _call_hooks(plugin: object, origin: Origin) -> tuple[list[Registered], list[
     """
     manager = pluggy.PluginManager(GROUP)
     manager.add_hookspecs(hookspecs)
+    plugin = _plugin_of(entry.load())
     manager.register(plugin)
     hooks = ["register_components", "register_validations"]
     implemented = [caller.name for caller in manager.get_hookcallers(plugin) or ()]
@@ -331,6 +331,7 @@ def _call_hooks(plugin: object, origin: Origin) -> tuple[list[Registered], list[
 
     manager.hook.register_components(register=register)
     manager.hook.register_validations(register=register_suite)
+    _add_families(components, families)
     return components, suites
 
 

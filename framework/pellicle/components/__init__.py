@@ -65,7 +65,7 @@ FAMILIES: dict[str, type[Component]] = {
         Prescription,
     )
 }
-"""The base class of each family, by name."""
+"""The base class of each of pellicle's own families, by name."""
 
 if not TYPE_CHECKING:
 
