@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache, partial
@@ -148,7 +148,7 @@ def _model(file: str) -> type[BaseModel]:
     return model
 
 
-def refuse_file_of_another(model: type[BaseModel], keys: Collection[str]) -> None:
+def refuse_file_of_another(model: type[BaseModel], keys: Set[str]) -> None:
     """Refuse the content of a file that is for another command than the one of ``model``.
 
     It has all keys that the other file requires, and the other model knows more of its keys.
@@ -158,15 +158,21 @@ def refuse_file_of_another(model: type[BaseModel], keys: Collection[str]) -> Non
     ConfigError
         The file is for another command.
     """
-    unknown = [key for key in keys if key not in model.model_fields]
-    for name, other in file_models().items() if unknown else ():
-        if isinstance(other, Broken):
-            continue
-        required = {key for key, info in other.model_fields.items() if info.is_required()}
-        known = other.model_fields.keys() & keys
-        if required <= known and len(known) > len(keys) - len(unknown):
-            raise ConfigError(
-                f"makes this a file for `pellicle {name}`; `pellicle explain {name}` lists its "
-                "keys",
-                min(known.intersection(unknown), key=lambda key: (key not in required, key)),
-            ) from None
+    unknown = keys - model.model_fields.keys()
+    others = {
+        name: other
+        for name, other in (file_models().items() if unknown else ())
+        if not isinstance(other, Broken) and _required(other) <= keys
+    }
+    known = {name: other.model_fields.keys() & keys for name, other in others.items()}
+    name = max(known, key=lambda name: len(known[name]), default="")
+    if name and len(known[name]) > len(keys - unknown):
+        required = _required(others[name])
+        raise ConfigError(
+            f"makes this a file for `pellicle {name}`; `pellicle explain {name}` lists its keys",
+            min(known[name] & unknown, key=lambda key: (key not in required, key)),
+        ) from None
+
+
+def _required(model: type[BaseModel]) -> set[str]:
+    return {name for name, info in model.model_fields.items() if info.is_required()}

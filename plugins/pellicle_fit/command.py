@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from pellicle.cli import Command, echo, exits, print_json
+from pellicle.cli import INTERRUPTED, NOT_CONVERGED, Command, echo, print_json
 from pellicle.errors import ConfigError
 
 from .print_fits import print_fit, print_fits, print_notes, show_fits
@@ -224,7 +224,7 @@ def fit(
             echo(f"wrote {path}", err=json)
     if isinstance(result, ManyFits) and result.failed:
         echo(f"{result.failed} of {len(result.rows)} curves could not be fitted", err=True)
-        raise typer.Exit(exits.NOT_CONVERGED)
+        raise typer.Exit(NOT_CONVERGED)
 
 
 COMMAND = Command(fit, file="pellicle_fit.config:FitConfig", show=show_fits)
@@ -254,7 +254,7 @@ def _fit(
     except KeyboardInterrupt:
         hint = f"; finished fits are in {directory}, and the same command continues"
         echo(f"interrupted{hint if directory else ''}", err=True)
-        raise typer.Exit(exits.INTERRUPTED) from None
+        raise typer.Exit(INTERRUPTED) from None
     return fits, "fits", f"Fits of {len(fits.rows)} curves"
 
 

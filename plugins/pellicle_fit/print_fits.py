@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from pellicle.cli import echo, exits, print_columns, print_json
+from pellicle.cli import NOT_CONVERGED, echo, print_columns, print_json
 from pellicle.files import is_file
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ def show_fits(directory: Path, si: bool, json: bool) -> bool:
     else:
         print_fits(fits, quiet=False, directory=directory, si=si)
     if fits.failed:
-        raise typer.Exit(exits.NOT_CONVERGED)
+        raise typer.Exit(NOT_CONVERGED)
     return True
 
 

@@ -15,7 +15,7 @@ import pytest
 HERE = Path(__file__).parent
 PACKAGES = (
     *("third_party", "symbol_only", "one_output", "mean_gap", "quadratic_softening"),
-    "relaxing",
+    *("relaxing", "hertz"),
 )
 COMMAND_LINE = """
 import json, os, sys

@@ -1,6 +1,7 @@
 """Frozen models of a configuration: error messages, dotted paths, ranges, TOML."""
 
 from .base import Model as Model
+from .from_file import FromFile as FromFile
 from .input_path import AS_GIVEN as AS_GIVEN
 from .input_path import InputPath as InputPath
 from .input_path import as_given as as_given

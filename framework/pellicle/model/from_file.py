@@ -26,7 +26,7 @@ class FromFile(Model):
         except ConfigError:
             from pellicle.commands import refuse_file_of_another
 
-            refuse_file_of_another(type(self), data)
+            refuse_file_of_another(type(self), data.keys())
             raise
 
     @classmethod
