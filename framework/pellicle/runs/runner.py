@@ -98,10 +98,9 @@ def run(
     return result
 
 
-def solve(run: Run, bar: Bar | None = None) -> Result:
-    """Return the result of ``run``; nothing is written, and shown only by ``bar``."""
-    hidden = RunProgress(len(run.loading.values), False)
-    return execute(run, None, (), hidden if bar is None else bar).result
+def solve(run: Run) -> Result:
+    """Return the result of ``run``; nothing is written or shown."""
+    return execute(run, None, (), RunProgress(len(run.loading.values), False)).result
 
 
 class Executed(NamedTuple):
