@@ -74,33 +74,28 @@ def commands() -> Mapping[str, Sequence[EntryPoint]]:
 
 
 @cache
-def claims_on(name: str) -> Sequence[Command | Broken]:
-    """Return what each claimant of a command brings, or why it cannot be used.
-
-    Of several plugins none is used, and beside pellicle itself none either.
-    """
-    entries = commands()[name]
-    if len(entries) == 1:
-        return [isolated(entries[0], partial(_loaded, entries[0]))]
-    origins = list(map(Origin.of, entries))
-    error = (
-        f"claimed by {' and by '.join(map(str, origins))}; uninstall one, or name its "
-        f"distribution in {DISABLE}"
-    )
-    return [
-        isolated(entry, partial(_loaded, entry)) if origin.is_own else Broken(origin, error)
-        for entry, origin in zip(entries, origins, strict=True)
-    ]
-
-
 def load_command(name: str) -> Command | Broken:
-    """Return the command of a name, or why it cannot be used."""
-    return claims_on(name)[0]
+    """Return a command, or why it cannot be used.
+
+    Of several plugins that claim it none is used, and beside pellicle itself none either.
+    """
+    first, *others = commands()[name]
+    if others and not Origin.of(first).is_own:
+        claimants = " and by ".join(str(Origin.of(entry)) for entry in (first, *others))
+        remedy = f"uninstall one, or name its distribution in {DISABLE}"
+        return Broken(Origin.of(first), f"claimed by {claimants}; {remedy}")
+    return isolated(first, partial(_loaded, first))
 
 
 def _loaded(entry: EntryPoint) -> Command:
     loaded = entry.load()
     return loaded if isinstance(loaded, Command) else Command(loaded)
+
+
+def usable_commands() -> Mapping[str, Command]:
+    """Return the commands that are not broken, by name; all are imported."""
+    loaded = {name: load_command(name) for name in commands()}
+    return {name: command for name, command in loaded.items() if isinstance(command, Command)}
 
 
 def typer_command(name: str, **options: Any) -> Any:
@@ -129,10 +124,9 @@ def errors_attributed_to(name: str) -> Iterator[None]:
 def file_models() -> Mapping[str, type[BaseModel] | Broken]:
     """Return the model of the file of each command that takes one, or why it cannot be used."""
     models: dict[str, type[BaseModel] | Broken] = {}
-    for name, (entry, *_) in commands().items():
-        command = load_command(name)
-        if isinstance(command, Command) and command.file:
-            model = isolated(entry, partial(_model, command.file))
+    for name, command in usable_commands().items():
+        if command.file:
+            model = isolated(commands()[name][0], partial(_model, command.file))
             if isinstance(model, Broken):
                 model = replace(model, error=f"file {command.file!r}: {model.error}")
             models[name] = model
@@ -158,21 +152,21 @@ def refuse_file_of_another(model: type[BaseModel], keys: Set[str]) -> None:
     ConfigError
         The file is for another command.
     """
-    unknown = keys - model.model_fields.keys()
     others = {
         name: other
-        for name, other in (file_models().items() if unknown else ())
-        if not isinstance(other, Broken) and _required(other) <= keys
+        for name, other in (file_models() if keys - model.model_fields.keys() else {}).items()
+        if not isinstance(other, Broken)
+        and all(key in keys for key, info in other.model_fields.items() if info.is_required())
     }
     known = {name: other.model_fields.keys() & keys for name, other in others.items()}
     name = max(known, key=lambda name: len(known[name]), default="")
-    if name and len(known[name]) > len(keys - unknown):
-        required = _required(others[name])
-        raise ConfigError(
-            f"makes this a file for `pellicle {name}`; `pellicle explain {name}` lists its keys",
-            min(known[name] & unknown, key=lambda key: (key not in required, key)),
-        ) from None
-
-
-def _required(model: type[BaseModel]) -> set[str]:
-    return {name for name, info in model.model_fields.items() if info.is_required()}
+    if name and len(known[name]) > len(keys & model.model_fields.keys()):
+        fields = others[name].model_fields
+        field = min(
+            known[name] - model.model_fields.keys(),
+            key=lambda key: (not fields[key].is_required(), key),
+        )
+        reason = (
+            f"makes this a file for `pellicle {name}`; `pellicle explain {name}` lists its keys"
+        )
+        raise ConfigError(reason, field) from None

@@ -69,7 +69,7 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install
 
     def forget() -> None:
         commands.commands.cache_clear()
-        commands.claims_on.cache_clear()
+        commands.load_command.cache_clear()
 
     yield write
     monkeypatch.undo()
@@ -137,7 +137,8 @@ def test_of_two_claimants_none_is_used(install: Install) -> None:
     refusal = call("hello", code=2).stderr
     assert "claimed by greetings 1.5" in refusal
     assert "and by salutations 1.5" in refusal
-    assert len(json.loads(call("plugins", "--json").stdout)["broken"]) == 2
+    (clash,) = json.loads(call("plugins", "--json").stdout)["broken"]
+    assert clash["origin"] == "greetings, salutations"
 
 
 def test_a_command_of_a_name_of_ours_is_not_used(install: Install) -> None:
@@ -145,7 +146,7 @@ def test_a_command_of_a_name_of_ours_is_not_used(install: Install) -> None:
     install(name="run")
     assert "FILE" in call("run", "--help").stdout
     (broken,) = json.loads(call("plugins", "--json").stdout)["broken"]
-    assert broken["origin"] == "greetings"
+    assert broken["origin"] == "pellicle, greetings"
     assert "claimed by pellicle" in broken["error"]
 
 

@@ -14,13 +14,7 @@ import typer
 from rich.markup import escape
 from typer.core import TyperCommand, TyperGroup
 
-from pellicle.commands import (
-    Command,
-    commands,
-    errors_attributed_to,
-    load_command,
-    typer_command,
-)
+from pellicle.commands import commands, errors_attributed_to, load_command, typer_command
 from pellicle.errors import PellicleError, PluginError
 from pellicle.origins import Broken
 
@@ -68,7 +62,10 @@ class _Commands(Mapping[str, Any]):
         return len(commands())
 
     def __getitem__(self, name: str) -> TyperCommand:
-        return _Listed(name, help=_help(load_command(name)))
+        command = load_command(name)
+        if isinstance(command, Broken):
+            return _Listed(name, help=f"broken: {escape(command.error)}")
+        return _Listed(name, help=inspect.getdoc(command.function))
 
 
 class _Listed(TyperCommand):
@@ -79,12 +76,6 @@ class _Listed(TyperCommand):
         if isinstance(command, Broken):
             raise PluginError(f"command {self.name!r} is broken: {command}")
         return command.make_context(*args, **kwargs)
-
-
-def _help(command: Command | Broken) -> str | None:
-    if isinstance(command, Broken):
-        return f"broken: {escape(command.error)}"
-    return inspect.getdoc(command.function)
 
 
 def _misuse(error: Any) -> str:

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from pellicle.commands import Command, commands, load_command
+from pellicle.commands import usable_commands
 from pellicle.errors import ConfigError, StorageError
 
 from .printing import echo
@@ -90,11 +90,9 @@ def _write_example(name: str, path: Path | None) -> None:
 def _examples() -> dict[str, tuple[str, Path]]:
     """Return the command and the TOML file of each example in the packages of commands."""
     examples: dict[str, tuple[str, Path]] = {}
-    for name in commands():
-        command = load_command(name)
-        if not isinstance(command, Command) or not command.file:
-            continue
-        spec = find_spec(re.split("[.:]", command.file)[0])
+    for name, command in usable_commands().items():
+        package = re.split("[.:]", command.file)[0]
+        spec = find_spec(package) if package else None
         for folder in (spec and spec.submodule_search_locations) or ():
             for file in sorted(Path(folder, "examples").glob("*/*.toml")):
                 if file.stem == file.parent.name:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Sequence
 from typing import Annotated
 
 import typer
 
-from pellicle.commands import claims_on, commands, file_models, typer_command
+from pellicle.commands import commands, file_models, typer_command
 from pellicle.origins import Broken, Origin
 
 from .printing import echo, print_json, print_table
@@ -18,18 +18,33 @@ def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = 
     from pellicle.plugins import registry
 
     contents = registry()
+    owners = {name: [*map(Origin.of, entries)] for name, entries in commands().items()}
+    made = {name: typer_command(name) for name in owners}
+    installed = [
+        (family, registered.type, registered.origin, registered.summary)
+        for family, members in contents.components.items()
+        for registered in members.values()
+    ] + [
+        ("command", name, owners[name][0], (command.help or "").partition("\n")[0])
+        for name, command in made.items()
+        if not isinstance(command, Broken)
+    ]
     rows = [
         {
             "family": family,
-            "type": registered.type,
-            "origin": registered.origin.distribution,
-            "version": registered.origin.version,
-            "description": registered.summary,
+            "type": type_,
+            "origin": origin.distribution,
+            "version": origin.version,
+            "description": summary,
         }
-        for family, members in contents.components.items()
-        for registered in members.values()
+        for family, type_, origin, summary in installed
     ]
-    rows += _commands()
+    clashes: dict[tuple[str, str], Sequence[Origin]] = {
+        **contents.clashes,
+        **{("command", name): origins for name, origins in owners.items() if len(origins) > 1},
+    }
+    failed = [command for name, command in made.items() if ("command", name) not in clashes]
+    failed = [b for b in (*failed, *file_models().values()) if isinstance(b, Broken)]
     broken = [
         {
             "entry_point": broken.origin.entry_point,
@@ -37,7 +52,7 @@ def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = 
             "version": broken.origin.version,
             "error": broken.error,
         }
-        for broken in (*contents.broken, *_broken_commands())
+        for broken in (*contents.broken, *failed)
     ] + [
         {
             "entry_point": f"{family}.{type_}",
@@ -45,7 +60,7 @@ def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = 
             "version": ", ".join(owner.version for owner in owners),
             "error": f"claimed by {' and by '.join(map(str, owners))}",
         }
-        for (family, type_), owners in contents.clashes.items()
+        for (family, type_), owners in clashes.items()
     ]
     disabled = [str(origin) for origin in contents.disabled]
     if json:
@@ -57,25 +72,3 @@ def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = 
         print_table(["entry_point", "origin", "version", "error"], broken)
     for origin in disabled:
         echo(f"switched off: {origin}")
-
-
-def _commands() -> Iterator[dict[str, str]]:
-    """Yield a row for each command that can be used."""
-    for name, (entry, *_) in commands().items():
-        command, origin = typer_command(name), Origin.of(entry)
-        if not isinstance(command, Broken):
-            yield {
-                "family": "command",
-                "type": name,
-                "origin": origin.distribution,
-                "version": origin.version,
-                "description": (command.help or "").partition("\n")[0],
-            }
-
-
-def _broken_commands() -> Iterable[Broken]:
-    """Return what is wrong with commands, with their parameters and with the models of files."""
-    claims = [claim for name in commands() for claim in (*claims_on(name), typer_command(name))]
-    return dict.fromkeys(
-        claim for claim in (*claims, *file_models().values()) if isinstance(claim, Broken)
-    )

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from pellicle.commands import Command, commands, errors_attributed_to, load_command
+from pellicle.commands import errors_attributed_to, usable_commands
 from pellicle.errors import StorageError
 
 from .exits import NOT_CONVERGED
@@ -58,8 +58,10 @@ def show(
     try:
         result = load(results)
     except StorageError:
-        if _shown_by_a_command(results, si=si, json=json):
-            return
+        for name, command in usable_commands().items():
+            with errors_attributed_to(name):
+                if command.show and command.show(results, si, json):
+                    return
         raise
     total, done = result.planned_steps, result.dataset.sizes["step"]
     if json:
@@ -74,14 +76,3 @@ def show(
     if done < total:
         echo(f"interrupted: {done} of {total} steps are finished; run it again", err=True)
         raise typer.Exit(NOT_CONVERGED)
-
-
-def _shown_by_a_command(results: Path, *, si: bool, json: bool) -> bool:
-    """Let the command that left something at a path show it; return whether one did."""
-    for name in commands():
-        command = load_command(name)
-        if isinstance(command, Command) and command.show:
-            with errors_attributed_to(name):
-                if command.show(results, si, json):
-                    return True
-    return False
