@@ -22,16 +22,17 @@ PACKAGES = (
 )
 DATA = {
     "pellicle/py.typed",
-    "pellicle/cli/starter.toml",
     "pellicle/applications.pyi",
     "pellicle_explore/py.typed",
     "pellicle_explore/start.toml",
     "pellicle_fit/__init__.pyi",
+    "pellicle_fit/examples/fit/fit-curve.csv",
+    "pellicle_fit/examples/fit/fit.toml",
     "pellicle_fit/py.typed",
     "pellicle_plugins/py.typed",
 } | {
     path.relative_to(ROOT / "framework").as_posix()
-    for folder in ("templates", "report")
+    for folder in ("examples", "templates", "report")
     for path in (ROOT / "framework/pellicle" / folder).rglob("*")
     if path.is_file() and path.suffix != ".py" and path.parent.name != "__pycache__"
 }

@@ -46,27 +46,17 @@ def new(
     if path is not None and plugin is None and not path.suffix:
         # The folder of results is named after the file without its suffix.
         path = path.with_suffix(".toml")
-    if example is not None:
-        if plugin is not None:
-            raise ConfigError("and --plugin exclude each other; give one of them", "--example")
-        _write_example(example, path)
-        return
     if plugin is None:
-        _write_starter(path or Path("indent.toml"))
+        _write_example(example or "indent", path)
         return
+    if example is not None:
+        raise ConfigError("and --plugin exclude each other; give one of them", "--example")
     from .scaffold import write_plugin
 
     if path is None:
         raise ConfigError(f"is missing; for example: pellicle new --plugin {plugin} mine", "NAME")
     folder = write_plugin(plugin, str(path), Path())
     echo(f"wrote {folder}; next: cd {folder}, pip install -e '.[test]', python -m pytest")
-
-
-def _write_starter(path: Path) -> None:
-    from importlib.resources import files
-
-    _write_new(path, files("pellicle.cli").joinpath("starter.toml").read_bytes())
-    echo(f"wrote {path}; next: pellicle run {path}")
 
 
 def _write_example(name: str, path: Path | None) -> None:
