@@ -297,7 +297,7 @@ def test_a_fault_of_pellicle_has_an_exit_code_of_its_own(
     def broken(*_: object) -> None:
         raise RuntimeError("lost")
 
-    monkeypatch.setattr(new, "_write_starter", broken)
+    monkeypatch.setattr(new, "_write_example", broken)
     done = cli("new", "x.toml", code=CRASHED)
     assert "RuntimeError: lost" in done.stderr
     assert "please report" in done.stderr
