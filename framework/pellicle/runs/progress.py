@@ -140,11 +140,11 @@ class RunProgress(_BarContext):
             )
 
 
-class StudyProgress(_BarContext):
-    """Shows a bar for a study and one for each running run, on a terminal or in a notebook.
+class BatchProgress(_BarContext):
+    """Shows a bar for all tasks and one for each that runs, on a terminal or in a notebook.
 
-    Elsewhere there is a line for each finished run. Ctrl-C takes effect at the next report of a
-    run. Nothing is shown if not ``enabled``.
+    Elsewhere there is a line for each finished task. Ctrl-C takes effect at the next report of a
+    task. Nothing is shown if not ``enabled``.
     """
 
     def __init__(self, total: int, done: int, enabled: bool) -> None:

@@ -5,7 +5,6 @@ far below that of the call. `pellicle.operators` calls kernels in the same way.
 """
 
 from .correction import corrected_area
-from .executor import outcomes_of
 from .indenter import force_curve_of, layer_force_curve_of, profile_of
 from .kernel import branches_of, instantaneous
 from .output import files_of, require_files
@@ -22,7 +21,6 @@ __all__ = [
     "force_curve_of",
     "instantaneous",
     "layer_force_curve_of",
-    "outcomes_of",
     "profile_of",
     "report_of",
     "require_files",
