@@ -16,13 +16,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pellicle import registry, storage
 from pellicle.batch import BatchProgress, locked, mapped
 from pellicle.components import Component, Say
 from pellicle.errors import PellicleError
 from pellicle.files import atomic_write, check_writable, write_json
-from pellicle.plugins import registry
-from pellicle.results import storage
-from pellicle.results.variables import header
+from pellicle.result import header
 
 from .config import FitConfig
 from .curves.sources import Curves, Source, SourceStream
