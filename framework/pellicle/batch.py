@@ -23,7 +23,7 @@ def mapped(
 ) -> None:
     """Execute tasks, and keep the outcome of each as soon as it is there.
 
-    An error of one task does not end the others. Ctrl-C does, after the outcome that comes next.
+    An error of one task does not end the others. Ctrl-C does, at the next report or outcome.
 
     Parameters
     ----------

@@ -159,7 +159,7 @@ class BatchProgress(_BarContext):
         )
 
     def expect(self, total: int, done: int) -> None:
-        """Set the number of runs, and count ``done`` more that were finished before."""
+        """Set the number of tasks, and count ``done`` more that were finished before."""
         self._total = total
         self._done += done
         if self._bar is not None:
@@ -167,7 +167,7 @@ class BatchProgress(_BarContext):
             self._advance()
 
     def report(self, task: Task, message: ProgressMessage) -> None:
-        """Show the progress of a run."""
+        """Show the progress of a task."""
         self._interrupt.check()
         if self._bar is None:
             return
@@ -181,7 +181,7 @@ class BatchProgress(_BarContext):
         self._advance()
 
     def finished(self, task: Task, verdict: str, failed: bool) -> None:
-        """Show that a run has finished, with its verdict."""
+        """Show that a task has finished, with its verdict."""
         self._done += 1
         self._failed += failed
         if self._bar is not None:
