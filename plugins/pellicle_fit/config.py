@@ -21,11 +21,11 @@ from pydantic import (
 from pellicle import registry
 from pellicle.components import (
     Executor,
+    FromRegistry,
     HasForceCurve,
     HasLayerForceCurve,
     Indenter,
 )
-from pellicle.config.component_field import FromRegistry
 from pellicle.errors import ConfigError, shown
 from pellicle.model import (
     FromFile,
