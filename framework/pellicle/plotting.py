@@ -18,6 +18,5 @@ from pellicle.report.saving import save_figure as save_figure
 from pellicle.report.saving import save_pages as save_pages
 from pellicle.report.saving import svg as svg
 from pellicle.report.style import LINES as LINES
-from pellicle.report.style import OKABE_ITO as OKABE_ITO
 from pellicle.report.style import FigureStyle as FigureStyle
 from pellicle.units import axis_unit as axis_unit
