@@ -18,6 +18,7 @@ from pydantic import (
     model_validator,
 )
 
+from pellicle import registry
 from pellicle.components import (
     Executor,
     FromRegistry,
@@ -25,14 +26,16 @@ from pellicle.components import (
     HasLayerForceCurve,
     Indenter,
 )
-from pellicle.config.study import DEFAULT_EXECUTOR
 from pellicle.errors import ConfigError, shown
-from pellicle.model.from_file import FromFile, overridden
-from pellicle.model.input_path import InputPath, paths_relative_to
-from pellicle.model.messages import nearest
-from pellicle.model.paths import replaced
-from pellicle.model.toml import read_toml
-from pellicle.plugins import registry
+from pellicle.model import (
+    FromFile,
+    InputPath,
+    nearest,
+    overridden,
+    paths_relative_to,
+    read_toml,
+    replaced,
+)
 from pellicle.units import PoissonsRatio, Quantity
 
 from .curves.cleaning import LARGEST
@@ -205,7 +208,7 @@ class FitConfig(FromFile, Calibration):
         FromRegistry(),
         BeforeValidator(_component),
         Field(description="executor of many fits and of simulations"),
-    ] = Field(default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}))
+    ] = Field(default_factory=lambda: registry().make(Executor, {"type": "serial"}))
     cache: Path | None = Field(None, description="folder that keeps simulated force curves")
     grid_points: int = Field(
         GRID_POINTS, description="cells along each edge of the grids of a simulation"

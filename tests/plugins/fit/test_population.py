@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from typer.testing import CliRunner
 
 import pellicle as pl
+from pellicle.batch import locked
 from pellicle.cli.app import app
 from pellicle.errors import ConfigError, StorageError
-from pellicle.runs.lock import locked
 from pellicle_fit import many
 from pellicle_fit.curves.curve import Curve
 from pellicle_fit.curves.sources import Source
