@@ -1,7 +1,7 @@
 """The commands of the command line, found by name, imported when used.
 
-An entry point ``command.NAME`` names a function, or a `Command` that tells more about it; those of
-pellicle itself are found in the same way. Nothing heavy is imported to list them.
+An entry point ``command.NAME`` names a function, or a module whose hook registers one and tells
+more about it; those of pellicle itself are found in the same way. Nothing heavy is imported.
 """
 
 from __future__ import annotations
@@ -14,10 +14,13 @@ from dataclasses import dataclass, replace
 from functools import cache, partial
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+import pluggy
 import typer
 
+from . import hookspecs
 from .errors import ConfigError, PellicleError, PluginError
 from .origins import COMMAND, DISABLE, GROUP, Broken, Origin, isolated
 
@@ -27,7 +30,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Command:
-    """A command of the command line.
+    """A command, as `hookspecs.RegisterCommand` gets it.
 
     Raises
     ------
@@ -36,24 +39,12 @@ class Command:
     """
 
     function: Callable[..., None]
-    """Its parameters are those of the command, as typer reads them; its documentation is the help.
-
-    The module of the function imports typer alone; what is heavy is imported inside the function.
-    """
     file: str = ""
-    """``"package.module:Model"``: the model of the TOML file that the command takes.
-
-    Folders ``examples/NAME/`` of the package hold examples of it for ``pellicle new --example``.
-    """
     show: Callable[[Path, bool, bool], bool] | None = None
-    """Prints what the command left at a path, for ``pellicle show``, in SI or as JSON if asked to.
-
-    It returns False, and prints nothing, where the command left nothing there.
-    """
 
     def __post_init__(self) -> None:
         if not callable(self.function):
-            raise PluginError(f"{self.function!r} is neither a function nor a pellicle.cli.Command")
+            raise PluginError(f"{self.function!r} is neither a function nor a module with hooks")
         if self.file and not re.fullmatch(r"[\w.]+:\w+", self.file):
             raise PluginError(f"file is {self.file!r}; give one like 'package.module:Model'")
 
@@ -89,7 +80,23 @@ def load_command(name: str) -> Command | Broken:
 
 def _loaded(entry: EntryPoint) -> Command:
     loaded = entry.load()
-    return loaded if isinstance(loaded, Command) else Command(loaded)
+    if not isinstance(loaded, ModuleType):
+        return Command(loaded)
+    registered: list[Command] = []
+
+    def register(function: Callable[..., None], **more: Any) -> None:
+        registered.append(Command(function, **more))
+
+    manager = pluggy.PluginManager(GROUP)
+    manager.add_hookspecs(hookspecs)
+    manager.register(loaded)
+    manager.hook.register_commands(register=register)
+    if len(registered) != 1:
+        raise PluginError(
+            f"registers {len(registered)} commands; implement the hook "
+            "register_commands, marked with @pellicle.hookimpl, to register one"
+        )
+    return registered[0]
 
 
 def usable_commands() -> Mapping[str, Command]:

@@ -248,7 +248,7 @@ def _call_hooks(
     manager.add_hookspecs(hookspecs)
     plugin = _plugin_of(entry.load())
     manager.register(plugin)
-    hooks = ["register_components", "register_validations"]
+    hooks = ["register_components", "register_validations", "register_commands"]
     implemented = [caller.name for caller in manager.get_hookcallers(plugin) or ()]
     if not implemented:
         raise PluginError(

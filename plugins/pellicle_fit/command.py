@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from pellicle.cli import INTERRUPTED, NOT_CONVERGED, Command, echo, print_json
+import pellicle as pl
+from pellicle.cli import INTERRUPTED, NOT_CONVERGED, echo, print_json
 from pellicle.errors import ConfigError
 
 from .print_fits import print_fit, print_fits, print_notes, show_fits
@@ -227,7 +228,10 @@ def fit(
         raise typer.Exit(NOT_CONVERGED)
 
 
-COMMAND = Command(fit, file="pellicle_fit.config:FitConfig", show=show_fits)
+@pl.hookimpl
+def register_commands(register: pl.RegisterCommand) -> None:
+    """Register the command."""
+    register(fit, file="pellicle_fit.config:FitConfig", show=show_fits)
 
 
 def _fit(

@@ -16,23 +16,32 @@ from pellicle.origins import GROUP
 
 HELLO = '''
 from pathlib import Path
-from pellicle.cli import Command, echo
+import pellicle as pl
+from pellicle.cli import echo
 
 def hello(name: str = "you") -> None:
     """Greet someone."""
     echo(f"hello {name}")
 '''
+
+
+def registers(arguments: str) -> str:
+    """Return a hook that registers a command."""
+    return f"@pl.hookimpl\ndef register_commands(register):\n    register({arguments})\n"
+
+
 BROKEN = {
     "error at import": ("1 / 0", "ZeroDivisionError: division by zero"),
     "exit at import": ("raise SystemExit(0)", "SystemExit: 0"),
-    "no function": ("hello = 3", "3 is neither a function nor a pellicle.cli.Command"),
+    "no function": ("hello = 3", "3 is neither a function nor a module with hooks"),
+    "none": ("@pl.hookimpl\ndef register_commands(register): ...", "registers 0 commands"),
     "no such function": ("del hello", "AttributeError: module"),
-    "file of another form": ("hello = Command(hello, file='x')", "file is 'x'; give one like"),
+    "file of another form": (registers("hello, file='x'"), "file is 'x'; give one like"),
     "[brackets] in the error": ("raise ValueError('[/x]')", "ValueError: [/x]"),
 }
 """What follows `HELLO`, and what is said."""
 UNREADABLE = "hello.__annotations__['name'] = int | bytes"
-NO_MODEL = "hello = Command(hello, file='nothing.there:Model')"
+NO_MODEL = registers("hello, file='nothing.there:Model'")
 Install = Callable[..., None]
 
 
@@ -62,7 +71,8 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install
     def write(more: str = "", name: str = "hello", package: str = "greetings") -> None:
         module = f"{package}_{tmp_path.name.replace('-', '_')}"
         (tmp_path / f"{module}.py").write_text(f"{HELLO}\n{more}\n", encoding="utf-8")
-        entry = EntryPoint(f"command.{name}", f"{module}:hello", GROUP)
+        named = module if "register_commands" in more else f"{module}:hello"
+        entry = EntryPoint(f"command.{name}", named, GROUP)
         vars(entry)["dist"] = Installed(package)
         entries.add(entry)
         forget()
@@ -167,8 +177,7 @@ def show(path, si, json):
     echo((path / "hello.txt").read_text())
     return True
 
-hello = Command(hello, show=show)
-"""
+""" + registers("hello, show=show")
 
 
 def test_show_asks_the_command_that_left_something(install: Install) -> None:

@@ -4,8 +4,6 @@ What a command of a plugin may use is listed here. Heavy imports are inside the 
 ``pellicle --help`` answers at once.
 """
 
-from pellicle.commands import Command as Command
-
 from .exits import BAD_INPUT as BAD_INPUT
 from .exits import INTERRUPTED as INTERRUPTED
 from .exits import NOT_CONVERGED as NOT_CONVERGED

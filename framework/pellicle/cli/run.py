@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
-from pellicle.commands import Command
 from pellicle.errors import ConfigError
+from pellicle.hookspecs import RegisterCommand, hookimpl
 
 from .exits import INTERRUPTED
 from .printing import echo, print_json, print_table
@@ -88,7 +88,10 @@ def run(
         _run_one(configuration, stem, display, threads=threads, overwrite=overwrite)
 
 
-COMMAND = Command(run, file="pellicle.config.run:Run")
+@hookimpl
+def register_commands(register: RegisterCommand) -> None:
+    """Register the command."""
+    register(run, file="pellicle.config.run:Run")
 
 
 class _Display(NamedTuple):

@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from pellicle.cli import Command, echo
+import pellicle as pl
+from pellicle.cli import echo
 
 
 def hertz(
@@ -18,4 +19,7 @@ def hertz(
     echo(readable(Contact.from_toml(file).force, "N", 4))
 
 
-COMMAND = Command(hertz, file="pellicle_hertz.contact:Contact")
+@pl.hookimpl
+def register_commands(register: pl.RegisterCommand) -> None:
+    """Register the command."""
+    register(hertz, file="pellicle_hertz.contact:Contact")
