@@ -50,12 +50,14 @@ def metres(unit: str) -> float | None:
 
 def chosen(channels: Sequence[Channel], name: str | None, path: Path) -> Channel:
     """Return the channel of heights with a name; the first of all if it is None."""
-    heights = ", ".join(repr(channel.name) for channel in channels if channel.is_height) or "none"
-    channel = next((channel for channel in channels if name in (None, channel.name)), None)
-    if channel is None:
+    names = dict.fromkeys(repr(channel.name) for channel in channels if channel.is_height)
+    heights = ", ".join(names) or "none"
+    by_name = {channel.name: channel for channel in channels}
+    if name is not None and name not in by_name:
         raise ConfigError(
             f"{name!r} is not in {path}; its channels of heights are: {heights}", "channel"
         )
+    channel = channels[0] if name is None else by_name[name]
     if not channel.is_height:
         raise ConfigError(
             f"{channel.name!r} of {path} is in {channel.unit}, not heights; its channels of "
@@ -83,10 +85,9 @@ def height_scale(channel: Channel, given: float | None, path: Path) -> float:
         return given
     if given is not None:
         raise ConfigError(f"{path} states its own unit, {channel.unit}; leave this out", "unit")
-    try:
-        return Quantity("m")(f"1 {channel.unit}")
-    except ValueError as error:
-        raise ConfigError(f"{path} is in a unit that is not a length: {error}", "path") from None
+    if (scale := metres(channel.unit)) is None:
+        raise ConfigError(f"{path} is in {channel.unit}, which is not a unit of length", "path")
+    return scale
 
 
 def edge_lengths(

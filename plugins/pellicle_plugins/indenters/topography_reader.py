@@ -35,18 +35,9 @@ def read_scan(
     unit: float | None = None,
     size: tuple[float, float] | None = None,
 ) -> Scan:
-    """Return the surface in a file.
+    """Return the surface in a file, or in the ``channel`` of that name.
 
-    Parameters
-    ----------
-    path
-        The file.
-    channel
-        Name of the data set; the default of the file format if None.
-    unit
-        Length that 1 in the file stands for [m], if the file does not state it.
-    size
-        Edge lengths [m], if the file does not state them.
+    ``unit`` [m] and ``size`` [m] are given where the file does not state them.
     """
     length = require_file(path)
     return _read(path.absolute(), path.stat().st_mtime_ns, length, channel, unit, size)
@@ -107,9 +98,8 @@ def _channels(file: BinaryIO, path: Path) -> list[Channel]:
         reader = io.open_topography(file)
         # Any file of 2n² bytes passes as hgt, n² integers without a header.
         if reader.format() != "hgt" or path.suffix.lower() == ".hgt":
-            first = reader.default_channel
-            others = [channel for channel in reader.channels if channel.name != first.name]
-            return [_library_channel(channel, path) for channel in (first, *others)]
+            channels = reader.default_channel, *reader.channels
+            return [_library_channel(channel, path) for channel in channels]
     raise ConfigError(
         f"{path} is damaged or in an unknown format; give a file that SurfaceTopography reads "
         "(gwy, opd, sdf, sur, x3p, …), text with a row of numbers, separated by blanks, commas or "
