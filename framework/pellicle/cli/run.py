@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
+from pellicle.commands import Command
 from pellicle.errors import ConfigError
 
 from .exits import INTERRUPTED
@@ -85,6 +86,9 @@ def run(
     else:
         stem = folder / file.stem
         _run_one(configuration, stem, display, threads=threads, overwrite=overwrite)
+
+
+COMMAND = Command(run, file="pellicle.config.run:Run")
 
 
 class _Display(NamedTuple):
