@@ -24,7 +24,7 @@ from pellicle.files import atomic_write, storage_errors
 
 from . import checksum, netcdf
 from .result_file import SCHEMA_VERSION as SCHEMA_VERSION
-from .result_file import attributes_of, content, version_of
+from .result_file import attributes_of, content
 from .result_file import opened as opened
 
 if TYPE_CHECKING:
@@ -68,27 +68,18 @@ def append(dataset: xr.Dataset, path: Path) -> None:
     """
     first, *segments = _parts(path)
     with opened(first) as file:
-        version, identity = version_of(file), attributes_of(file).get("identity")
-        own = file["step"][:].tolist()
+        identity, own = attributes_of(file).get("identity"), file["step"][:].tolist()
     waiting = [number for segment in segments for number in _step_numbers(segment)]
-    # Version 1 counted from 0.
-    _require_continued(path, (own + waiting)[-1] + (version == 1), identity, dataset)
-    if version != SCHEMA_VERSION:
-        write(joined([read(path), dataset]), path)
-    elif len(waiting) + dataset.sizes["step"] >= len(own) or path.stat().st_size < _SMALL:
+    last, following = (own + waiting)[-1], int(dataset["step"].values[0])
+    if dataset.attrs.get("identity") != identity or following != last + 1:
+        raise StorageError(
+            f"{path}: step {following} does not continue it: it ends at step {last}, and another "
+            "process may have replaced it; run one at a time, or choose another folder (-o DIR)"
+        )
+    if len(waiting) + dataset.sizes["step"] >= len(own) or path.stat().st_size < _SMALL:
         _join(path, segments, dataset)
     else:
         write(dataset, path.with_name(f".{path.name}.{len(own) + len(waiting):08d}.tail"))
-
-
-def _require_continued(path: Path, step: int, identity: object, dataset: xr.Dataset) -> None:
-    """Refuse steps that are of another run or do not follow ``step``, the last in the file."""
-    following = int(dataset["step"].values[0])
-    if dataset.attrs.get("identity") != identity or following != step + 1:
-        raise StorageError(
-            f"{path}: step {following} does not continue it: it ends at step {step}, and another "
-            "process may have replaced it; run one at a time, or choose another folder (-o DIR)"
-        )
 
 
 def require_consecutive(steps: xr.Dataset, path: Path) -> None:
