@@ -16,7 +16,7 @@ from pydantic_core import core_schema
 
 from pellicle.errors import shown
 
-from .conversion import NOUNS, NUMBER_AND_UNIT, factor_to_si, pint_registry
+from .conversion import NUMBER_AND_UNIT, factor_to_si, pint_registry
 from .conversion import one as one
 from .conversion import si_unit as si_unit
 from .conversion import split as split
@@ -64,9 +64,6 @@ class Quantity:
         SI unit, e.g. ``"Pa"``; ``"1"`` for a pure number.
     above, at_least, below, at_most
         Bounds in that unit; ``above`` and ``below`` exclude the bound.
-    noun
-        What the values are, with an article, for messages such as "is a force, not a spring
-        constant"; without it, a noun for the unit.
     """
 
     unit: str
@@ -74,7 +71,6 @@ class Quantity:
     at_least: float | None = None
     below: float | None = None
     at_most: float | None = None
-    noun: str = ""
 
     def __call__(self, value: object) -> float:
         """Return ``value`` in SI.
@@ -85,15 +81,22 @@ class Quantity:
             The value is not a number, lacks a unit, has another dimension, is not finite or is out
             of bounds.
         """
-        number = self._magnitude(value)
+        number = self._in_si(value)
         if not math.isfinite(number):
             raise ValueError(f"{shown(value)} is not finite; give {self._wanted()}")
-        if not self._within(number):
+        is_outside = (
+            (self.above is not None and number <= self.above)
+            or (self.at_least is not None and number < self.at_least)
+            or (self.below is not None and number >= self.below)
+            or (self.at_most is not None and number > self.at_most)
+        )
+        if is_outside:
             raise ValueError(f"{shown(value)} is not allowed; give {self._wanted()}")
         # Of −0, tables would show the sign, and a run would not be the one of 0.
         return number + 0.0
 
-    def _magnitude(self, value: object) -> float:
+    def _in_si(self, value: object) -> float:
+        """Return a number, or a text with a unit, in SI; possibly not finite."""
         if isinstance(value, Real) and not isinstance(value, bool):
             try:
                 return float(value)
@@ -115,15 +118,10 @@ class Quantity:
             return float(number)
         if not unit:
             raise ValueError(f"{shown(value)} is text without a unit; give {self._with_unit()}")
-        return self._convert(number, unit, value)
-
-    def _convert(self, number: str, unit: str, value: str) -> float:
         try:
             factor = factor_to_si(" ".join(unit.split()), self.unit)
         except ValueError as problem:
-            noun = self.noun or NOUNS.get(self.unit, f"a value in {self.unit}")
-            contrast = f", not {noun}" if str(problem).startswith("is a") else ""
-            raise ValueError(f"{shown(value)} {problem}{contrast}; give {self._wanted()}") from None
+            raise ValueError(f"{shown(value)} {problem}; give {self._wanted()}") from None
         if not math.isfinite(float(number)) or float(number) == 0:
             # Its exponent may be beyond the range of a decimal.
             return float(number)
@@ -133,27 +131,18 @@ class Quantity:
     @property
     def has_known_unit(self) -> bool:
         """Whether values in other units can be converted to its unit."""
-        if self.unit == "1" or self.unit in _EXAMPLES:
-            return True
         try:
-            self._convert("1", self.unit, self.unit)
+            return (
+                self.unit == "1" or self.unit in _EXAMPLES or factor_to_si(self.unit, self.unit) > 0
+            )
         except ValueError:
             return False
-        return True
 
     def powers(self) -> tuple[int, int]:
         """Return the powers of Pa and of m in the unit; its power of seconds is ignored."""
         dimensions: Mapping[str, Any] = pint_registry().Unit(self.unit).dimensionality
         pressure = int(dimensions.get("[mass]", 0))
         return pressure, int(dimensions.get("[length]", 0)) + pressure
-
-    def _within(self, number: float) -> bool:
-        return not (
-            (self.above is not None and number <= self.above)
-            or (self.at_least is not None and number < self.at_least)
-            or (self.below is not None and number >= self.below)
-            or (self.at_most is not None and number > self.at_most)
-        )
 
     @property
     def bounds(self) -> list[str]:
@@ -227,12 +216,8 @@ def _annotations(annotation: Any) -> Iterator[Any]:
 
 Length = Annotated[float, Quantity("m", above=0)]
 """A length > 0 [m]."""
-Depth = Annotated[float, Quantity("m", at_least=0)]
-"""A depth ≥ 0 [m], positive into the solid."""
 Modulus = Annotated[float, Quantity("Pa", above=0)]
 """An elastic modulus > 0 [Pa]."""
-Pressure = Annotated[float, Quantity("Pa", at_least=0)]
-"""A pressure ≥ 0 [Pa]."""
 Tension = Annotated[float, Quantity("N/m", at_least=0)]
 """A surface tension ≥ 0 [N/m]."""
 BendingStiffness = Annotated[float, Quantity("N*m", at_least=0)]
@@ -243,8 +228,6 @@ Strength = Annotated[float, Quantity("Pa", above=0)]
 """A traction > 0 [Pa]."""
 FoundationStiffness = Annotated[float, Quantity("Pa/m", above=0)]
 """A stiffness per area > 0 [Pa/m]."""
-Force = Annotated[float, Quantity("N", at_least=0)]
-"""A force ≥ 0 [N]."""
 Time = Annotated[float, Quantity("s", above=0)]
 """A time > 0 [s]."""
 PoissonsRatio = Annotated[float, Quantity("1", above=-1, at_most=0.5)]
