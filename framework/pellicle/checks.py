@@ -40,18 +40,12 @@ def errors_attributed_to(component: object) -> Iterator[None]:
     Raises
     ------
     PluginError
-        The component tried to change one of its arguments, or to end the process.
+        The component tried to change one of its arguments.
     """
     try:
         yield
     except (PellicleError, MemoryError):
         raise
-    except SystemExit as error:
-        name, line = component_name(component), _line(component, error)
-        raise PluginError(
-            f"{name} calls sys.exit({error.code!r}){line}; it has to raise an error that says "
-            "what is wrong"
-        ) from None
     except Exception as error:
         if getattr(error, "__notes__", ()):
             raise
@@ -65,7 +59,7 @@ def errors_attributed_to(component: object) -> Iterator[None]:
         raise
 
 
-def _line(component: object, error: BaseException) -> str:
+def _line(component: object, error: Exception) -> str:
     """Return the file of a component's class and the line in it where an error occurred."""
     home = inspect.getsourcefile(type(component))
     inside = [frame for frame in extract_tb(error.__traceback__) if frame.filename == home]
@@ -146,13 +140,13 @@ def whole_number(value: object, unit: str) -> int:
     Raises
     ------
     ValueError
-        The value is not a whole number ≥ 1.
+        The value is not a whole number from 1 to 10⁹.
     """
     number = (
         value.item() if isinstance(value, np.generic | np.ndarray) and value.ndim == 0 else value
     )
-    if not isinstance(number, int) or isinstance(number, bool) or number < 1:
-        raise ValueError(f"{shown(value)} is not allowed; give a whole number of {unit} ≥ 1")
+    if not isinstance(number, int) or isinstance(number, bool) or not 1 <= number <= 10**9:
+        raise ValueError(f"{shown(value)} is not allowed; give a whole number of {unit}, 1 to 10⁹")
     return number
 
 

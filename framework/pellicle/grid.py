@@ -5,20 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import Annotated, Final, Literal, Self
+from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field
 
 from .arrays import Array
 from .checks import whole_number
-from .errors import ConfigError
 from .model.base import Model
 from .units import Length
 
 Boundary = Literal["free", "periodic"]
 
-LARGEST: Final = 1e100
-"""Bound of lengths [m], so that ratios of areas do not overflow."""
 _of_run: ContextVar[Grid | None] = ContextVar("grid of the run", default=None)
 
 
@@ -80,16 +77,6 @@ class Grid(Model):
             '"periodic": the domain repeats in both directions'
         ),
     ] = "free"
-
-    @model_validator(mode="after")
-    def _measurable(self) -> Self:
-        if not 1 / LARGEST < min(self.size) <= max(self.size) < LARGEST:
-            raise ConfigError(
-                f"{self.size[0]:g} × {self.size[1]:g} m has cells whose area is beyond the range "
-                "of floating-point numbers; check the unit",
-                "size",
-            )
-        return self
 
     @property
     def shape(self) -> tuple[int, int]:

@@ -85,6 +85,13 @@ def test_not_finite(given: object) -> None:
         TENSION(given)
 
 
+@pytest.mark.parametrize("given", [1e101, "1e200 mN/m", 1e-101, 5e-324])
+def test_numbers_without_squares(given: object) -> None:
+    """No area or energy is made of a number whose square over- or underflows."""
+    with pytest.raises(ValueError, match="is too large or too near 0 to compute with"):
+        TENSION(given)
+
+
 def test_exponent_beyond_decimals() -> None:
     """A power of ten beyond any number is not finite, or 0, and no fault of the unit."""
     with pytest.raises(ValueError, match="is not finite"):

@@ -18,13 +18,12 @@ from .base import Model
 from .ranges import ramp
 
 _MOST = 1_000_000
-_LONGEST = 1e100
 # Three samples are the fewest that show an amplitude and a phase; four meet both extremes.
 _FEWEST_OF_CYCLE = 4
 
 Number = Annotated[
     int,
-    Field(title="number of steps", ge=1, le=_MOST, description="number of load steps of the leg"),
+    Field(title="number of steps", ge=1, description="number of load steps of the leg"),
 ]
 
 
@@ -134,15 +133,12 @@ class Oscillation(Leg):
     frequency: Annotated[
         float, Quantity("Hz", above=0), Field(description="frequency of the oscillation [Hz]")
     ]
-    cycles: Annotated[
-        int, Field(title="number of cycles", ge=1, le=_MOST, description="number of cycles")
-    ]
+    cycles: Annotated[int, Field(title="number of cycles", ge=1, description="number of cycles")]
     num: Annotated[
         int,
         Field(
             title="steps of a cycle",
             ge=_FEWEST_OF_CYCLE,
-            le=_MOST,
             description="number of load steps of each cycle",
         ),
     ]
@@ -209,9 +205,7 @@ def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
             "0",
         )
     if (steps := sum(leg.steps for leg in legs)) > _MOST:
-        raise ConfigError(f"has {steps} load steps; give legs of {_MOST} at most")
-    if not sum(leg.duration for leg in legs) < _LONGEST:
-        raise ConfigError(f"lasts longer than {_LONGEST:g} s; check the units of its times")
+        raise ConfigError(f"has {shown(steps)} load steps; give legs of {_MOST} at most")
     for index, values in enumerate(_values_of_legs(legs)):
         try:
             quantity(min(values))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from numbers import Integral
 from typing import Any
@@ -116,14 +115,13 @@ def _end(table: Mapping[str, Any], end: str) -> tuple[float, str]:
     value = table[end]
     if hasattr(value, "magnitude") and hasattr(value, "units"):
         value = f"{float(value.magnitude)!r} {value.units}"
-    parts = split(value) if isinstance(value, str) else None
-    if isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < 1e300:
-        parts = float(value), ""
-    if parts is None or not math.isfinite(parts[0]):
+    try:
+        number, unit = (split(value) or ("", "")) if isinstance(value, str) else (value, "")
+        return Quantity("1")(number), unit
+    except ValueError:
         raise ConfigError(
             f"{shown(table[end])} is not allowed; give a finite number, with a unit or without", end
-        )
-    return parts
+        ) from None
 
 
 def ramp(start: float, stop: float, num: int, *, log: bool = False) -> list[float]:

@@ -39,7 +39,7 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise ConfigError(
             f"{path}: not a text file in UTF-8 (see line {line}); give a TOML file in UTF-8"
         ) from None
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise ConfigError(f"{path}: not valid TOML: {_reason(str(error), text)}") from None
 
 
@@ -87,5 +87,5 @@ def parse_override(text: str) -> tuple[str, Any]:
 def _value(text: str) -> Any:
     try:
         return tomllib.loads(f"value = {text}")["value"]
-    except (ValueError, RecursionError):
+    except ValueError:
         return text.strip()

@@ -64,7 +64,7 @@ def verify(path: Path) -> bool:
             intact = record["end"] == end and record["sha256"] == _digest(
                 file, end, record["skipped"]
             )
-        except (ValueError, LookupError, TypeError, OverflowError, RecursionError):
+        except (ValueError, LookupError, TypeError, OverflowError):
             intact = False
     if not intact:
         raise StorageError(

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from numbers import Real
-from typing import TYPE_CHECKING, Annotated, Any, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Final, get_args
 
 from pydantic_core import core_schema
 
@@ -54,6 +54,10 @@ def example(unit: str) -> str:
     return _EXAMPLES.get(unit, f"1 {unit}")
 
 
+LARGEST: Final = 1e100
+"""Bound of numbers in SI; its inverse bounds those near 0. Their squares can be represented."""
+
+
 @dataclass(frozen=True)
 class Quantity:
     """Annotation of a float field: its SI unit and its bounds.
@@ -78,12 +82,16 @@ class Quantity:
         Raises
         ------
         ValueError
-            The value is not a number, lacks a unit, has another dimension, is not finite or is out
-            of bounds.
+            The value is not a number, lacks a unit, has another dimension, is not finite, is beyond
+            `LARGEST` or out of bounds.
         """
         number = self._in_si(value)
         if not math.isfinite(number):
             raise ValueError(f"{shown(value)} is not finite; give {self._wanted()}")
+        if number and not 1 / LARGEST < abs(number) < LARGEST:
+            raise ValueError(
+                f"{shown(value)} is too large or too near 0 to compute with; check the unit"
+            )
         is_outside = (
             (self.above is not None and number <= self.above)
             or (self.at_least is not None and number < self.at_least)

@@ -17,8 +17,8 @@ from pellicle.components.indenter import (
     LayerForceCurve,
 )
 from pellicle.errors import ConfigError, PluginError, shown
-from pellicle.grid import LARGEST, Grid
-from pellicle.units import DIGITS, readable
+from pellicle.grid import Grid
+from pellicle.units import DIGITS, LARGEST, readable
 
 # Rounding error of heights over the size of the domain.
 _ROUNDING = 1e-12
