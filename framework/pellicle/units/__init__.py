@@ -49,11 +49,6 @@ _EXAMPLES = {
 }
 
 
-def example(unit: str) -> str:
-    """Return a value in a unit as text, such as ``"10 kPa"``."""
-    return _EXAMPLES.get(unit, f"1 {unit}")
-
-
 LARGEST: Final = 1e100
 """Bound of numbers in SI; its inverse bounds those near 0. Their squares can be represented."""
 
@@ -162,7 +157,7 @@ class Quantity:
     def example(self) -> str | float:
         """A value within the bounds, as text with its unit or as a number."""
         if self.unit != "1":
-            return example(self.unit)
+            return _EXAMPLES.get(self.unit, f"1 {self.unit}")
         low = self.above if self.above is not None else self.at_least
         high = self.below if self.below is not None else self.at_most
         if low is None or high is None:
