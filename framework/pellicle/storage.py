@@ -4,7 +4,6 @@ from pellicle.files import atomic_write, storage_errors
 from pellicle.files import check_writable as check_writable
 from pellicle.results.storage import REPLACING as REPLACING
 from pellicle.results.storage import SCHEMA_VERSION as SCHEMA_VERSION
-from pellicle.results.storage import Read as Read
 from pellicle.results.storage import append as append
 from pellicle.results.storage import attributes as attributes
 from pellicle.results.storage import close as close

@@ -182,13 +182,7 @@ def fields_of(kind: type[Leg], unit: str) -> dict[str, FieldInfo]:
 
 
 def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
-    """Return the legs of a path whose values have the unit and range of ``quantity``.
-
-    Raises
-    ------
-    ConfigError
-        Legs are not allowed; the message names all such legs.
-    """
+    """Return the legs of a path whose values have the unit and range of ``quantity``."""
     legs: list[Leg] = []
     problems: list[Problem] = []
     for index, entry in enumerate(entries):

@@ -18,13 +18,7 @@ _MOST = 1_000_000
 
 
 def expand(table: object) -> dict[str, Values]:
-    """Return the values of each axis of a study's table, ranges written out.
-
-    Raises
-    ------
-    ConfigError
-        Values are missing or not allowed; the message names all such axes.
-    """
+    """Return the values of each axis of a study's table, ranges written out."""
     if not isinstance(table, Mapping):
         raise ConfigError(f'{shown(table)} is not a table; give one: "kernel.tension" = […]')
     axes: dict[str, Values] = {}
@@ -71,11 +65,6 @@ def ranged(
 
     If the ends have a unit, the values are texts with that unit. ``what`` and ``options`` are the
     name of the range and its optional keys in messages.
-
-    Raises
-    ------
-    ConfigError
-        The mapping is not a range.
     """
     if not table.keys() >= RANGE or not table.keys() <= RANGE | {"spacing"}:
         has = ", ".join(map(str, table)) or "nothing"

@@ -23,13 +23,7 @@ SCHEMA_VERSION = 2
 
 @contextmanager
 def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[h5py.File]:
-    """Yield the HDF5 file of a result or of the table of a study, for reading.
-
-    Raises
-    ------
-    StorageError
-        The file does not exist, is damaged, has another schema version, or is of another kind.
-    """
+    """Yield the HDF5 file of a result or of the table of a study, for reading."""
     if not is_file(path):
         reason = "no such file; give a result file (.h5) that pellicle wrote"
         if is_folder(path):
