@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from functools import partial
 from typing import Annotated, Literal
 
+import numpy as np
+from numpy.fft import fftfreq, rfftfreq
 from pydantic import BeforeValidator, Field
 
 from .arrays import Array
@@ -43,12 +46,10 @@ def pair(value: object) -> object:
     return value if value is None or isinstance(value, (list, tuple)) else (value, value)
 
 
-def _whole(value: object) -> int:
-    return whole_number(value, "cells")
-
-
 _Whole = Annotated[int, Field(ge=1)]
-_Points = Annotated[int, BeforeValidator(_whole, json_schema_input_type=_Whole)]
+_Points = Annotated[
+    int, BeforeValidator(partial(whole_number, unit="cells"), json_schema_input_type=_Whole)
+]
 
 
 class Grid(Model):
@@ -114,8 +115,6 @@ class Grid(Model):
 
     def coordinates(self) -> tuple[Array, Array]:
         """Return x of shape (nx, 1) and y of shape (1, ny) of the cell centres [m]."""
-        import numpy as np
-
         x, y = (
             (np.arange(n, dtype=np.float64) - (n - 1) / 2) * spacing
             for n, spacing in zip(self.points, self.spacing, strict=True)
@@ -127,10 +126,6 @@ class Grid(Model):
 
         Their order is that of ``scipy.fft.rfft2`` of a field.
         """
-        import numpy as np
-        import scipy.fft
-
         (nx, ny), (dx, dy) = self.points, self.spacing
-        qx = 2 * np.pi * scipy.fft.fftfreq(nx, dx)
-        qy = 2 * np.pi * scipy.fft.rfftfreq(ny, dy)
+        qx, qy = 2 * np.pi * fftfreq(nx, dx), 2 * np.pi * rfftfreq(ny, dy)
         return qx[:, None], qy[None, :]

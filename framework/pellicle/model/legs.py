@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import chain
 from typing import Annotated, Any, ClassVar, NamedTuple
 
 from pydantic import Field, PrivateAttr
@@ -200,12 +199,15 @@ def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
         )
     if (steps := sum(leg.steps for leg in legs)) > _MOST:
         raise ConfigError(f"has {shown(steps)} load steps; give legs of {_MOST} at most")
-    for index, values in enumerate(_values_of_legs(legs)):
+    lowest = [math.inf] * len(legs)
+    for sample in sampled(legs):
+        lowest[sample.leg] = min(lowest[sample.leg], sample.value)
+    for index, value in enumerate(lowest):
         try:
-            quantity(min(values))
+            quantity(value)
         except ValueError:
             raise ConfigError(
-                f"goes down to {min(values):g} {quantity.unit}; it has to stay "
+                f"goes down to {value:g} {quantity.unit}; it has to stay "
                 f"{' and '.join(quantity.bounds)} {quantity.unit}",
                 str(index),
             ) from None
@@ -243,14 +245,6 @@ def _leg(entry: object, quantity: Quantity) -> Leg:
     return leg
 
 
-def _values_of_legs(legs: Sequence[Leg]) -> list[list[float]]:
-    """Return the values of the steps of each leg."""
-    values: list[list[float]] = [[] for _ in legs]
-    for sample in sampled(legs):
-        values[sample.leg].append(sample.value)
-    return values
-
-
 def sampled(legs: Sequence[Leg]) -> tuple[Sample, ...]:
     """Return the load steps of a path in legs, which begins at the value 0 at time 0."""
     samples = [Sample(0.0, 0.0, 0)]
@@ -270,9 +264,7 @@ def number_of_steps(values: Sequence[object]) -> int:
 def json_schema(value_schema: Mapping[str, Any]) -> dict[str, Any]:
     """Return the JSON schema of a list of legs, from that of a prescribed value."""
     schemas = [kind.model_json_schema() for kind in KINDS]
-    for name, properties in chain.from_iterable(
-        ((name, schema["properties"]) for name in ("to", "amplitude")) for schema in schemas
-    ):
-        if name in properties:
+    for properties in (schema["properties"] for schema in schemas):
+        for name in properties.keys() & {"to", "amplitude"}:
             properties[name] = {**value_schema, "description": properties[name]["description"]}
     return {"type": "array", "items": {"anyOf": schemas}, "minItems": 1}
