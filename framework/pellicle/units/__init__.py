@@ -120,7 +120,7 @@ class Quantity:
                 raise ValueError(f"{shown(value)} has a unit; give {self._wanted()}")
             return float(number)
         if not unit:
-            raise ValueError(f"{shown(value)} is text without a unit; give {self._with_unit()}")
+            raise ValueError(f"{shown(value)} is text without a unit; give {self._wanted()}")
         try:
             factor = factor_to_si(" ".join(unit.split()), self.unit)
         except ValueError as problem:
@@ -165,18 +165,13 @@ class Quantity:
         return float(f"{low + 0.8 * (high - low):.3g}")
 
     def _wanted(self) -> str:
-        if self.unit == "1":
-            return f"a plain number{self._range()}"
-        return f"{self._with_unit()}, or a bare number in {self.unit}"
-
-    def _with_unit(self) -> str:
-        example = f", such as {_EXAMPLES[self.unit]!r}" if self.unit in _EXAMPLES else ""
-        return f"a value{self._range()} with its unit{example}"
-
-    def _range(self) -> str:
+        """Return what is allowed, for messages: "a value > 0 m with its unit, such as '10 um'"."""
         unit = "" if self.unit == "1" else f" {self.unit}"
-        bounds = [f"{bound}{unit}" for bound in self.bounds]
-        return f" {' and '.join(bounds)}" if bounds else ""
+        allowed = " and".join(f" {bound}{unit}" for bound in self.bounds)
+        if self.unit == "1":
+            return f"a plain number{allowed}"
+        example = f", such as {_EXAMPLES[self.unit]!r}" if self.unit in _EXAMPLES else ""
+        return f"a value{allowed} with its unit{example}, or a bare number in {self.unit}"
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
