@@ -9,8 +9,8 @@ from functools import partial
 from typing import Annotated, Literal
 
 import numpy as np
-from numpy.fft import fftfreq, rfftfreq
 from pydantic import BeforeValidator, Field
+from scipy.fft import fftfreq, rfftfreq
 
 from .arrays import Array
 from .checks import whole_number

@@ -21,7 +21,7 @@ NUMBER_AND_UNIT = re.compile(
 _LETTER = r"[^\W\d⁰¹²³⁴-⁹]|[°%‰]"
 _POWER = r" ?(?:\*\*|\^) ?(?:[-+]?\d\d?(?:\.\d+)?|\([-+]?\d\d?(?:[./]\d+)?\))|⁻?[⁰¹²³⁴-⁹]{1,2}"
 _NAME = rf"(?:{_LETTER})(?:{_LETTER}|\d)*(?:{_POWER})?"
-_UNIT = re.compile(rf"(?:1 ?(?=/))?[( /]*{_NAME}(?:[) */·⋅×.(]+{_NAME})*[) ]*")
+_UNIT = re.compile(rf"(?:1 ?/)?[( ]*{_NAME}(?:[) ]*[ */·⋅×.][( ]*{_NAME})*[) ]*")
 _LONGEST_UNIT = 100
 _NOUNS = {
     "rad": "an angle",
