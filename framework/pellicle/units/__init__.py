@@ -83,10 +83,6 @@ class Quantity:
         number = self._in_si(value)
         if not math.isfinite(number):
             raise ValueError(f"{shown(value)} is not finite; give {self._wanted()}")
-        if number and not 1 / LARGEST < abs(number) < LARGEST:
-            raise ValueError(
-                f"{shown(value)} is too large or too near 0 to compute with; check the unit"
-            )
         is_outside = (
             (self.above is not None and number <= self.above)
             or (self.at_least is not None and number < self.at_least)
@@ -95,6 +91,10 @@ class Quantity:
         )
         if is_outside:
             raise ValueError(f"{shown(value)} is not allowed; give {self._wanted()}")
+        if number and not 1 / LARGEST < abs(number) < LARGEST:
+            raise ValueError(
+                f"{shown(value)} is too large or too near 0 to compute with; check the unit"
+            )
         # Of −0, tables would show the sign, and a run would not be the one of 0.
         return number + 0.0
 
