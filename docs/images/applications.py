@@ -30,7 +30,7 @@ def applications(solver: str, points: int, s: float) -> int:
     profile = surface.profile(*grid.coordinates())
     slope = np.hypot(*np.gradient(profile, 1 / points))
     force = 0.1 * float(np.sqrt(np.mean(slope**2)))
-    problem = Problem(grid, make_operator(kernel, grid), profile, "force", force)
+    problem = Problem(grid, make_operator(kernel, grid), profile, pl.Force(force))
     pl.solver(solver, tolerance=1e-6).solve(problem, None, lambda iteration, excess: None)
     return problem.operator.applications
 

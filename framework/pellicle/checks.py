@@ -35,27 +35,17 @@ def component_name(component: object) -> str:
 
 @contextmanager
 def errors_attributed_to(component: object) -> Iterator[None]:
-    """Add to exceptions a note with the component and the line of its code that raised them.
-
-    Raises
-    ------
-    PluginError
-        The component tried to change one of its arguments, or to end the process.
-    """
+    """Name the component and the line of its code in exceptions; refuse writes to arguments."""
     try:
         yield
     except (PellicleError, MemoryError):
         raise
-    except SystemExit as error:
-        name, line = component_name(component), _line(component, error)
-        raise PluginError(
-            f"{name} calls sys.exit({error.code!r}){line}; it has to raise an error that says "
-            "what is wrong"
-        ) from None
     except Exception as error:
         if getattr(error, "__notes__", ()):
             raise
-        name, line = component_name(component), _line(component, error)
+        name, home = component_name(component), inspect.getsourcefile(type(component))
+        inside = [frame for frame in extract_tb(error.__traceback__) if frame.filename == home]
+        line = f" ({home}, line {inside[-1].lineno})" if inside else ""
         is_write = isinstance(error, (ValueError, AttributeError))
         if is_write and any(refusal in str(error) for refusal in _REFUSALS):
             raise PluginError(
@@ -63,13 +53,6 @@ def errors_attributed_to(component: object) -> Iterator[None]:
             ) from error
         error.add_note(f"{name} failed{line}")
         raise
-
-
-def _line(component: object, error: BaseException) -> str:
-    """Return the file of a component's class and the line in it where an error occurred."""
-    home = inspect.getsourcefile(type(component))
-    inside = [frame for frame in extract_tb(error.__traceback__) if frame.filename == home]
-    return f" ({home}, line {inside[-1].lineno})" if inside else ""
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:
@@ -97,11 +80,6 @@ def real_array(component: object, call: str, value: object, shape: tuple[int, ..
     """Return the ``value`` that ``call`` of a component returned, as an array of float64.
 
     Integers are refused: in SI units they are values whose digits were cut off.
-
-    Raises
-    ------
-    PluginError
-        The value is not an array of real floating-point numbers of this shape.
     """
     try:
         array = np.asarray(value)
@@ -117,13 +95,7 @@ def real_array(component: object, call: str, value: object, shape: tuple[int, ..
 
 
 def real_number(component: object, call: str, value: object) -> float:
-    """Return the number that ``call`` of a component returned, possibly infinite.
-
-    Raises
-    ------
-    PluginError
-        The value is not a real number, or it is NaN.
-    """
+    """Return the number that ``call`` of a component returned, possibly infinite."""
     number = value.item() if isinstance(value, np.ndarray) and value.ndim == 0 else value
     if not isinstance(number, Real) or isinstance(number, bool) or number != number:
         raise PluginError(
@@ -141,29 +113,17 @@ def _description(value: object) -> str:
 
 
 def whole_number(value: object, unit: str) -> int:
-    """Return a positive whole number, such as of cells; messages call its unit ``unit``.
-
-    Raises
-    ------
-    ValueError
-        The value is not a whole number ≥ 1.
-    """
+    """Return a positive whole number, such as of cells; messages call its unit ``unit``."""
     number = (
         value.item() if isinstance(value, np.generic | np.ndarray) and value.ndim == 0 else value
     )
-    if not isinstance(number, int) or isinstance(number, bool) or number < 1:
-        raise ValueError(f"{shown(value)} is not allowed; give a whole number of {unit} ≥ 1")
+    if not isinstance(number, int) or isinstance(number, bool) or not 1 <= number <= 10**9:
+        raise ValueError(f"{shown(value)} is not allowed; give a whole number of {unit}, 1 to 10⁹")
     return number
 
 
 def checked_threads(threads: object) -> int | None:
-    """Return a number of threads, or None for the default.
-
-    Raises
-    ------
-    ConfigError
-        The value is neither None nor a whole number ≥ 1.
-    """
+    """Return a number of threads, or None for the default."""
     try:
         return None if threads is None else whole_number(threads, "threads")
     except ValueError as error:

@@ -30,13 +30,7 @@ class LoadSteps:
     """Whether a list of legs is allowed too."""
 
     def __call__(self, spec: object) -> tuple[float, ...] | tuple[Leg, ...]:
-        """Return the load steps in order, SI, or their legs.
-
-        Raises
-        ------
-        ConfigError
-            Values are not allowed; the message names all of them.
-        """
+        """Return the load steps in order, SI, or their legs."""
         if isinstance(spec, Mapping):
             return self._ramp(spec)
         # Lists, tuples and arrays have a length; text, and arrays of one number, have one too.

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
 from .components.solver import HasMemory
-from .errors import ConfigError, shown
+from .errors import ConfigError
 from .grid import Grid
 
 # Peak memory in arrays of the grid's shape, eight bytes per cell, measured on Linux with glibc.
@@ -50,10 +49,7 @@ def estimate(
     ``history`` is what a solid that relaxes needs for its memory, in arrays of the grid's shape;
     ``sticks`` says whether an interaction acts.
     """
-    try:
-        cells = float(grid.points[0] * grid.points[1])
-    except OverflowError:
-        return math.inf
+    cells = grid.points[0] * grid.points[1]
     operator = _LINE if grid.points[1] == 1 else _OPERATOR[grid.boundary]
     iterating = solver.arrays(grid) if isinstance(solver, HasMemory) else _SOLVER[grid.boundary]
     if sticks:
@@ -129,7 +125,7 @@ def require(
     if limit is not None and needed > limit:
         nx, ny = grid.points
         raise ConfigError(
-            f"{shown(nx)} × {shown(ny)} with {steps} step{'s' * (steps > 1)} needs about "
+            f"{nx} × {ny} with {steps} step{'s' * (steps > 1)} needs about "
             f"{shortage(needed, limit)}; use fewer points or fewer steps",
             "grid.points",
         )

@@ -59,9 +59,9 @@ def problem(case: str, points: int, tension: float, cutoff: float | None = None)
     if case == "rough":
         slope = np.hypot(*np.gradient(profile, 1 / points))
         force = 0.1 * float(np.sqrt(np.mean(slope**2)))
-        return Problem(grid, operator, profile, "force", force), 1e-6, setup
+        return Problem(grid, operator, profile, pl.Force(force)), 1e-6, setup
     depth, tolerance = (0.1, 1e-6) if case == "punch" else (0.1118, 1e-8)
-    return Problem(grid, operator, profile, "depth", depth), tolerance, setup
+    return Problem(grid, operator, profile, pl.Depth(depth)), tolerance, setup
 
 
 def measure(

@@ -78,7 +78,8 @@ def main() -> None:
         path: list[PathPoint] = []
         with scipy.fft.set_workers(1):
             for index in range(options.number):
-                problem = replace(given, value=given.value * (1 + step) ** index)
+                value = given.value * (1 + step) ** index
+                problem = replace(given, control=replace(given.control, value=value))
                 last = path[-1].state if path else None
                 for column, start in enumerate((None, last, start_of(problem, last, path))):
                     pressure, used, seconds = solved(problem, tolerance, start)

@@ -83,7 +83,7 @@ class Case:
         kernel = pl.kernel("half_space", reduced_modulus=1.0)
         if self.skin_length:
             kernel = pl.kernel("tensed_membrane", reduced_modulus=1.0, tension=self.skin_length / 2)
-        return Problem(grid, make_operator(kernel, grid), heights, "force", LOAD * slope)
+        return Problem(grid, make_operator(kernel, grid), heights, pl.Force(LOAD * slope))
 
 
 Answer = tuple[Any, int, int]

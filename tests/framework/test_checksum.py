@@ -1,8 +1,7 @@
-"""A result file that was changed is refused before HDF5 parses it; files of version 1 are read."""
+"""A result file that was changed is refused before HDF5 parses it."""
 
 from __future__ import annotations
 
-import gzip
 import json
 from pathlib import Path
 
@@ -14,9 +13,8 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli.app import app
-from pellicle.results import checksum, storage, version_1
+from pellicle.results import checksum, storage
 
-DATA = Path(__file__).parents[1] / "data"
 RUN = {
     "grid": {"points": 16, "size": "0.4 mm", "boundary": "periodic"},
     "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "50 mN/m"},
@@ -109,7 +107,6 @@ def test_fields_are_verified_as_they_are_read(content: bytes, tmp_path: Path) ->
         b'{"sha256": "", "end": -1, "skipped": []}',
         b'{"sha256": "", "end": 1e9, "skipped": [[0, -5]]}',
         b'{"sha256": "", "end": 0, "skipped": [["a", 3]]}',
-        b"[" * 100_000,
         b"\xff\xfe",
     ],
 )
@@ -130,80 +127,6 @@ def test_other_readers_are_not_disturbed(content: bytes, tmp_path: Path) -> None
         np.testing.assert_array_equal(file["force"][:], force)
     with xr.open_dataset(path, engine="h5netcdf") as opened:
         np.testing.assert_array_equal(opened["force"].values, force)
-
-
-@pytest.fixture
-def old_file(tmp_path: Path) -> Path:
-    """Return a result of two steps of three, as the version before the checksum wrote it.
-
-    By commit 0ead6f1 of this repository; the run is the one in its attributes, interrupted.
-    """
-    path = tmp_path / "old.h5"
-    path.write_bytes(gzip.decompress((DATA / "result_v1.h5.gz").read_bytes()))
-    return path
-
-
-def test_version_1_is_read(old_file: Path) -> None:
-    """A file without a checksum is read as it is; its steps, which counted from 0, from 1."""
-    data = pl.load(old_file).dataset
-    assert data["step"].values.tolist() == [1, 2]
-    assert data["force"].values.tolist() == [1e-6, 2e-6]
-    assert storage.scalars(old_file)["step"].values.tolist() == [1, 2]
-
-
-MESSAGES_OF_VERSION_1 = {
-    "converged": "CONVERGED",
-    "converged; the contact area misses the prescribed one by 1.0e-03, and no load brings a "
-    "nearer number of whole cells: more points do": "NEAREST_AREA",
-    "converged, but the cells are too coarse for this contact, which covers 4 of them: force, "
-    "depth and area may be far off; use more points, or a smaller grid.size": "COARSE",
-    "the contact area misses the prescribed one by 1.0e-01, over 0.05; use more points": "AREA",
-    "pressure acts across a gap: complementarity 1.0e-06 is over the tolerance 1.0e-08; no "
-    "progress any more: the tolerance is below round-off here, loosen "
-    "solver.tolerance": "COMPLEMENTARITY",
-    "not run": "NOT_RUN",
-    "failed: no space left on device": "FAILED",
-    "": "",
-}
-
-
-def test_statuses_of_version_1_get_codes() -> None:
-    """Of the sentences that version 1 wrote, runs that failed or were not done among them."""
-    table = xr.Dataset(
-        {"status": (("axis", "step"), np.array([[*MESSAGES_OF_VERSION_1]], dtype=object))},
-        {"step": np.arange(len(MESSAGES_OF_VERSION_1))},
-    )
-    completed = version_1.completed(table)
-    assert completed["status_code"].values.tolist() == [[*MESSAGES_OF_VERSION_1.values()]]
-    assert completed["step"].values.tolist() == [*range(1, len(MESSAGES_OF_VERSION_1) + 1)]
-
-
-def test_version_1_is_resumed(old_file: Path) -> None:
-    """The same run goes on in it: the identity of a run is not that of its file's layout."""
-    before = pl.load(old_file)
-    run = before.configuration | {"title": "old"}
-    with pytest.warns(pl.ConvergenceWarning, match="too coarse"):
-        result = pl.run(run, directory=old_file.parent, progress=False, threads=1)
-    assert result.dataset["step"].values.tolist() == [1, 2, 3]
-    again = pl.load(old_file).dataset
-    xr.testing.assert_equal(again, result.dataset)
-    xr.testing.assert_equal(again.isel(step=[0, 1]), before.dataset)
-    assert storage.attributes(old_file)["identity"] == before.dataset.attrs["identity"]
-    assert checksum.verify(old_file)
-
-
-def test_only_the_next_step_is_appended_to_version_1(old_file: Path) -> None:
-    """A step that does not continue a file of version 1 is refused as in any other."""
-    steps = pl.load(old_file).dataset
-    before = old_file.read_bytes()
-    for number in (1, 2, 4):
-        step = steps.isel(step=[0]).assign_coords(step=[number])
-        with pytest.raises(pl.StorageError, match="it ends at step 2"):
-            storage.append(step, old_file)
-    another = steps.isel(step=[0]).assign_coords(step=[3]).assign_attrs(identity="another")
-    with pytest.raises(pl.StorageError, match="step 3 does not continue it"):
-        storage.append(another, old_file)
-    assert old_file.read_bytes() == before
 
 
 def test_steps_count_from_1_everywhere(tmp_path: Path) -> None:

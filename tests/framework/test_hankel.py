@@ -13,7 +13,7 @@ from pellicle import ConfigError, Grid, displacement
 from pellicle.numerics.hankel import ACCURACY, Tabulated
 from pellicle.numerics.influence import cell_coefficients
 from pellicle.operators import make_operator
-from pellicle.problem import Problem
+from pellicle.problem import Depth, Problem
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
 
 Array = NDArray[np.float64]
@@ -315,7 +315,7 @@ def test_one_table_serves_all_grids_of_a_solve() -> None:
 
     grid = Grid(points=[37, 64], size=[37.0, 70.0])
     kernel = SymbolOnly(symbol)
-    problem = Problem(grid, make_operator(kernel, grid), np.zeros(grid.shape), "depth", 1.0)
+    problem = Problem(grid, make_operator(kernel, grid), np.zeros(grid.shape), Depth(1.0))
     after_set_up = len(calls)
     while problem.grid.shape != (1, 1):
         problem = problem.coarsened()

@@ -99,7 +99,7 @@ def test_work_of_adhesion_on_the_command_line(file: Path) -> None:
     assert pl.load(result).configuration["interaction"]["work_of_adhesion"] == pytest.approx(0.04)
     done = CliRunner().invoke(app, [*command, f'{WORK}="5 mJ"'])
     assert done.exit_code == 2
-    assert f"{WORK}: '5 mJ' is an energy, not an energy per area" in done.output
+    assert f"{WORK}: '5 mJ' is an energy; give" in done.output
 
 
 def test_study_varies_the_work_of_adhesion() -> None:

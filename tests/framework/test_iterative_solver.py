@@ -69,7 +69,7 @@ def solve(solver: Solver) -> tuple[Solution, list[int]]:
     """Return the solution of a problem, and the iterations that the monitor was called with."""
     grid = Grid(points=4, size=1.0, boundary="periodic")
     operator = make_operator(HalfSpace(reduced_modulus=1.0), grid)
-    problem = Problem(grid, operator, np.zeros(grid.shape), "force", 1.0)
+    problem = Problem(grid, operator, np.zeros(grid.shape), pl.Force(1.0))
     iterations: list[int] = []
     solution = solver.solve(problem, None, lambda iteration, ratio: iterations.append(iteration))
     return solution, iterations

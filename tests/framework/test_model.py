@@ -42,7 +42,7 @@ def _problems(model: type[Model], **data: object) -> dict[str, str]:
 @pytest.mark.parametrize(
     ("field", "value", "message"),
     [
-        ("length", "1 N", "'1 N' is a force, not a length"),
+        ("length", "1 N", "'1 N' is a force; give"),
         ("count", "x", "'x' is not allowed; give a whole number (how many)"),
         ("count", 1.5, "1.5 is not allowed; give a whole number (how many)"),
         ("count", 0, "0 is not allowed; give a value > 0 (how many)"),

@@ -24,8 +24,7 @@ def test_each_caveat_of_a_step_is_told_apart(one: Status, other: Status) -> None
     assert statuses_of(one.name, message) == [(one, messages[0]), (other, messages[1])]
 
 
-def test_texts_of_others_stay_in_the_message() -> None:
-    """What is not the message of a caveat, or a reason for a failure, is not split off."""
-    text = "converged, but odd; moreover, something else"
-    assert statuses_of("COARSE", text) == [(Status.COARSE, text)]
-    assert statuses_of("FAILED", f"failed: {text}") == [(Status.FAILED, f"failed: {text}")]
+def test_the_reason_of_a_failure_is_not_split() -> None:
+    """A failure has one status, whatever its reason says."""
+    text = "failed: converged, but odd; moreover, something else"
+    assert statuses_of("FAILED", text) == [(Status.FAILED, text)]

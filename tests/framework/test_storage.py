@@ -145,7 +145,8 @@ def test_other_schema_version(path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     storage.write(steps(0), path)
     monkeypatch.undo()
     with pytest.raises(
-        StorageError, match=r"version 99, and this pellicle reads 1 to 2.*pellicle 0"
+        StorageError,
+        match=r"version 99, and this pellicle reads 2; read it with what wrote it .pellicle 0",
     ):
         storage.read(path)
 

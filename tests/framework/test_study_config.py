@@ -265,7 +265,7 @@ def test_relative_paths(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
         ({TENSION: []}, f"vary.{TENSION}: is empty; give at least one value"),
         ({TENSION: 3}, f"vary.{TENSION}: 3 is not allowed; give a list of values"),
         ({TENSION: [-1, 1]}, f"vary.{TENSION}: -1 is not allowed; give a value ≥ 0 N/m"),
-        ({TENSION: ["1 m"]}, f"vary.{TENSION}: '1 m' is a length, not a tension"),
+        ({TENSION: ["1 m"]}, f"vary.{TENSION}: '1 m' is a length; give"),
         (
             {"kernel.tensoin": [7]},
             "vary.kernel.tensoin: 7: is not a field here; did you mean 'tension'?",
@@ -293,7 +293,7 @@ def test_relative_paths(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
         ),
         ({TENSION: {"start": 1, "stop": 2, "num": 2, "spacing": "cubic"}}, '"linear" or "log"'),
         ({TENSION: {"start": "1 N/m", "stop": 2, "num": 2}}, "both with a unit, or both without"),
-        ({TENSION: {"start": "1 N/m", "stop": "1 m", "num": 2}}, "is a length, not a tension"),
+        ({TENSION: {"start": "1 N/m", "stop": "1 m", "num": 2}}, "is a length; give"),
         (
             {TENSION: {"start": "x", "stop": 2, "num": 2}},
             "'x' is not allowed; give a finite number",

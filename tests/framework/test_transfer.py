@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 import pytest
 
-from pellicle import Grid, Problem
+from pellicle import Depth, Force, Grid, Problem
 from pellicle.numerics.grid_transfer import highest, prolong, restrict
 from pellicle.operators import make_operator
 from pellicle_plugins.kernels.half_space import HalfSpace
@@ -117,15 +115,15 @@ def test_coarsened_grid(points: tuple[int, int], expected: tuple[int, int]) -> N
     assert Grid(**coarse.model_dump()) == coarse
 
 
-@pytest.mark.parametrize("prescribed", ["depth", "force"])
-def test_coarsened_problem(prescribed: Literal["depth", "force"]) -> None:
+@pytest.mark.parametrize("control", [Depth(3.0), Force(3.0)])
+def test_coarsened_problem(control: Depth | Force) -> None:
     """The same load on the coarse grid; an operator of its own leaves the fine one's count."""
     grid = Grid(points=(9, 6), size=(2.0, 3.0))
     kernel = HalfSpace(reduced_modulus=2.0)
-    fine = Problem(grid, make_operator(kernel, grid), field(grid.shape), prescribed, 3.0)
+    fine = Problem(grid, make_operator(kernel, grid), field(grid.shape), control)
     coarse = fine.coarsened()
     assert coarse.grid == grid.coarsened() == coarse.operator.grid
-    assert (coarse.prescribed, coarse.value) == (prescribed, 3.0)
+    assert coarse.control == control
     np.testing.assert_array_equal(coarse.profile, restrict(fine.profile, (5, 3)))
     pressure = np.ones(coarse.grid.shape)
     np.testing.assert_array_equal(
@@ -138,7 +136,7 @@ def test_coarsened_uniform_pressure_makes_the_same_displacement() -> None:
     """Where both grids have a cell centre, a uniform pressure displaces it alike."""
     grid = Grid(points=27, size=1.0)
     problem = Problem(
-        grid, make_operator(HalfSpace(reduced_modulus=1.0), grid), field(grid.shape), "depth", 1.0
+        grid, make_operator(HalfSpace(reduced_modulus=1.0), grid), field(grid.shape), Depth(1.0)
     )
     coarse = problem.coarsened().coarsened()
     assert coarse.grid.shape == (7, 7)

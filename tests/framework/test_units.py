@@ -85,6 +85,13 @@ def test_not_finite(given: object) -> None:
         TENSION(given)
 
 
+@pytest.mark.parametrize("given", [1e101, "1e200 mN/m", 1e-101, 5e-324])
+def test_numbers_without_squares(given: object) -> None:
+    """No area or energy is made of a number whose square over- or underflows."""
+    with pytest.raises(ValueError, match="is too large or too near 0 to compute with"):
+        TENSION(given)
+
+
 def test_exponent_beyond_decimals() -> None:
     """A power of ten beyond any number is not finite, or 0, and no fault of the unit."""
     with pytest.raises(ValueError, match="is not finite"):
@@ -118,28 +125,20 @@ def test_not_a_number(given: object) -> None:
         ("m/s", "a speed"),
         ("%", "a pure number"),
         ("degree", "an angle"),
-        ("count", "a number of count"),
+        ("count", "a value in count"),
         ("m**7", r"a value in m\*\*7"),
     ],
 )
 def test_other_dimension(unit: str, noun: str) -> None:
-    """A unit of another dimension is refused in words: what it is, and what it has to be."""
-    with pytest.raises(ValueError, match=rf"'1 {re.escape(unit)}' is {noun}, not a tension; give"):
+    """A unit of another dimension is refused in words."""
+    with pytest.raises(ValueError, match=rf"'1 {re.escape(unit)}' is {noun}; give"):
         TENSION(f"1 {unit}")
-
-
-def test_other_dimension_of_a_field_with_a_noun() -> None:
-    """N/m is a tension, but also a spring constant; a unit without a noun is named itself."""
-    with pytest.raises(ValueError, match="'1 N' is a force, not a spring constant; give"):
-        Quantity("N/m", noun="a spring constant")("1 N")
-    with pytest.raises(ValueError, match=r"'1 N' is a force, not a value in Pa\*m; give"):
-        Quantity("Pa*m")("1 N")
 
 
 @pytest.mark.parametrize("unit", ["%", "percent", "dB", "Np", "octave", "count", "sr", "m/m", "um"])
 def test_no_angle(unit: str) -> None:
     """What has no dimension is not for that an angle: a slope of 5 % is not 0.05 rad."""
-    with pytest.raises(ValueError, match=r"is an? .*, not an angle; give .*'70 degree'"):
+    with pytest.raises(ValueError, match=r"is an? .*; give .*'70 degree'"):
         Quantity("rad")(f"5 {unit}")
 
 
@@ -166,6 +165,8 @@ def test_unknown_unit(unit: str) -> None:
         "Pa^9^9^9^9",
         "Pa⁹⁹⁹⁹⁹⁹⁹⁹ ⁹⁹⁹⁹⁹⁹⁹⁹",
         "Pa*(9**9**9)",
+        "((yd**99)**99)**99",
+        "yd⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹",
         "Pa" + " " * 1_000_000 + "(",
         "m*" * 100_000 + "m",
         "(" * 5000 + "Pa" + ")" * 5000,

@@ -57,7 +57,7 @@ def test_is_in_the_schema(pellicle: Command) -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ("range='50 mJ'", "interaction.range: '50 mJ' is an energy, not a length"),
+        ("range='50 mJ'", "interaction.range: '50 mJ' is an energy; give"),
         ("work_of_adhesion=0", "interaction.work_of_adhesion: 0 is not allowed"),
         ("rang=1", "interaction.rang: is not a field here; did you mean 'range'"),
     ],

@@ -15,8 +15,9 @@ from pellicle.checks import (
     real_number,
 )
 from pellicle.errors import ConfigError, PluginError
-from pellicle.grid import LARGEST, Grid
+from pellicle.grid import Grid
 from pellicle.numerics.gap_law import GapLaw, Law
+from pellicle.units import LARGEST
 
 from .interaction import Interaction
 from .kernel import Kernel

@@ -1,4 +1,4 @@
-"""A small picture of the indenters of runs that are not solved yet, for notebooks."""
+"""A small picture of the indenters of runs, by their true profiles."""
 
 from __future__ import annotations
 

@@ -183,9 +183,8 @@ class Run(FromFile):
         return cls(**data)
 
     def _repr_html_(self) -> str:
-        """Return HTML for a notebook: every value with its unit and meaning, and the indenter."""
+        """Return HTML for a notebook: every value with its unit and meaning."""
         from .describe import inputs
-        from .picture import picture_of
 
         values = list(inputs(json.loads(self.to_json())))
         types = {i.name: i.value for i in values}
@@ -196,7 +195,7 @@ class Run(FromFile):
         ]
         sentence = f"{types['indenter']} on {types['kernel']}"
         heads = "of", "input", "value", "meaning"
-        return summary(self.title or "Run", sentence, heads, rows, picture=picture_of([self]))
+        return summary(self.title or "Run", sentence, heads, rows)
 
     @property
     def variables(self) -> list[Variable]:

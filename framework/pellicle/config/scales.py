@@ -8,11 +8,11 @@ from contextlib import suppress
 
 import numpy as np
 
-from pellicle.checks import errors_attributed_to
 from pellicle.model.paths import walk
-from pellicle.units import example, printed, quantity_of, readable
+from pellicle.units import Quantity, printed, quantity_of, readable
 
 from .run import Run
+from .study import Study
 
 _LARGE = 1.0
 """Edge of a domain [m] beyond which a solid of a modulus above `_STIFF` is doubted."""
@@ -26,8 +26,20 @@ _STICKY = 10.0
 """Largest plausible displacement by adhesion over the domain."""
 
 
-def doubtful_scales(run: Run) -> Iterator[tuple[str, str]]:
-    """Yield path and message of each value that is out of scale with the others of a run."""
+def doubtful_scales(configuration: Run | Study) -> Iterator[tuple[str, str]]:
+    """Yield path and message of each value out of scale with the others of its run, each once."""
+    if isinstance(configuration, Run):
+        runs = [configuration]
+    else:
+        runs = [point.run for point in configuration.points]
+    doubts: dict[str, str] = {}
+    for run in runs:
+        for path, message in _doubts(run):
+            doubts.setdefault(path, message)
+    yield from doubts.items()
+
+
+def _doubts(run: Run) -> Iterator[tuple[str, str]]:
     size = max(run.grid.size)
     domain = f"on a domain of {readable(size, 'm', 3)}"
     values = list(_values(run))
@@ -35,7 +47,7 @@ def doubtful_scales(run: Run) -> Iterator[tuple[str, str]]:
     # Displacement by a pressure, both over the whole domain, over its size [1/Pa].
     softness = 0.0
     # A kernel that cannot be evaluated is refused when the run is composed.
-    with suppress(Exception), errors_attributed_to(run.kernel), np.errstate(all="ignore"):
+    with suppress(Exception), np.errstate(all="ignore"):
         longest = np.array([2 * math.pi / size])
         softness = float(np.asarray(run.kernel.compliance(longest))[0]) / size
     if size > _LARGE and max(moduli, default=0.0) > _STIFF:
@@ -72,7 +84,7 @@ def _values(run: Run) -> Iterator[tuple[str, float, str]]:
 
 
 def _doubt(path: str, value: float, unit: str, reason: str) -> tuple[str, str]:
-    given, usual = f"{value:g}", example(unit).partition(" ")[2]
+    given, usual = f"{value:g}", str(Quantity(unit).example).partition(" ")[2]
     because = f", {reason}" if reason else ""
     return path, (
         f"{path} is {given} {printed(unit)}{because}; a number without a unit is in SI: "

@@ -111,9 +111,7 @@ class Study(FromFile):
     _points: tuple[Point, ...] = PrivateAttr()
 
     def _repr_html_(self) -> str:
-        """Return HTML for a notebook: the varied parameters, the number of runs, the indenters."""
-        from .picture import picture_of
-
+        """Return HTML for a notebook: the varied parameters and the number of runs."""
         varied = [*self.vary.items(), *(pair for table in self.zip for pair in table.items())]
         run = self.points[0].run
         configuration = json.loads(run.to_json())
@@ -122,8 +120,7 @@ class Study(FromFile):
             for name, values in varied
         ]
         heads = ("varied", "values", "field")
-        sentence, picture = f"{len(self.points)} runs", picture_of([p.run for p in self.points])
-        return summary(run.title or "Study", sentence, heads, rows, picture=picture)
+        return summary(run.title or "Study", f"{len(self.points)} runs", heads, rows)
 
     @model_validator(mode="after")
     def _expand(self) -> Self:

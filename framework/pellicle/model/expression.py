@@ -45,6 +45,7 @@ _TOKEN = re.compile(
 _RAISED = str.maketrans("23456789", "²³⁴⁵⁶⁷⁸⁹")
 _SIGNS = {"**": "^", "*": "·", "/": "/"}
 _GREEK = {"pi": "π"}
+_LONGEST = 500
 _ALLOWED = f"+ - * / ** ( ), {', '.join(FUNCTIONS)} and {', '.join(CONSTANTS)}"
 
 
@@ -93,12 +94,16 @@ def evaluate(
     """
     values = {**CONSTANTS, **names}
     callables = {**FUNCTIONS, **(functions or {})}
+    # A short text cannot be nested beyond the stack of the interpreter.
+    if len(text) > _LONGEST:
+        raise ConfigError(f"{shown(text)} has {len(text)} characters; write at most {_LONGEST}")
     # A dotted name may have parts that Python does not allow, such as the 0 in grid.size.0.
     dotted: list[str] = _NAME.findall(text)
     count = iter(range(len(dotted)))
+    code = _NAME.sub(lambda _: f"_{next(count)}", text).strip()
     try:
-        tree = ast.parse(_NAME.sub(lambda _: f"_{next(count)}", text).strip(), mode="eval")
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        tree = ast.parse(code, mode="eval")
+    except (SyntaxError, ValueError):
         raise ConfigError(f"{shown(text)} is not arithmetic; write it with {_ALLOWED}") from None
 
     def name_of(node: ast.Name) -> str:
@@ -125,7 +130,8 @@ def evaluate(
                     hint = nearest(name, callables)
                     raise ConfigError(f"{shown(name)} in {shown(text)} is not a function; {hint}")
                 return callables[name](value(argument))
-        piece = re.sub(r"\b_(\d+)\b", lambda match: dotted[int(match[1])], ast.unparse(node))
+        piece = ast.get_source_segment(code, node) or code
+        piece = re.sub(r"\b_(\d+)\b", lambda match: dotted[int(match[1])], piece)
         raise ConfigError(f"{shown(piece)} in {shown(text)} is not allowed; write {_ALLOWED}")
 
     try:
@@ -133,7 +139,5 @@ def evaluate(
             return value(tree)
     except ConfigError:
         raise
-    except RecursionError:
-        raise ConfigError(f"{shown(text)} is nested too deeply; make it shorter") from None
     except (TypeError, ValueError, OverflowError) as error:
         raise ConfigError(f"{shown(text)} cannot be evaluated: {error}") from None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from collections.abc import Iterable, Sequence
 from html import escape
 
@@ -28,11 +29,13 @@ def summary(
     """
     head = _row("th", columns)
     body = "".join(_row("td", row) for row in rows)
+    source = b64encode(picture).decode("ascii")
+    image = f"<img alt='{escape(title)}' src='data:image/png;base64,{source}'>"
     parts = [
         f"<strong>{escape(title)}</strong><br>{escape(sentence)}",
         "<div style='display:flex;flex-wrap:wrap;gap:1em;align-items:flex-start'>",
         f"<table><thead>{head}</thead><tbody>{body}</tbody></table>",
-        _image(picture, title) if picture else "",
+        image if picture else "",
         "</div>",
         f"<details><summary>all variables</summary>{details}</details>" if details else "",
     ]
@@ -42,10 +45,3 @@ def summary(
 def _row(tag: str, cells: Sequence[str]) -> str:
     inner = "".join(f"<{tag} style='text-align:left'>{escape(cell)}</{tag}>" for cell in cells)
     return f"<tr>{inner}</tr>"
-
-
-def _image(png: bytes, text: str) -> str:
-    from base64 import b64encode
-
-    source = b64encode(png).decode("ascii")
-    return f"<img alt='{escape(text, quote=True)}' src='data:image/png;base64,{source}'>"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from numbers import Integral
 from typing import Any
@@ -19,13 +18,7 @@ _MOST = 1_000_000
 
 
 def expand(table: object) -> dict[str, Values]:
-    """Return the values of each axis of a study's table, ranges written out.
-
-    Raises
-    ------
-    ConfigError
-        Values are missing or not allowed; the message names all such axes.
-    """
+    """Return the values of each axis of a study's table, ranges written out."""
     if not isinstance(table, Mapping):
         raise ConfigError(f'{shown(table)} is not a table; give one: "kernel.tension" = […]')
     axes: dict[str, Values] = {}
@@ -72,11 +65,6 @@ def ranged(
 
     If the ends have a unit, the values are texts with that unit. ``what`` and ``options`` are the
     name of the range and its optional keys in messages.
-
-    Raises
-    ------
-    ConfigError
-        The mapping is not a range.
     """
     if not table.keys() >= RANGE or not table.keys() <= RANGE | {"spacing"}:
         has = ", ".join(map(str, table)) or "nothing"
@@ -116,14 +104,13 @@ def _end(table: Mapping[str, Any], end: str) -> tuple[float, str]:
     value = table[end]
     if hasattr(value, "magnitude") and hasattr(value, "units"):
         value = f"{float(value.magnitude)!r} {value.units}"
-    parts = split(value) if isinstance(value, str) else None
-    if isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < 1e300:
-        parts = float(value), ""
-    if parts is None or not math.isfinite(parts[0]):
+    try:
+        number, unit = (split(value) or ("", "")) if isinstance(value, str) else (value, "")
+        return Quantity("1")(number), unit
+    except ValueError:
         raise ConfigError(
             f"{shown(table[end])} is not allowed; give a finite number, with a unit or without", end
-        )
-    return parts
+        ) from None
 
 
 def ramp(start: float, stop: float, num: int, *, log: bool = False) -> list[float]:

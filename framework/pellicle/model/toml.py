@@ -9,13 +9,6 @@ from typing import Any
 
 from pellicle.errors import ConfigError
 
-_UNIT = r"[^\W\d_][^\s,\]}#]*|[%°][^\s,\]}#]*"
-# A number with a unit, or a word that does not name a key.
-_BARE = re.compile(
-    rf"(?<![\w.+-])(?:[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*(?:{_UNIT})|[^\W\d][\w./*-]*(?!\s*=|[\w./*-]))"
-)
-_WORDS = {"true", "false", "inf", "nan"}
-
 
 def read_toml(path: Path) -> dict[str, Any]:
     """Return the content of a TOML file.
@@ -39,35 +32,20 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise ConfigError(
             f"{path}: not a text file in UTF-8 (see line {line}); give a TOML file in UTF-8"
         ) from None
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise ConfigError(f"{path}: not valid TOML: {_reason(str(error), text)}") from None
 
 
 def _reason(message: str, text: str) -> str:
     """Return what is wrong in a TOML text, and the remedy, given the message of the parser."""
-    lines = text.splitlines()
-    last = f"at line {len(lines)}, the end of the file"
+    last = f"at line {len(text.splitlines())}, the end of the file"
     message = message.replace("at end of document", last)
-    position = re.search(r"line (\d+), column \d+", message)
-    if position and (value := _unquoted(lines[int(position[1]) - 1])):
-        if value in ("True", "False"):
-            return f"{value} is {value.lower()} in TOML ({position[0]})"
-        return f'texts, and values with a unit, stand in quotes: "{value}" ({position[0]})'
     if twice := re.match(r"Cannot declare \((.*?),?\) twice(.*)", message):
         table = ".".join(name.strip(" '\"") for name in twice[1].split(","))
         return f"[{table}] is there already{twice[2]}; leave one [{table}], with the keys of both"
-    message = message.replace("Cannot overwrite a value", "A key is given twice")
-    return f"{message}; correct it there"
-
-
-def _unquoted(line: str) -> str:
-    """Return the first value of a line that lacks its quotes, or an empty text."""
-    _, _, right = re.sub(r"\"[^\"]*\"|'[^']*'", '""', line).partition("=")
-    value = right.partition("#")[0].strip()
-    bare = next((m[0] for m in _BARE.finditer(value) if m[0] not in _WORDS), "")
-    if bare and value[0] not in "[{":
-        return "" if '"' in value else value
-    return bare
+    if message.startswith("Cannot overwrite a value"):
+        return f"{message.replace('Cannot overwrite a value', 'A key is given twice')}; leave one"
+    return f"{message}; correct it there: texts, and values with a unit, stand in quotes"
 
 
 def parse_override(text: str) -> tuple[str, Any]:
@@ -81,11 +59,7 @@ def parse_override(text: str) -> tuple[str, Any]:
     key, equals, value = text.partition("=")
     if not equals or not all(key.strip().split(".")):
         raise ConfigError(f"--set {text!r} is not of the form a.b=value, e.g. grid.points=128")
-    return key.strip(), _value(value)
-
-
-def _value(text: str) -> Any:
     try:
-        return tomllib.loads(f"value = {text}")["value"]
-    except (ValueError, RecursionError):
-        return text.strip()
+        return key.strip(), tomllib.loads(f"value = {value}")["value"]
+    except ValueError:
+        return key.strip(), value.strip()

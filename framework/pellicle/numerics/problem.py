@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import isfinite
-from typing import Final, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -48,10 +48,7 @@ class Force:
         return Force(self.value / pressure)
 
 
-_CONTROLS: Final = {"depth": Depth, "force": Force}
-
-
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True)
 class Problem:
     """Find p ≥ 0 with gap = A p − z − f ≥ 0 and p·gap = 0, for a given depth z or force.
 
@@ -70,50 +67,26 @@ class Problem:
     """Indenter profile f ≤ 0 [m] of the grid's shape; −inf where there is no indenter."""
     control: Depth | Force
     """The prescribed depth or force; a mean pressure is given as a force."""
-    law: Law | None
+    law: Law | None = None
     """The traction that acts across the gap; None for hard contact that does not stick."""
-    left: Array | None
+    left: Array | None = None
     """Displacement [m] left behind by earlier load steps, to which A p adds; None if there is none.
 
     It is already subtracted from `profile`, so that a solver need not know of it.
     """
 
-    def __init__(
-        self,
-        grid: Grid,
-        operator: Operator,
-        profile: Array,
-        control: Depth | Force | Literal["depth", "force"],
-        value: float | None = None,
-        prescribed: Literal["depth", "force"] | None = None,
-        law: Law | None = None,
-        left: Array | None = None,
-    ) -> None:
-        # Packages written for version 1 pass the kind of control and its value separately.
-        kind = prescribed or control
-        if isinstance(kind, str):
-            assert value is not None
-            kind = _CONTROLS[kind](value)
-        elif value is not None:
-            kind = replace(kind, value=value)
-        compliance = kind.compliance if isinstance(kind, Depth) else 0.0
-        vars(self).update(
-            grid=grid,
-            operator=operator.with_spring(compliance),
-            profile=profile,
-            control=kind,
-            law=law,
-            left=left,
-        )
+    def __post_init__(self) -> None:
+        compliance = self.control.compliance if isinstance(self.control, Depth) else 0.0
+        object.__setattr__(self, "operator", self.operator.with_spring(compliance))
 
     @property
     def prescribed(self) -> Literal["depth", "force"]:
-        """The kind of `control`; use that instead."""
+        """The kind of `control`."""
         return "depth" if isinstance(self.control, Depth) else "force"
 
     @property
     def value(self) -> float:
-        """The value of `control`; use that instead."""
+        """The value of `control`."""
         return self.control.value
 
     @property

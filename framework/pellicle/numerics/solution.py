@@ -19,10 +19,6 @@ class State(NamedTuple):
     depth: float
     """Depth δ of the indenter [m]."""
 
-    def __array__(self, *_: object, **__: object) -> Array:
-        """Refuse to be used as an array, which ``start`` was in earlier versions."""
-        raise TypeError("a State is not an array; its pressure is state.pressure")
-
     @property
     def contact(self) -> Mask:
         """The cells on which the indenter presses, w > 0; bool of the grid's shape."""

@@ -68,8 +68,12 @@ def dataset(file: h5py.File, *, without: Collection[str] = ()) -> xr.Dataset:
 
     variables = {}
     for name, stored in file.items():
-        dims = _dims(name, stored)
-        if dims is not None and not set(dims) & set(without):
+        dims: tuple[str, ...] = (name,)
+        if stored.attrs.get("CLASS") != b"DIMENSION_SCALE":
+            dims = tuple(dim[0].name.lstrip("/") for dim in stored.dims)
+        elif stored.attrs["NAME"].startswith(_NO_VARIABLE.encode()):
+            continue
+        if not set(dims) & set(without):
             text = stored.dtype.kind in "SO"
             values = np.asarray(stored.asstr()[()], dtype=str) if text else stored[()]
             variables[name] = xr.Variable(dims, values, attributes(stored))
@@ -85,13 +89,6 @@ def attributes(stored: h5py.Dataset | h5py.File) -> dict[str, Any]:
         for name, value in stored.attrs.items()
         if name not in _DIMENSION_ATTRIBUTES
     }
-
-
-def _dims(name: str, stored: h5py.Dataset) -> tuple[str, ...] | None:
-    """Return the dimensions of a variable; None for a bare dimension."""
-    if stored.attrs.get("CLASS") == b"DIMENSION_SCALE":
-        return None if stored.attrs["NAME"].startswith(_NO_VARIABLE.encode()) else (name,)
-    return tuple(dim[0].name.lstrip("/") for dim in stored.dims)
 
 
 def _create(

@@ -11,44 +11,45 @@ from typing import TYPE_CHECKING, Any, Literal
 from pellicle.errors import StorageError
 from pellicle.files import is_file, is_folder
 
-from . import checksum, netcdf, version_1
+from . import checksum, netcdf
 
 if TYPE_CHECKING:
     import h5py
     import xarray as xr
 
 SCHEMA_VERSION = 2
-"""Version of the layout, in the attribute ``schema_version`` of every file.
-
-Files of version 1 are read: they have no checksum and no status codes, and count steps from 0.
-"""
+"""Version of the layout, in the attribute ``schema_version`` of every file."""
 
 
 @contextmanager
 def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[h5py.File]:
-    """Yield the HDF5 file of a result or of the table of a study, for reading.
-
-    Raises
-    ------
-    StorageError
-        The file does not exist, is damaged, has another schema version, or is of another kind.
-    """
+    """Yield the HDF5 file of a result or of the table of a study, for reading."""
     if not is_file(path):
         reason = "no such file; give a result file (.h5) that pellicle wrote"
         if is_folder(path):
             reason = "is a folder that holds no result yet; run it first, or give a result (.h5)"
         raise StorageError(f"{path}: {reason}")
-    with _readable(path), _parsed(path) as file:
+    import h5py
+
+    with _readable(path):
+        # Before HDF5 parses the file, which for a changed byte can end the process.
+        is_sealed = checksum.verify(path)
+    with _readable(path), h5py.File(path) as file:
         attributes = netcdf.attributes(file)
-        version = version_of(file)
+        version = attributes.get("schema_version")
         if version is None or not {"configuration", "versions"} <= attributes.keys():
             raise StorageError(
                 f"{path}: not a result of pellicle; give an .h5 file that pellicle wrote"
             )
-        if version not in (1, SCHEMA_VERSION):
+        if version != SCHEMA_VERSION:
             raise StorageError(
-                f"{path}: schema version {version}, and this pellicle reads 1 to {SCHEMA_VERSION}; "
+                f"{path}: schema version {version}, and this pellicle reads {SCHEMA_VERSION}; "
                 f"read it with what wrote it ({attributes['versions']}), or run it again"
+            )
+        if not is_sealed:
+            raise StorageError(
+                f"{path}: was changed after pellicle wrote it, its checksum is missing; restore it "
+                "from a copy, or run it again"
             )
         if not isinstance(json.loads(attributes["configuration"]), dict):
             raise ValueError("its configuration is not a table")
@@ -67,34 +68,9 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
         yield file
 
 
-@contextmanager
-def _parsed(path: Path) -> Iterator[h5py.File]:
-    """Verify the checksum of an HDF5 file and yield the open file."""
-    import h5py
-
-    is_sealed = checksum.verify(path)
-    with h5py.File(path) as file:
-        if not is_sealed and version_of(file) == SCHEMA_VERSION:
-            raise StorageError(
-                f"{path}: was changed after pellicle wrote it, its checksum is missing; restore it "
-                "from a copy, or run it again"
-            )
-        yield file
-
-
-def version_of(file: h5py.File) -> Any:
-    """Return the schema version of a file, or None if it has none."""
-    return netcdf.attributes(file).get("schema_version")
-
-
 def content(file: h5py.File, without: Collection[str] = ()) -> xr.Dataset:
-    """Return the dataset in a file, in the layout of the current version.
-
-    Variables with a dimension in ``without`` are left out.
-    """
+    """Return the dataset in a file, except variables with a dimension in ``without``."""
     dataset = netcdf.dataset(file, without=without)
-    if version_of(file) == 1:
-        dataset = version_1.completed(dataset)
     dataset.attrs = attributes_of(file)
     return dataset
 

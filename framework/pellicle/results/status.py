@@ -136,12 +136,9 @@ def statuses_of(code: str, message: str) -> list[tuple[Status, str]]:
     statuses = [(first, head)]
     for text in rest:
         named = [s for s in Status if s.converged and text.startswith(_beginning(s))]
-        if named:
-            # "the" alone begins the message of several.
-            status = max(named, key=lambda s: len(_beginning(s)))
-            statuses.append((status, f"{_parted(status.value)[0]}{text}"))
-        else:  # written by a version with other messages
-            statuses[-1] = statuses[-1][0], f"{statuses[-1][1]}{_AND}{text}"
+        # "the" alone begins the message of several.
+        status = max(named, key=lambda s: len(_beginning(s)))
+        statuses.append((status, f"{_parted(status.value)[0]}{text}"))
     return statuses
 
 

@@ -7,31 +7,29 @@ segments. When these hold as many steps as the file itself, and at the end, they
 Reading merges them too.
 
 HDF5 writes to memory, and the bytes are then copied to disk, because HDF5 itself ends the process
-when the disk is full.
+when the disk is full. What cannot be read or written raises a `StorageError` with the remedy.
 """
 
 from __future__ import annotations
 
 import glob
 import io
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from pellicle.errors import StorageError, shown
 from pellicle.files import atomic_write, storage_errors
 
 from . import checksum, netcdf
 from .result_file import SCHEMA_VERSION as SCHEMA_VERSION
-from .result_file import attributes_of, content, version_of
+from .result_file import attributes_of, content
 from .result_file import opened as opened
 
 if TYPE_CHECKING:
     import h5py
     import xarray as xr
-
-Read = TypeVar("Read")
 
 REPLACING = (
     "choose another folder (-o DIR), or allow it to be replaced (--overwrite, overwrite=True)"
@@ -42,63 +40,37 @@ _SMALL = 4_000_000
 
 
 def write(dataset: xr.Dataset, path: Path) -> None:
-    """Write the steps of a result, or the table of a study, replacing any old file.
-
-    Raises
-    ------
-    StorageError
-        The file cannot be written.
-    """
+    """Write the steps of a result, or the table of a study, replacing any old file."""
     fields = [str(name) for name, variable in dataset.data_vars.items() if "x" in variable.dims]
     grows = ["step"] if fields and path.suffix != ".tail" else []
     with atomic_write(path) as part:
         versioned = dataset.assign_attrs(schema_version=SCHEMA_VERSION)
         _save(netcdf.serialised(versioned, grows=grows, packed=fields), part)
         # The segments are removed before the old file is replaced: they must not continue the new.
-        _remove_segments(path)
+        for segment in _segments(path):
+            segment.unlink()
 
 
 def append(dataset: xr.Dataset, path: Path) -> None:
-    """Add the steps of ``dataset`` to the result that `write` began.
-
-    Raises
-    ------
-    StorageError
-        The file cannot be read or written, or ``dataset`` does not continue it.
-    """
+    """Add the steps of ``dataset`` to the result that `write` began."""
     first, *segments = _parts(path)
     with opened(first) as file:
-        version, identity = version_of(file), attributes_of(file).get("identity")
-        own = file["step"][:].tolist()
+        identity, own = attributes_of(file).get("identity"), file["step"][:].tolist()
     waiting = [number for segment in segments for number in _step_numbers(segment)]
-    # Version 1 counted from 0.
-    _require_continued(path, (own + waiting)[-1] + (version == 1), identity, dataset)
-    if version != SCHEMA_VERSION:
-        write(joined([read(path), dataset]), path)
-    elif len(waiting) + dataset.sizes["step"] >= len(own) or path.stat().st_size < _SMALL:
+    last, following = (own + waiting)[-1], int(dataset["step"].values[0])
+    if dataset.attrs.get("identity") != identity or following != last + 1:
+        raise StorageError(
+            f"{path}: step {following} does not continue it: it ends at step {last}, and another "
+            "process may have replaced it; run one at a time, or choose another folder (-o DIR)"
+        )
+    if len(waiting) + dataset.sizes["step"] >= len(own) or path.stat().st_size < _SMALL:
         _join(path, segments, dataset)
     else:
         write(dataset, path.with_name(f".{path.name}.{len(own) + len(waiting):08d}.tail"))
 
 
-def _require_continued(path: Path, step: int, identity: object, dataset: xr.Dataset) -> None:
-    """Refuse steps that are of another run or do not follow ``step``, the last in the file."""
-    following = int(dataset["step"].values[0])
-    if dataset.attrs.get("identity") != identity or following != step + 1:
-        raise StorageError(
-            f"{path}: step {following} does not continue it: it ends at step {step}, and another "
-            "process may have replaced it; run one at a time, or choose another folder (-o DIR)"
-        )
-
-
 def require_consecutive(steps: xr.Dataset, path: Path) -> None:
-    """Refuse to resume a file whose steps are not 1, 2, …, as when two processes wrote it.
-
-    Raises
-    ------
-    StorageError
-        A step is missing or exists twice.
-    """
+    """Refuse to resume a file whose steps are not 1, 2, …, as when two processes wrote it."""
     numbers = steps["step"].values.tolist()
     if numbers != list(range(1, len(numbers) + 1)):
         raise StorageError(
@@ -108,60 +80,43 @@ def require_consecutive(steps: xr.Dataset, path: Path) -> None:
 
 
 def close(path: Path) -> None:
-    """Merge the segments of a result into its file.
-
-    Raises
-    ------
-    StorageError
-        The file cannot be read or written.
-    """
+    """Merge the segments of a result into its file."""
     _, *segments = _parts(path)
     if segments:
         _join(path, segments)
 
 
-def read(path: Path) -> xr.Dataset:
-    """Return the whole content of a result file.
+def read(path: Path, without: Collection[str] = ()) -> xr.Dataset:
+    """Return the content of a result file, except variables with a dimension in ``without``.
 
-    Raises
-    ------
-    StorageError
-        The file does not exist, is damaged, has another schema version, or is not a result file.
+    If a run merges its segments in the meantime, they are read again.
     """
-    return joined(_from_parts(path, content))
+    while True:
+        segments, steps = _segments(path), []
+        try:
+            for part in _parts(path):
+                with opened(part) as file:
+                    steps.append(content(file, without))
+        except StorageError:
+            if _segments(path) == segments:
+                raise
+        else:
+            return joined(steps)
 
 
 def scalars(path: Path) -> xr.Dataset:
-    """Return the numbers and texts of each step of a result file, without its fields.
-
-    Raises
-    ------
-    StorageError
-        As for `read`.
-    """
-    return joined(_from_parts(path, partial(content, without=["x", "y"])))
+    """Return the numbers and texts of each step of a result file, without its fields."""
+    return read(path, without=["x", "y"])
 
 
 def attributes(path: Path) -> dict[str, Any]:
-    """Return the attributes of a result file without reading its steps.
-
-    Raises
-    ------
-    StorageError
-        As for `read`.
-    """
+    """Return the attributes of a result file without reading its steps."""
     with opened(path) as file:
         return attributes_of(file)
 
 
 def fields(path: Path, names: Sequence[str], step: int) -> tuple[dict[str, Any], list[Any]]:
-    """Return attributes and the named fields of a result file at the step of index ``step``.
-
-    Raises
-    ------
-    StorageError
-        As for `read`, or the step does not exist.
-    """
+    """Return attributes and the named fields of a result file at the step of index ``step``."""
     for part in _parts(path):
         with opened(part) as file:
             count = file["step"].size
@@ -204,33 +159,9 @@ def joined(steps: list[xr.Dataset]) -> xr.Dataset:
 
 
 def table(path: Path) -> xr.Dataset:
-    """Return the table of a study.
-
-    Raises
-    ------
-    StorageError
-        As for `read`.
-    """
+    """Return the table of a study."""
     with opened(path, "table") as file:
         return content(file)
-
-
-def _from_parts(path: Path, read: Callable[[h5py.File], Read]) -> list[Read]:
-    """Return the value of ``read`` for the file of a result and each segment, in order.
-
-    If a run merges them in the meantime, they are read again.
-    """
-    while True:
-        segments, results = _segments(path), []
-        try:
-            for part in _parts(path):
-                with opened(part) as file:
-                    results.append(read(file))
-        except StorageError:
-            if _segments(path) == segments:
-                raise
-        else:
-            return results
 
 
 def _step_numbers(path: Path) -> list[int]:
@@ -242,11 +173,6 @@ def _step_numbers(path: Path) -> list[int]:
 
 def _segments(path: Path) -> list[Path]:
     return sorted(path.parent.glob(f".{glob.escape(path.name)}.*.tail"))
-
-
-def _remove_segments(path: Path) -> None:
-    for segment in _segments(path):
-        segment.unlink()
 
 
 def _parts(path: Path) -> list[Path]:
@@ -268,9 +194,13 @@ def _join(path: Path, segments: Sequence[Path], *more: xr.Dataset) -> None:
     """Replace a file by one that also contains the steps of its segments and of ``more``."""
     import h5py
 
-    sizes = [*(segment.stat().st_size for segment in segments), *(steps.nbytes for steps in more)]
+    size = path.stat().st_size
+    added = [*(segment.stat().st_size for segment in segments), *(steps.nbytes for steps in more)]
     with atomic_write(path) as part:
-        grown = _with_room(path, sum(sizes))
+        # Without room BytesIO would copy the content whenever HDF5 writes beyond its end.
+        grown = io.BytesIO(bytes(size + sum(added) + _SMALL))
+        with path.open("rb") as old, grown.getbuffer() as buffer:
+            old.readinto(buffer[:size])
         with h5py.File(grown, "r+") as file:
             names = [name for name in file if file[name].maxshape[:1] == (None,)]
             for segment in segments:
@@ -280,7 +210,8 @@ def _join(path: Path, segments: Sequence[Path], *more: xr.Dataset) -> None:
                 _extend(file, {name: steps[name].values for name in names})
         _save(grown, part)
     with storage_errors(path):
-        _remove_segments(path)
+        for segment in _segments(path):
+            segment.unlink()
 
 
 def _save(content: io.BytesIO, path: Path) -> None:
@@ -289,18 +220,6 @@ def _save(content: io.BytesIO, path: Path) -> None:
     # A view that the traceback of a full disk keeps prevents Python from freeing the content.
     with path.open("wb") as file, content.getbuffer() as buffer:
         file.write(buffer)
-
-
-def _with_room(path: Path, room: int) -> io.BytesIO:
-    """Return the content of a file in memory, followed by ``room`` bytes of zeros.
-
-    Without them BytesIO would copy the content whenever HDF5 writes beyond its end.
-    """
-    size = path.stat().st_size
-    content = io.BytesIO(bytes(size + room + _SMALL))
-    with path.open("rb") as file, content.getbuffer() as buffer:
-        file.readinto(buffer[:size])
-    return content
 
 
 def _extend(file: h5py.File, values: Mapping[str, Any]) -> None:

@@ -10,16 +10,7 @@ from typing import TYPE_CHECKING
 from pellicle.arrays import Array
 from pellicle.units import DIGITS, NOTHING, Scale, axis_unit, printed
 
-from .variables import (
-    CORRECTED_AREA,
-    CORRECTED_FRACTION,
-    VARIABLES,
-    WORDS,
-    WORDS_OF_VALUES,
-    corrected_area,
-    corrected_fraction,
-    words_of_name,
-)
+from .variables import VARIABLES, WORDS, WORDS_OF_VALUES, words_of_name
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -63,12 +54,12 @@ class Wording:
 def wording(variable: xr.DataArray, *, si: bool = False) -> Wording:
     """Return how a variable or a coordinate of a result or a table is shown.
 
-    Its attributes, then the table of variables, then its name give the words; its largest value the
-    prefix of its unit, which with ``si`` has none. The values of a coordinate have as many digits
-    as distinguish them, four at least; with ``si`` numbers have six.
+    Its attributes or, without them, its name give the words; its largest value the prefix of its
+    unit, which with ``si`` has none. The values of a coordinate have as many digits as distinguish
+    them, four at least; with ``si`` numbers have six.
     """
     name = str(variable.name)
-    words = str(variable.attrs.get(WORDS, _known_words(name)))
+    words = str(variable.attrs.get(WORDS, words_of_name(name)))
     unit = str(variable.attrs.get("units", "1"))
     if variable.dtype.kind not in "iuf":
         return Wording(
@@ -87,16 +78,6 @@ def wording_of(name: str, values: Sequence[float], *, si: bool = False) -> Wordi
 
     attributes = VARIABLES[name].attributes
     return wording(xr.DataArray(list(values), dims="row", name=name, attrs=attributes), si=si)
-
-
-def _known_words(name: str) -> str:
-    """Return words for a variable without them, as in files of earlier versions."""
-    if name in VARIABLES:
-        return VARIABLES[name].words
-    if not name.startswith((CORRECTED_AREA, CORRECTED_FRACTION)):
-        return words_of_name(name)
-    area = corrected_area(name.removeprefix(CORRECTED_AREA).removeprefix(CORRECTED_FRACTION))
-    return (area if name.startswith(CORRECTED_AREA) else corrected_fraction(area)).words
 
 
 def _digits(values: Array, scale: Scale) -> int:

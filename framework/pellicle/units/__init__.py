@@ -10,13 +10,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from numbers import Real
-from typing import TYPE_CHECKING, Annotated, Any, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Final, get_args
 
 from pydantic_core import core_schema
 
 from pellicle.errors import shown
 
-from .conversion import NOUNS, NUMBER_AND_UNIT, factor_to_si, pint_registry
+from .conversion import NUMBER_AND_UNIT, factor_to_si, pint_registry
 from .conversion import one as one
 from .conversion import si_unit as si_unit
 from .conversion import split as split
@@ -49,9 +49,8 @@ _EXAMPLES = {
 }
 
 
-def example(unit: str) -> str:
-    """Return a value in a unit as text, such as ``"10 kPa"``."""
-    return _EXAMPLES.get(unit, f"1 {unit}")
+LARGEST: Final = 1e100
+"""Bound of numbers in SI; its inverse bounds those near 0. Their squares can be represented."""
 
 
 @dataclass(frozen=True)
@@ -64,9 +63,6 @@ class Quantity:
         SI unit, e.g. ``"Pa"``; ``"1"`` for a pure number.
     above, at_least, below, at_most
         Bounds in that unit; ``above`` and ``below`` exclude the bound.
-    noun
-        What the values are, with an article, for messages such as "is a force, not a spring
-        constant"; without it, a noun for the unit.
     """
 
     unit: str
@@ -74,7 +70,6 @@ class Quantity:
     at_least: float | None = None
     below: float | None = None
     at_most: float | None = None
-    noun: str = ""
 
     def __call__(self, value: object) -> float:
         """Return ``value`` in SI.
@@ -82,18 +77,29 @@ class Quantity:
         Raises
         ------
         ValueError
-            The value is not a number, lacks a unit, has another dimension, is not finite or is out
-            of bounds.
+            The value is not a number, lacks a unit, has another dimension, is not finite, is beyond
+            `LARGEST` or out of bounds.
         """
-        number = self._magnitude(value)
+        number = self._in_si(value)
         if not math.isfinite(number):
             raise ValueError(f"{shown(value)} is not finite; give {self._wanted()}")
-        if not self._within(number):
+        is_outside = (
+            (self.above is not None and number <= self.above)
+            or (self.at_least is not None and number < self.at_least)
+            or (self.below is not None and number >= self.below)
+            or (self.at_most is not None and number > self.at_most)
+        )
+        if is_outside:
             raise ValueError(f"{shown(value)} is not allowed; give {self._wanted()}")
+        if number and not 1 / LARGEST < abs(number) < LARGEST:
+            raise ValueError(
+                f"{shown(value)} is too large or too near 0 to compute with; check the unit"
+            )
         # Of −0, tables would show the sign, and a run would not be the one of 0.
         return number + 0.0
 
-    def _magnitude(self, value: object) -> float:
+    def _in_si(self, value: object) -> float:
+        """Return a number, or a text with a unit, in SI; possibly not finite."""
         if isinstance(value, Real) and not isinstance(value, bool):
             try:
                 return float(value)
@@ -114,16 +120,11 @@ class Quantity:
                 raise ValueError(f"{shown(value)} has a unit; give {self._wanted()}")
             return float(number)
         if not unit:
-            raise ValueError(f"{shown(value)} is text without a unit; give {self._with_unit()}")
-        return self._convert(number, unit, value)
-
-    def _convert(self, number: str, unit: str, value: str) -> float:
+            raise ValueError(f"{shown(value)} is text without a unit; give {self._wanted()}")
         try:
             factor = factor_to_si(" ".join(unit.split()), self.unit)
         except ValueError as problem:
-            noun = self.noun or NOUNS.get(self.unit, f"a value in {self.unit}")
-            contrast = f", not {noun}" if str(problem).startswith("is a") else ""
-            raise ValueError(f"{shown(value)} {problem}{contrast}; give {self._wanted()}") from None
+            raise ValueError(f"{shown(value)} {problem}; give {self._wanted()}") from None
         if not math.isfinite(float(number)) or float(number) == 0:
             # Its exponent may be beyond the range of a decimal.
             return float(number)
@@ -133,27 +134,18 @@ class Quantity:
     @property
     def has_known_unit(self) -> bool:
         """Whether values in other units can be converted to its unit."""
-        if self.unit == "1" or self.unit in _EXAMPLES:
-            return True
         try:
-            self._convert("1", self.unit, self.unit)
+            return (
+                self.unit == "1" or self.unit in _EXAMPLES or factor_to_si(self.unit, self.unit) > 0
+            )
         except ValueError:
             return False
-        return True
 
     def powers(self) -> tuple[int, int]:
         """Return the powers of Pa and of m in the unit; its power of seconds is ignored."""
         dimensions: Mapping[str, Any] = pint_registry().Unit(self.unit).dimensionality
         pressure = int(dimensions.get("[mass]", 0))
         return pressure, int(dimensions.get("[length]", 0)) + pressure
-
-    def _within(self, number: float) -> bool:
-        return not (
-            (self.above is not None and number <= self.above)
-            or (self.at_least is not None and number < self.at_least)
-            or (self.below is not None and number >= self.below)
-            or (self.at_most is not None and number > self.at_most)
-        )
 
     @property
     def bounds(self) -> list[str]:
@@ -165,7 +157,7 @@ class Quantity:
     def example(self) -> str | float:
         """A value within the bounds, as text with its unit or as a number."""
         if self.unit != "1":
-            return example(self.unit)
+            return _EXAMPLES.get(self.unit, f"1 {self.unit}")
         low = self.above if self.above is not None else self.at_least
         high = self.below if self.below is not None else self.at_most
         if low is None or high is None:
@@ -173,18 +165,13 @@ class Quantity:
         return float(f"{low + 0.8 * (high - low):.3g}")
 
     def _wanted(self) -> str:
-        if self.unit == "1":
-            return f"a plain number{self._range()}"
-        return f"{self._with_unit()}, or a bare number in {self.unit}"
-
-    def _with_unit(self) -> str:
-        example = f", such as {_EXAMPLES[self.unit]!r}" if self.unit in _EXAMPLES else ""
-        return f"a value{self._range()} with its unit{example}"
-
-    def _range(self) -> str:
+        """Return what is allowed, for messages: "a value > 0 m with its unit, such as '10 um'"."""
         unit = "" if self.unit == "1" else f" {self.unit}"
-        bounds = [f"{bound}{unit}" for bound in self.bounds]
-        return f" {' and '.join(bounds)}" if bounds else ""
+        allowed = " and".join(f" {bound}{unit}" for bound in self.bounds)
+        if self.unit == "1":
+            return f"a plain number{allowed}"
+        example = f", such as {_EXAMPLES[self.unit]!r}" if self.unit in _EXAMPLES else ""
+        return f"a value{allowed} with its unit{example}, or a bare number in {self.unit}"
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
@@ -227,12 +214,8 @@ def _annotations(annotation: Any) -> Iterator[Any]:
 
 Length = Annotated[float, Quantity("m", above=0)]
 """A length > 0 [m]."""
-Depth = Annotated[float, Quantity("m", at_least=0)]
-"""A depth ≥ 0 [m], positive into the solid."""
 Modulus = Annotated[float, Quantity("Pa", above=0)]
 """An elastic modulus > 0 [Pa]."""
-Pressure = Annotated[float, Quantity("Pa", at_least=0)]
-"""A pressure ≥ 0 [Pa]."""
 Tension = Annotated[float, Quantity("N/m", at_least=0)]
 """A surface tension ≥ 0 [N/m]."""
 BendingStiffness = Annotated[float, Quantity("N*m", at_least=0)]
@@ -243,8 +226,6 @@ Strength = Annotated[float, Quantity("Pa", above=0)]
 """A traction > 0 [Pa]."""
 FoundationStiffness = Annotated[float, Quantity("Pa/m", above=0)]
 """A stiffness per area > 0 [Pa/m]."""
-Force = Annotated[float, Quantity("N", at_least=0)]
-"""A force ≥ 0 [N]."""
 Time = Annotated[float, Quantity("s", above=0)]
 """A time > 0 [s]."""
 PoissonsRatio = Annotated[float, Quantity("1", above=-1, at_most=0.5)]

@@ -16,39 +16,15 @@ if TYPE_CHECKING:
 NUMBER_AND_UNIT = re.compile(
     r"([-+]?(?:nan\b|inf\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*(.*)", re.DOTALL | re.IGNORECASE
 )
-# pint evaluates every number and power in a text, and "Pa*9**9**9**9" never ends. So only products
-# and quotients of names, each with one small power, are passed to it.
-_LETTER = r"[^\W\d⁰¹²³⁴-⁹]"
-_NAME = rf"(?:{_LETTER}|[°%‰])(?:{_LETTER}|[0-9])*"
-_EXPONENT = r"[-+]?\d{1,2}(?:\.\d{1,20})?"
-_POWER = (
-    rf"(?: ?(?:\*\*|\^) ?(?:{_EXPONENT}|\({_EXPONENT}(?:/\d{{1,2}})?\))"
-    r"|⁻?[⁰¹²³⁴-⁹]{1,2})?"
-)
-_FACTOR = rf"(?:\( ?)*(?:1(?![\w.])|{_NAME}){_POWER}(?: ?\){_POWER})*"
-_UNIT = re.compile(rf"{_FACTOR}(?:(?: ?[*/·⋅×.] ?| ){_FACTOR})*")
+# pint computes with the numbers in a text, and never ends "Pa*9**9**9**9". So only products and
+# quotients of names reach it, each name with one small power, and no power of a parenthesis.
+_LETTER = r"[^\W\d⁰¹²³⁴-⁹]|[°%‰]"
+_POWER = r" ?(?:\*\*|\^) ?(?:[-+]?\d\d?(?:\.\d+)?|\([-+]?\d\d?(?:[./]\d+)?\))|⁻?[⁰¹²³⁴-⁹]{1,2}"
+_NAME = rf"(?:{_LETTER})(?:{_LETTER}|\d)*(?:{_POWER})?"
+_UNIT = re.compile(rf"(?:1 ?/)?[( ]*{_NAME}(?:[) ]*[ */·⋅×.][( ]*{_NAME})*[) ]*")
 _LONGEST_UNIT = 100
-NOUNS = {
-    "m": "a length",
-    "Pa": "a pressure",
-    "N/m": "a tension",
-    "J/m**2": "an energy per area",
-    "N*m": "a bending stiffness",
-    "Pa/m": "a stiffness per area",
-    "N": "a force",
-    "J": "an energy",
-    "m**2": "an area",
-    "m**3": "a volume",
+_NOUNS = {
     "rad": "an angle",
-    "s": "a time",
-    "m/V": "a length per voltage",
-    "m/s": "a speed",
-    "Hz": "a frequency",
-    "m/Pa": "a compliance",
-    "rad/m": "a wavenumber",
-}
-"""Nouns for the values that a field takes, by its SI unit."""
-_MEASURED = {
     "m": "a length",
     "N": "a force",
     "Pa": "a pressure",
@@ -69,13 +45,9 @@ _MEASURED = {
     "A": "a current",
     "W": "a power",
     "m/V": "a length per voltage",
+    "m/Pa": "a compliance",
 }
-"""Nouns for values of other dimensions, by a unit of that dimension."""
-
-
-def _root(quantity: Any) -> str:
-    """Return the unit to which pint reduces a quantity, such as radian."""
-    return str(quantity.to_root_units().units)
+"""Nouns for values, by a unit of their dimension."""
 
 
 @cache
@@ -94,11 +66,6 @@ def split(text: str) -> tuple[float, str] | None:
     return (float(match[1]), match[2]) if match else None
 
 
-def _is_unit(text: str) -> bool:
-    """Return whether a text is a product of names with powers, which pint parses quickly."""
-    return len(text) <= _LONGEST_UNIT and _UNIT.fullmatch(text) is not None
-
-
 def one(unit: str) -> Any:
     """Return 1 of a unit as a pint quantity in SI, whose arithmetic keeps dimensions.
 
@@ -107,7 +74,7 @@ def one(unit: str) -> Any:
     ValueError
         The unit is unknown.
     """
-    if _is_unit(unit):
+    if len(unit) <= _LONGEST_UNIT and _UNIT.fullmatch(unit):
         try:
             return pint_registry().Quantity(1.0, unit).to_base_units()
         except Exception:
@@ -124,7 +91,7 @@ def si_unit(value: Any) -> str:
     dimensions: Mapping[str, float] = getattr(value, "dimensionality", {})
     if not dimensions or not all(map(math.isfinite, dimensions.values())):
         return "1"
-    named_unit = next((u for u in [*_MEASURED, *NOUNS] if one(u).dimensionality == dimensions), "")
+    named_unit = next((u for u in _NOUNS if one(u).dimensionality == dimensions), "")
     if not named_unit and not dimensions.keys() <= {"[mass]", "[length]", "[time]"}:
         return "1"
     mass, length, time = (dimensions.get(f"[{name}]", 0) for name in ("mass", "length", "time"))
@@ -143,22 +110,11 @@ def factor_to_si(unit: str, si: str) -> float:
     ValueError
         The unit is unknown or does not fit.
     """
-    unknown = f"has an unknown unit ({shown(unit)})"
-    if not _is_unit(unit):
-        raise ValueError(unknown)
-    registry = pint_registry()
-    try:
-        single, root = registry.Quantity(1.0, unit), _root(registry.Quantity(1.0, si))
-        factor = float(single.to(si).magnitude)
-        zero = float(registry.Quantity(0.0, unit).to(si).magnitude)
-    except Exception as error:
-        # pint raises a dozen unrelated types (syntax, token, attribute errors) for bad units.
-        if type(error).__name__ != "DimensionalityError":
-            raise ValueError(unknown) from None
-        raise ValueError(f"is {_measured(unit)}") from None
-    # In pint per cent, decibels and counts have no dimension, and neither have angles.
-    if _root(single) != root:
-        raise ValueError(f"is {_measured(unit)}")
+    kind, registry = _kind(unit), pint_registry()
+    if kind != _kind(si):
+        noun = "a pure number" if kind == "dimensionless" else f"a value in {unit}"
+        raise ValueError(f"is {next((n for u, n in _NOUNS.items() if _kind(u) == kind), noun)}")
+    factor, zero = (float(registry.Quantity(x, unit).to(si).magnitude) for x in (1.0, 0.0))
     if zero != 0:
         raise ValueError(f"is in a unit whose zero is {zero:.6g} {si}")
     if not 0 < factor < math.inf:
@@ -166,15 +122,6 @@ def factor_to_si(unit: str, si: str) -> float:
     return factor
 
 
-def _measured(unit: str) -> str:
-    """Return what a unit that pint knows measures, as a noun with its article."""
-    registry = pint_registry()
-    dimension = registry.Unit(unit).dimensionality
-    if not dimension:
-        root = _root(registry.Quantity(1.0, unit))
-        kinds = {"dimensionless": "a pure number", "radian": "an angle"}
-        return kinds.get(root, f"a number of {root}")
-    for base_unit, noun in _MEASURED.items():
-        if registry.Unit(base_unit).dimensionality == dimension:
-            return noun
-    return f"a value in {unit}"
+def _kind(unit: str) -> str:
+    """Return what tells units of one kind from others: per cent and angles have no dimension."""
+    return str(one(unit).to_root_units().units)

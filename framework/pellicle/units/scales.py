@@ -17,18 +17,7 @@ _FIRST = re.compile(r"([^\W\d_]+)(?:(?:\*\*|\^)?([23]))?(?![\w.^]|\*\*)(.*)")
 """First symbol of a unit, its power if that is 2 or 3, and the rest."""
 _PREFIXED = frozenset({"m", "N", "Pa", "J", "s", "V", "A", "W", "Hz"})
 """Units that take prefixes; those of strangers may be counts, photons or decibels."""
-_PREFIXES = {
-    12: "T",
-    9: "G",
-    6: "M",
-    3: "k",
-    0: "",
-    -3: "m",
-    -6: "µ",
-    -9: "n",
-    -12: "p",
-    -15: "f",
-} | {-18: "a", -21: "z", -24: "y"}
+_PREFIXES = dict(zip(range(12, -27, -3), [*"TGMk", "", *"mµnpfazy"], strict=True))
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MOST = 8
 """Largest number of values written out; of more, some are left out."""

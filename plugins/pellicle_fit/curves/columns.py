@@ -18,7 +18,7 @@ from .curve import Curve, Note
 from .origin import CurveOrigin
 from .roles import EXAMPLE, OF_BASE, POSITIONS, SIGNALS, TIME, ColumnMap, factor, is_voltage
 
-SpringConstant = Annotated[float, Quantity("N/m", above=0, noun="a spring constant")]
+SpringConstant = Annotated[float, Quantity("N/m", above=0)]
 """Spring constant of a cantilever [N/m]."""
 Speed = Annotated[float, Quantity("m/s", above=0)]
 """Speed of a cantilever's base, or of the indenter [m/s]."""

@@ -25,7 +25,7 @@ class BaseDisplacement(Prescription):
 
     spring_constant: Annotated[
         float,
-        Quantity("N/m", above=0, noun="a spring constant"),
+        Quantity("N/m", above=0),
         Field(description="spring constant k of the spring that holds the indenter [N/m]"),
     ]
 

@@ -200,32 +200,6 @@ def test_each_output_gets_data_of_its_own(tmp_path: Path) -> None:
     assert Looking.seen == [(True, "ours")]
 
 
-@pytest.mark.parametrize("code", [0, 3])
-def test_a_component_cannot_end_the_process(code: int) -> None:
-    """A component that calls sys.exit() is named; the run does not end as if all were well."""
-
-    class Leaving(HalfSpace):
-        """Ends the process."""
-
-        type: Literal["liar"] = "liar"
-
-        def compliance(self, q: Any) -> Any:
-            """Leave."""
-            raise SystemExit(code)
-
-    class LeavingAtTheEnd(Output):
-        """Ends the process when the run is done."""
-
-        def write(self, runs: Any, stem: Any) -> Any:
-            """Leave."""
-            raise SystemExit(code)
-
-    with pytest.raises(pl.PluginError, match=rf"kernel 'liar' calls sys.exit\({code}\)"):
-        run(kernel=Leaving(reduced_modulus=1e4))
-    with pytest.raises(pl.PluginError, match=rf"output 'liar' calls sys.exit\({code}\)"):
-        run(outputs=[LeavingAtTheEnd()])
-
-
 def test_a_file_system_that_is_read_only_is_no_lie() -> None:
     """What an output raises because it cannot write is not taken for a change of its data."""
 

@@ -141,45 +141,7 @@ class WorksInStart(Solver):
         return solution
 
 
-class StartAsArray(Solver):
-    """Takes the state that it starts from for an array, which it was in earlier versions."""
-
-    def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
-        """Scale the start."""
-        return super().solve(problem, None if start is None else 0.5 * start, monitor)
-
-
-class CopiesStart(Solver):
-    """Copies the state that it starts from as if it were an array."""
-
-    def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
-        """Copy the start."""
-        return super().solve(problem, None if start is None else start.copy(), monitor)
-
-
-class ClipsStart(Solver):
-    """Clips the state that it starts from as if it were an array."""
-
-    def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
-        """Clip the start."""
-        return super().solve(problem, None if start is None else np.maximum(start, 0), monitor)
-
-
-class NamesPressure(Solver):
-    """Names the argument of a solution that is a state by now."""
-
-    def change(self, solution: Any, problem: Any, start: Any) -> Any:
-        """Make a solution by keyword."""
-        solution_type: Any = pl.Solution
-        return solution_type(pressure=solution.pressure, iterations=1)
-
-
-OUTDATED = ["not an array: its pressure is start.pressure", "pellicle.Solution(pressure or state"]
 SOLVERS = {
-    StartAsArray: OUTDATED,
-    CopiesStart: OUTDATED,
-    ClipsStart: OUTDATED,
-    NamesPressure: OUTDATED,
     NoSolution: ["solve() returned None", "pellicle.Solution"],
     BarePressure: ["solve() returned array(", "pellicle.Solution"],
     Transposed: ["solve().pressure returned an array of float64 of shape (10, 12)", "(12, 10)"],

@@ -28,7 +28,7 @@ def test_threads_are_a_whole_number(threads: Any, tmp_path: Path) -> None:
         lambda: pl.run(configuration, directory=tmp_path, progress=False, threads=threads),
         lambda: pl.run_study(study(), tmp_path, progress=False, threads=threads),
     ):
-        with pytest.raises(pl.ConfigError, match=r"threads: .* whole number of threads ≥ 1"):
+        with pytest.raises(pl.ConfigError, match=r"threads: .* whole number of threads, 1 to"):
             use()
     assert not list(tmp_path.iterdir())
 
@@ -38,7 +38,7 @@ def test_threads_are_a_whole_number(threads: Any, tmp_path: Path) -> None:
 def test_threads_of_an_executor_are_a_whole_number(type_: str, threads: Any) -> None:
     """The field says the same as the argument, in a file too."""
     address = {"address": "tcp://127.0.0.1:8786"} if type_ == "dask" else {}
-    with pytest.raises(pl.ConfigError, match=r"threads: .* whole number of threads ≥ 1"):
+    with pytest.raises(pl.ConfigError, match=r"threads: .* whole number of threads, 1 to"):
         registry().make(pl.Executor, {"type": type_, "threads": threads, **address})
 
 

@@ -291,5 +291,5 @@ def test_fits_of_cantilevers_are_drawn(tmp_path: Path) -> None:
 
 def test_bad_calibration() -> None:
     """A calibration of another dimension is refused."""
-    with pytest.raises(pl.ConfigError, match="is a length, not a spring constant"):
+    with pytest.raises(pl.ConfigError, match="is a length; give"):
         Calibration(spring_constant="5 um")

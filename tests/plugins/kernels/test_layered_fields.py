@@ -70,7 +70,7 @@ def test_nested_fields_can_be_set(file: Path) -> None:
         ("layers.0.thickness='-1 um'", "kernel.layers.0.thickness: '-1 um' is not allowed"),
         (
             "layers.0.thickness='1 kPa'",
-            "kernel.layers.0.thickness: '1 kPa' is a pressure, not a length",
+            "kernel.layers.0.thickness: '1 kPa' is a pressure; give",
         ),
         ("layers.0.thickness=inf", "kernel.layers.0.thickness: inf is not finite"),
         ("layers.0.youngs_modulus='inf Pa'", "kernel.layers.0.youngs_modulus: 'inf Pa' is not"),

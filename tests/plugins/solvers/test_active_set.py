@@ -131,7 +131,8 @@ def make(
     """Return a problem; its profile is ``shape`` at the cell centres."""
     grid = Grid(points=points, size=size, boundary=boundary)
     profile = np.array(np.broadcast_to(shape(*grid.coordinates()), grid.shape))
-    return Problem(grid, make_operator(kernel, grid), profile, prescribed, value)
+    control = Depth(value) if prescribed == "depth" else Force(value)
+    return Problem(grid, make_operator(kernel, grid), profile, control)
 
 
 def solve(problem: Problem, solver: Solver, start: Array | None = None) -> Solved:

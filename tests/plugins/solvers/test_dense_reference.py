@@ -24,7 +24,7 @@ from scipy.linalg import cholesky, solve_triangular
 from scipy.optimize import brentq, nnls
 
 from pellicle import Grid, Problem, Solution, Solver, Stop
-from pellicle.numerics.problem import Force
+from pellicle.numerics.problem import Depth, Force
 from pellicle.operators import Array, make_operator
 from pellicle.problem import height_scale, measure
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
@@ -111,8 +111,8 @@ def problems(draw: st.DrawFn) -> Problem:
     lowest, furthest = -float(profile.max()), -float(profile[solid].mean())
     value = lowest + load * (furthest - lowest)
     if prescribed == "force" or value <= lowest:
-        return Problem(grid, operator, profile, "force", grid.area * load / (1 - load))
-    return Problem(grid, operator, profile, "depth", value)
+        return Problem(grid, operator, profile, Force(grid.area * load / (1 - load)))
+    return Problem(grid, operator, profile, Depth(value))
 
 
 def _profile(form: str, grid: Grid, random: np.random.Generator) -> Array:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pellicle import Grid, Problem, Stop
+from pellicle import Depth, Force, Grid, Problem, Stop
 from pellicle.operators import make_operator
 from pellicle.problem import measure
 from pellicle_plugins.kernels.bending_skin import BendingSkin
@@ -21,8 +21,7 @@ Array = NDArray[np.float64]
 
 def rough_plate(
     boundary: Literal["free", "periodic"],
-    control: Literal["depth", "force"],
-    value: float,
+    control: Depth | Force,
     points: tuple[int, int] = (24, 20),
 ) -> Problem:
     """Return a plate on random waves, cells longer along x, which it touches with few cells."""
@@ -36,16 +35,14 @@ def rough_plate(
             2 * np.pi * (i * x / 1.5 + j * y) + random.uniform(0, 7)
         )
     kernel = BendingSkin(reduced_modulus=1.0, bending=0.005)
-    return Problem(grid, make_operator(kernel, grid), profile - profile.max(), control, value)
+    return Problem(grid, make_operator(kernel, grid), profile - profile.max(), control)
 
 
 @pytest.mark.parametrize("boundary", ["free", "periodic"])
-@pytest.mark.parametrize(("control", "value"), [("depth", 1.0), ("depth", 3.0), ("force", 2.0)])
-def test_solution_is_exact(
-    boundary: Literal["free", "periodic"], control: Literal["depth", "force"], value: float
-) -> None:
+@pytest.mark.parametrize("control", [Depth(1.0), Depth(3.0), Force(2.0)])
+def test_solution_is_exact(boundary: Literal["free", "periodic"], control: Depth | Force) -> None:
     """From any start on all cells: no pull, no gap under pressure, no penetration, the force."""
-    problem = rough_plate(boundary, control, value)
+    problem = rough_plate(boundary, control)
     unit = np.zeros(problem.grid.shape)
     unit[0, 0] = 1
     column = problem.operator(unit)
@@ -62,15 +59,17 @@ def test_solution_is_exact(
         assert pressure.min() == 0
         assert 2 < np.count_nonzero(pressure) < 60
         assert max(state.residual_contact, state.residual_penetration) < 1e-9
-        if control == "force":
-            assert pressure.sum() * problem.grid.cell_area == pytest.approx(value, rel=1e-12)
+        if isinstance(control, Force):
+            assert pressure.sum() * problem.grid.cell_area == pytest.approx(
+                control.value, rel=1e-12
+            )
         results.append(pressure)
     np.testing.assert_allclose(results[0], results[1], atol=1e-6 * results[0].max())
 
 
 def test_too_many_cells_are_left_to_others() -> None:
     """A contact above the limit, one of no pressure and one of most of the plane are not solved."""
-    problem = rough_plate("periodic", "force", 2.0)
+    problem = rough_plate("periodic", Force(2.0))
     shape = problem.grid.shape
     column, gap = np.ones(shape), np.zeros(shape)
     few = np.zeros(shape, dtype=bool)
@@ -91,7 +90,7 @@ def test_it_takes_fewer_applications_and_gives_the_same(
     results, applications = [], []
     for most in (few_cells.MOST_CELLS, 0):
         monkeypatch.setattr(active_set, "MOST_CELLS", most)
-        problem = rough_plate(boundary, "force", 8.0, (96, 80))
+        problem = rough_plate(boundary, Force(8.0), (96, 80))
         solution = ActiveSet(tolerance=1e-9).solve(problem, None, lambda *_: None)
         assert solution.stop is Stop.DONE
         results.append(solution.pressure)

@@ -34,7 +34,8 @@ def make(
 ) -> Problem:
     """Return the problem of heights [m], wherever their highest is."""
     profile = heights - heights.max()
-    return Problem(grid, make_operator(kernel, grid), profile, prescribed, value)
+    control = pl.Depth(value) if prescribed == "depth" else pl.Force(value)
+    return Problem(grid, make_operator(kernel, grid), profile, control)
 
 
 def solve(problem: Problem, tolerance: float = 1e-8) -> tuple[Solution, int]:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pellicle import Grid, Problem
+from pellicle import Depth, Grid, Problem
 from pellicle.operators import make_operator
 from pellicle_plugins.kernels.bending_skin import BendingSkin
 from pellicle_plugins.solvers import relaxation
@@ -24,7 +24,7 @@ def plate(dx: float, dy: float, shape: tuple[int, int] = SHAPE) -> Problem:
     """Return a problem whose gap is its displacement, under a skin that nothing but bends."""
     grid = Grid(points=shape, size=(dx * shape[0], dy * shape[1]), boundary="periodic")
     operator = make_operator(BendingSkin(reduced_modulus=1e-12, bending=1.0), grid)
-    return Problem(grid, operator, np.zeros(shape), "depth", 0.0)
+    return Problem(grid, operator, np.zeros(shape), Depth(0.0))
 
 
 def settle(

@@ -64,10 +64,12 @@ class Case:
         )
         x, y = (axis / length for axis in grid.coordinates())
         profile = -10 * self.share * (x**2 + y**2)
-        value = 0.4 * self.share * -float(profile.mean()) / self.share
+        control: pl.Depth | pl.Force
         if self.prescribed == "force":
-            value = 0.01 * self.share * modulus * length
-        return Problem(grid, operator, profile * length, self.prescribed, value * length)
+            control = pl.Force(0.01 * self.share * modulus * length * length)
+        else:
+            control = pl.Depth(0.4 * self.share * -float(profile.mean()) / self.share * length)
+        return Problem(grid, operator, profile * length, control)
 
 
 def solved(case: Case, solver: Solver, length: float, modulus: float) -> tuple[Any, ...]:
@@ -148,20 +150,20 @@ def test_stiffness_of_a_contact_scales_as_its_dimension(solver: Solver) -> None:
 
 @pytest.mark.parametrize("solver", SOLVERS, ids=lambda solver: solver.type)
 @pytest.mark.parametrize("value", [1e-30, 1e-200, 1e-300])
-@pytest.mark.parametrize("prescribed", ["depth", "force"])
+@pytest.mark.parametrize("kind", [pl.Depth, pl.Force])
 def test_a_load_just_above_nothing_is_solved(
-    solver: Solver, value: float, prescribed: Prescribed
+    solver: Solver, value: float, kind: type[pl.Depth | pl.Force]
 ) -> None:
     """A depth or a force far below all other lengths and forces touches with the lowest cell."""
     grid = Grid(points=33, size=1.0, boundary="free")
     operator = make_operator(pl.kernel("half_space", reduced_modulus=1.0), grid)
     x, y = grid.coordinates()
-    problem = Problem(grid, operator, -(x**2 + y**2), prescribed, value)
+    problem = Problem(grid, operator, -(x**2 + y**2), kind(value))
     solution = solver.solve(problem, None, lambda iteration, residual_ratio: None)
     assert solution.stop is Stop.DONE
     state = measure(problem, solution.pressure)
     assert np.count_nonzero(state.contact) == 1
-    assert getattr(state, prescribed) == pytest.approx(value, rel=1e-8)
+    assert getattr(state, problem.prescribed) == pytest.approx(value, rel=1e-8)
 
 
 def test_a_start_far_above_the_load_is_not_used() -> None:
@@ -169,7 +171,7 @@ def test_a_start_far_above_the_load_is_not_used() -> None:
     grid = Grid(points=33, size=1.0, boundary="free")
     operator = make_operator(pl.kernel("half_space", reduced_modulus=1.0), grid)
     x, y = grid.coordinates()
-    problem = Problem(grid, operator, -(x**2 + y**2), "depth", 1e-200)
+    problem = Problem(grid, operator, -(x**2 + y**2), pl.Depth(1e-200))
     for solver in SOLVERS:
         pressure = np.full(grid.shape, 1e-2)
         start = State(pressure, pressure, 1e-2)

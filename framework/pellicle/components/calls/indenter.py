@@ -10,8 +10,8 @@ from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to, read_only, real_array
 from pellicle.components.indenter import Footprint, Indenter
 from pellicle.errors import ConfigError, PluginError, shown
-from pellicle.grid import LARGEST, Grid
-from pellicle.units import DIGITS, readable
+from pellicle.grid import Grid
+from pellicle.units import DIGITS, LARGEST, readable
 
 # Rounding error of heights over the size of the domain.
 _ROUNDING = 1e-12

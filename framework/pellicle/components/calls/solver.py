@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from numbers import Integral
 
@@ -21,9 +20,6 @@ from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.numerics.path import Start
 from pellicle.numerics.problem import Problem
 from pellicle.numerics.solution import Solution, State, Stop
-
-# How Python refuses a State used as an array, which it was in earlier versions.
-_OUTDATED = "'State'|State is not an array|can't multiply sequence|argument 'pressure'"
 
 
 def check_solver(solver: Solver, problem: Problem) -> None:
@@ -52,8 +48,7 @@ def solution_of(
     ConfigError
         The solver refuses the problem.
     PluginError
-        The solver does not return a `Solution` of the grid's shape, changes the problem, or treats
-        ``start`` as an array, which it was in earlier versions.
+        The solver does not return a `Solution` of the grid's shape, or changes the problem.
     """
     check_solver(solver, problem)
     adheres = problem.law is not None
@@ -81,17 +76,8 @@ def _solve(solver: Solver, problem: Problem, start: State | None, monitor: Monit
     """Return what a solver returns for a problem that it cannot change."""
     view = _read_only_problem(problem)
     fields, parts = dict(vars(view)), problem.operator.parts()
-    try:
-        with errors_attributed_to(solver):
-            value = solver.solve(view, None if start is None else _read_only_state(start), monitor)
-    except (AttributeError, TypeError) as error:
-        if not re.search(_OUTDATED, str(error)):
-            raise
-        raise PluginError(
-            f"{' '.join(error.__notes__)}: {error}; solve() starts from None or a pellicle.State, "
-            "not an array: its pressure is start.pressure; it returns "
-            "pellicle.Solution(pressure or state, iterations, stop)"
-        ) from error
+    with errors_attributed_to(solver):
+        value = solver.solve(view, None if start is None else _read_only_state(start), monitor)
     _require_unchanged(solver, "solve()", fields, dict(vars(view)), "problem")
     _require_unchanged(solver, "solve()", parts, problem.operator.parts(), "problem.operator")
     return value
