@@ -81,9 +81,9 @@ class OwnName(Twice):
 )
 def test_not_registered(lie: Any, words: str) -> None:
     """What a table of the loading cannot hold is refused when it is registered."""
-    assert checked_type(Twice, "prescription") == "twice"
+    assert checked_type(Twice) == "twice"
     with pytest.raises(pl.PluginError, match=words):
-        checked_type(lie, "prescription")
+        checked_type(lie)
 
 
 def test_broken_prescription_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

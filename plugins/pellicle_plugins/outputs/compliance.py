@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 import scipy.fft
 from pydantic import Field
 
-from pellicle import Run, displacement, hookimpl
+from pellicle import Run, displacement
 from pellicle.arrays import Array
-from pellicle.components import Output, Runs
+from pellicle.components import Runs
 from pellicle.errors import StorageError
 from pellicle.model.expression import evaluate
 from pellicle.report.style import MARKERS, colour
@@ -105,9 +105,3 @@ def of_cells_along_x(run: Run) -> tuple[Array, Array]:
     values = scipy.fft.rfft(along_x).real[1:]
     # The last wavenumber of an even number of cells is listed as negative.
     return np.abs(run.grid.wavenumbers()[0].ravel()[1 : values.size + 1]), values
-
-
-@hookimpl
-def register_outputs(register: Callable[[type[Output]], None]) -> None:
-    """Register the compliance."""
-    register(Compliance)

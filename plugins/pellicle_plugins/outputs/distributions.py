@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
-from pellicle import analysis, hookimpl
-from pellicle.components import Output, Runs
+from pellicle import analysis
+from pellicle.components import Runs
 from pellicle.report.style import LINES, colour
 from pellicle.results.path import has_interaction
 from pellicle.units import axis_unit
@@ -85,9 +85,3 @@ def _rows(curves: _Curves) -> Iterator[dict[str, object]]:
         for field, bins in densities.items():
             for row in zip(bins.edges, bins.edges[1:], bins.mean, bins.density, strict=False):
                 yield dict(zip(_HEADS, (name.key, field, *row), strict=True))
-
-
-@hookimpl
-def register_outputs(register: Callable[[type[Output]], None]) -> None:
-    """Register the distributions."""
-    register(Distributions)

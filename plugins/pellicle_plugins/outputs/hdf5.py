@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import ClassVar, Literal
 
-from pellicle import hookimpl
 from pellicle.components import Output, Runs
 
 
@@ -24,9 +22,3 @@ class Hdf5(Output):
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write nothing."""
         return ()
-
-
-@hookimpl
-def register_outputs(register: Callable[[type[Output]], None]) -> None:
-    """Register the result file."""
-    register(Hdf5)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from pellicle import analysis, hookimpl
-from pellicle.components import Output, Runs
+from pellicle import analysis
+from pellicle.components import Runs
 from pellicle.report.style import colour, sparse_marker
 from pellicle.results.result import Result
 
@@ -105,9 +105,3 @@ def _rows(curves: _Curves) -> Iterator[dict[str, object]]:
             columns = spectrum.wavenumber, spectrum.density, spectrum.count
             for row in zip(*columns, strict=True):
                 yield dict(zip(_HEADS, (name.key, surface, *row), strict=True))
-
-
-@hookimpl
-def register_outputs(register: Callable[[type[Output]], None]) -> None:
-    """Register the spectrum."""
-    register(Spectrum)

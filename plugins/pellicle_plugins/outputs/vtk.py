@@ -5,13 +5,12 @@ from __future__ import annotations
 import glob
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Output, Runs
 from pellicle.files import storage_errors
@@ -116,9 +115,3 @@ def _write_list(steps: Iterable[tuple[float, Path]], path: Path) -> None:
         for time, file in steps:
             with element(xml, "DataSet", timestep=repr(time), file=file.name):
                 pass
-
-
-@hookimpl
-def register_outputs(register: Callable[[type[Output]], None]) -> None:
-    """Register the files for ParaView."""
-    register(Vtk)
