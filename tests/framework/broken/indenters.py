@@ -20,27 +20,15 @@ def _run(indenter: Any, _: Any) -> str:
     return run(indenter=indenter)
 
 
-def _fit(indenter: Any, _: Any) -> str:
-    depth = np.linspace(-1e-6, 2e-6, 60)
-    pl.fit(depth, 1e4 * Paraboloid(radius=1e-3).force_curve(depth, 1e-7).force, indenter=indenter)
-    return "CONVERGED"
-
-
 def below_the_highest(f: Any, x: Any, y: Any) -> Any:
     return f(x, y) - f(x, y).max()
 
 
-def curve(fault: str, run: Refused | Taken, **members: Any) -> Broken:
-    """Return an indenter with other members of its force curve."""
-
-    def force_curve(f: Any, depth: Any, length: float) -> Any:
-        good = f(depth, length)
-        return good._replace(**{name: change(good) for name, change in members.items()})
-
-    return Broken(fault, run, "fit", force_curve=force_curve)
+def curve(fault: str, method: Any) -> Broken:
+    """Return an indenter with another force curve, of which no run knows."""
+    return Broken(fault, Taken("a fit has guards of its own"), force_curve=method)
 
 
-CURVE = "force_curve(depth, length)"
 SUMMIT = Taken("the lowest point may lie between the cells")
 POSITIVE = Refused("has values that are positive or NaN", error=pl.ConfigError)
 HOVERS = "highest value of profile(x, y) is "
@@ -102,33 +90,12 @@ BROKEN: dict[str, Any] = {
         profile=lambda f, x, y: f(x, y) - 0.05 * np.ptp(f(x, y)),
     ),
     "force_curve_rises": [
-        Broken(
-            "force alone",
-            Refused(f"{CURVE} returned array(", "pellicle.ForceCurve"),
-            "fit",
-            force_curve=lambda f, *given: f(*given).force,
-        ),
-        curve(
-            "a force too few",
-            Refused(f"{CURVE}.force returned an array of float64 of shape ("),
-            force=lambda good: good.force[:-1],
-        ),
-        curve(
-            "sensitivity unknown",
-            Refused(f"{CURVE}.by_length has values that are NaN"),
-            by_length=lambda good: good.force * np.nan,
-        ),
-        Broken(
-            "sensitivity forgotten",
-            Taken("a run has no use for it, and the kit alone compares it with differences"),
-            force_curve=lambda f, *given: f(*given)._replace(by_length=0 * given[0]),
-        ),
-        Broken(
-            "moves the depths",
-            Refused("changes what it is given"),
-            "fit",
-            force_curve=lambda f, depth, length: f(np.maximum(depth, 0, out=depth), length),
-        ),
+        curve("force alone", lambda f, *at: f(*at).force),
+        curve("a force too few", lambda f, *at: f(*at)._replace(force=f(*at).force[:-1])),
+        curve("complex force", lambda f, *at: f(*at)._replace(force=f(*at).force + 0j)),
+        curve("sensitivity unknown", lambda f, *at: f(*at)._replace(by_length=np.nan * at[0])),
+        curve("sensitivity forgotten", lambda f, *at: f(*at)._replace(by_length=0 * at[0])),
+        curve("moves the depths", lambda f, depth, a: f(np.maximum(depth, 0, out=depth), a)),
     ],
 }
-INDENTERS = Family(Indenter, {"radius": 1e-3}, {"run": _run, "fit": _fit}, ("run",), BROKEN)
+INDENTERS = Family(Indenter, {"radius": 1e-3}, {"run": _run}, ("run",), BROKEN)
