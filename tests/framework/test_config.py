@@ -144,17 +144,6 @@ def test_outputs_absent_or_empty() -> None:
     assert pl.Run.from_json(pl.Run(**BASE, outputs=[]).to_json()).outputs == ()
 
 
-def test_same_output_twice() -> None:
-    """Two outputs that write the same are refused in a run and in a study, objects or tables."""
-    twice = [registry().make(Output, {"type": "csv"}), {"type": "hdf5"}, {"type": "csv"}]
-    with pytest.raises(pl.ConfigError, match=r"^outputs\.2\.type: 'csv' would write NAME\.csv"):
-        pl.Run(**BASE, outputs=twice)
-    with pytest.raises(pl.ConfigError, match=r"outputs\.2\.type: 'csv' would write NAME\.csv"):
-        pl.Study(run=BASE | {"outputs": twice}, vary={"indenter.radius": [1e-3, 2e-3]})
-    maps = [{"type": "maps", "name": name} for name in ("", "gap")]
-    assert len(pl.Run(**BASE, outputs=[*maps, {"type": "csv"}]).outputs or ()) == 3
-
-
 def test_components_or_tables() -> None:
     """A run of component objects equals the run of tables that describe them."""
     from_tables = pl.Run(
@@ -318,30 +307,6 @@ def test_schema_allows_components_within_components() -> None:
 def test_schema_rejects(change: dict[str, Any]) -> None:
     """The JSON schema, too, refuses unknown types, keys and values."""
     assert not Draft202012Validator(pl.schema()).is_valid(_starter() | change)
-
-
-def test_schema_describes_every_field() -> None:
-    """An editor can show what each field of each component means."""
-    definitions = pl.schema()
-    undescribed = [
-        f"{entry.type}.{name}"
-        for family in ("kernel", "indenter", "solver")
-        for entry, described in zip(
-            registry().components[family].values(),
-            definitions["properties"][family]["oneOf"],
-            strict=True,
-        )
-        for name, field in _fields(described, definitions).items()
-        if name != "type" and not field.get("description")
-    ]
-    assert undescribed == []
-
-
-def _fields(described: dict[str, Any], definitions: dict[str, Any]) -> dict[str, Any]:
-    if "$ref" in described:
-        described = definitions["$defs"][described["$ref"].rpartition("/")[2]]
-    fields: dict[str, Any] = described["properties"]
-    return fields
 
 
 @pytest.mark.parametrize(

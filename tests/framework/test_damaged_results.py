@@ -102,34 +102,20 @@ RESULTS = {
 
 
 @pytest.mark.parametrize("damage", RESULTS)
-def test_result(damage: str, whole: bytes, tmp_path: Path) -> None:
-    """``show``, ``plot`` and `pellicle.load` say what is wrong with the file."""
+def test_result(damage: str, whole: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is wrong with the file is said by all that read it; a run says how to begin anew."""
     change, message = RESULTS[damage]
-    path = tmp_path / "a.h5"
+    monkeypatch.chdir(tmp_path)
+    Path("a").mkdir()
+    path = Path("a/a.h5")
     write_changed(path, whole, change)
     with pytest.raises(pl.StorageError, match=message):
         pl.load(path)
-    for command in ("show", "plot"):
-        done = CliRunner().invoke(app, [command, str(path)])
+    Path("a.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
+    for command in (["show", str(path)], ["plot", str(path)], ["run", "a.toml"]):
+        done = CliRunner().invoke(app, command)
         assert done.exit_code == 2, (done.exception, done.output)
         assert done.stderr.startswith(f"error: {path}: ")
-
-
-@pytest.mark.parametrize("damage", RESULTS)
-def test_run_that_would_go_on(
-    damage: str, whole: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A run whose file is damaged says so, and how to begin anew; no output is blamed for it."""
-    monkeypatch.chdir(tmp_path)
-    run = pl.Run(**RUN)
-    Path("a.toml").write_text(run.to_toml(), encoding="utf-8")
-    Path("a").mkdir()
-    Path("a/a.h5").write_bytes(whole)
-    with h5py.File("a/a.h5", "r+") as file:
-        RESULTS[damage][0](file)
-    done = CliRunner().invoke(app, ["run", "a.toml"])
-    assert done.exit_code == 2, done.output
-    assert done.stderr.startswith("error: a/a.h5: ")
     assert "--overwrite" in done.stderr
 
 

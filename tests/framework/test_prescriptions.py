@@ -1,20 +1,16 @@
-"""What a prescription has to be to be registered, and what a run does with one."""
+"""What a prescription has to be to be registered, and how its runs resume."""
 
 from __future__ import annotations
 
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Annotated, Any, ClassVar, Literal
 
 import pytest
 from pydantic import Field
 
 import pellicle as pl
-from pellicle.components.calls import check_variables, report_of, target_of
 from pellicle.plugins import checked_type
-from pellicle.results.variables import Variable
-from pellicle.runs.compose import compose
 from pellicle.units import Quantity
 
 BASE: dict[str, Any] = {
@@ -22,7 +18,6 @@ BASE: dict[str, Any] = {
     "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "0.1 N/m"},
     "indenter": {"type": "paraboloid", "radius": "1 mm"},
 }
-SEARCH: Any = pl.Search
 Value = Annotated[float, Quantity("1"), Field(description="a number")]
 
 
@@ -86,66 +81,6 @@ def test_not_registered(lie: Any, words: str) -> None:
     assert checked_type(Twice) == "twice"
     with pytest.raises(pl.PluginError, match=words):
         checked_type(lie)
-
-
-def _returns(**members: Any) -> pl.Prescription:
-    return type("Liar", (Twice,), {"__module__": __name__, "__doc__": "Lies.", **members})()  # type: ignore[no-any-return]
-
-
-@pytest.mark.parametrize(
-    ("target", "words"),
-    [
-        (lambda *_: 1e-6, r"'twice'.* returned 1e-06; it has to return a pellicle.Depth, Force"),
-        (lambda *_: None, "returned None"),
-        (lambda *_: pl.Depth(float("nan")), r"\.value returned nan"),
-        (lambda *_: pl.Depth(float("inf")), r"\.value is inf; it has to be finite"),
-        (lambda *_: pl.Depth(1e-6, compliance=-1.0), r"compliance is -1; .* finite and ≥ 0"),
-        (lambda *_: pl.Force(-1.0), r"value is -1; it has to be finite and ≥ 0"),
-        (lambda *_: SEARCH(1.0, "area"), "a function as measure"),
-        (lambda *_: SEARCH(1.0, len, control=float), "control = Depth or Force"),
-        (lambda *_: SEARCH(1.0, len, resolution=-1.0), "resolution is -1"),
-    ],
-)
-def test_target_that_lies(target: Any, words: str) -> None:
-    """What is returned is checked before it is solved for; the message names the component."""
-    setting = compose(pl.Run(**BASE, loading={"depth": 0}))
-    with pytest.raises(pl.PluginError, match=words):
-        target_of(_returns(target=target), setting, 1e-6)
-
-
-def _much(step: Any) -> Any:
-    return "much"
-
-
-def test_measure_and_report_that_lie() -> None:
-    """A quantity that is no number, and variables that are not declared, are refused."""
-    setting = compose(pl.Run(**BASE, loading={"depth": 0}))
-    liar = _returns(target=lambda *_: SEARCH(1.0, _much))
-    target = target_of(liar, setting, 1.0)
-    with pytest.raises(pl.PluginError, match=r"measure\(step\) returned 'much'"):
-        target.measure(SimpleNamespace())  # type: ignore[union-attr, arg-type]
-    with pytest.raises(pl.PluginError, match="dict of nothing"):
-        report_of(_returns(report=lambda *_: {"extra": 1.0}), setting, SimpleNamespace())  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize("name", ["force", "pressure", "status", "x", "step", "a/b", ""])
-def test_no_variable_of_a_result_is_replaced(name: str) -> None:
-    """A variable that a prescription adds is neither another number of the step nor unreadable."""
-    liar = _returns(variables=(Variable(name, "m", "meaning"),))
-    with pytest.raises(pl.PluginError, match=rf"'twice': variables has '{name}', which is "):
-        check_variables(liar)
-
-
-def test_what_it_raises_has_its_name() -> None:
-    """An error of a prescription is noted to be its own."""
-
-    def fail(*_: Any) -> Any:
-        raise ZeroDivisionError
-
-    setting = compose(pl.Run(**BASE, loading={"depth": 0}))
-    with pytest.raises(ZeroDivisionError) as caught:
-        target_of(_returns(target=fail), setting, 1.0)
-    assert "prescription 'twice' failed" in caught.value.__notes__[0]
 
 
 def test_broken_prescription_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

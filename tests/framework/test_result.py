@@ -131,19 +131,6 @@ def test_load_of_a_result_that_lost_a_part(result: pl.Result, tmp_path: Path, lo
         pl.load(tmp_path / "part.h5")
 
 
-def test_load_of_a_garbled_configuration(result: pl.Result, tmp_path: Path) -> None:
-    """A configuration that is no JSON any more makes the file unreadable, in words."""
-    pl.Result(result.dataset.assign_attrs(configuration='{"grid')).save(tmp_path / "bad.h5")
-    with pytest.raises(pl.StorageError, match=r"bad\.h5: not a readable result file"):
-        pl.load(tmp_path / "bad.h5")
-
-
-def test_load_of_nothing(tmp_path: Path) -> None:
-    """Loading a file that is not there is a StorageError that names the path."""
-    with pytest.raises(pl.StorageError, match=r"none\.h5: no such file"):
-        pl.load(tmp_path / "none.h5")
-
-
 SOLID = {"reduced_modulus": "10 kPa", "poissons_ratio": 0.45}
 LAYER = {**SOLID, "thickness": "2 um"}
 

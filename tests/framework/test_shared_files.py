@@ -22,9 +22,15 @@ RUN: dict[str, Any] = {
 
 
 class Silent(pl.Output):
-    """Writes any file that begins with its stem."""
+    """Writes nothing, and might write files of these ends."""
 
     type: Literal["silent"] = "silent"
+    ends: tuple[str, ...] = ("*",)
+
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """The ends."""
+        return self.ends
 
     def write(self, runs: pl.Runs, stem: Path) -> tuple[Path, ...]:
         """Write nothing."""
@@ -38,39 +44,16 @@ class Named(Silent):
 
 
 class Plain(Silent):
-    """Writes the file of another output."""
+    """Has the stem of the run."""
 
-    scope: ClassVar[Literal["run"]] = "run"
     shares_stem: ClassVar[bool] = True
-
-    @property
-    def suffixes(self) -> tuple[str, ...]:
-        """One that csv has."""
-        return "-more.txt", ".csv"
+    scope: ClassVar[Literal["run", "study", "both"]] = "run"
 
 
 class OfStudies(Plain):
     """Shows studies too."""
 
-    scope: ClassVar[Literal["both"]] = "both"  # type: ignore[assignment]
-
-
-class Fields(Plain):
-    """Writes a file of its own for all fields."""
-
-    @property
-    def suffixes(self) -> tuple[str, ...]:
-        """That of the result."""
-        return (".h5",)
-
-
-class Careless(Plain):
-    """Takes the stem of the run and does not name its files."""
-
-    @property
-    def suffixes(self) -> tuple[str, ...]:
-        """Any."""
-        return ("*",)
+    scope: ClassVar[Literal["run", "study", "both"]] = "both"
 
 
 def make_output(type_: str, **fields: Any) -> Output:
@@ -91,7 +74,7 @@ def make_output(type_: str, **fields: Any) -> Output:
             r"^outputs\.1\.name: 'curves' would write NAME-force\.png, as outputs\.0 \('figures'\)",
         ),
         (
-            [make_output("csv"), make_output("hdf5"), Plain()],
+            [make_output("csv"), make_output("hdf5"), Plain(ends=("-more.txt", ".csv"))],
             r"^outputs\.2\.type: 'silent' would write NAME\.csv, as outputs\.0 \('csv'\) does; "
             "leave one out$",
         ),
@@ -129,21 +112,21 @@ def test_outputs_that_share_no_file() -> None:
 
 def test_the_table_of_a_study_is_not_replaced() -> None:
     """An output that may stand in a run is refused in a study whose own table it would replace."""
-    run = RUN | {"outputs": [make_output("figures"), OfStudies()]}
+    run = RUN | {"outputs": [make_output("figures"), OfStudies(ends=(".csv",))]}
     pl.Run(**run)
     message = r"outputs\.1\.type: 'silent' would write study\.csv, the table of the study; leave it"
     with pytest.raises(pl.ConfigError, match=message):
         pl.Study(run=run, vary={"indenter.radius": [1e-3, 2e-3]})
 
 
-@pytest.mark.parametrize("output", [Fields(), Careless()])
-def test_the_result_of_a_run_is_not_replaced(output: Output) -> None:
+@pytest.mark.parametrize("end", [".h5", "*"])
+def test_the_result_of_a_run_is_not_replaced(end: str) -> None:
     """Every run has a result file, so no output may write one of its name."""
     message = (
         r"outputs\.1\.type: 'silent' would write NAME\.h5, the result of the run; leave it out"
     )
     with pytest.raises(pl.ConfigError, match=message):
-        pl.Run(**RUN, outputs=[make_output("figures"), output])
+        pl.Run(**RUN, outputs=[make_output("figures"), Plain(ends=(end,))])
 
 
 def test_standard_outputs_in_a_study() -> None:
@@ -166,17 +149,6 @@ def test_standard_outputs_in_a_study() -> None:
 )
 def test_suffixes_are_compared(one: str, other: str, same: bool) -> None:
     """By the whole suffix, with * for anything and whatever the case."""
-
-    class Writes(Plain):
-        """Writes a file of one suffix."""
-
-        suffix: str
-
-        @property
-        def suffixes(self) -> tuple[str, ...]:
-            """The one."""
-            return (self.suffix,)
-
-    outputs = [Writes(suffix=one), Writes(suffix=other)]
+    outputs = [Plain(ends=(end,)) for end in (one, other)]
     with pytest.raises(pl.ConfigError, match="leave one out") if same else nullcontext():
         refuse_shared_files(outputs)

@@ -1,6 +1,6 @@
 """Interactions that make no sense, and what does not go together with one."""
 
-from typing import Any, ClassVar, Literal
+from typing import Any
 
 import numpy as np
 import pytest
@@ -36,83 +36,6 @@ def test_pulling_takes_an_interaction(prescribed: str) -> None:
         message = str(caught.value)
         says(message, f"loading.{prescribed}.1: -1e-06 is not allowed; give a value ≥ 0")
         says(message, "with an [interaction] it may be negative")
-
-
-class Lying(pl.Interaction):
-    """Law whose traction is twice the derivative of its energy."""
-
-    type: Literal["lying"] = "lying"
-    factor: ClassVar[float] = 2.0
-
-    def energy(self, gap: Any) -> Any:
-        """Return the energy [J/m²]."""
-        return -0.05 * np.maximum(1 - gap / 1e-5, 0) ** 2
-
-    def traction(self, gap: Any) -> Any:
-        """Return the traction [Pa], times a factor."""
-        return -self.factor * 0.1 / 1e-5 * np.maximum(1 - gap / 1e-5, 0)
-
-    def cutoff(self) -> float:
-        """Return the range [m]."""
-        return 1e-5
-
-
-def test_traction_is_not_the_derivative() -> None:
-    """It is refused before anything is solved; the law without the lie is not."""
-    with pytest.raises(pl.PluginError, match=r"traction\(gap\) is not −dγ/dg of energy\(gap\)"):
-        pl.run(pl.Run(**STICKY | {"interaction": Lying()}), progress=False)
-
-    class Honest(Lying):
-        factor = 1.0
-
-    result = pl.run(pl.Run(**STICKY | {"interaction": Honest()}), progress=False)
-    assert result.dataset["force"][0] < 0.33e-3
-
-
-def test_slope_is_not_the_derivative() -> None:
-    """It is refused; a stiffness would follow from it, converged and wrong."""
-
-    class Flat(Lying):
-        factor = 1.0
-
-        def slope(self, gap: Any) -> Any:
-            return np.zeros_like(gap)
-
-    with pytest.raises(pl.PluginError, match=r"slope\(gap\) is not dσ/dg of traction\(gap\)"):
-        pl.run(pl.Run(**STICKY | {"interaction": Flat()}), progress=False)
-
-
-def test_law_that_goes_on_beyond_its_cutoff() -> None:
-    """It is refused: nothing acts beyond, so the energy would rise at once there."""
-
-    class Cut(Lying):
-        factor = 1.0
-
-        def cutoff(self) -> float:
-            return 5e-6
-
-    with pytest.raises(pl.PluginError, match=r"energy.* at the cutoff of 5e-06 m; it has to be 0"):
-        pl.run(pl.Run(**STICKY | {"interaction": Cut()}), progress=False)
-
-
-@pytest.mark.parametrize(
-    ("added", "message"),
-    [(0.3, r"which repels; it has to be ≤ 0"), (-0.3, r"the attraction has to be strongest")],
-)
-def test_law_that_does_more_than_attract_less_and_less(added: float, message: str) -> None:
-    """A bump in its traction is refused: solvers take the attraction to fall with the gap."""
-
-    class Bumped(Lying):
-        factor = 1.0
-
-        def bump(self, gap: Any) -> Any:
-            return np.exp(-(((gap - 8e-6) / 5e-7) ** 2))
-
-        def traction(self, gap: Any) -> Any:
-            return super().traction(gap) + added * 1e4 * self.bump(gap)
-
-    with pytest.raises(pl.PluginError, match=message):
-        pl.run(pl.Run(**STICKY | {"interaction": Bumped()}), progress=False)
 
 
 def test_pull_that_no_contact_carries() -> None:

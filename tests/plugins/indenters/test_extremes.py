@@ -38,19 +38,3 @@ def test_heights_beyond_numbers(indenter: dict[str, Any], floats: Literal["raise
         pytest.raises(pl.ConfigError, match=r"^indenter: its heights .*check the units"),
     ):
         _run(indenter)
-
-
-class Wavy(pl.Indenter):
-    """Has complex heights."""
-
-    type: Literal["wavy"] = "wavy"
-
-    def profile(self, x: Any, y: Any) -> Any:
-        """Return what nobody can press in."""
-        return np.exp(1j * (x + y)) - 1
-
-
-def test_complex_profile() -> None:
-    """The imaginary part of a profile is not dropped."""
-    with pytest.raises(pl.PluginError, match=r"profile\(x, y\) .*complex"):
-        _run(Wavy())

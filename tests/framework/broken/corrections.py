@@ -1,0 +1,89 @@
+"""Corrections of the area of contact that break their contract."""
+
+from typing import Any, Literal
+
+import numpy as np
+
+from tests.framework.broken.catalogue import GRID, Broken, Family, Refused, Taken, base, run
+
+Yastrebov: Any = base("correction", "yastrebov")
+NEAR = Taken("a run asks only whether the area is between 0 and that of the domain")
+
+
+class Correction(Yastrebov):
+    """Correction to be broken."""
+
+    type: Literal["broken"] = "broken"
+
+
+def _on(boundary: str) -> Any:
+    parts: Any = {"grid": GRID | {"boundary": boundary}, "loading": {"force": "10 nN"}}
+    return lambda correction, _: run(corrections=[correction], **parts)
+
+
+def _apart(correction: Any, _: Any) -> str:
+    return run(corrections=[correction], loading={"depth": 0.0})
+
+
+def constant(fault: str, area: Any, *words: str) -> Broken:
+    """Return a correction whose area is always the same."""
+    methods: Any = dict.fromkeys(("area", "periodic_area"), lambda f, c, h: area)
+    return Broken(fault, Refused(*words), **methods)
+
+
+def across_x(f: Any, c: Any, h: Any) -> Any:
+    return h[0] * h[1] * (np.count_nonzero(c) - 0.1 * np.count_nonzero(c[1:] != c[:-1]))
+
+
+# Methods take contact c and spacing h [m].
+BROKEN: dict[str, Any] = {
+    "area_is_pure": [
+        constant("not known", np.nan, "returned nan", "a real number"),
+        constant("in words", "1 mm^2", "returned '1 mm^2'", "a real number"),
+        constant("whether there is one", True, "returned True"),
+        constant("several", np.ones(3), "returned an array of float64 of shape (3,)"),
+        Broken(
+            "marks cells of its caller",
+            Refused("changes what it is given"),
+            "free",
+            area=lambda f, c, h: f(np.logical_not(c, out=c), h),
+        ),
+    ],
+    "no_contact_has_no_area": [
+        constant("negative", -1.0, "-1 m²; it has to be between 0 and 4.8e-08 m²"),
+        constant("a square metre", 1.0, "1 m²; it has to be between 0 and 4.8e-08 m²"),
+        Broken(
+            "never less than one cell",
+            Refused("between 0 and 0 m², without contact"),
+            "apart",
+            area=lambda f, c, h: max(f(c, h), h[0] * h[1]),
+        ),
+    ],
+    "full_contact_is_the_domain": Broken(
+        "one per cent off", NEAR, area=lambda f, c, h: 0.99 * f(c, h)
+    ),
+    "area_is_near_the_count": Broken(
+        "twice", NEAR, area=lambda f, c, h: f(c, h) * (1 + (0 < c.mean() < 1))
+    ),
+    "area_scales_with_the_cells": Broken(
+        "takes off cells of a size that it knows",
+        NEAR,
+        area=lambda f, c, h: f(c, h) - 1e-12 * (0 < c.mean() < 1) * (h[0] * h[1] > 1e-12),
+    ),
+    "area_does_not_depend_on_the_view": Broken(
+        "sees boundaries across x alone", NEAR, area=across_x
+    ),
+    "periodic_area_has_no_seam": Broken(
+        "edge is a border", NEAR, periodic_area=lambda f, c, h: f.__self__.area(c, h)
+    ),
+    "goes_into_the_result": Broken(
+        "ignores wide cells", NEAR, area=lambda f, c, h: f(c, h) if h[0] < 3e-5 else 0.0
+    ),
+}
+CORRECTIONS = Family(
+    Correction,
+    {},
+    {"free": _on("free"), "periodic": _on("periodic"), "apart": _apart},
+    ("free", "periodic"),
+    BROKEN,
+)

@@ -1,0 +1,160 @@
+"""Executors that break their contract."""
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any, Literal
+
+import pellicle as pl
+from tests.framework.broken.catalogue import Broken, Family, Refused, Taken, study
+
+
+class Executor(pl.Executor):
+    """One task after the other, to be broken."""
+
+    type: Literal["broken"] = "broken"
+
+    def map(self, work: Any, tasks: Any, report: Any) -> Iterator[Any]:
+        for task in tasks:
+            yield task, self.attempt(work, task, partial(report, task))
+
+    def attempt(self, work: Any, task: Any, say: Any) -> Any:
+        try:
+            return work(task, say)
+        except Exception as error:
+            return error
+        except SystemExit as error:
+            return RuntimeError(str(error))
+
+
+def _study(executor: Any, folder: Path) -> str:
+    try:
+        return study(folder, executor)
+    except pl.PluginError:
+        # What was solved before it was refused is kept, and the rest can follow.
+        assert (folder / "study.h5").exists()
+        assert study(folder) == "CONVERGED"
+        raise
+
+
+def carries_out(change: Callable[[Any], Any]) -> Any:
+    """Return a map of other tasks."""
+    return lambda f, work, tasks, report: f(work, change(tasks), report)
+
+
+def yields(change: Callable[[Any, Any], Any]) -> Any:
+    """Return a map that yields something else for each task with its outcome."""
+    return lambda f, *given: (change(*pair) for pair in f(*given))
+
+
+def crossing(f: Any, work: Any, tasks: Any, report: Any) -> Iterator[Any]:
+    outcomes = [outcome for _, outcome in f(work, tasks, report)]
+    yield from zip(tasks, reversed(outcomes), strict=True)
+
+
+def twice(f: Any, work: Any, task: Any, say: Any) -> Any:
+    first, second = f(work, task, say), f(work, task, lambda text: None)
+    return second if isinstance(second, FileExistsError) else first
+
+
+def fragile(f: Any, work: Any, tasks: Any, report: Any) -> Iterator[Any]:
+    with ThreadPoolExecutor(len(tasks)):
+        yield from f(work, tasks, report)
+
+
+def leaving(f: Any, work: Any, task: Any, say: Any) -> Any:
+    try:
+        return work(task, say)
+    except Exception as error:
+        return error
+
+
+def swallowing(f: Any, work: Any, task: Any, say: Any) -> Any:
+    try:
+        return f(work, task, say)
+    except KeyboardInterrupt as error:
+        return RuntimeError(str(error))
+
+
+def lingering(f: Any, work: Any, tasks: Any, report: Any) -> Iterator[Any]:
+    attempt, pool = f.__self__.attempt, ThreadPoolExecutor(2)
+    futures = [pool.submit(attempt, work, task, lambda text: None) for task in tasks]
+    for task, future in zip(tasks, futures, strict=True):
+        yield task, future.result()
+
+
+def halting(f: Any, work: Any, tasks: Any, report: Any) -> Iterator[Any]:
+    dead = False
+    for task, outcome in f(work, tasks, report):
+        yield task, RuntimeError("no worker is left") if dead else outcome
+        dead = dead or "ended the process" in str(outcome)
+
+
+ITSELF = Refused("it has to yield each of the tasks that it was given, the object itself")
+CALM = Taken("the two runs of this study give no trouble")
+BROKEN: dict[str, Any] = {
+    "each_task_comes_once_with_its_outcome": [
+        Broken(
+            "leaves out a task",
+            Refused("map() ended without 1 of 2 tasks, such as reduced modulus 10 kPa"),
+            map=carries_out(lambda tasks: tasks[1:]),
+        ),
+        Broken(
+            "yields a task again",
+            Refused("yields reduced modulus 10 kPa twice; it has to yield each task once"),
+            map=carries_out(lambda tasks: [*tasks, *tasks[:1]]),
+        ),
+        Broken("yields copies", ITSELF, map=yields(lambda task, out: (replace(task), out))),
+        Broken("yields outcomes alone", ITSELF, map=yields(lambda task, out: out)),
+        Broken(
+            "loses outcomes",
+            Refused("with None; it has to yield it with what its work returned or raised"),
+            map=yields(lambda task, out: (task, None)),
+        ),
+        Broken(
+            "gives outcomes to other tasks",
+            Taken("an outcome does not say whose it is: the kit alone can tell"),
+            map=crossing,
+        ),
+    ],
+    "each_task_is_executed_once": Broken(
+        "carries tasks out twice", Taken("what is done is read again"), attempt=twice
+    ),
+    "equal_tasks_are_two_tasks": Broken(
+        "takes equal tasks for one",
+        Taken("no two runs of a study are equal"),
+        map=carries_out(lambda tasks: list(dict.fromkeys(tasks))),
+    ),
+    "no_tasks_yield_nothing": Broken("needs a task", CALM, map=fragile),
+    "failure_is_an_outcome": [
+        Broken(
+            "says nothing of an exception",
+            CALM,
+            attempt=lambda f, *given: None if isinstance(out := f(*given), ValueError) else out,
+        ),
+        Broken("lets exceptions out", CALM, attempt=lambda f, work, task, say: work(task, say)),
+    ],
+    "exit_is_an_outcome": Broken("lets an exit out", CALM, attempt=leaving),
+    "messages_are_reported": Broken(
+        "reports everything for the first task",
+        Taken("a bar that is wrong is no wrong number"),
+        map=lambda f, work, tasks, report: (
+            (task, f.__self__.attempt(work, task, partial(report, tasks[0]))) for task in tasks
+        ),
+    ),
+    "report_that_raises_ends_the_tasks": Broken(
+        "swallows an interruption", CALM, attempt=swallowing
+    ),
+    "nothing_goes_on_after_closing": [
+        Broken("goes on when it is closed", CALM, map=lingering),
+        Broken(
+            "returns a list",
+            Refused("map() returned [(RunTask(", "it has to be written with yield"),
+            map=lambda f, *given: list(f(*given)),
+        ),
+    ],
+    "death_of_a_worker_is_an_outcome": Broken("halts when a worker dies", CALM, map=halting),
+}
+EXECUTORS = Family(Executor, {}, {"study": _study}, ("study",), BROKEN)

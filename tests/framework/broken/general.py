@@ -1,0 +1,94 @@
+"""Components that break a rule of all families, here indenters."""
+
+import threading
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import ConfigDict, Field, SerializationInfo, model_serializer, model_validator
+
+from pellicle import ConfigError
+from pellicle.units import Length
+from tests.framework.broken.catalogue import Broken, Family, Taken, base
+from tests.framework.broken.indenters import INDENTERS
+
+Paraboloid: Any = base("indenter", "paraboloid")
+
+
+class Shape(Paraboloid):
+    """Paraboloid to be broken."""
+
+    type: Literal["broken"] = "broken"
+
+
+class Tied(Shape):
+    """Paraboloid of two radii whose units give both the same example."""
+
+    outer: Annotated[Length, Field(description="radius beyond the flat [m]")]
+
+    @model_validator(mode="after")
+    def _check_radii(self) -> Self:
+        if self.outer <= self.radius:
+            raise ConfigError("has to exceed radius", "outer")
+        return self
+
+
+class Forgetful(Shape):
+    """Paraboloid that is written without what it was given."""
+
+    @model_serializer
+    def _wrong(self) -> dict[str, Any]:
+        return {"type": "broken", "radius": 2 * self.radius}
+
+
+class TwoFaced(Shape):
+    """Paraboloid that is another as a Python table than as JSON."""
+
+    @model_serializer
+    def _wrong(self, info: SerializationInfo) -> dict[str, Any]:
+        factor = 2 if info.mode == "python" else 1
+        return {"type": "broken", "radius": factor * self.radius}
+
+
+class Thawed(Shape):
+    """Paraboloid whose fields can be set."""
+
+    model_config = ConfigDict(frozen=False)
+
+    def __hash__(self) -> int:
+        return hash(self.radius)
+
+
+def field(fault: str, kind: Any, default: Any, description: str | None) -> Broken:
+    """Return a paraboloid with one more field."""
+    annotation = Annotated[kind, Field(description=description)]
+    return Broken(fault, KIT, fields={"more": (annotation, default)})
+
+
+KIT = Taken("a run takes an object as it is; kit and registration look at its class")
+ROOM = ConfigDict(json_schema_extra={"additionalProperties": True})
+PARABOLOID = {"type": (Literal["paraboloid"], "paraboloid")}
+BROKEN: dict[str, Any] = {
+    "class_can_be_registered": [
+        Broken("no docstring", KIT, __doc__=None),
+        field("no description", Length, 1.0, None),
+    ],
+    "docstring_starts_with_a_sentence": [
+        Broken("no full stop", KIT, __doc__="Shape"),
+        Broken("long sentence", KIT, __doc__=f"{'Long ' * 20}."),
+    ],
+    "numbers_have_units": [
+        field("no unit", float | None, None, "length [m]"),
+        field("unit not told", Length | None, None, "length"),
+    ],
+    "is_frozen": Broken("not frozen", KIT, good=Thawed),
+    "pickles": Broken("no pickle", KIT, __getstate__=lambda f: threading.Lock()),
+    "goes_through_json": Broken("other JSON", KIT, good=Forgetful),
+    "goes_through_toml": field("no TOML", tuple[int | None, ...], (1, None), "marks"),
+    "unknown_field_is_refused": Broken(
+        "unknown fields", KIT, model_config=ConfigDict(extra="ignore")
+    ),
+    "schema_tells_the_fields": Broken("other schema", KIT, model_config=ROOM),
+    "takes_its_example": Broken("no such example", KIT, good=Tied, settings={"outer": 1e-2}),
+    "libraries_are_installed": Broken("no library", KIT, libraries=("pellicle-no-library",)),
+    "is_registered": Broken("type is taken", KIT, fields=PARABOLOID),
+}
+GENERAL = Family(Shape, {"radius": 1e-3}, INDENTERS.uses, ("run",), BROKEN)

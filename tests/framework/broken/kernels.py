@@ -1,0 +1,216 @@
+"""Kernels that break their contract."""
+
+from itertools import count
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+import pellicle as pl
+from pellicle.units import Modulus
+from tests.framework.broken.catalogue import GRID, Broken, Family, Refused, Taken, base, run
+
+HalfSpace: Any = base("kernel", "half_space")
+
+
+class Kernel(HalfSpace):
+    """Half-space to be broken."""
+
+    type: Literal["broken"] = "broken"
+
+
+class Relaxing(Kernel):
+    """Half-space half of which relaxes in a second."""
+
+    def branches(self) -> Any:
+        return ((0.5, 1.0),)
+
+    def scaled(self, share: float) -> Any:
+        return HalfSpace(reduced_modulus=share * self.reduced_modulus)
+
+    def without_skin(self) -> Any:
+        return self
+
+
+class WithoutForm(pl.Kernel):
+    """Half-space without a closed form."""
+
+    type: Literal["broken"] = "broken"
+    reduced_modulus: Annotated[Modulus, Field(description="E* [Pa]")]
+
+    def compliance(self, q: Any) -> Any:
+        return 2 / (self.reduced_modulus * q)
+
+
+def _on(boundary: str) -> Any:
+    return lambda kernel, _: run(kernel=kernel, grid=GRID | {"boundary": boundary})
+
+
+def _relaxes(kernel: Any, _: Any) -> str:
+    return run(kernel=kernel, loading={"depth": ["2 um", "2 um"], "time": [0, 1]})
+
+
+def hole(fault: str, wave: float) -> Broken:
+    """Return a kernel that is NaN at one wave [rad/m], which the run here does not have."""
+    return Broken(
+        fault, OTHERS, compliance=lambda f, q: np.where(abs(q / wave - 1) < 1e-6, np.nan, f(q))
+    )
+
+
+def bad(fault: str, value: float) -> Broken:
+    """Return a kernel with one bad value between two wavenumbers."""
+    words = f"compliance(q) of kernel 'broken' is {value:.3g} m/Pa at q"
+    return Broken(
+        f"{fault} at one wave",
+        Refused(words, error=pl.ConfigError),
+        compliance=lambda f, q: np.where((q > 5e4) & (q < 8e4), value, f(q)),
+    )
+
+
+def relaxing(fault: str, run: Refused | Taken, **members: Any) -> Broken:
+    """Return a kernel that relaxes in another way."""
+    return Broken(fault, run, "relaxes", good=Relaxing, **members)
+
+
+def form(fault: str, run: Refused | Taken, **members: Any) -> Broken:
+    """Return a kernel whose closed form, of free boundaries, is another."""
+    return Broken(fault, run, "free", **members)
+
+
+ANSWERS = count(1)
+ONCE = Taken("a run asks for each value once")
+OTHERS = Taken("this grid has no such wave")
+ANOTHER = Taken("a run cannot tell it from another material")
+AGREE = Refused("radial_primitive(r)", "compliance(q)", "they have to agree")
+BRANCHES = Refused("branches() returned (Branch(", "shares and times have to be positive and")
+BROKEN: dict[str, Any] = {
+    "compliance_is_vectorised": [
+        Broken(
+            "complex numbers", Refused("array of complex128"), compliance=lambda f, q: 1j * f(q)
+        ),
+        Broken(
+            "whole numbers",
+            Refused("compliance(q) returned an array of int64 of shape", "float64 of shape"),
+            compliance=lambda f, q: np.ceil(f(q)).astype(int),
+        ),
+        Broken(
+            "values of the transpose",
+            # What the preconditioner asks for is checked too: the solver is not blamed.
+            Refused("kernel 'broken': compliance(q) returned an array"),
+            "periodic",
+            compliance=lambda f, q: f(q).T,
+        ),
+        Broken("values in a list", Taken("it is as good"), compliance=lambda f, q: f(q).tolist()),
+        Broken("looks at all waves", ONCE, compliance=lambda f, q: f(q) * (1 + 1e-9 * q / q.max())),
+        Broken(
+            "grows until it overflows",
+            Refused("compliance(q) grows with q"),
+            "periodic",
+            compliance=lambda f, q: np.where(q > 1e8, np.inf, q * 1e-12),
+        ),
+    ],
+    "compliance_leaves_its_argument": Broken(
+        "works in place",
+        Refused("changes what it is given", "it has to work on a copy", "kernels.py, line"),
+        compliance=lambda f, q: f(np.multiply(q, 2, out=q)),
+    ),
+    "compliance_is_positive_and_finite": [
+        bad("zero", 0.0),
+        bad("negative", -1e-8),
+        bad("nan", np.nan),
+        bad("infinite", np.inf),
+        Broken(
+            "nan at short waves", OTHERS, compliance=lambda f, q: np.where(q > 1e11, np.nan, f(q))
+        ),
+    ],
+    "compliance_does_not_grow_for_short_waves": Broken(
+        "yields ever more to shorter waves",
+        Refused("compliance(q) grows with q", "has to fall, or to tend to a constant"),
+        "periodic",
+        compliance=lambda f, q: q * 1e-12,
+    ),
+    "periodic_operator_is_the_compliance": [
+        Broken(
+            "masked values",
+            Refused("compliance(q) returned a masked array"),
+            compliance=lambda f, q: np.ma.masked_array(f(q), q > np.median(q)),
+        ),
+        Broken(
+            "single precision for many waves",
+            Taken("seven digits are enough"),
+            compliance=lambda f, q: f(q) if q.size < 300 else np.float64(np.float32(f(q))),
+        ),
+        Broken(
+            "mean compliance in words",
+            Refused("mean_compliance() returned 'infinite'", "a real number"),
+            "periodic",
+            mean_compliance=lambda f: "infinite",
+        ),
+    ],
+    "periodic_run_converges": hole("nan at a wave of one grid", np.sqrt(2) * 2e3 * np.pi),
+    "free_run_converges": hole("nan at a wave of one preconditioner", 1.5e3 * np.pi),
+    "uniform_pressure_sinks_by_the_mean_compliance": Broken(
+        "fickle mean", ONCE, "periodic", mean_compliance=lambda f: 1e-6 * next(ANSWERS)
+    ),
+    "closed_form_is_whole": form(
+        "half of a closed form",
+        Taken("without a closed form a run tabulates the compliance"),
+        good=WithoutForm,
+        greens_function=lambda f, r: 1e-5 / r,
+    ),
+    "closed_form_leaves_its_argument": form(
+        "closed form works in place",
+        Refused("changes what it is given", "it has to work on a copy"),
+        greens_function=lambda f, r: f(np.multiply(r, 2, out=r)),
+    ),
+    "primitive_is_the_integral_of_the_closed_form": [
+        form("primitive too large", AGREE, radial_primitive=lambda f, r: 1.01 * f(r)),
+        form(
+            "shifted form", Taken("differences enter"), radial_primitive=lambda f, r: f(r) + 1e-12
+        ),
+        form(
+            "closed form of half the value",
+            Refused("radial_primitive(r) grows by", "greens_function(r)", "they have to agree"),
+            greens_function=lambda f, r: 0.5 * f(r),
+        ),
+    ],
+    "closed_form_is_the_transform_of_the_compliance": [
+        form(
+            "closed form of another solid",
+            AGREE,
+            greens_function=lambda f, r: 1.01 * f(r),
+            radial_primitive=lambda f, r: 1.01 * f(r),
+        ),
+        form("skin forgotten", AGREE, compliance=lambda f, q: f(q) / (1 + 1e-4 * q)),
+    ],
+    "free_operator_is_the_transform_of_the_compliance": Broken(
+        "primitive of fewer digits for many radii",
+        Taken("it is less than a closed form may be off"),
+        radial_primitive=lambda f, r: f(r) * (1 + 1e-4 * (r.size > 1000)),
+    ),
+    "branches_have_shares_and_times": [
+        relaxing("overdrawn", BRANCHES, branches=lambda f: ((0.5, 1.0), (0.6, 2.0))),
+        relaxing("relaxes in no time", BRANCHES, branches=lambda f: ((0.5, 0.0),)),
+    ],
+    "scaled_by_one_is_the_kernel": [
+        relaxing(
+            "relaxes when it is scaled",
+            ANOTHER,
+            scaled=lambda f, share: Relaxing(reduced_modulus=f(share).reduced_modulus),
+        ),
+        relaxing("softer when scaled by one", ANOTHER, scaled=lambda f, share: f(0.99 * share)),
+    ],
+    "scaled_stiffens_the_solid_alone": relaxing(
+        "skin is scaled", ANOTHER, without_skin=lambda f: Relaxing(reduced_modulus=5e3)
+    ),
+    "without_skin_has_no_skin": relaxing(
+        "elastic solid", ANOTHER, without_skin=lambda f: HalfSpace(reduced_modulus=1e4)
+    ),
+}
+KERNELS = Family(
+    Kernel,
+    {"reduced_modulus": 1e4},
+    {"free": _on("free"), "periodic": _on("periodic"), "relaxes": _relaxes},
+    ("free", "periodic"),
+    BROKEN,
+)

@@ -1,0 +1,106 @@
+"""Prescriptions that break their contract."""
+
+from dataclasses import replace
+from itertools import count
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+import pellicle as pl
+from pellicle.results.variables import Variable
+from tests.framework.broken.catalogue import Broken, Family, Marked, Refused, Taken, base, run
+
+GapVolume: Any = base("prescription", "gap_volume")
+
+
+class Volume(GapVolume):
+    """Gap volume to be broken."""
+
+    type: Literal["broken"] = "broken"
+    variables: ClassVar[Any] = (
+        GapVolume.variables[0]._replace(name="broken"),
+        GapVolume.variables[1],
+    )
+
+    def report(self, setting: Any, step: Any) -> dict[str, float]:
+        return {"broken": super().report(setting, step)["gap_volume"]}
+
+
+def _run(prescription: Any, _: Any) -> str:
+    loading = pl.Loading(gap_volume="1.3e-13 m**3")
+    # What is not registered has no key in a table.
+    vars(loading)["prescription"] = prescription
+    return run(loading=loading)
+
+
+def searches(**members: Any) -> Any:
+    """Return a method whose search has other members."""
+    return lambda f, *given: replace(f(*given), **members)
+
+
+def falling(f: Any, *given: Any) -> Any:
+    search = f(*given)
+    return replace(search, goal=-search.goal, measure=lambda step: -search.measure(step))
+
+
+def variable(name: str, what: str) -> Broken:
+    """Return a prescription that reports a variable of this name."""
+    refused = Refused(f"variables has '{name}', which is {what}")
+    return Broken(f"variable '{name}'", refused, variables=(Variable(name, "m", "meaning"),))
+
+
+def target(fault: str, words: str, method: Any) -> Broken:
+    """Return a prescription whose target a run refuses."""
+    return Broken(fault, Refused("target(setting, 1.3e-13)", words), target=method)
+
+
+CALLS = count(1)
+BROKEN: dict[str, Any] = {
+    "report_is_as_declared": [
+        Broken(
+            "report that is not declared",
+            Refused("report() returned {", "a dict of broken, as its variables declare"),
+            report=lambda f, *given: f(*given) | {"other": 1.0},
+        ),
+        Broken(
+            "report in words",
+            Refused("report()['broken'] returned 'about 1 mm³'", "a real number"),
+            report=lambda f, *given: {"broken": "about 1 mm³"},
+        ),
+        *(variable(name, "the name of another variable") for name in ("force", "status", "x")),
+        *(variable(name, "not a name") for name in ("a/b", "")),
+    ],
+    "target_is_pure": [
+        target("a number", "it has to return a pellicle.Depth, Force", lambda f, _, value: value),
+        target("unknown force", ".value returned nan", lambda *_: pl.Force(np.nan)),
+        target("infinite depth", ".value is inf; it has to be finite", lambda *_: pl.Depth(np.inf)),
+        target("pull", ".value is -1; it has to be finite and ≥ 0", lambda *_: pl.Force(-1.0)),
+        target("stiff spring", ".compliance is -1", lambda *_: pl.Depth(0.0, -1.0)),
+        target("resolution", ".resolution is -1", searches(resolution=-1.0)),
+        target("search for a name", "a function as measure", searches(measure="area")),
+        target("search by a number", "control = Depth or Force", searches(control=float)),
+        Broken(
+            "fails",
+            Refused("division by zero", "prescription 'broken' failed", error=ZeroDivisionError),
+            target=lambda f, setting, value: value / 0,
+        ),
+        Broken(
+            "searches for another volume every time",
+            Taken("a step asks once"),
+            target=lambda f, setting, value: f(setting, value * (1 + 1e-9 * next(CALLS))),
+        ),
+    ],
+    "values_are_refused_in_words": Broken(
+        "knows no 0", Taken("it is not zero"), target=lambda f, s, value: f(s, 1 / (1 / value))
+    ),
+    "search_does_not_fall": [
+        target("in words", "returned 'much'", searches(measure=lambda step: "much")),
+        Broken("searches for what falls", Marked("CONTACT_AT_EDGE"), target=falling),
+    ],
+    "step_has_what_is_prescribed": Broken(
+        "means twice the volume",
+        Taken("a run cannot tell what its value means"),
+        target=lambda f, setting, value: f(setting, min(0.6 * value, value)),
+    ),
+}
+PRESCRIPTIONS = Family(Volume, {}, {"run": _run}, ("run",), BROKEN)

@@ -1,0 +1,197 @@
+"""Solvers that break their contract."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, Literal
+
+import numpy as np
+
+import pellicle as pl
+from tests.framework.broken.catalogue import Broken, Family, Marked, Refused, Taken, base, run
+
+ConjugateGradient: Any = base("solver", "conjugate_gradient")
+
+
+class Solver(ConjugateGradient):
+    """Conjugate gradients to be broken."""
+
+    type: Literal["broken"] = "broken"
+
+
+def _run(**loading: Any) -> Any:
+    return lambda solver, _: run(solver=solver, loading=loading)
+
+
+def returns(change: Callable[[Any], Any]) -> Any:
+    """Return a method whose value is changed."""
+    return lambda f, *given: change(f(*given))
+
+
+def gives(fault: str, run: Refused | Marked | Taken, **changes: Callable[[Any], Any]) -> Broken:
+    """Return a solver whose solution s has other members."""
+    return Broken(
+        fault, run, solve=returns(lambda s: replace(s, **{k: v(s) for k, v in changes.items()}))
+    )
+
+
+def harms(fault: str, run: Refused, action: Callable[[Any], Any]) -> Broken:
+    """Return a solver that changes its problem when it has solved it."""
+    return Broken(fault, run, solve=lambda f, problem, *_: (f(problem, *_), action(problem))[0])
+
+
+def answers(fault: str, run: Refused | Marked, response: Any) -> Broken:
+    """Return a solver with another response under a punch."""
+    return Broken(fault, run, "stiffness", response=response)
+
+
+def starts(change: Callable[[Any], Any]) -> Any:
+    """Return a method that uses its start in another way."""
+    return lambda f, problem, start, monitor: f(problem, start and change(start), monitor)
+
+
+def after(change: Callable[[Any, Any], Any]) -> Any:
+    """Return a method whose solution is changed where there is a start."""
+
+    def solve(f: Any, problem: Any, start: Any, monitor: Any) -> Any:
+        solution = f(problem, start, monitor)
+        return solution if start is None else change(solution, start)
+
+    return solve
+
+
+def overwritten(solution: Any, start: Any) -> Any:
+    start.pressure[...] = solution.pressure
+    return replace(solution, state=start)
+
+
+def negative(solution: Any) -> Any:
+    pressure = solution.pressure.copy()
+    pressure[0, 0] = -1e-9 * pressure.max()
+    return pressure
+
+
+def of_soft_solids(f: Any, problem: Any, *given: Any) -> Any:
+    solution, soft = f(problem, *given), problem.operator.kernel.reduced_modulus < 1.5e4
+    return solution if soft else replace(solution, state=0.9 * solution.pressure, stop=STALLED)
+
+
+def three_steps(f: Any, *given: Any) -> Any:
+    solver = f.__self__.model_copy(update={"max_iterations": 3})
+    return ConjugateGradient.solve(solver, *given)
+
+
+def costly(f: Any, problem: Any, state: Any) -> Any:
+    problem.operator(state.pressure)
+    return f(problem, state)
+
+
+def wearing(f: Any, problem: Any, state: Any) -> Any:
+    residual = f(problem, state)
+    object.__setattr__(state, "scale", (1 + 1e-9) * state.scale)
+    return residual
+
+
+def soften(problem: Any) -> None:
+    problem.operator._symbol["D"][...] *= 2
+
+
+def fill(f: Any, problem: Any, state: Any, monitor: Any) -> Any:
+    state.pressure[...] = 1.0
+    return f(problem, state, monitor)
+
+
+STALLED = pl.Stop.STALLED
+ARRAY = Refused("not an array: its pressure is start.pressure", "pellicle.Solution(pressure or")
+READ_ONLY = Refused("changes what it is given", "read-only")
+OFF = Marked("CONTACT_RESIDUAL")
+BROKEN: dict[str, Any] = {
+    "solve_returns_a_solution": [
+        Broken("returns nothing", Refused("solve() returned None"), solve=returns(lambda s: None)),
+        gives(
+            "pressure in a row",
+            Refused("solve().pressure returned an array of float64 of shape (120,)", "(12, 10)"),
+            state=lambda s: s.pressure.ravel(),
+        ),
+        gives(
+            "does not say why it ended", Refused("stop None", "pellicle.Stop"), stop=lambda s: None
+        ),
+        harms(
+            "another operator behind the back of the problem",
+            Refused("solve() changes problem.operator", "leave its problem as it is"),
+            lambda problem: object.__setattr__(problem, "operator", None),
+        ),
+        harms(
+            "assigns another operator",
+            Refused("changes what it is given", "operator"),
+            lambda problem: setattr(problem, "operator", None),
+        ),
+        harms("softens the operator in place", READ_ONLY, soften),
+        harms(
+            "another symbol of the operator",
+            Refused("solve() changes problem.operator.symbol"),
+            lambda problem: setattr(problem.operator._symbol, "double", 1.0),
+        ),
+        harms(
+            "sets the count of applications",
+            Refused("applications", "solver 'broken' failed", error=AttributeError),
+            lambda problem: setattr(problem.operator, "applications", 0),
+        ),
+        harms("lowers the profile", READ_ONLY, lambda problem: np.copyto(problem.profile, -1.0)),
+        Broken("is out of date", ARRAY, solve=returns(lambda s: type(s)(pressure=1, iterations=1))),
+    ],
+    "start_belongs_to_the_caller": [
+        Broken("scales its start", ARRAY, solve=starts(lambda start: 0.5 * start)),
+        Broken("copies its start", ARRAY, solve=starts(lambda start: start.copy())),
+        Broken("clips its start", ARRAY, solve=starts(lambda start: np.maximum(start, 0))),
+        Broken("writes into its start", READ_ONLY, solve=after(overwritten)),
+        Broken("echoes", OFF, solve=after(lambda s, start: replace(s, state=start, stop=STALLED))),
+    ],
+    "start_does_not_matter": Broken(
+        "takes the step before for the answer",
+        OFF,
+        solve=after(lambda s, start: replace(s, state=start.pressure.copy(), stop=STALLED)),
+    ),
+    "pressure_is_nowhere_negative": gives("sucks", Marked("NEGATIVE_PRESSURE"), state=negative),
+    "done_means_solved": gives("is not done", OFF, state=lambda s: 1.0001 * s.pressure),
+    "prescribed_values_are_met": Broken("gives up early", OFF, solve=three_steps),
+    "pressure_is_proportional_to_the_stiffness": Broken(
+        "knows of soft solids alone", Taken("this solid is soft"), solve=of_soft_solids
+    ),
+    "monitor_is_called": [
+        Broken(
+            "tells nobody how far it is",
+            Taken("a bar that stands still is no wrong number"),
+            solve=lambda f, problem, start, monitor: f(problem, start, lambda *progress: None),
+        ),
+        gives(
+            "counts other iterations than it told",
+            Taken("nothing follows from the count"),
+            iterations=lambda s: s.iterations + 1,
+        ),
+    ],
+    "residual_has_no_side_effect": [
+        Broken("applies the operator for a residual", Taken("it costs time"), residual=costly),
+        Broken(
+            "shrinks its error with each look",
+            Taken("the residual of a result is measured without the solver"),
+            residual=wearing,
+        ),
+    ],
+    "response_is_that_of_a_flat_punch": [
+        answers("response under another punch", Marked("STIFFNESS"), returns(lambda p: 1.01 * p)),
+        answers(
+            "response off the contact",
+            Refused("response() returned a pressure off the contact"),
+            returns(lambda p: p + 1e-3),
+        ),
+        answers("no response", Refused("response() returned None"), returns(lambda p: None)),
+        answers("response that fills the contact", READ_ONLY, fill),
+    ],
+}
+SOLVERS = Family(
+    Solver,
+    {"tolerance": 1e-6},
+    {"path": _run(depth=["1 um", "2 um"]), "stiffness": _run(depth="2 um", stiffness=True)},
+    ("path",),
+    BROKEN,
+)

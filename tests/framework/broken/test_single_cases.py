@@ -1,0 +1,212 @@
+"""What no table shows: several components together, and what looks broken and is not."""
+
+from __future__ import annotations
+
+import tomllib
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+import pytest
+
+import pellicle as pl
+from pellicle import testing
+from pellicle.config import explain
+from pellicle.plugins import registry
+from pellicle.testing import component as component_rules
+from tests.framework.broken.catalogue import GRID, PARTS, Broken, Taken, make, run
+from tests.framework.broken.corrections import Correction
+from tests.framework.broken.executors import EXECUTORS, Executor
+from tests.framework.broken.general import Tied, TwoFaced
+from tests.framework.broken.interactions import INTERACTIONS
+from tests.framework.broken.kernels import KERNELS
+from tests.framework.broken.outputs import OUTPUTS, Output
+from tests.framework.broken.prescriptions import Volume
+from tests.framework.broken.solvers import Solver
+
+STEP: Any = PARTS | {"loading": {"depth": "2 um"}}
+
+
+@pytest.mark.parametrize("code", [0, 3])
+def test_a_component_cannot_end_the_process(code: int, tmp_path: Path) -> None:
+    """A component that calls sys.exit() is named; the run does not end as if all were well."""
+
+    def leave(*_: Any) -> None:
+        raise SystemExit(code)
+
+    methods: Any = dict.fromkeys(("compliance", "write"), leave)
+    kernel, output = (make(f, Broken("leaves", Taken(""), **methods)) for f in (KERNELS, OUTPUTS))
+    for parts in ({"kernel": kernel}, {"outputs": [output]}):
+        with pytest.raises(pl.PluginError, match=rf"'broken' calls sys.exit\({code}\)"):
+            run(tmp_path, **parts)
+
+
+def _change(data: Any) -> None:
+    """Change all that can be changed of the data of a run."""
+    for name in ("x", "status", "pressure"):
+        # Whether coordinates can be written to, and are copies then, is up to pandas.
+        with suppress(ValueError):
+            data[name].values[...] = "perfect" if name == "status" else 0
+    data["force"] = data["force"] * 2
+    data["force"].attrs["units"] = "kN"
+    data.attrs["configuration"] = "{}"
+    del data["depth"]
+
+
+@pytest.mark.parametrize("method", ["step", "write"])
+def test_an_output_cannot_change_the_result(method: str, tmp_path: Path) -> None:
+    """What it writes into its data reaches neither the file, nor the result, nor other outputs."""
+
+    class Changing(Output):
+        def step(self, record: Any, stem: Any) -> None:
+            if method == "step":
+                _change(record)
+
+        def write(self, runs: Any, stem: Any) -> Any:
+            if method == "write":
+                _change(runs.open())
+            return ()
+
+    class Looking(pl.Output):
+        type: Literal["looking"] = "looking"
+        seen: ClassVar[list[Any]] = []
+
+        def write(self, runs: Any, stem: Any) -> Any:
+            self.seen.append(runs.open().copy())
+            return ()
+
+    plain, changed = (
+        pl.run(STEP | {"outputs": outputs}, directory=tmp_path / name, progress=False).dataset
+        for name, outputs in (("plain", []), ("changed", [Changing(), Looking()]))
+    )
+    (file,) = (tmp_path / "changed").glob("*.h5")
+    for data in (changed, pl.load(file).dataset, *Looking.seen):
+        for name in ("pressure", "status", "force", "x", "depth"):
+            np.testing.assert_array_equal(data[name], plain[name])
+        assert data["force"].attrs["units"] == "N"
+        assert "half_space" in data.attrs["configuration"]
+    # Only outputs are given read-only arrays: a user may write into a result.
+    changed["pressure"].values[...] = 1
+
+
+CONE = {"type": "cone", "half_angle": "20 degree"}
+ROUGH = {"type": "self_affine", "rms_height": "1 um", "hurst": 0.5, "cutoff_wavelength": "50 um"}
+
+
+@pytest.mark.parametrize("points", [12, 13, 2, 1, [12, 1]], ids=str)
+def test_an_apex_between_the_cells_is_no_fault(points: Any) -> None:
+    """However coarse the grid, a profile that is 0 between or beyond its cells is taken.
+
+    A body of four cells, or roughness of few cells, may miss 0 by all its height.
+    """
+    few: Any = [{"type": "sphere", "radius": "15 um"}, ROUGH] if points == 12 else []
+    for indenter in (
+        {"type": "paraboloid", "radius": "0.1 mm"},
+        CONE,
+        {"type": "shifted", "x": "9 um", "part": CONE},
+        {"type": "shifted", "x": "1 mm", "part": {"type": "paraboloid", "radius": "1 mm"}},
+        {"type": "sphere", "radius": "0.1 mm"},
+        {"type": "flat_punch", "radius": "0.1 mm"},
+        *few,
+    ):
+        # No pressure at all, so that nothing is refused for another reason.
+        grid = {"points": points, "size": "0.24 mm"}
+        assert run(indenter=indenter, grid=grid, loading={"force": 0}) == "CONVERGED"
+
+
+@pytest.mark.parametrize("thickness", ["1 nm", "1 um", "20 um"])
+def test_a_thin_incompressible_layer_may_yield_more_to_shorter_waves(thickness: str) -> None:
+    """On cells wider than the layer G(q) grows over all of the grid's waves, and is allowed to."""
+    kernel = pl.kernel("bonded_layer", reduced_modulus=1e4, poissons_ratio=0.5, thickness=thickness)
+    grid = pl.Grid(points=8, size="4 mm", boundary="periodic")
+    values = kernel.compliance(np.linspace(1, 2, 5) * np.pi / 5e-4)
+    assert (np.diff(values) > 0).all()
+    assert pl.displacement(np.eye(8), kernel=kernel, grid=grid).max() > 0
+
+
+@pytest.mark.filterwarnings("ignore::pellicle.ConvergenceWarning")
+def test_a_slope_need_not_be_given() -> None:
+    """The one that is measured keeps the contract, and a run takes it."""
+    slope: Any = pl.Interaction.slope
+    law = Broken("measured slope", Taken(""), slope=lambda f, gap: slope(f.__self__, gap))
+    with pytest.raises(AssertionError, match="breaks the rule is_registered\n"):
+        testing.check_interaction(make(INTERACTIONS, law))
+    assert INTERACTIONS.uses["run"](make(INTERACTIONS, law), Path()) == "CONVERGED"
+
+
+def test_a_solver_that_uses_its_memory_again_changes_no_earlier_step() -> None:
+    """Each step keeps its own pressure, though the solver returns one array for all."""
+    memory = np.zeros(GRID["points"])
+
+    class Thrifty(Solver):
+        def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
+            solution = super().solve(problem, start, monitor)
+            memory[...] = solution.pressure
+            return replace(solution, state=memory)
+
+    loading = {"depth": ["2 um", "4 um"]}
+    thrifty, plain = (
+        pl.run(STEP | {"solver": solver, "loading": loading}, progress=False).dataset["pressure"]
+        for solver in (Thrifty(tolerance=1e-6), Solver(tolerance=1e-6))
+    )
+    np.testing.assert_array_equal(thrifty, plain)
+
+
+class NoType(pl.AreaCorrection):
+    """Correction that has no type."""
+
+    area: ClassVar[Any] = Correction.area
+
+
+@pytest.mark.parametrize(
+    ("component", "words"),
+    [
+        (Correction, "Correction is a class; pass an instance: Correction(…)"),
+        (Executor(), "breaks the rule is_an_instance"),
+        (NoType(), 'NoType needs a field: type: Literal["…"] = "…"'),
+    ],
+)
+def test_the_kit_says_what_is_no_component(component: Any, words: str) -> None:
+    """A class, a component of another family and a class without a type are told what they lack."""
+    with pytest.raises(AssertionError, match="breaks the rule") as caught:
+        testing.check_correction(component)
+    assert words in str(caught.value)
+
+
+def test_what_a_component_raises_is_the_cause() -> None:
+    """An error of the author's own code comes with its traceback."""
+    raising = Broken("raises", Taken(""), attempt=lambda f, work, task, say: work(task, say))
+    with pytest.raises(AssertionError, match="ValueError") as caught:
+        testing.check_executor(make(EXECUTORS, raising))
+    assert isinstance(caught.value.__cause__, ValueError)
+
+
+def _register(monkeypatch: pytest.MonkeyPatch, module: Any, component: Any) -> None:
+    ours = registry()
+    entry = replace(ours.components["indenter"]["paraboloid"], component=component, type="broken")
+    indenters = {**ours.components["indenter"], "broken": entry}
+    changed = replace(ours, components={**ours.components, "indenter": indenters})
+    monkeypatch.setattr(module, "registry", lambda: changed)
+
+
+def test_the_registry_makes_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A component that is installed, and another when it has been a table, is caught."""
+    _register(monkeypatch, component_rules, TwoFaced)
+    with pytest.raises(AssertionError, match="breaks the rule goes_through_the_registry\n"):
+        testing.check_indenter(TwoFaced(radius=1e-3))
+
+
+def test_an_example_is_printed_only_if_it_makes_the_component(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Where fields are tied their units give no example; that of a pure number has no unit."""
+    _register(monkeypatch, explain, Tied)
+    (tied,) = explain.explanations("broken", {})
+    assert tomllib.loads(tied.example) == {}
+    assert "outer: has to exceed radius" in tied.example
+    share: Any = type("Share", (Volume,), {"__module__": __name__, "unit": "1"})
+    entry = replace(registry().components["prescription"]["gap_volume"], component=share)
+    (value,) = explain.example_table(entry)["gap_volume"]
+    assert share.quantity()(value) > 0
