@@ -14,7 +14,7 @@ from pellicle.results.path import has_interaction, has_times, label_of_step
 from pellicle.results.result import Result
 from pellicle.units import axis_unit
 
-from .lines import EDGE_CELLS, edge_cells, smooth
+from .lines import EDGE_CELLS, edge_cells
 from .style import NO_CONTACT, add_colour_bar
 
 if TYPE_CHECKING:
@@ -151,7 +151,7 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
     x = line["x"].values * length
     pressure, contact = line["pressure"].values * scale, line["contact"].values
     edge = np.zeros_like(contact) if pulls else edge_cells(contact)
-    axes.plot(*smooth(x, np.where(edge, np.nan, pressure)), color="C0")
+    axes.plot(x, np.where(edge, np.nan, pressure), color="C0")
     if edge.any():
         axes.plot(x[edge], pressure[edge], ".", color="C0", markersize=3)
     about = f"\ndots: {EDGE_CELLS}" if edge.any() else ""
@@ -161,7 +161,7 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
     axes.set_ylabel(f"{'' if pulls else 'contact '}pressure [{name}]", color="C0")
     axes.set_title(_caption(result, step))
     gap_axes = axes.twinx()
-    gap_axes.plot(*smooth(x, gap * gap_scale), color="C1", linestyle="--")
+    gap_axes.plot(x, gap * gap_scale, color="C1", linestyle="--")
     gap_axes.set_ylabel(f"gap [{gap_name}]", color="C1")
     if pulls:
         axes.axhline(0.0, color="C0", linewidth=0.6)

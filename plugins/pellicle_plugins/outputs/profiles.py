@@ -12,7 +12,7 @@ from pellicle import hookimpl
 from pellicle.arrays import Mask
 from pellicle.components import Output, Runs
 from pellicle.model.expression import names_in
-from pellicle.report.lines import EDGE_CELLS, edge_cells, smooth
+from pellicle.report.lines import EDGE_CELLS, edge_cells
 from pellicle.report.style import LINES, MARKERS, colour
 from pellicle.results.derived import as_array
 from pellicle.results.path import has_interaction
@@ -70,7 +70,8 @@ class Profiles(XYFigure):
                 )
             else:
                 axes.plot(
-                    *smooth(drawn_x, drawn_y),
+                    drawn_x,
+                    drawn_y,
                     LINES[number % len(LINES)],
                     color=hue,
                     linewidth=1.2,
