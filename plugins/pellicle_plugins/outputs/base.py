@@ -6,7 +6,7 @@ import csv
 import json
 import re
 from abc import abstractmethod
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, NamedTuple
 
@@ -240,16 +240,11 @@ def joined(name: str, arrays: Sequence[xr.DataArray]) -> xr.DataArray:
     return xr.DataArray(values, dims="value", name=name, attrs=arrays[0].attrs)
 
 
-def in_words(text: str, data: xr.Dataset, further: Mapping[str, str] | None = None) -> str:
-    """Return an expression over a result or a table with words in place of its names.
-
-    ``further`` has the words of names that are in neither.
-    """
+def in_words(text: str, data: xr.Dataset) -> str:
+    """Return an expression over a result or a table with words in place of its names."""
     configuration = json.loads(data.attrs.get(FIRST_RUN, data.attrs.get("configuration", "{}")))
 
     def words(name: str) -> str:
-        if further and name in further:
-            return further[name]
         if name in data.variables:
             return wording(data[name]).words
         return words_at(configuration, Run, name) if "." in name else words_of_name(name)
