@@ -33,7 +33,7 @@ def skip_rivals(monkeypatch: pytest.MonkeyPatch) -> None:
     def skipped(*arguments: Any, **options: Any) -> None:
         """Compare nothing."""
 
-    for module in ("fit", "pooled"):
+    for module in ("one_curve", "pooled"):
         monkeypatch.setattr(f"pellicle_fit.{module}.compare", skipped)
 
 
