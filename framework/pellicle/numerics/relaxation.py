@@ -60,9 +60,7 @@ class TimeStep:
         weights = [b.share * _mean_decay(x) for b, x in zip(branches, ratios, strict=True)]
         permanent = max(0.0, 1.0 - math.fsum(branch.share for branch in branches))
         return cls(
-            tuple(math.exp(-x) for x in ratios),
-            tuple(weights),
-            math.fsum([permanent, *weights]),
+            tuple(math.exp(-x) for x in ratios), tuple(weights), math.fsum([permanent, *weights])
         )
 
 

@@ -20,13 +20,7 @@ from pellicle.results.wording import wording
 from .fields import pressure_map, profile
 from .legs import MOST_LEGS, draw_legs, name_legs
 from .saving import save_figure
-from .style import (
-    MARKERS,
-    FigureStyle,
-    colour,
-    is_log_spaced,
-    is_ordered,
-)
+from .style import MARKERS, FigureStyle, colour, is_log_spaced, is_ordered
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -251,10 +245,7 @@ def _parts(table: xr.Dataset, dimensions: Sequence[str]) -> Iterator[xr.Dataset]
 
 
 def _curve(
-    result: Result,
-    axes: Axes,
-    series: Sequence[tuple[str, str | None, str]],
-    against: str,
+    result: Result, axes: Axes, series: Sequence[tuple[str, str | None, str]], against: str
 ) -> None:
     """Draw variables, with label and style, against another over the steps of a run."""
     data = result.dataset

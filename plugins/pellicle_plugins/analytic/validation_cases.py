@@ -111,13 +111,7 @@ def _adhesion() -> Iterator[Case]:
             "loading": {"depth": {"start": start, "stop": stop, "num": 10}, "stiffness": True},
         }
         yield Case(
-            f"{name}: pull-off",
-            configuration,
-            _pull_off,
-            float(pull_off.force),
-            "N",
-            1e-2,
-            source,
+            f"{name}: pull-off", configuration, _pull_off, float(pull_off.force), "N", 1e-2, source
         )
         yield Case(
             f"{name}: contact radius without load",

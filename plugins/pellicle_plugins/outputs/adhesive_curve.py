@@ -218,9 +218,7 @@ def _draw(
 
 
 def _status(
-    curve: analysis.AdhesiveCurve,
-    points: dict[str, analysis.AdhesiveContact],
-    path: xr.Dataset,
+    curve: analysis.AdhesiveCurve, points: dict[str, analysis.AdhesiveContact], path: xr.Dataset
 ) -> str:
     """Return which points are not on the path, not resolved, or steeper than the theory allows."""
     spacing = max(Result(path).grid.spacing)

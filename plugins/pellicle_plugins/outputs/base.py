@@ -150,10 +150,7 @@ class XYFigure(TableFigure):
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure and its numbers."""
         rows: list[dict[str, object]] = []
-        files = self.save(
-            lambda figure: rows.extend(self.draw(figure.add_subplot(), runs)),
-            stem,
-        )
+        files = self.save(lambda figure: rows.extend(self.draw(figure.add_subplot(), runs)), stem)
         return (*files, write_csv(stem, rows))
 
 

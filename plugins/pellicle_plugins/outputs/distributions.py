@@ -45,9 +45,7 @@ class Distributions(TableFigure):
         """Write the figure and its numbers."""
         curves = [(name, self._densities(step)) for name, step in self.steps(runs)]
         files = self.save(
-            lambda figure: self._fill(figure, curves, self.is_ordered(runs)),
-            stem,
-            _SIZE,
+            lambda figure: self._fill(figure, curves, self.is_ordered(runs)), stem, _SIZE
         )
         return (*files, write_csv(stem, list(_rows(curves)), _HEADS))
 

@@ -19,12 +19,7 @@ from pellicle.components import Output, Runs
 from pellicle.config.describe import inputs
 from pellicle.errors import StorageError
 from pellicle.files import atomic_write
-from pellicle.report.fields import (
-    DIVERGING,
-    default_step,
-    draws_contact,
-    without_round_off,
-)
+from pellicle.report.fields import DIVERGING, default_step, draws_contact, without_round_off
 from pellicle.report.page import (
     Code,
     Frame,
@@ -45,14 +40,7 @@ from pellicle.results.result import Result, first_message
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
 from pellicle.results.variables import WALL_PRESSURE
 from pellicle.results.wording import wording
-from pellicle.studies.summary import (
-    caveats,
-    failures,
-    progress_of,
-    reasons,
-    run_names,
-    runs_of,
-)
+from pellicle.studies.summary import caveats, failures, progress_of, reasons, run_names, runs_of
 
 from .html_curves import curves_of_run, curves_of_study
 from .html_tables import (
@@ -156,11 +144,7 @@ class Html(Output):
         ]
 
     def _sections_of_study(
-        self,
-        table: xr.Dataset,
-        first_run: dict[str, Any],
-        varied: tuple[str, ...],
-        folder: Path,
+        self, table: xr.Dataset, first_run: dict[str, Any], varied: tuple[str, ...], folder: Path
     ) -> list[Section]:
         """Return what the page of a study shows before methods and provenance.
 
@@ -204,12 +188,7 @@ class Html(Output):
         shown_steps = _share_in_words(len(chosen), steps, "load step")
         caption = f"{names} at prescribed {words}, in {shown_steps}{colours}."
         maps = Maps(
-            caption,
-            "load step",
-            tuple(mapped.values()),
-            frames,
-            begin=max(begin, 0),
-            shared=False,
+            caption, "load step", tuple(mapped.values()), frames, begin=max(begin, 0), shared=False
         )
         return maps, chosen
 

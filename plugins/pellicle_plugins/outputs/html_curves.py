@@ -81,9 +81,7 @@ _Marks = list[list[tuple[float, float]]]
 
 
 def _picture(
-    fill: Callable[[Figure], None],
-    caption: str,
-    marked: Callable[[Figure], _Marks] | None = None,
+    fill: Callable[[Figure], None], caption: str, marked: Callable[[Figure], _Marks] | None = None
 ) -> Picture:
     """Return a picture, with the marks that ``marked`` returns for the filled figure."""
     marks: _Marks = []

@@ -69,11 +69,7 @@ class Maps(TableFigure):
         across = min(max(len(panels), 1), _COLUMNS)
         down = ceil(max(len(panels), 1) / across)
         size = (_PANEL * across + 1.2, _PANEL * down + 1.0) if len(panels) > 1 else (5.4, 4.2)
-        return self.save(
-            lambda figure: self._fill(figure, panels, down, across),
-            stem,
-            size,
-        )
+        return self.save(lambda figure: self._fill(figure, panels, down, across), stem, size)
 
     def _fill(
         self,

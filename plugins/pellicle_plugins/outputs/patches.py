@@ -50,9 +50,7 @@ class Patches(TableFigure):
         """Write the figure and its numbers."""
         curves = [(name, step, self._patches(step)) for name, step in self.steps(runs)]
         files = self.save(
-            lambda figure: self._fill(figure, curves, self.is_ordered(runs)),
-            stem,
-            _SIZE,
+            lambda figure: self._fill(figure, curves, self.is_ordered(runs)), stem, _SIZE
         )
         rows = [row for curve in curves for row in _rows(*curve)]
         return (*files, write_csv(stem, rows, _HEADS))

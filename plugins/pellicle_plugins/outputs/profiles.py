@@ -108,9 +108,7 @@ class Profiles(XYFigure):
         return max(1, x.size // _MARKERS)
 
     def _name_axes(
-        self,
-        axes: Axes,
-        curves: Sequence[tuple[Label, xr.Dataset, xr.DataArray, xr.DataArray]],
+        self, axes: Axes, curves: Sequence[tuple[Label, xr.Dataset, xr.DataArray, xr.DataArray]]
     ) -> tuple[float, float]:
         """Label the axes, in units that suit all curves, and return the factors to them."""
         line = curves[0][1]

@@ -41,8 +41,7 @@ class Spectrum(TableFigure):
         """Write the figure and its numbers."""
         curves = [(name, _spectra(step)) for name, step in self.steps(runs)]
         files = self.save(
-            lambda figure: self._fill(figure.add_subplot(), curves, self.is_ordered(runs)),
-            stem,
+            lambda figure: self._fill(figure.add_subplot(), curves, self.is_ordered(runs)), stem
         )
         return (*files, write_csv(stem, list(_rows(curves)), _HEADS))
 
@@ -75,9 +74,7 @@ class Spectrum(TableFigure):
                 label=surface,
             )
         axes.set(
-            xlabel="wavenumber q [rad/m]",
-            ylabel="power spectral density [m⁴]",
-            title=self.title,
+            xlabel="wavenumber q [rad/m]", ylabel="power spectral density [m⁴]", title=self.title
         )
         if highest > 0:
             axes.set(xscale="log", yscale="log")
