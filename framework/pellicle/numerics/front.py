@@ -57,7 +57,8 @@ def shifted(grid: Grid, before: Traction, last: Traction, ratio: float) -> Tract
     # With a margin in which the fields go on beyond the domain.
     mode: Literal["wrap", "edge"] = "wrap" if grid.boundary == "periodic" else "edge"
     one, two = (
-        Traction(*(np.pad(field, _MARGIN, mode=mode) for field in part)) for part in (before, last)
+        Traction._make(np.pad(field, _MARGIN, mode=mode) for field in part)
+        for part in (before, last)
     )
     distance = _signed_distance(two.contact, grid)
     moved = ratio * (_signed_distance(one.contact, grid) - distance)
