@@ -110,15 +110,8 @@ def outline_contact(step: xr.Dataset, axes: Axes, length: float) -> None:
     for mask, style in ((contact, "solid"), (acts, "dotted")):
         # matplotlib warns of a contour that does not exist.
         if mask.any() and not mask.all() and min(mask.shape) > 1:
-            axes.contour(
-                x,
-                y,
-                mask.T.astype(float),
-                levels=[0.5],
-                colors="black",
-                linewidths=0.8,
-                linestyles=style,
-            )
+            line: dict[str, Any] = {"colors": "black", "linewidths": 0.8, "linestyles": style}
+            axes.contour(x, y, mask.T.astype(float), levels=[0.5], **line)
 
 
 def profile(result: Result, axes: Axes, step: int | None = None) -> None:
@@ -178,15 +171,9 @@ def _shade(axes: Axes, x: Array, where: Mask) -> None:
     """Shade the cells at ``x`` where a mask holds, over the whole height of the axes."""
     # An empty shade would set the limits of the axes to round-off.
     if where.any():
+        over = axes.get_xaxis_transform()
         shade = axes.fill_between(
-            x,
-            0,
-            1,
-            where=where,
-            step="mid",
-            transform=axes.get_xaxis_transform(),
-            color="0.9",
-            zorder=0,
+            x, 0, 1, where=where, step="mid", transform=over, color="0.9", zorder=0
         )
         # Otherwise 0 and 1 are edges of the vertical axis.
         shade.sticky_edges.y.clear()
