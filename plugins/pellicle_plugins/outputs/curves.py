@@ -49,12 +49,12 @@ _EXACT = LineStyle("black", None, "")
 """Style of a reference."""
 
 
-def _several(value: object) -> object:
-    return (value,) if isinstance(value, str) else value
-
-
 _Texts = Annotated[
-    tuple[str, ...], BeforeValidator(_several, json_schema_input_type=str | tuple[str, ...])
+    tuple[str, ...],
+    BeforeValidator(
+        lambda value: (value,) if isinstance(value, str) else value,
+        json_schema_input_type=str | tuple[str, ...],
+    ),
 ]
 """One text, or a list of them."""
 
@@ -147,7 +147,7 @@ class Curves(XYFigure):
         if not has_path(table):
             return True
         used = set[str]().union(*(names_in(text) for text in (self.x, *self.y)))
-        of_runs = {name for name in used & {*map(str, table.variables)} if _of_run(table[name])}
+        of_runs = {name for name in map(str, table.variables) if "step" not in table[name].dims}
         return bool(used & ({*map(str, table.variables), *FIELDS, WALL_PRESSURE} - of_runs))
 
     def draw(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
@@ -262,15 +262,9 @@ class Curves(XYFigure):
 
     def _draw_published(self, axes: Axes) -> Iterator[dict[str, object]]:
         for number, other in enumerate(self.published):
+            style = "-" if other.style == "line" else "*x+"[number % 3]
             axes.plot(
-                other.x,
-                other.y,
-                linestyle="-" if other.style == "line" else "none",
-                marker="" if other.style == "line" else "*x+"[number % 3],
-                color="black",
-                markersize=9,
-                zorder=5,
-                label=other.label,
+                other.x, other.y, style, color="black", markersize=9, zorder=5, label=other.label
             )
             for x, y in zip(other.x, other.y, strict=True):
                 yield {"curve": other.label, "series": "published", "x": x, "y": y}
@@ -286,19 +280,13 @@ class Curves(XYFigure):
             # Runs may have fewer steps than the table.
             converged = (converged | (table["status"] == "")).all("step")
         x, y, good = xr.broadcast(x, y, converged.astype(float))
+        columns = [x, y, y, y, good.fillna(0.0), xr.ones_like(x)]
         if self.over is not None:
             finished = (x + y).notnull()
             x, y, good = (column.where(finished) for column in (x, y, good))
-            columns = [
-                x.mean(self.over),
-                y.mean(self.over),
-                y.min(self.over),
-                y.max(self.over),
-                good.min(self.over).fillna(0.0),
-                finished.sum(self.over),
-            ]
-        else:
-            columns = [x, y, y, y, good.fillna(0.0), xr.ones_like(x)]
+            middle = x.mean(self.over), y.mean(self.over)
+            ends = y.min(self.over), y.max(self.over)
+            columns = [*middle, *ends, good.min(self.over).fillna(0.0), finished.sum(self.over)]
         long = [str(dim) for dim, size in columns[0].sizes.items() if size > 1]
         if len(long) > 1:
             raise ConfigError(
@@ -330,11 +318,6 @@ def _require_grids(x: xr.DataArray) -> None:
 def _fold(names: Sequence[str]) -> str:
     """Return names as the label of an axis, in lines of bounded length."""
     return textwrap.fill(", ".join(names), _LETTERS)
-
-
-def _of_run(variable: xr.DataArray) -> bool:
-    """Return whether a variable of a table has one value for all steps of a run."""
-    return "step" not in variable.dims
 
 
 def _at(column: xr.DataArray, point: dict[str, int]) -> xr.DataArray:
