@@ -35,5 +35,5 @@ def share_fits(monkeypatch: pytest.MonkeyPatch) -> None:
             fits[key.getvalue()] = fit_problem(problem, report)
         return fits[key.getvalue()]
 
-    for module in ("fit", "many"):
+    for module in ("one_curve", "many"):
         monkeypatch.setattr(f"pellicle_fit.{module}.fit_problem", shared)

@@ -6,60 +6,15 @@ from collections.abc import Callable
 
 import pluggy
 
-from .components import (
-    AreaCorrection,
-    Executor,
-    Indenter,
-    Interaction,
-    Kernel,
-    Output,
-    Prescription,
-    Solver,
-    Suite,
-)
+from .components import Component, Suite
 
 hookspec = pluggy.HookspecMarker("pellicle")
 hookimpl = pluggy.HookimplMarker("pellicle")
 
 
 @hookspec
-def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
-    """Call ``register`` with each kernel class of the plugin."""
-
-
-@hookspec
-def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
-    """Call ``register`` with each indenter class of the plugin."""
-
-
-@hookspec
-def register_interactions(register: Callable[[type[Interaction]], None]) -> None:
-    """Call ``register`` with each interaction class of the plugin."""
-
-
-@hookspec
-def register_solvers(register: Callable[[type[Solver]], None]) -> None:
-    """Call ``register`` with each solver class of the plugin."""
-
-
-@hookspec
-def register_corrections(register: Callable[[type[AreaCorrection]], None]) -> None:
-    """Call ``register`` with each area correction class of the plugin."""
-
-
-@hookspec
-def register_outputs(register: Callable[[type[Output]], None]) -> None:
-    """Call ``register`` with each output class of the plugin."""
-
-
-@hookspec
-def register_executors(register: Callable[[type[Executor]], None]) -> None:
-    """Call ``register`` with each executor class of the plugin."""
-
-
-@hookspec
-def register_prescriptions(register: Callable[[type[Prescription]], None]) -> None:
-    """Call ``register`` with each prescription class of the plugin."""
+def register_components(register: Callable[[type[Component]], None]) -> None:
+    """Call ``register`` with each component class of the plugin, of any family."""
 
 
 @hookspec

@@ -4,6 +4,7 @@ from pellicle.report.fields import extent as extent
 from pellicle.report.fields import pressure_map as pressure_map
 from pellicle.report.fields import profile as profile
 from pellicle.report.fields import without_round_off as without_round_off
+from pellicle.report.lines import edge_cells as edge_cells
 from pellicle.report.plotting import FIGURES as FIGURES
 from pellicle.report.plotting import STUDY_FIGURES as STUDY_FIGURES
 from pellicle.report.plotting import area_force as area_force

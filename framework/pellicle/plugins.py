@@ -14,7 +14,8 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
-from typing import Any, Literal, TypeVar, cast, get_args, get_origin
+from types import SimpleNamespace
+from typing import Any, Literal, TypeVar, get_args, get_origin
 
 import pluggy
 
@@ -28,7 +29,6 @@ from .units import quantity_of
 
 GROUP = "pellicle"
 DISABLE = "PELLICLE_DISABLE_PLUGINS"
-_HOOK_OF_FAMILY = {family: f"register_{family}s" for family in FAMILIES}
 AnyComponent = TypeVar("AnyComponent", bound=Component)
 
 
@@ -78,6 +78,8 @@ class Registry:
     """All components by family and type, all validation suites, and broken plugins."""
 
     components: Mapping[str, Mapping[str, Registered]]
+    families: Mapping[str, type[Component]]
+    """The base class of each family, by name: pellicle's own, then those that plugins bring."""
     suites: tuple[Suite, ...] = ()
     broken: tuple[Broken, ...] = ()
     clashes: Mapping[tuple[str, str], tuple[Origin, ...]] = field(default_factory=dict)
@@ -92,9 +94,10 @@ class Registry:
         ConfigError
             The type is unknown.
         PluginError
-            The plugin of the type is broken or disabled, or two plugins claim the type.
+            The plugin of the type is broken or disabled, two plugins claim the type, or no plugin
+            brings the family.
         """
-        types = self.components[family]
+        types = self.components.get(family, {})
         if isinstance(type_, str) and type_ in types:
             return types[type_].component
         if owners := self.clashes.get((family, str(type_))):
@@ -108,8 +111,13 @@ class Registry:
         for origin in self.disabled:
             if origin.entry_point == f"{family}.{type_}":
                 raise PluginError(f"{family} {type_!r} of {origin} is switched off by {DISABLE}")
-        article = "an" if family[0] in "aeiou" else "a"
         hint = f"; {len(self.broken)} broken: see `pellicle plugins`" if self.broken else ""
+        if family not in self.components:
+            raise PluginError(
+                f"no installed plugin brings the family {family!r}; "
+                f"{nearest(family, self.components)}{hint}"
+            )
+        article = "an" if family[0] in "aeiou" else "a"
         raise ConfigError(
             f"{type_!r} is not {article} {family}; {nearest(type_, types)}{hint}", "type"
         )
@@ -131,28 +139,33 @@ class Registry:
         Raises
         ------
         ConfigError, PluginError
-            As for `find`, or a field is not allowed.
+            As for `find`, the component is not of that class, or a field is not allowed.
         """
         if isinstance(value, base):
             return value
-        if not isinstance(value, Mapping) or "type" not in value:
+        table = value if isinstance(value, Mapping) else {}
+        if "type" not in table and base.family in self.components:
             listing = ", ".join(sorted(self.components[base.family]))
             reason = f"{shown(value)} is not a table"
             if isinstance(value, Mapping):
                 reason = "has no type"
             raise ConfigError(f"{reason}; give a table with type = one of: {listing}")
-        component_class = cast("type[AnyComponent]", self.find(base.family, value["type"]))
+        component = self.find(base.family, table.get("type"))
+        if not issubclass(component, base):
+            raise ConfigError(
+                f"{table['type']!r} is a {_full_name(component)}, not a {_full_name(base)}", "type"
+            )
         try:
-            return component_class(**value)
+            return component(**table)
         except (PellicleError, MemoryError):
             raise
         except SystemExit as error:
             raise PluginError(
-                f"{base.family} {value['type']!r} calls sys.exit({error.code!r}); it has to raise "
+                f"{base.family} {table['type']!r} calls sys.exit({error.code!r}); it has to raise "
                 "an error that says what is wrong"
             ) from None
         except Exception as error:
-            error.add_note(f"{base.family} {value['type']!r} failed")
+            error.add_note(f"{base.family} {table['type']!r} failed")
             raise
 
 
@@ -168,21 +181,25 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
     Parameters
     ----------
     entries
-        Entry points whose objects implement hooks of `pellicle.hookspecs`.
+        Entry points that name component classes, or modules with hooks of `pellicle.hookspecs`;
+        those of commands are skipped.
     disable
         ``"1"`` or ``"all"`` switches off every plugin that is not pellicle's own; otherwise a
         comma-separated list of distributions or entry points to switch off.
     """
     claims: dict[tuple[str, str], list[Registered]] = {}
+    families = dict(FAMILIES)
     suites: list[Suite] = []
     broken: list[Broken] = []
     disabled: list[Origin] = []
     for entry in sorted(set(entries), key=lambda entry: (entry.name, entry.value)):
         origin = Origin.of(entry)
+        if entry.name.startswith("command."):
+            continue
         if _is_disabled(origin, disable):
             disabled.append(origin)
             continue
-        registration = _load_one(entry, origin)
+        registration = _load_one(entry, origin, families)
         if isinstance(registration, Broken):
             broken.append(registration)
             continue
@@ -193,12 +210,13 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
             # Two entry points of a package may name the same module.
             if not any(owner.component is registered.component for owner in owners):
                 owners.append(registered)
-    registered_by_family: dict[str, dict[str, Registered]] = {f: {} for f in FAMILIES}
+    registered_by_family: dict[str, dict[str, Registered]] = {f: {} for f in families}
     for (family, type_), owners in claims.items():
         if len(owners) == 1:
             registered_by_family[family][type_] = owners[0]
     return Registry(
         components=registered_by_family,
+        families=families,
         suites=tuple(suites),
         broken=tuple(broken),
         clashes={
@@ -210,7 +228,9 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
     )
 
 
-def _load_one(entry: EntryPoint, origin: Origin) -> tuple[list[Registered], list[Suite]] | Broken:
+def _load_one(
+    entry: EntryPoint, origin: Origin, families: dict[str, type[Component]]
+) -> tuple[list[Registered], list[Suite]] | Broken:
     """Return the components and suites that one plugin registers, or its error.
 
     A plugin may fail in any way, even by sys.exit() or KeyboardInterrupt; only a Ctrl-C of the user
@@ -220,7 +240,7 @@ def _load_one(entry: EntryPoint, origin: Origin) -> tuple[list[Registered], list
     with noted_interrupts() as interrupt:
         try:
             with diverted_output():
-                registration = _call_hooks(entry.load(), origin)
+                registration = _call_hooks(entry, origin, families)
         except BaseException as error:
             kind = "" if isinstance(error, PluginError) else f"{type(error).__name__}: "
             registration = Broken(origin, f"{kind}{error}".removesuffix(": "))
@@ -242,8 +262,42 @@ def _same(name: str) -> str:
     return re.sub(r"[-_.]+", "-", name.strip()).lower()
 
 
-def _call_hooks(plugin: object, origin: Origin) -> tuple[list[Registered], list[Suite]]:
-    """Return the components and suites that one plugin registers.
+def _plugin_of(loaded: object) -> object:
+    """Return what has hooks: the module of an entry point, or what registers the class of one."""
+    if not isinstance(loaded, type):
+        return loaded
+    return SimpleNamespace(
+        register_components=hookspecs.hookimpl(lambda register: register(loaded))
+    )
+
+
+def _add_families(components: Iterable[Registered], families: dict[str, type[Component]]) -> None:
+    """Add the families of components.
+
+    Raises
+    ------
+    PluginError
+        Another base class has the name of a family already; nothing is added.
+    """
+    known = dict(families)
+    for registered in components:
+        base = family_of(registered.component)
+        if (first := known.setdefault(base.family, base)) is not base:
+            raise PluginError(
+                f"{_full_name(base)} and {_full_name(first)} both declare the family "
+                f"{base.family!r}; derive from the latter, or give another name"
+            )
+    families.update(known)
+
+
+def _full_name(component: type[Component]) -> str:
+    return f"{component.__module__}.{component.__qualname__}"
+
+
+def _call_hooks(
+    entry: EntryPoint, origin: Origin, families: dict[str, type[Component]]
+) -> tuple[list[Registered], list[Suite]]:
+    """Return the components and suites that one plugin registers, and add its families.
 
     Raises
     ------
@@ -252,35 +306,58 @@ def _call_hooks(plugin: object, origin: Origin) -> tuple[list[Registered], list[
     """
     manager = pluggy.PluginManager(GROUP)
     manager.add_hookspecs(hookspecs)
+    plugin = _plugin_of(entry.load())
     manager.register(plugin)
-    hooks = [*_HOOK_OF_FAMILY.values(), "register_validations"]
+    hooks = ["register_components", "register_validations"]
     implemented = [caller.name for caller in manager.get_hookcallers(plugin) or ()]
     if not implemented:
         raise PluginError(
-            f"implements no hook; decorate with @pellicle.hookimpl one of {', '.join(hooks)}"
+            f"implements no hook; decorate with @pellicle.hookimpl one of {', '.join(hooks)}, or "
+            'name a class in the entry point: "module:Class"'
         )
     for name in implemented:
         if name not in hooks:
             raise PluginError(f"implements the unknown hook {name!r}; {nearest(name, hooks)}")
     components: list[Registered] = []
     suites: list[Suite] = []
-    for family, hook in _HOOK_OF_FAMILY.items():
 
-        def register(component: type[Component], family: str = family) -> None:
-            components.append(Registered(component, checked_type(component, family), origin))
-
-        getattr(manager.hook, hook)(register=register)
+    def register(component: type[Component]) -> None:
+        components.append(Registered(component, checked_type(component), origin))
 
     def register_suite(suite: Suite) -> None:
         if not callable(suite):
             raise PluginError(f"{suite!r} is not a function that yields cases")
         suites.append(suite)
 
+    manager.hook.register_components(register=register)
     manager.hook.register_validations(register=register_suite)
+    _add_families(components, families)
     return components, suites
 
 
-def checked_type(component: Any, family: str) -> str:
+def family_of(component: type[Component]) -> type[Component]:
+    """Return the base class of a component that declares its family.
+
+    Raises
+    ------
+    PluginError
+        None of the base classes does, or not one alone.
+    """
+    mro = component.__mro__
+    declaring = [c for c in mro if issubclass(c, Component) and "family" in vars(c)]
+    if not declaring:
+        raise PluginError(f"{component.__name__} is of no family; derive it from a base with one")
+    first, base = declaring[0], declaring[-1]
+    if first is not base:
+        raise PluginError(
+            f"{first.__name__}.family is {first.family!r}; leave it to {base.__name__}"
+        )
+    if base is component:
+        raise PluginError(f"{base.__name__} is the base class of a family; derive from it")
+    return base
+
+
+def checked_type(component: Any) -> str:
     """Return the type of a component class.
 
     Raises
@@ -288,12 +365,14 @@ def checked_type(component: Any, family: str) -> str:
     PluginError
         The class breaks a rule for components.
     """
-    base = FAMILIES[family]
-    if not (isinstance(component, type) and issubclass(component, base)):
-        raise PluginError(f"{component!r} is not a subclass of pellicle.{base.__name__}")
-    name = component.__name__
-    if component.family != family:
-        raise PluginError(f"{name}.family is {component.family!r}; leave it to {base.__name__}")
+    if not (isinstance(component, type) and issubclass(component, Component)):
+        raise PluginError(f"{component!r} is not a subclass of pellicle.components.Component")
+    name, base = component.__name__, family_of(component)
+    if not isinstance(getattr(base, "place", None), str):
+        raise PluginError(
+            f"{base.__name__} lacks the class variable place: where files have its components, "
+            'such as "rivals[]"'
+        )
     info = component.model_fields.get("type")
     names = get_args(info.annotation) if info else ()
     one_text = len(names) == 1 and isinstance(names[0], str)

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from pellicle.cli.printing import echo
-from pellicle.errors import ConfigError, PellicleError
-
-if TYPE_CHECKING:
-    from pellicle.config.run import Run
-    from pellicle_explore.measured import Measured
+from pellicle.errors import ConfigError
 
 
 def explore(
@@ -34,6 +30,7 @@ def explore(
 
     The page is served to this machine only, at an address with a token, until Ctrl-C.
     """
+    import asyncio
     import logging
     import webbrowser
     from importlib.util import find_spec
@@ -43,44 +40,22 @@ def explore(
             "needs bokeh, which is not installed; install it by: pip install 'pellicle[explore]'",
             "explore",
         )
+    import pellicle as pl
+    from pellicle_explore.measured import read
     from pellicle_explore.page import Explorer
-    from pellicle_explore.server import Server
+    from pellicle_explore.server import serve
 
     # It warns of each message to a page that has just been closed or reloaded.
     logging.getLogger("bokeh.server.views.ws").setLevel(logging.ERROR)
-    run = _run(file, set_ or [])
-    measured = _measured(curve) if curve else None
-    server = Server(lambda document: Explorer(run, measured, document).show(), port)
-    echo(f"{server.address}\nopen it in a browser on this machine; Ctrl-C ends it")
-    if browser:
-        webbrowser.open(server.ticket_address)
+    run = pl.Run.from_toml(file or Path(__file__).with_name("start.toml"), set_ or [])
+    measured = read(curve) if curve else None
+
+    def tell(address: str) -> None:
+        echo(f"{address}\nopen it in a browser on this machine; Ctrl-C ends it")
+        if browser:
+            webbrowser.open(address)
+
     try:
-        server.run()
+        asyncio.run(serve(lambda document: Explorer(run, measured, document).show(), port, tell))
     except KeyboardInterrupt:
         echo("ended")
-
-
-def _run(file: Path | None, overrides: list[str]) -> Run:
-    from importlib.resources import as_file, files
-
-    from pellicle.config.run import Run
-
-    if file is not None:
-        return Run.from_toml(file, overrides)
-    with as_file(files("pellicle_explore").joinpath("start.toml")) as start:
-        return Run.from_toml(start, overrides)
-
-
-def _measured(path: Path) -> Measured:
-    from pellicle_explore.measured import Measured
-    from pellicle_fit.curves.cleaning import clean
-    from pellicle_fit.curves.columns import Calibration
-    from pellicle_fit.curves.sources import SourceStream, gather
-
-    source, *others = SourceStream(gather(path, "approach", Calibration(), {}))
-    if others:
-        raise ConfigError(f"holds {1 + len(others)} curves; give a file with one", "--curve")
-    if isinstance(source.curve, PellicleError):
-        raise source.curve
-    curve = clean(source.curve)
-    return Measured(curve.position, curve.force)

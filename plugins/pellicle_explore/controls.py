@@ -1,85 +1,112 @@
-"""The quantities of a run that the explorer changes."""
+"""What the explorer changes in a run: its quantities, and whether the contact sticks.
+
+Configurations are mappings of the form of a run file, with the load steps as a list.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
 
-from pellicle.config.run import Run
-from pellicle.config.wording import field_words
+import pellicle as pl
+from pellicle.model import replaced
 from pellicle.model.paths import walk
-from pellicle.units import Quantity, axis_unit, quantity_of
-
-_TABLES = ("kernel", "indenter", "interaction")
-_DIGITS = 4
-"""Significant digits of a value that a slider sets."""
+from pellicle.units import Quantity, quantity_of
 
 
-@dataclass(frozen=True)
-class Control:
-    """A quantity of a run: a component's field, or the last of the load steps."""
+class Control(NamedTuple):
+    """A quantity of a run: a component's field, or the largest of the load steps."""
 
     path: str
     """Dotted path in the run file, as for ``--set``."""
     label: str
     quantity: Quantity
     value: float
-    """Present value in SI."""
+    """Present value in SI, above 0."""
+    highest: float | None
+    """End of the slider, which begins at 0; None if it moves over two decades."""
 
-    @property
-    def low(self) -> float:
-        """The lowest value of the slider."""
-        if self.is_logarithmic:
-            return self.value / 10
-        return min(0.0, self.value)
+    def position(self, value: float) -> float:
+        """Return the position of the slider for a value, or that of its end on that side."""
+        if self.highest is not None:
+            return min(max(value, 0.0), self.highest)
+        return math.log10(min(max(value, self.value / 10), self.value * 10))
 
-    @property
-    def high(self) -> float:
-        """The highest value of the slider."""
-        if self.is_logarithmic:
-            return self.value * 10
-        return min(b for b in (self.quantity.at_most, self.quantity.below) if b is not None)
-
-    @property
-    def is_logarithmic(self) -> bool:
-        """Whether the slider moves over decades; else from 0 to the highest allowed value."""
-        return self.quantity.unit not in ("1", "rad")
-
-    def text(self, value: float) -> str:
-        """Return a value in the unit of the present one, as a run file has it."""
-        if self.quantity.unit == "1":
-            return f"{round(value, _DIGITS):g}"
-        factor, unit = axis_unit([self.value], self.quantity.unit)
-        return f"{value * factor:.{_DIGITS}g} {unit}"
+    def value_at(self, position: float) -> float:
+        """Return the value for a position of the slider."""
+        return 10**position if self.highest is None else position
 
 
-def controls(run: Run) -> list[Control]:
-    """Return a control for each positive quantity of solid, indenter and interaction, and the load.
+def controls(run: pl.Run) -> Iterator[Control]:
+    """Yield a control for each positive quantity of solid, indenter and interaction, and the load.
 
     Quantities that are 0 have none: nothing says how large they might become.
     """
-    return [*_fields(run), *_load(run)]
-
-
-def _fields(run: Run) -> Iterator[Control]:
     for path, value, field in walk(run):
         quantity = quantity_of(field) if field else None
-        if path.partition(".")[0] not in _TABLES or quantity is None:
+        table, _, name = path.partition(".")
+        if table not in ("kernel", "indenter", "interaction") or not field or not quantity:
             continue
-        if isinstance(value, float) and value > 0 and _has_range(quantity):
-            name = path.rpartition(".")[2]
-            yield Control(path, field_words(name, field), quantity, value)
+        bounds = [b for b in (quantity.at_most, quantity.below) if b is not None]
+        has_scale = quantity.unit not in ("1", "rad")
+        if isinstance(value, float) and value > 0 and (has_scale or bounds):
+            label = field.title or name.rpartition(".")[2].replace("_", " ")
+            yield Control(path, label, quantity, value, None if has_scale else min(bounds))
+    load, largest = run.loading, max(run.loading.values, key=abs)
+    if largest > 0 and not load.samples:
+        label = f"largest {load.prescribed.replace('_', ' ')}"
+        quantity = load.prescription.quantity()
+        yield Control(f"loading.{load.prescribed}", label, quantity, largest, None)
 
 
-def _has_range(quantity: Quantity) -> bool:
-    bounded = quantity.at_most is not None or quantity.below is not None
-    return bounded or quantity.unit not in ("1", "rad")
+def configuration_of(run: pl.Run) -> dict[str, Any]:
+    """Return the configuration of a run, in SI."""
+    data: dict[str, Any] = run.model_dump(mode="json", exclude_unset=True, exclude_none=True)
+    if run.loading.samples:
+        return data
+    return dict(replaced(data, f"loading.{run.loading.prescribed}", list(run.loading.values)))
 
 
-def _load(run: Run) -> Iterator[Control]:
-    loading = run.loading
-    quantity = loading.prescription.quantity()
-    last = max(loading.values, key=abs)
-    if last > 0 and not loading.samples:
-        label = f"largest {loading.prescribed.replace('_', ' ')}"
-        yield Control(f"loading.{loading.prescribed}", label, quantity, last)
+def changed(
+    configuration: Mapping[str, Any], control: Control, text: str
+) -> tuple[dict[str, Any], float]:
+    """Return a configuration with a new value of a control, given as text, and the value in SI.
+
+    All load steps change in proportion to their largest. A ValueError says why the text is not an
+    allowed value, or why the run is not possible with it.
+    """
+    try:
+        value: Any = float(text)
+    except ValueError:
+        value = text
+    number = control.quantity(value)
+    table, _, key = control.path.partition(".")
+    if table == "loading":
+        if number <= 0:
+            raise ValueError(
+                f"{text!r} is not above 0; the load steps keep their proportion to the largest"
+            )
+        steps = configuration["loading"][key]
+        value = [step * number / max(map(abs, steps)) for step in steps]
+    data = dict(replaced(configuration, control.path, value))
+    pl.Run.from_mapping(data)
+    return data, number
+
+
+def sticking(configuration: Mapping[str, Any], interaction: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a configuration with a contact that sticks, and is pulled off after it is loaded.
+
+    The depths go back to half the largest one above the surface.
+    """
+    depths = configuration["loading"]["depth"]
+    back = [*reversed(depths[:-1]), 0.0, -depths[-1] / 4, -depths[-1] / 2]
+    loaded = replaced(configuration, "loading.depth", [*depths, *back])
+    return {**loaded, "interaction": interaction}
+
+
+def letting_go(configuration: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a configuration without an interaction, and with the depths up to the largest."""
+    depths = configuration["loading"]["depth"]
+    loaded = replaced(configuration, "loading.depth", depths[: depths.index(max(depths)) + 1])
+    return {name: table for name, table in loaded.items() if name != "interaction"}

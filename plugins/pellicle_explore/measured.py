@@ -2,33 +2,43 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
-from pellicle.arrays import Array
+import pellicle as pl
+from pellicle.errors import ConfigError
 
 
-class Measured(NamedTuple):
-    """A measured force curve."""
+def read(path: Path) -> pl.Curve:
+    """Return the only force curve of a file, without the rows that lack a number.
 
-    position: Array
-    """Position that grows into the solid [m], shape (n,)."""
-    force: Array
-    """Force [N], shape (n,)."""
+    Raises
+    ------
+    ConfigError, StorageError
+        It does not hold one curve, or no application that reads curves is installed.
+    """
+    try:
+        read_curves = pl.read_curves
+    except AttributeError:
+        raise ConfigError(
+            "needs an application that reads force curves, and none is installed; leave it out, "
+            "or install pellicle with its fits",
+            "--curve",
+        ) from None
+    curve, *others = read_curves(path, segment="approach").values()
+    if others:
+        raise ConfigError(f"holds {1 + len(others)} curves; give a file with one", "--curve")
+    rows = np.isfinite(curve.position) & np.isfinite(curve.force)
+    if np.unique(curve.position[rows]).size < 2:
+        raise ConfigError("has no two positions with a force; give a curve that moves", "--curve")
+    return replace(curve, position=curve.position[rows], force=curve.force[rows])
 
-    @property
-    def touch(self) -> float:
-        """The position at which the force reaches 5 % of its range [m]."""
-        low, high = float(self.force.min()), float(self.force.max())
-        above = self.force > low + 0.05 * (high - low)
-        return float(self.position[int(np.argmax(above))])
 
-    @property
-    def touch_share(self) -> float:
-        """How far along the positions `touch` lies, between 0 and 1."""
-        return (self.touch - float(self.position.min())) / float(np.ptp(self.position))
-
-    def depth(self, share: float) -> Array:
-        """Return the depths [m], shape (n,), if contact begins at a share of the positions."""
-        return self.position - float(self.position.min()) - share * float(np.ptp(self.position))
+def touch(curve: pl.Curve) -> float:
+    """Return the share of the positions at which the force has risen by 5 % of its range."""
+    position = (curve.position - curve.position.min()) / np.ptp(curve.position)
+    start = np.median(curve.force[position <= 0.1])
+    above = curve.force > start + 0.05 * (curve.force.max() - start)
+    return float(position[above].min(initial=1.0))

@@ -1,85 +1,106 @@
-"""When runs are solved while sliders move: previews at once, the run itself at rest."""
+"""The runs of a page, solved one at a time in another thread."""
 
 from __future__ import annotations
 
+import math
+import threading
 import time
+import warnings
 from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import CancelledError
 from functools import partial
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from bokeh.document import Document
 
-from .frames import Frame, preview, solved
+import pellicle as pl
+from pellicle.units import readable
 
-# Time without a change after which a run is solved in full [ms]: while a slider moves, previews
-# alone follow it.
-_REST: Final = 150
-# Time after which a solve is abandoned if another run waits [s]. A typed tension of 1 MN/m may take
-# minutes; but if every solve were abandoned, a contact that sticks would not follow a slider.
+if TYPE_CHECKING:
+    import xarray as xr
+
+# Time after which a solve is cancelled if another run waits [s]. A typed tension of 1 MN/m may take
+# minutes; but if every solve were cancelled, a contact that sticks would not follow a slider.
 _LONGEST_WAIT: Final = 0.5
+# Pages take turns: what catches warnings is shared by all threads, so that one run would get the
+# warnings of another, or the process lose them for good.
+_LOCK: Final = threading.Lock()
 
 
-class _AbandonedError(Exception):
-    """A solve whose result is not wanted any more."""
+class Frame(NamedTuple):
+    """The result of a run, in SI, and its warnings."""
+
+    steps: xr.Dataset
+    """The load steps, of dimensions (step, x, y)."""
+    remarks: tuple[str, ...]
+
+    @property
+    def largest(self) -> xr.Dataset:
+        """The load step with the largest force, of dimensions (x, y)."""
+        return self.steps.isel(step=int(self.steps["force"].values.argmax()))
+
+    def summary(self) -> str:
+        """Return the numbers of the run at its largest force, as markup."""
+        step, lowest = self.largest, float(self.steps["force"].min())
+        radius = math.sqrt(float(step["contact_area"]) / math.pi)
+        words = (
+            f"At a depth of {readable(float(step['depth']), 'm', 4)}: "
+            f"force <b>{readable(float(step['force']), 'N', 4)}</b>, "
+            f"contact radius {readable(radius, 'm', 3)} (of a circle of that area)"
+        )
+        return f"{words}; lowest force {readable(lowest, 'N', 4)}" if lowest < 0 else words
+
+
+def solved(
+    configuration: Mapping[str, Any], progress: bool | Callable[[int, int, float], None] = False
+) -> Frame:
+    """Return the frame of a run; ``progress`` and exceptions are those of `pellicle.run`."""
+    # The outputs that a file names would be written to the current folder.
+    run = pl.Run.from_mapping(configuration).model_copy(update={"outputs": None})
+    with _LOCK, warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        steps = pl.run(run, progress=progress).dataset
+    return Frame(steps, tuple(dict.fromkeys(str(entry.message) for entry in caught)))
 
 
 class Solving:
-    """Solves the newest of the runs that are requested, one at a time, in another thread.
+    """Solves the newest of the runs that are requested, until the page is closed.
 
-    A run is solved to a few digits first, from the frame before, which takes a third of the time or
-    less, and in full once nothing has been requested for a while.
-
-    Parameters
-    ----------
-    target
-        The document in whose thread ``show`` is called.
-    show
-        Called with the document of a run and its frame, or the exception that it raised.
+    ``show`` is called in the thread of the document ``target`` with the configuration of a run and
+    its frame, or the exception that it raised.
     """
 
     def __init__(
         self, target: Document, show: Callable[[Mapping[str, Any], Frame | Exception], None]
     ) -> None:
         self._target, self._show = target, show
-        self._thread = ThreadPoolExecutor(1, thread_name_prefix="explorer")
         self._is_working = self._is_closed = False
         self._waiting: Mapping[str, Any] | None = None
-        self._shown: Mapping[str, Any] | None = None
-        self.frame: Frame | None = None
-        """The last frame."""
+        target.on_session_destroyed(self._close)
 
     def request(self, configuration: Mapping[str, Any]) -> None:
         """Solve a run, once the one that is being solved is finished."""
         if self._is_working:
             self._waiting = configuration
-        else:
-            self._start(configuration, self.frame)
+            return
+        self._is_working, self._waiting = True, None
+        # A daemon does not keep a process alive that is ended during a long solve.
+        threading.Thread(target=self._solve, args=(configuration,), daemon=True).start()
 
-    def close(self) -> None:
-        """Solve and show nothing more."""
+    def _close(self, context: object) -> None:
         self._is_closed = True
-        self._thread.shutdown(wait=False, cancel_futures=True)
 
-    def _start(self, configuration: Mapping[str, Any], start: Frame | None) -> None:
-        """Solve a run in the other thread, as a preview if there is a ``start``."""
-        if not self._is_closed:
-            self._is_working, self._waiting = True, None
-            self._thread.submit(self._solve, configuration, start)
+    def _solve(self, configuration: Mapping[str, Any]) -> None:
+        started = time.monotonic()
 
-    def _solve(self, configuration: Mapping[str, Any], start: Frame | None) -> None:
-        start_time = time.monotonic()
-
-        def check() -> None:
-            is_late = self._waiting is not None and time.monotonic() - start_time > _LONGEST_WAIT
+        def check(*_: object) -> None:
+            is_late = self._waiting is not None and time.monotonic() - started > _LONGEST_WAIT
             if self._is_closed or is_late:
-                raise _AbandonedError
+                raise CancelledError
 
         outcome: Frame | Exception
         try:
-            outcome = (start and preview(configuration, start, check)) or solved(
-                configuration, check
-            )
+            outcome = solved(configuration, check)
         except Exception as error:
             # A plugin may raise anything, and the page has to go on.
             outcome = error
@@ -87,23 +108,9 @@ class Solving:
             self._target.add_next_tick_callback(partial(self._receive, configuration, outcome))
 
     def _receive(self, configuration: Mapping[str, Any], outcome: Frame | Exception) -> None:
-        """Show a frame or an error, and start the next solve if there is one."""
-        self._is_working, is_finished = False, configuration is self._shown
-        if isinstance(outcome, Frame):
-            self.frame, self._shown = outcome, configuration
-        try:
-            if not isinstance(outcome, _AbandonedError):
-                self._show(configuration, outcome)
-        finally:
-            if self._waiting is not None:
-                self._start(self._waiting, self.frame)
-            elif self.frame is not None and self.frame.is_preview and not is_finished:
-                self._target.add_timeout_callback(partial(self._finish, self.frame), _REST)
-
-    def _finish(self, preview: Frame) -> None:
-        """Solve the run of a preview in full, if it is still shown.
-
-        That need not be the last run requested: an impossible one leaves the frame before.
-        """
-        if preview is self.frame and self._shown is not None and not self._is_working:
-            self._start(self._shown, None)
+        """Start to solve the run that waits, and show a frame or an error."""
+        self._is_working = False
+        if self._waiting is not None:
+            self.request(self._waiting)
+        if not isinstance(outcome, CancelledError):
+            self._show(configuration, outcome)

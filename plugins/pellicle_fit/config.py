@@ -20,11 +20,11 @@ from pydantic import (
 
 from pellicle.components import (
     Executor,
+    FromRegistry,
     HasForceCurve,
     HasLayerForceCurve,
     Indenter,
 )
-from pellicle.config.component_field import FromRegistry
 from pellicle.config.study import DEFAULT_EXECUTOR
 from pellicle.errors import ConfigError, shown
 from pellicle.model.from_file import FromFile, overridden

@@ -1,10 +1,9 @@
 """How fast the explorer follows: from the move of a slider to the next painted picture.
 
 Starts `pellicle explore` and opens it in a Chromium without a window. Each drag moves one slider
-and waits until the new curve is painted, then until the exact one is. Prints the median and the
-largest time of both, and the processor time of the server for each drag. With ``--against``, the
-folder of another checkout, drags of the two alternate, so that the load of the machine falls on
-both.
+and waits until the new curve is painted. Prints the median and the largest time, and the processor
+time of the server for each drag. With ``--against``, the folder of another checkout, drags of the
+two alternate, so that the load of the machine falls on both.
 
     python tests/benchmarks/explore.py --drags 200
 """
@@ -30,23 +29,15 @@ if TYPE_CHECKING:
     from selenium.webdriver import Chrome
 
 CHECKOUT = Path(__file__).parents[2]
-# The text of the run file has the new value once what is drawn is the run of that value.
 DRAG = """
 const [share, done] = arguments;
 const models = [...Bokeh.documents[0]._all_models.values()];
 const slider = models.find(m => m.type === "Slider");
 const curve = models.find(m => m.type === "ColumnDataSource" && "force" in m.data);
 const started = performance.now();
-let painted = null, last = null, timer = null;
-const finish = () => {
-  curve.properties.data.change.disconnect(drawn);
-  done([painted, last]);
-};
 const drawn = () => requestAnimationFrame(() => setTimeout(() => {
-  last = performance.now() - started;
-  painted ??= last;
-  clearTimeout(timer);
-  timer = setTimeout(finish, 400);
+  curve.properties.data.change.disconnect(drawn);
+  done(performance.now() - started);
 }, 0));
 curve.properties.data.change.connect(drawn);
 slider.value = share;
@@ -121,7 +112,7 @@ def main() -> None:
     given = parser.parse_args()
     checkouts = [CHECKOUT, *([given.against] if given.against else [])]
     draw = random.Random(given.seed)
-    rows: list[list[tuple[float, float, float]]] = [[] for _ in checkouts]
+    rows: list[list[tuple[float, float]]] = [[] for _ in checkouts]
     with contextlib.ExitStack() as stack:
         pages = []
         for checkout in checkouts:
@@ -134,19 +125,18 @@ def main() -> None:
             value = min(max(value + draw.choice([-3, -2, -1, 1, 2, 3]) * 0.01, -3.2), -1.4)
             for row, (process, browser) in zip(rows, pages, strict=True):
                 before = used(process)
-                first, last = browser.execute_async_script(DRAG, value)
-                row.append((first, last, 1e3 * (used(process) - before)))
+                painted = browser.execute_async_script(DRAG, value)
+                row.append((painted, 1e3 * (used(process) - before)))
     print(f"load {os.getloadavg()[0]:.1f}")
     for checkout, row in zip(checkouts, rows, strict=True):
-        first, last, cpu = np.array(row).T
+        painted, cpu = np.array(row).T
         print(
-            f"{checkout}: new curve {np.median(first):.0f} ms (most {first.max():.0f}), "
-            f"at rest {np.median(last):.0f} ms (most {last.max():.0f}); "
+            f"{checkout}: new curve {np.median(painted):.0f} ms (most {painted.max():.0f}); "
             f"server {np.median(cpu):.0f} ms of processor time a drag"
         )
     if given.against:
         shares = np.median(np.array(rows[0]) / np.array(rows[1]), axis=0)
-        print("ratio: new curve {:.2f}, at rest {:.2f}, server {:.2f}".format(*shares))
+        print("ratio: new curve {:.2f}, server {:.2f}".format(*shares))
 
 
 if __name__ == "__main__":

@@ -7,8 +7,7 @@ import pytest
 from pydantic import create_model
 
 import pellicle as pl
-from pellicle.components import FAMILIES, Component
-from pellicle.config.component_field import FromRegistry
+from pellicle.components import FAMILIES, Component, FromRegistry
 from pellicle.config.json_schema import json_schema
 from pellicle.plugins import registry
 

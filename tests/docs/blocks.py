@@ -3,7 +3,6 @@
 A comment directly above a block says what its test needs to know and no reader does:
 
 - ``<!-- file: name -->`` the block is this file of the reader's folder;
-- ``<!-- into: name -->`` the block holds methods of the class in this file;
 - ``<!-- run: a.b=value -->`` commands ``pellicle run`` in the block get ``--set a.b=value``;
 - ``<!-- exit: code -->`` the last command of the block ends with this exit code, not 0;
 - ``<!-- untested: reason -->`` the block is only compiled, and its page says that.
@@ -21,7 +20,7 @@ DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
 
 _COMMENT = re.compile(r"<!-- (\w+): (.+) -->")
-_COMMENTS = {"file", "into", "run", "exit", "untested"}
+_COMMENTS = {"file", "run", "exit", "untested"}
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,6 @@ import shlex
 import shutil
 import subprocess
 import sys
-import textwrap
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -64,18 +63,7 @@ class Reader:
         if "file" in block.comments:
             (self.folder / block.comments["file"]).write_text(block.text, encoding="utf-8")
             self.forget()
-        if "into" in block.comments:
-            self.insert(block)
-            return
         getattr(self, block.language)(block)
-
-    def insert(self, block: Block) -> None:
-        """Put methods at the end of the class that stands before the hook in a file."""
-        path = self.folder / block.comments["into"]
-        before, hook, after = path.read_text(encoding="utf-8").partition("\n\n\n@hookimpl")
-        methods = textwrap.indent(block.text, "    ")
-        path.write_text(f"{before}\n\n{methods}{hook}{after}", encoding="utf-8")
-        self.forget()
 
     def python(self, block: Block) -> None:
         """Execute a block in the namespace of its page."""

@@ -51,7 +51,7 @@ def cell(monkeypatch: pytest.MonkeyPatch) -> Cell:
 
 def test_a_run_has_one_live_bar(cell: Cell) -> None:
     """It shows the step, the iteration and the residual, and is empty at the end."""
-    with RunProgress(2, enabled=True) as bar:
+    with RunProgress(2, True) as bar:
         bar.step(0)(3, 1e6)
         bar.step(1)(4, 1e3)
     first, second, last = cell
@@ -91,7 +91,7 @@ def test_short_or_quiet_work_shows_nothing(
     """Nothing flickers, and no empty output is left in the notebook."""
     if enabled:
         monkeypatch.setattr(notebook_bar, "_BEFORE_SHOWN", 3600.0)
-    with RunProgress(2, enabled=enabled) as bar:
+    with RunProgress(2, enabled) as bar:
         bar.step(0)(3, 1e6)
     with StudyProgress(2, 0, enabled=enabled) as study:
         study.finished(Job("a"), "converged", failed=False)

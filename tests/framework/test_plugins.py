@@ -9,20 +9,26 @@ import sys
 import tomllib
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from importlib import import_module
 from importlib.metadata import Distribution, EntryPoint, entry_points
 from pathlib import Path
 
 import pytest
+from jsonschema import Draft202012Validator
 
 from pellicle import ConfigError, Kernel, PluginError, Run
-from pellicle.plugins import GROUP, Broken, Origin, load
+from pellicle.components import FAMILIES
+from pellicle.config.explain import explanations, words_by_kind
+from pellicle.config.json_schema import json_schema
+from pellicle.plugins import GROUP, Broken, Origin, Registry, load
 
 BUILT_INS = tuple(entry_points(group=GROUP, name="kernel.half_space"))
 SOFT = '''
 from collections.abc import Callable
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Literal
 from pydantic import Field
 from pellicle import Kernel, hookimpl
+from pellicle.components import Component
 from pellicle.units import Quantity
 
 class Soft(Kernel):
@@ -35,7 +41,7 @@ class Soft(Kernel):
         return self.scale / q
 
 @hookimpl
-def register_kernels(register):
+def register_components(register):
     register(Soft)
 '''
 TYPE = 'type: Literal["soft"] = "soft"'
@@ -53,13 +59,16 @@ BROKEN = {
     "closes what it prints to": ("", "import sys; sys.stdout.close()", "closes standard output"),
     "closes standard output": ("", "import os; os.close(1)", "closes standard output"),
     "puts another in its place": ("", _REPLACED, "closes standard output"),
-    "misspelt hook": ("register_kernels", "register_kernel", "did you mean 'register_kernels'?"),
+    "hook of one family": (
+        "register_components",
+        "register_kernels",
+        "the unknown hook 'register_kernels'; did you mean 'register_components'?",
+    ),
     "no hook": ("@hookimpl", "", "implements no hook; decorate with @pellicle.hookimpl"),
     "wrong argument": ("(register):", "(add):", "'add'"),
     "fails half-way": (REGISTER, REGISTER + "    1 / 0\n", "ZeroDivisionError"),
-    "wrong hook": ("register_kernels", "register_indenters", "not a subclass of pellicle.Indenter"),
     "no suite": (REGISTER, REGISTER + _NO_SUITE, "() is not a function that yields cases"),
-    "no class": ("register(Soft)", "register(Soft())", "not a subclass of pellicle.Kernel"),
+    "no class": ("register(Soft)", "register(Soft())", "not a subclass of pellicle.components.C"),
     "no type": (TYPE, "", "Soft needs a field: type: Literal"),
     "any text as type": (TYPE, 'type: str = "soft"', "Soft needs a field: type: Literal"),
     "two types": (TYPE, 'type: Literal["a", "b"] = "a"', "Soft needs a field: type: Literal"),
@@ -74,7 +83,22 @@ BROKEN = {
         "float, Quantity('cubit'),",
         "Soft.scale: Quantity('cubit') has an unknown unit",
     ),
-    "other family": (TYPE, TYPE + '\n    family: ClassVar[str] = "x"', "Soft.family is 'x'"),
+    "other family": (TYPE, TYPE + '\n    family = "x"', "Soft.family is 'x'; leave it to Kernel"),
+    "no family": (
+        "Soft(Kernel)",
+        "Soft(Component)",
+        "Soft is of no family; derive it from a base",
+    ),
+    "its own base": (
+        f"Soft(Kernel):\n    {DOCSTRING}",
+        f"Soft(Component):\n    {DOCSTRING}\n    family = 'x'; place = 'x'",
+        "Soft is the base class of a family; derive from it",
+    ),
+    "no place": (
+        "class Soft(Kernel):",
+        "class X(Component): family = 'x'\nclass Soft(X):",
+        "X lacks the class variable place",
+    ),
     "field of no known type": ("Annotated[float,", "Annotated['Unknown',", "Unknown"),
     "field without JSON": ("Annotated[float,", "Annotated[Callable[[], int],", "JsonSchema"),
 }
@@ -105,11 +129,15 @@ def plugin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Plugin:
     monkeypatch.syspath_prepend(tmp_path)
 
     def write(
-        source: str, name: str = "kernel.soft", distribution: str = "stranger", version: str = "1.2"
+        source: str,
+        name: str = "kernel.soft",
+        distribution: str = "stranger",
+        version: str = "1.2",
+        class_: str = "",
     ) -> EntryPoint:
         module = f"stranger_{next(_numbers)}"
         (tmp_path / f"{module}.py").write_text(source, encoding="utf-8")
-        entry = EntryPoint(name, module, GROUP)
+        entry = EntryPoint(name, f"{module}:{class_}".removesuffix(":"), GROUP)
         # What importlib.metadata does itself when it reads a distribution (3.11 to 3.14).
         vars(entry).update(dist=Installed(distribution, version))
         return entry
@@ -129,6 +157,138 @@ def test_a_good_plugin_is_registered_with_its_origin(plugin: Plugin) -> None:
         "type": "soft",
         "scale": 2.0,
     }
+
+
+def test_an_entry_point_may_name_the_class(plugin: Plugin) -> None:
+    """Then the module needs no hook, and what else is in it does not count."""
+    entry = plugin(SOFT.partition("@hookimpl")[0] + "class Soft2(Soft): ...\n", class_="Soft")
+    plugins = load([entry])
+    assert plugins.broken == ()
+    registered = plugins.components["kernel"]["soft"]
+    assert registered.origin == Origin("kernel.soft", "stranger", "1.2")
+    assert registered.component.__name__ == "Soft"
+
+
+@pytest.mark.parametrize(
+    ("class_", "error"),
+    [
+        ("Sofft", "has no attribute 'Sofft'"),
+        ("Quantity", "is not a subclass of pellicle.components.Component"),
+        ("Kernel", "Kernel is the base class of a family; derive from it"),
+        ("TYPE", "implements no hook"),
+    ],
+)
+def test_an_entry_point_that_names_no_component_is_broken(
+    plugin: Plugin, class_: str, error: str
+) -> None:
+    """What it names instead is said, and the other plugins work."""
+    plugins = load([plugin(f"TYPE = 3\n{SOFT}", class_=class_), *BUILT_INS])
+    assert [error in broken.error for broken in plugins.broken] == [True]
+    assert list(plugins.components["kernel"]) == ["half_space"]
+
+
+EFFECT = '''
+from typing import Annotated, Literal
+from pydantic import Field
+from pellicle.components import Component, FromRegistry
+from pellicle.model import Model
+from pellicle.units import Quantity
+
+class Effect(Component):
+    """What bends a curve."""
+
+    family = "effect"
+    place = "rivals[]"
+
+class Drift(Effect):
+    """Drift of the base."""
+
+    type: Literal["drift"] = "drift"
+    rate: Annotated[float, Quantity("m/s"), Field(description="rate [m/s]")]
+
+class Fit(Model):
+    """A file of a stranger."""
+
+    rivals: tuple[Annotated[Effect, FromRegistry()], ...]
+'''
+
+
+@pytest.fixture
+def install(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Registry]:
+    """Return a function that makes plugins, beside our own, those that are installed."""
+
+    def install(*entries: EntryPoint) -> Registry:
+        installed = load([*entries, *entry_points(group=GROUP)])
+        for module in ("plugins", "config.explain", "config.json_schema"):
+            monkeypatch.setattr(f"pellicle.{module}.registry", lambda: installed)
+        return installed
+
+    return install
+
+
+def test_a_plugin_may_bring_a_family(plugin: Plugin, install: Callable[..., Registry]) -> None:
+    """By a base class alone: fields hold its components, schemas and explanations have them."""
+    entry = plugin(EFFECT, name="effect.drift", class_="Drift")
+    installed = install(entry)
+    stranger = import_module(entry.module)
+    assert [*installed.families.items()] == [*FAMILIES.items(), ("effect", stranger.Effect)]
+    (drift,) = stranger.Fit(rivals=[{"type": "drift", "rate": "1 nm/s"}]).rivals
+    assert (type(drift), drift.rate) == (stranger.Drift, 1e-9)
+    with pytest.raises(ConfigError) as raised:
+        stranger.Fit(rivals=[{"type": "drif"}])
+    assert str(raised.value) == (
+        "rivals.0.type: 'drif' is not an effect; did you mean 'drift'? Known: drift"
+    )
+    schema = json_schema(stranger.Fit)
+    Draft202012Validator(schema).validate({"rivals": [{"type": "drift", "rate": "1 nm/s"}]})
+    assert not Draft202012Validator(schema).is_valid({"rivals": [{"type": "drift"}]})
+    assert schema["$defs"].keys() == {"Drift"}
+    assert "Drift" not in json_schema(Run)["$defs"]
+    assert words_by_kind({})["effect"] == ["drift"]
+    (family,) = explanations("effects", {})
+    assert (family.text, [row.name for row in family.fields]) == ("What bends a curve.", ["drift"])
+    (explanation,) = explanations("effect.drift", {})
+    assert explanation.example.startswith("[[rivals]]\n")
+    assert stranger.Fit(**tomllib.loads(explanation.example)).rivals[0].rate == 1
+
+
+def test_a_family_has_one_base(plugin: Plugin, install: Callable[..., Registry]) -> None:
+    """Of two bases of one name the later plugin is broken; ours cannot be taken."""
+    first, later = (plugin(EFFECT, name=f"effect.{n}", class_="Drift") for n in "ab")
+    thief = plugin(EFFECT.replace('"effect"', '"kernel"'), name="a", class_="Drift")
+    installed = install(first, later, thief)
+    errors = {broken.origin.entry_point: broken.error for broken in installed.broken}
+    assert errors.keys() == {"a", "effect.b"}
+    assert f"{later.module}.Effect and {first.module}.Effect both" in errors["effect.b"]
+    assert f"{thief.module}.Effect and pellicle.components.kernel.Kernel both" in errors["a"]
+    assert installed.find("effect", "drift").__module__ == first.module
+    with pytest.raises(ConfigError, match=f"is a {first.module}.Drift, not a {later.module}.Ef"):
+        import_module(later.module).Fit(rivals=[{"type": "drift", "rate": 1}])
+
+
+def test_a_family_whose_application_is_not_installed(
+    plugin: Plugin, install: Callable[..., Registry]
+) -> None:
+    """A field and a search say so; that the plugin is broken or switched off comes first."""
+    entry = plugin(EFFECT, name="effect.drift", class_="Drift")
+    stranger = entry.load().__module__
+    install()
+    for table in ({"type": "drift"}, {}):
+        with pytest.raises(PluginError, match="no installed plugin brings the family 'effect'; Kn"):
+            import_module(stranger).Fit(rivals=[table])
+    with pytest.raises(
+        ConfigError, match="'effect' is neither a type, a family nor a table of what is"
+    ):
+        explanations("effect", {})
+    with pytest.raises(PluginError, match="effect 'drift' is broken"):
+        load([plugin("raise OSError", name="effect.drift")]).find("effect", "drift")
+    with pytest.raises(PluginError, match="switched off"):
+        load([entry], disable="stranger").find("effect", "drift")
+
+
+def test_commands_are_not_loaded_with_components(plugin: Plugin) -> None:
+    """A module of a command is imported when the command is called."""
+    assert load([plugin("raise OSError", name="command.fit")]) == load([])
 
 
 OLD_OUTPUTS = {
@@ -152,14 +312,12 @@ def test_an_output_of_the_earlier_contract_is_told_the_method(name: str, plugin:
 
 def test_one_plugin_may_bring_several_families(plugin: Plugin) -> None:
     """All hooks of a module are called, the one for validation suites included."""
-    more = SOFT + (
+    more = SOFT.replace(REGISTER, f"{REGISTER}    register(Exact)\n") + (
         "from pellicle import AreaCorrection\n"
         "class Exact(AreaCorrection):\n"
         '    """Area of a stranger."""\n'
         '    type: Literal["exact"] = "exact"\n'
         "    def area(self, contact, spacing): return 1.0\n"
-        "@hookimpl\n"
-        "def register_corrections(register): register(Exact)\n"
         "@hookimpl\n"
         "def register_validations(register): register(list)\n"
     )

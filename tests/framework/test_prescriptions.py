@@ -86,9 +86,9 @@ class OwnName(Twice):
 )
 def test_not_registered(lie: Any, words: str) -> None:
     """What a table of the loading cannot hold is refused when it is registered."""
-    assert checked_type(Twice, "prescription") == "twice"
+    assert checked_type(Twice) == "twice"
     with pytest.raises(pl.PluginError, match=words):
-        checked_type(lie, "prescription")
+        checked_type(lie)
 
 
 def _returns(**members: Any) -> pl.Prescription:

@@ -5,11 +5,21 @@ from __future__ import annotations
 import io
 import signal
 import threading
+from pathlib import Path
 
 import pytest
 import rich.console
 
+import pellicle as pl
 from pellicle.runs.progress import RunProgress
+
+RUN = pl.Run(
+    title="bead",
+    grid={"points": 32, "size": 1.0},
+    kernel={"type": "tensed_membrane", "tension": 0.2, "reduced_modulus": 1.0},
+    indenter={"type": "paraboloid", "radius": 1.0},
+    loading={"depth": [0.02, 0.04, 0.06]},
+)
 
 
 def _iterate(progress: RunProgress) -> None:
@@ -33,7 +43,7 @@ def test_bar_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     console = rich.console.Console(file=screen, force_terminal=True, width=200)
     monkeypatch.setattr("rich.console.Console", lambda **options: console)
     monkeypatch.setattr("pellicle.runs.progress._BETWEEN_UPDATES", 0.0)
-    _iterate(RunProgress(2, enabled=True))
+    _iterate(RunProgress(2, True))
     shown = screen.getvalue()
     for words in ("step 2/2", "iteration 2", "residual 5.0e-01 × tolerance", "left"):
         assert words in shown
@@ -46,7 +56,7 @@ def test_silent_on_a_terminal_when_not_enabled(monkeypatch: pytest.MonkeyPatch) 
         raise AssertionError("made a bar")
 
     monkeypatch.setattr("pellicle.runs.progress._make_bar", fail)
-    _iterate(RunProgress(2, enabled=False))
+    _iterate(RunProgress(2, False))
 
 
 @pytest.mark.parametrize("excess", [0.0, float("nan"), float("inf")])
@@ -55,7 +65,7 @@ def test_odd_residuals(excess: float, monkeypatch: pytest.MonkeyPatch) -> None:
     console = rich.console.Console(file=io.StringIO(), force_terminal=True)
     monkeypatch.setattr("rich.console.Console", lambda **options: console)
     monkeypatch.setattr("pellicle.runs.progress._BETWEEN_UPDATES", 0.0)
-    progress = RunProgress(1, enabled=True)
+    progress = RunProgress(1, True)
     with progress:
         monitor = progress.step(0)
         monitor(0, excess)
@@ -66,7 +76,7 @@ def test_odd_residuals(excess: float, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("default_handler")
 def test_interrupt_waits_for_the_next_iteration() -> None:
     """Ctrl-C takes effect at the next iteration, where nothing can swallow it."""
-    with RunProgress(1, enabled=False) as progress:
+    with RunProgress(1, False) as progress:
         monitor = progress.step(0)
         signal.raise_signal(signal.SIGINT)
         with pytest.raises(KeyboardInterrupt):
@@ -78,7 +88,7 @@ def test_interrupt_waits_for_the_next_iteration() -> None:
 @pytest.mark.usefixtures("default_handler")
 def test_second_interrupt_acts_at_once() -> None:
     """Pressing Ctrl-C again does not wait."""
-    with RunProgress(1, enabled=False) as progress:
+    with RunProgress(1, False) as progress:
         signal.raise_signal(signal.SIGINT)
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
@@ -89,7 +99,7 @@ def test_second_interrupt_acts_at_once() -> None:
 @pytest.mark.usefixtures("default_handler")
 def test_interrupt_after_the_last_iteration() -> None:
     """Ctrl-C that comes too late for an iteration is not forgotten."""
-    with pytest.raises(KeyboardInterrupt), RunProgress(1, enabled=False):
+    with pytest.raises(KeyboardInterrupt), RunProgress(1, False):
         signal.raise_signal(signal.SIGINT)
 
 
@@ -98,7 +108,7 @@ def test_interrupt_hides_no_error() -> None:
     """An error on the way out is not replaced by the interruption."""
 
     def fail() -> None:
-        with RunProgress(1, enabled=False):
+        with RunProgress(1, False):
             signal.raise_signal(signal.SIGINT)
             raise ZeroDivisionError
 
@@ -114,7 +124,7 @@ def test_interrupts_are_left_alone_where_they_are_not_ours() -> None:
 
     before = signal.signal(signal.SIGINT, handle)
     try:
-        with RunProgress(1, enabled=False):
+        with RunProgress(1, False):
             assert signal.getsignal(signal.SIGINT) is handle
         assert signal.getsignal(signal.SIGINT) is handle
     finally:
@@ -122,10 +132,44 @@ def test_interrupts_are_left_alone_where_they_are_not_ours() -> None:
     seen: list[object] = []
 
     def work() -> None:
-        with RunProgress(1, enabled=False):
+        with RunProgress(1, False):
             seen.append(signal.getsignal(signal.SIGINT))
 
     thread = threading.Thread(target=work)
     thread.start()
     thread.join()
     assert seen == [before]
+
+
+def test_a_function_is_called_at_each_iteration() -> None:
+    """It gets the steps as the result counts them, and the iterations of each in order."""
+    calls: list[tuple[int, int, float]] = []
+    data = pl.run(RUN, progress=lambda *call: calls.append(call)).dataset
+    for step, iterations in zip(data["step"].values, data["iterations"].values, strict=True):
+        own = [call for call in calls if call[0] == step]
+        assert [iteration for _, iteration, _ in own] == list(range(iterations + 1))
+        assert own[-1][2] <= 1 < own[0][2]
+    assert [step for step, *_ in calls] == sorted(step for step, *_ in calls)
+
+
+@pytest.mark.parametrize("error", [ValueError("array is read-only"), pl.ConfigError("enough")])
+def test_an_exception_of_the_function_ends_the_run(error: Exception, tmp_path: Path) -> None:
+    """It passes through and blames no component; finished steps stay, and the next run resumes."""
+    solved: set[int] = set()
+
+    def end(step: int, iteration: int, residual: float) -> None:
+        solved.add(step)
+        if (step, iteration) == (3, 1):
+            raise error
+
+    with pytest.raises(type(error)) as raised:
+        pl.run(RUN, directory=tmp_path, progress=end)
+    assert raised.value is error
+    assert error.__notes__ == ["raised by progress at iteration 1 of step 3"]
+    assert list(pl.load(tmp_path / "bead.h5").dataset["step"]) == [1, 2]
+    solved.clear()
+    data = pl.run(RUN, directory=tmp_path, progress=lambda step, *_: solved.add(step)).dataset
+    assert solved == {3}
+    assert data.drop_vars("wall_time").equals(
+        pl.run(RUN, progress=False).dataset.drop_vars("wall_time")
+    )

@@ -1,14 +1,16 @@
 """Packages of plugins: names that can be used, and plain words for those that cannot."""
 
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 from pellicle import ConfigError, StorageError
-from pellicle.cli import app
+from pellicle.cli import app, scaffold
 from pellicle.cli.scaffold import write_plugin
 from pellicle.components import FAMILIES
+from pellicle.plugins import Registry
 
 
 @pytest.mark.parametrize("family", FAMILIES)
@@ -26,7 +28,7 @@ def test_writes_a_package(family: str, tmp_path: Path) -> None:
     code = (folder / "pellicle_graded_solid2.py").read_text(encoding="utf-8")
     assert "class GradedSolid2(pl." in code
     assert 'type: Literal["graded_solid2"] = "graded_solid2"' in code
-    entry = f'"{family}.graded_solid2" = "pellicle_graded_solid2"'
+    entry = f'"{family}.graded_solid2" = "pellicle_graded_solid2:GradedSolid2"'
     assert entry in (folder / "pyproject.toml").read_text(encoding="utf-8")
 
 
@@ -75,6 +77,32 @@ def test_family_that_is_none(tmp_path: Path) -> None:
     """Families are named."""
     with pytest.raises(ConfigError, match="'kernal' is not a family; give one of kernel, indenter"):
         write_plugin("kernal", "graded", tmp_path)
+
+
+@pytest.mark.parametrize("is_package", [True, False])
+def test_family_of_a_plugin(
+    is_package: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its template is in the package of its base class; that there is none is said."""
+    name = f"stranger_with_templates_{is_package}".lower()
+    base = tmp_path / name / "__init__.py" if is_package else tmp_path / f"{name}.py"
+    template = tmp_path / name / "templates" / "effect"
+    template.mkdir(parents=True)
+    for file in ("module", "test", "example"):
+        (template / file).write_text(f"{file} of $class_name\n", encoding="utf-8")
+    base.write_text(
+        "from pellicle.components import Component\n"
+        "class Effect(Component): family = 'effect'; place = 'effects[]'\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    families = {"effect": import_module(name).Effect}
+    monkeypatch.setattr(scaffold, "registry", lambda: Registry({"effect": {}}, families))
+    if is_package:
+        folder = write_plugin("effect", "mine", tmp_path)
+        assert (folder / "pellicle_mine.py").read_text(encoding="utf-8") == "module of Mine\n"
+        return
+    with pytest.raises(ConfigError, match=f"{name} has no template of the family 'effect'"):
+        write_plugin("effect", "mine", tmp_path)
 
 
 def test_folder_that_there_is(tmp_path: Path) -> None:

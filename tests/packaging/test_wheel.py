@@ -4,10 +4,14 @@ import subprocess
 import sys
 import tarfile
 import tomllib
+from importlib import import_module
+from inspect import get_annotations
 from pathlib import Path
 from zipfile import ZipFile
 
 import pytest
+
+from pellicle.components import Component
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = (
@@ -27,7 +31,7 @@ DATA = {
     "pellicle_plugins/py.typed",
 } | {
     path.relative_to(ROOT / "framework").as_posix()
-    for folder in ("cli/templates", "report")
+    for folder in ("templates", "report")
     for path in (ROOT / "framework/pellicle" / folder).rglob("*")
     if path.is_file() and path.suffix != ".py" and path.parent.name != "__pycache__"
 }
@@ -99,15 +103,23 @@ def test_entry_points_lead_to_modules(wheel: set[str]) -> None:
 
 
 def test_every_component_has_an_entry_point() -> None:
-    """A component's module with a hook is declared, so that it is not forgotten."""
+    """A class with a type of its own, or a module with a hook, is declared and not forgotten."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    with_hook = {
-        name.removesuffix(".py").replace("/", ".")
-        for name in modules()
-        if name.startswith("pellicle_plugins/")
-        and "@hookimpl" in (ROOT / "plugins" / name).read_text(encoding="utf-8")
-    }
-    assert with_hook == set(project["entry-points"]["pellicle"].values())
+    made = set()
+    for name in modules():
+        if name.startswith("pellicle/"):
+            continue
+        module = name.removesuffix(".py").replace("/", ".")
+        source = (ROOT / "plugins" / name).read_text(encoding="utf-8")
+        if "@hookimpl" in source:
+            made.add(module)
+        if "    type: Literal[" not in source:
+            continue
+        for its in vars(import_module(module)).values():
+            is_component = isinstance(its, type) and issubclass(its, Component)
+            if is_component and its.__module__ == module and "type" in get_annotations(its):
+                made.add(f"{module}:{its.__name__}")
+    assert made == set(project["entry-points"]["pellicle"].values())
 
 
 def test_sdist_can_be_tested(sdist: set[str]) -> None:

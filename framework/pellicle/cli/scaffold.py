@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
+import sys
 from importlib.resources import files
 from importlib.util import find_spec
 from keyword import iskeyword
 from pathlib import Path
 from string import Template
 
-from pellicle.components import FAMILIES
 from pellicle.errors import ConfigError, StorageError
 from pellicle.files import storage_errors
 from pellicle.plugins import registry
@@ -23,8 +23,7 @@ def write_plugin(family: str, name: str, parent: Path) -> Path:
     Parameters
     ----------
     family
-        One of ``kernel``, ``indenter``, ``interaction``, ``solver``, ``correction``, ``output``,
-        ``executor``, ``prescription``.
+        A family whose base class is in a package with a folder ``templates/FAMILY``.
     name
         The component's type, such as ``graded`` or ``graded-solid``.
     parent
@@ -33,23 +32,20 @@ def write_plugin(family: str, name: str, parent: Path) -> Path:
     Raises
     ------
     ConfigError
-        The family does not exist, or the name cannot be used.
+        The family or its template does not exist, or the name cannot be used.
     StorageError
         The folder exists already, or cannot be written.
     """
-    if family not in FAMILIES:
-        raise ConfigError(
-            f"{family!r} is not a family; give one of {', '.join(FAMILIES)}", "--plugin"
-        )
+    template = _template(family)
     names = _names(family, name)
     folder = parent / names["distribution"]
-    templates = files("pellicle.cli") / "templates"
+    package = files("pellicle") / "templates" / "package"
     sources = {
-        "pyproject.toml": templates / "package" / "pyproject.toml",
-        "README.md": templates / "package" / "README.md",
-        f"{names['module']}.py": templates / family / "module",
-        f"test_{names['module']}.py": templates / family / "test",
-        f"{names['type']}.toml": templates / family / "example",
+        "pyproject.toml": package / "pyproject.toml",
+        "README.md": package / "README.md",
+        f"{names['module']}.py": template / "module",
+        f"test_{names['module']}.py": template / "test",
+        f"{names['type']}.toml": template / "example",
     }
     with storage_errors(folder):
         try:
@@ -60,6 +56,26 @@ def write_plugin(family: str, name: str, parent: Path) -> Path:
             text = Template(source.read_text(encoding="utf-8")).substitute(names)
             (folder / file).write_text(text, encoding="utf-8")
     return folder
+
+
+def _template(family: str) -> Path:
+    """Return the folder of a family's template.
+
+    Raises
+    ------
+    ConfigError
+        The family does not exist, or the package of its base class has no template of it.
+    """
+    families = registry().families
+    if family not in families:
+        raise ConfigError(
+            f"{family!r} is not a family; give one of {', '.join(families)}", "--plugin"
+        )
+    package = families[family].__module__.partition(".")[0]
+    for path in getattr(sys.modules[package], "__path__", ()):
+        if (template := Path(path, "templates", family)).is_dir():
+            return template
+    raise ConfigError(f"{package} has no template of the family {family!r}", "--plugin")
 
 
 def _names(family: str, name: str) -> dict[str, str]:

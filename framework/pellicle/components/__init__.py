@@ -25,6 +25,7 @@ from .executor import Task as Task
 from .executor import Threads as Threads
 from .executor import Work as Work
 from .executor import Workers as Workers
+from .from_registry import FromRegistry as FromRegistry
 from .indenter import ContactRadius as ContactRadius
 from .indenter import Footprint as Footprint
 from .indenter import ForceCurve as ForceCurve
@@ -64,7 +65,7 @@ FAMILIES: dict[str, type[Component]] = {
         Prescription,
     )
 }
-"""The base class of each family, by name."""
+"""The base class of each of pellicle's own families, by name."""
 
 if not TYPE_CHECKING:
 

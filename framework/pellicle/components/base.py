@@ -14,6 +14,9 @@ class Component(Model):
     """A frozen model with a field ``type: Literal["…"]``, by which configurations name it."""
 
     family: ClassVar[str]
+    """Name of its family, which the base class of the family alone gives."""
+    place: ClassVar[str]
+    """Where a file has components of the family; ``[]`` stands for an entry of a list."""
     libraries: ClassVar[tuple[str, ...]] = ()
     """Distributions that it uses besides numpy and scipy; results record their versions."""
     replaced_methods: ClassVar[Mapping[str, str]] = {}

@@ -14,6 +14,7 @@ class AreaCorrection(Component):
     """A correction of the contact area for the discretisation."""
 
     family: ClassVar[str] = "correction"
+    place: ClassVar[str] = "corrections[]"
 
     @abstractmethod
     def area(self, contact: Mask, spacing: tuple[float, float]) -> float:

@@ -57,6 +57,7 @@ class Executor(Component):
     """Executes the runs of a study."""
 
     family: ClassVar[str] = "executor"
+    place: ClassVar[str] = "study.executor"
 
     threads: Annotated[
         Threads | None,

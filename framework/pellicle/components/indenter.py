@@ -20,6 +20,7 @@ class Indenter(Component):
     """
 
     family: ClassVar[str] = "indenter"
+    place: ClassVar[str] = "indenter"
 
     @property
     def footprint(self) -> Footprint:

@@ -26,6 +26,7 @@ class Interaction(Component):
     """
 
     family: ClassVar[str] = "interaction"
+    place: ClassVar[str] = "interaction"
     needs_contact: ClassVar[bool] = False
     """Whether it acts only on cells that are joined to a contact by cells within the cutoff."""
     averaged: ClassVar[bool] = False

@@ -21,6 +21,7 @@ class Kernel(Component):
     """
 
     family: ClassVar[str] = "kernel"
+    place: ClassVar[str] = "kernel"
 
     @abstractmethod
     def compliance(self, q: Array) -> Array:

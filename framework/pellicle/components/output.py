@@ -28,6 +28,7 @@ class Output(Component):
     """
 
     family: ClassVar[str] = "output"
+    place: ClassVar[str] = "outputs[]"
     replaced_methods: ClassVar[Mapping[str, str]] = dict.fromkeys(
         ("open", "close", "study", "endings", "resume"), "write(runs, stem)"
     )

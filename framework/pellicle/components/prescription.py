@@ -95,6 +95,7 @@ class Prescription(Component):
     """Converts a prescribed value to a depth, a force or a search for one of them."""
 
     family: ClassVar[str] = "prescription"
+    place: ClassVar[str] = "loading"
     unit: ClassVar[str]
     """SI unit of its values."""
     at_least: ClassVar[float | None] = None

@@ -42,6 +42,7 @@ class Solver(Component):
     """Finds the pressure of one load step."""
 
     family: ClassVar[str] = "solver"
+    place: ClassVar[str] = "solver"
     replaced_methods: ClassVar[Mapping[str, str]] = {
         "punch_pressure": "response(problem, state, monitor), for the contact state.pressure > 0",
         "patience": "terminate(problem, state), which returns Stop.STALLED to end the iteration",

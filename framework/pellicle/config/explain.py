@@ -13,7 +13,7 @@ from typing import Any, Literal, NamedTuple, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from pellicle.components import FAMILIES, Component, Prescription
+from pellicle.components import Component, Prescription
 from pellicle.errors import ConfigError, shown
 from pellicle.grid import Grid
 from pellicle.loading import OPTIONS
@@ -26,10 +26,10 @@ from .run import Run
 from .study import Study
 from .wording import model_in
 
-_EXAMPLES: Mapping[type[BaseModel], Mapping[str, Any]] = {
-    Grid: {"grid": {"points": 256, "size": "0.4 mm", "boundary": "free"}},
-    Loading: {"loading": {"depth": {"start": "1 um", "stop": "5 um", "num": 5}}},
-    Study: {"study": {"vary": {"kernel.tension": ["0 mN/m", "10 mN/m", "50 mN/m"]}}},
+_EXAMPLES: Mapping[type[BaseModel], tuple[str, Mapping[str, Any]]] = {
+    Grid: ("grid", {"points": 256, "size": "0.4 mm", "boundary": "free"}),
+    Loading: ("loading", {"depth": {"start": "1 um", "stop": "5 um", "num": 5}}),
+    Study: ("study.vary", {"kernel.tension": ["0 mN/m", "10 mN/m", "50 mN/m"]}),
 }
 _TABLES: Mapping[str, type[BaseModel]] = {
     "run": Run,
@@ -37,7 +37,6 @@ _TABLES: Mapping[str, type[BaseModel]] = {
     "loading": Loading,
     "study": Study,
 }
-_IN_LISTS = {"corrections", "outputs"}
 _KINDS: Mapping[type, str] = {bool: "true or false", int: "whole number", float: "number"}
 _KINDS_OF_TEXT = (str, Path)
 
@@ -88,19 +87,22 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
     families = registry().components
     if name in entries:
         return [_of_table(name, entries[name])]
-    singular = name.removesuffix("s")
-    if singular in FAMILIES:
-        return [_of_family(singular)]
-    family, _, type_ = name.rpartition(".")
+    for family in (name, name.removesuffix("s")):
+        if family in families:
+            return [_of_family(family)]
+    given, _, type_ = name.rpartition(".")
     matches = [
         members[type_]
-        for family_name, members in families.items()
-        if type_ in members and family.removesuffix("s") in ("", family_name)
+        for family, members in families.items()
+        if type_ in members and given in ("", family, f"{family}s")
     ]
     if not matches:
         types = {type_ for members in families.values() for type_ in members}
-        hint = similar(name, types | {*entries, *FAMILIES}) or "see `pellicle plugins`"
-        raise ConfigError(f"{shown(word)} is neither a type nor a table; {hint}", "TYPE")
+        hint = similar(name, types | {*entries, *families}) or "see `pellicle plugins`"
+        raise ConfigError(
+            f"{shown(word)} is neither a type, a family nor a table of what is installed; {hint}",
+            "TYPE",
+        )
     return [_of_component(match) for match in matches]
 
 
@@ -117,8 +119,8 @@ def _of_table(name: str, model: type[BaseModel]) -> Explanation:
     ]
     if model is Loading:
         rows = [*_prescription_rows(), *rows]
-    table = _EXAMPLES.get(model, {})
-    return Explanation(name, "table", "", _documentation(model), rows, _toml(table))
+    example = _toml(*_EXAMPLES[model]) if model in _EXAMPLES else ""
+    return Explanation(name, "table", "", _documentation(model), rows, example)
 
 
 def _prescription_rows() -> Iterator[FieldRow]:
@@ -136,7 +138,7 @@ def _of_family(family: str) -> Explanation:
         FieldRow(type_, "", "", entry.summary)
         for type_, entry in registry().components[family].items()
     ]
-    return Explanation(family, "family", "", _documentation(FAMILIES[family]), rows, "")
+    return Explanation(family, "family", "", _documentation(registry().families[family]), rows, "")
 
 
 def _of_component(entry: Registered) -> Explanation:
@@ -150,7 +152,9 @@ def _of_component(entry: Registered) -> Explanation:
         origin,
         _documentation(entry.component),
         fields_of(model),
-        f"# none; it would be refused:{refusal}" if refusal else _toml(example_table(entry)),
+        f"# none; it would be refused:{refusal}"
+        if refusal
+        else _toml(entry.component.place, example_table(entry)),
     )
 
 
@@ -233,31 +237,19 @@ def refusal_of_example(component: type[Component]) -> str:
 
 
 def example_table(entry: Registered) -> Mapping[str, Any]:
-    """Return a table of a run file that uses a component, with its required fields only."""
+    """Return the table of a component in a file, with its required fields only."""
     component = entry.component
     values = dict(example_values(component))
     if issubclass(component, Prescription):
-        return {"loading": {entry.type: [component.quantity().example], **values}}
-    table = {"type": entry.type, **values}
-    if component.family == "executor":
-        return {"study": {"executor": table}}
-    plural = f"{component.family}s"
-    return {plural: [table]} if plural in _IN_LISTS else {component.family: table}
+        return {entry.type: [component.quantity().example], **values}
+    return {"type": entry.type, **values}
 
 
-def _toml(tables: Mapping[str, Any], path: str = "") -> str:
-    """Return tables as TOML, with a line for each key and inner tables on one line."""
-    parts = []
-    for name, value in tables.items():
-        head = f"[[{path}{name}]]" if isinstance(value, list) else f"[{path}{name}]"
-        table = value[0] if isinstance(value, list) else value
-        if all(isinstance(inner, Mapping) for inner in table.values()) and name == "study":
-            parts.append(_toml(table, f"{name}."))
-        else:
-            parts.append(
-                "\n".join([head, *(f"{_key(key)} = {_inline(v)}" for key, v in table.items())])
-            )
-    return "\n".join(parts)
+def _toml(place: str, table: Mapping[str, Any]) -> str:
+    """Return a table at its place as TOML, with a line for each key and inner tables on one."""
+    name = place.replace("[]", "")
+    head = f"[[{name}]]" if place.endswith("[]") else f"[{name}]"
+    return "\n".join([head, *(f"{_key(key)} = {_inline(v)}" for key, v in table.items())])
 
 
 def _inline(value: Any) -> str:
@@ -300,9 +292,11 @@ def _example(name: str, info: FieldInfo) -> Any:
     elif inner is not None and not issubclass(inner, Component):
         value = dict(example_values(inner))
     elif inner is not None:
-        types = registry().components[inner.family].values()
-        simplest = min(types, key=lambda entry: (len(entry.component.model_fields), entry.type))
-        value = {"type": simplest.type, **dict(example_values(simplest.component))}
+        types = registry().components.get(inner.family, {}).values()
+        simplest = min(types, key=lambda e: (len(e.component.model_fields), e.type), default=None)
+        value = {"type": "…"}
+        if simplest:
+            value = {"type": simplest.type, **dict(example_values(simplest.component))}
     else:
         value = {"true or false": True, "whole number": 1}.get(_kind(info.annotation), name)
     return [value] if _is_list(info.annotation) else value

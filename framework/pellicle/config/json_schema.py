@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import inspect
+from collections import defaultdict
+from collections.abc import Iterator
 from typing import Any
 
 from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
+from pellicle.components import Component
+from pellicle.components.from_registry import FAMILY
 from pellicle.plugins import registry
 
-from .component_field import _FAMILY
 from .loading import Loading, loading_model
 from .run import Run
 from .study import Study
@@ -21,29 +24,57 @@ _IN_PART = "InPart"
 def json_schema(model: type[BaseModel]) -> dict[str, Any]:
     """Return the JSON schema of a model whose fields take any installed component.
 
-    In fields of the model itself the schemas of the components are written out. Components may hold
+    It holds the families that the model refers to, itself or by components of another family. In
+    fields of the model itself the schemas of the components are written out. Components may hold
     others of their own family without end, so their fields refer to schemas. The loading is a
     choice of one table per prescription.
     """
-    families = registry().components
-    installed = [entry for entries in families.values() for entry in entries.values()]
-    loadings = [loading_model(type_) for type_ in families["prescription"]]
-    models = [model, *(registered.component for registered in installed), *loadings]
+    models = _models_in(model)
     refs, generated = models_json_schema([(entry, "validation") for entry in models])
     names = {entry: refs[entry, "validation"]["$ref"].rpartition("/")[2] for entry in models}
     definitions: dict[str, Any] = generated["$defs"]
     if Loading.__name__ in definitions:
-        choices = [definitions.pop(names[loading]) for loading in loadings]
+        choices = [definitions.pop(names[loading]) for loading in _loadings()]
         definitions[Loading.__name__] = {"description": inspect.getdoc(Loading), "oneOf": choices}
-    referred: dict[str, list[dict[str, Any]]] = {family: [] for family in families}
-    written: dict[str, list[dict[str, Any]]] = {family: [] for family in families}
-    for registered in installed:
-        component = registered.component
-        required = {"required": ["type", *_required(component)]}
-        referred[component.family].append(refs[component, "validation"] | required)
-        written[component.family].append(definitions[names[component]] | required)
+    referred: dict[str, list[dict[str, Any]]] = defaultdict(list)
+    written: dict[str, list[dict[str, Any]]] = defaultdict(list)
+    for component in models[1:]:
+        if issubclass(component, Component):
+            required = {"required": ["type", *_required(component)]}
+            referred[component.family].append(refs[component, "validation"] | required)
+            written[component.family].append(definitions[names[component]] | required)
     top = _filled(_filled(definitions.pop(names[model]), written), referred)
     return {"$defs": _filled(definitions, referred), **top}
+
+
+def _models_in(model: type[BaseModel]) -> list[type[BaseModel]]:
+    """Return a model, then the components and tables of the loading that it and these refer to."""
+    models = [model]
+    for one in models:
+        _, generated = models_json_schema([(one, "validation")])
+        found: list[type[BaseModel]] = [
+            registered.component
+            for family in _families_in(generated)
+            for registered in registry().components.get(family, {}).values()
+        ]
+        if Loading.__name__ in generated["$defs"]:
+            found += _loadings()
+        models += [other for other in dict.fromkeys(found) if other not in models]
+    return models
+
+
+def _families_in(schema: Any) -> Iterator[str]:
+    if isinstance(schema, dict):
+        if FAMILY in schema:
+            yield schema[FAMILY]
+        schema = [*schema.values()]
+    if isinstance(schema, list):
+        for inner in schema:
+            yield from _families_in(inner)
+
+
+def _loadings() -> list[type[BaseModel]]:
+    return [loading_model(type_) for type_ in registry().components["prescription"]]
 
 
 def _filled(schema: Any, choices: dict[str, list[dict[str, Any]]]) -> Any:
@@ -52,11 +83,11 @@ def _filled(schema: Any, choices: dict[str, list[dict[str, Any]]]) -> Any:
         return [_filled(inner, choices) for inner in schema]
     if not isinstance(schema, dict):
         return schema
-    filled = {name: _filled(inner, choices) for name, inner in schema.items() if name != _FAMILY}
-    if _FAMILY not in schema:
+    filled = {name: _filled(inner, choices) for name, inner in schema.items() if name != FAMILY}
+    if FAMILY not in schema:
         return filled
     # A list of choices must not be empty, which it is where no plugin of a family could be loaded.
-    choice = choices[schema[_FAMILY]]
+    choice = choices[schema[FAMILY]]
     if not choice:
         return filled | {"not": {}}
     return filled | {"oneOf": choice}

@@ -27,6 +27,7 @@ from pellicle.checks import errors_attributed_to
 from pellicle.components import (
     AreaCorrection,
     Component,
+    FromRegistry,
     HasRelaxation,
     HasTimeSpan,
     Indenter,
@@ -46,7 +47,6 @@ from pellicle.model.paths import get, replaced, walk
 from pellicle.plugins import registry
 from pellicle.results.variables import VARIABLES, Variable, corrected_area, corrected_fraction
 
-from .component_field import FromRegistry
 from .loading import Loading, refuse_pulls
 
 DEFAULT_SOLVER = "active_set"

@@ -13,7 +13,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from pellicle import memory
-from pellicle.components import Executor
+from pellicle.components import Executor, FromRegistry
 from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError, Problem, shown
 from pellicle.model.expression import CONSTANTS, FUNCTIONS, evaluate, names_in
@@ -25,7 +25,6 @@ from pellicle.model.ranges import Axes, expand
 from pellicle.results.derived import constants
 from pellicle.results.variables import BEYOND_THEORY, FIELDS, VARIABLES
 
-from .component_field import FromRegistry
 from .coordinates import Coordinate, as_json, coordinate, tell_apart
 from .points import Point, points_of
 from .run import Run

@@ -97,7 +97,7 @@ def registered(model: type[BaseModel] | None, type_: object) -> Registered | Non
     """Return the installed component of a type, if ``model`` is the base class of its family."""
     if model is None or not issubclass(model, Component):
         return None
-    return registry().components[model.family].get(str(type_))
+    return registry().components.get(model.family, {}).get(str(type_))
 
 
 def model_of_table(table: Mapping[str, Any], annotation: Any) -> type[BaseModel] | None:

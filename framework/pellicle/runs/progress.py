@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     import rich.console
     import rich.progress
 
+Report = Callable[[int, int, float], None]
+"""Function that is called with the number of a load step, the iteration and the residual."""
+
 _BETWEEN_UPDATES = 0.1
 _SPEED_PERIOD = 3600
 """Period over which the speed is measured [s]: runs of a study may take minutes each."""
@@ -104,15 +107,16 @@ class _BarContext(ABC):
 
 
 class RunProgress(_BarContext):
-    """Shows a bar on a terminal or in a notebook; elsewhere, or if not ``enabled``, nothing.
+    """Shows a bar on a terminal or in a notebook, or calls a function, or if False does nothing.
 
     The bar shows the step, the iteration, the residual and the time left. Ctrl-C takes effect at
     the next iteration.
     """
 
-    def __init__(self, steps: int, enabled: bool) -> None:
+    def __init__(self, steps: int, progress: bool | Report) -> None:
         self._steps = steps
-        super().__init__(_make_bar(_stderr()) if enabled else None)
+        self._report = progress if callable(progress) else None
+        super().__init__(_make_bar(_stderr()) if progress and not self._report else None)
 
     def _begin(self, bar: rich.progress.Progress) -> None:
         self._task = bar.add_task("", total=float(self._steps), message="")
@@ -122,9 +126,11 @@ class RunProgress(_BarContext):
         show = _monitor(index, self._steps, self._show)
 
         def monitor(iteration: int, residual_ratio: float) -> None:
-            """Show an iteration."""
+            """Show or report an iteration."""
             self._interrupt.check()
-            if self._bar is not None:
+            if self._report is not None:
+                _report(self._report, index + 1, iteration, residual_ratio)
+            elif self._bar is not None:
                 show(iteration, residual_ratio)
 
         return monitor
@@ -224,6 +230,15 @@ def _monitor(index: int, steps: int, show: Callable[[ProgressMessage], None]) ->
         show(ProgressMessage(index, steps, iteration, residual_ratio, index + share))
 
     return monitor
+
+
+def _report(report: Report, step: int, iteration: int, residual_ratio: float) -> None:
+    try:
+        report(step, iteration, residual_ratio)
+    except Exception as error:
+        # Without a note the error would be attributed to the solver that called the monitor.
+        error.add_note(f"raised by progress at iteration {iteration} of step {step}")
+        raise
 
 
 @contextmanager

@@ -27,7 +27,7 @@ from pellicle.results.step import Steps
 from .compose import compose
 from .journal import Journal
 from .lock import locked
-from .progress import Bar, RunProgress
+from .progress import Bar, Report, RunProgress
 from .relaxation import history_arrays
 from .steps import solve_steps
 
@@ -47,7 +47,7 @@ def run(
     configuration: Run | Mapping[str, Any] | str | Path,
     *,
     directory: str | Path | None = None,
-    progress: bool = True,
+    progress: bool | Report = True,
     threads: int | None = None,
     overwrite: bool = False,
 ) -> Result:
@@ -61,7 +61,10 @@ def run(
         Folder of the result file and the outputs. Without it nothing is written, unless the
         configuration names outputs: then it is the current folder.
     progress
-        Show a bar on a terminal or in a notebook.
+        Show a bar on a terminal or in a notebook. Or a function that is called instead at each
+        iteration of a solve, of which a load step may need several, with the number of the step as
+        in the result, the iteration and the residual over the tolerance. An exception that it
+        raises ends the run and is raised here; finished steps are kept in ``directory``.
     threads
         Threads of the transforms and of passes over large arrays, a whole number ≥ 1; None for
         `default_threads`.
@@ -95,10 +98,9 @@ def run(
     return result
 
 
-def solve(run: Run, bar: Bar | None = None) -> Result:
-    """Return the result of ``run``; nothing is written, and shown only by ``bar``."""
-    hidden = RunProgress(len(run.loading.values), enabled=False)
-    return execute(run, None, (), hidden if bar is None else bar).result
+def solve(run: Run) -> Result:
+    """Return the result of ``run``; nothing is written or shown."""
+    return execute(run, None, (), RunProgress(len(run.loading.values), False)).result
 
 
 class Executed(NamedTuple):

@@ -16,7 +16,7 @@ from pydantic import ValidationError
 from pellicle.components import FAMILIES, Component
 from pellicle.config.explain import refusal_of_example
 from pellicle.errors import ConfigError, PellicleError
-from pellicle.plugins import GROUP, checked_type, registry
+from pellicle.plugins import GROUP, checked_type, family_of, registry
 from pellicle.units import Quantity
 
 from .rules import Rule, keep, require
@@ -51,7 +51,7 @@ def is_an_instance(component: object, family: str) -> None:
 def class_can_be_registered(component: Component) -> None:
     """The class has one type, a docstring, descriptions, a JSON schema and all methods."""
     try:
-        checked_type(type(component), component.family)
+        checked_type(type(component))
     except PellicleError as error:
         raise AssertionError(str(error)) from None
 
@@ -182,15 +182,14 @@ def libraries_are_installed(component: Component) -> None:
 def is_registered(component: Component) -> None:
     """An installed plugin registers the class under its type."""
     family, type_ = component.family, _table(component)["type"]
-    module = type(component).__module__
+    module, name = type(component).__module__, type(component).__name__
     try:
         registered = registry().find(family, type_)
     except PellicleError as error:
         raise AssertionError(
             f"{error}\nIf the plugin is yours, its pyproject.toml needs\n"
-            f'    [project.entry-points.{GROUP}]\n    "{family}.{type_}" = "{module}"\n'
-            "the module a hook that registers the class, and the package to be installed again: "
-            "pip install -e ."
+            f'    [project.entry-points.{GROUP}]\n    "{family}.{type_}" = "{module}:{name}"\n'
+            "and the package has to be installed again: pip install -e ."
         ) from None
     require(
         registered is type(component),
@@ -201,7 +200,7 @@ def is_registered(component: Component) -> None:
 
 def goes_through_the_registry(component: Component) -> None:
     """The registry reproduces a component from its table, and returns a component unchanged."""
-    base = FAMILIES[component.family]
+    base = family_of(type(component))
     for table in (_table(component), _by_toml(_table(component)), component.model_dump()):
         again = registry().make(base, table)
         require(again == component, f"{again!r} of {component!r}")

@@ -162,7 +162,7 @@ def works_in_a_run(output: Output) -> None:
         return
     with _stem() as stem:
         run = _run().model_copy(update={"outputs": (output,)})
-        journal, bar = Journal(stem, run.identity), RunProgress(_STEPS, enabled=False)
+        journal, bar = Journal(stem, run.identity), RunProgress(_STEPS, False)
         files = execute(run, journal, (output,), bar).files
         require(all(path.is_file() for path in files), f"files {files}")
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import log, pi
 from typing import Literal
 
 import numpy as np
 from pydantic import ConfigDict
 
-from pellicle import hookimpl
 from pellicle.arrays import Mask
 from pellicle.components import AreaCorrection
 
@@ -42,9 +40,3 @@ class Yastrebov(AreaCorrection):
 def _area(contact: Mask, switches: int, spacing: tuple[float, float]) -> float:
     covered = np.count_nonzero(contact)
     return spacing[0] * spacing[1] * (covered - (pi - 1 + log(2)) / 24 * switches)
-
-
-@hookimpl
-def register_corrections(register: Callable[[type[AreaCorrection]], None]) -> None:
-    """Register the correction."""
-    register(Yastrebov)

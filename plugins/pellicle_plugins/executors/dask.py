@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pellicle import ConfigError, hookimpl
+from pellicle import ConfigError
 from pellicle.components import AnyTask, Executor, Outcome, Outcomes, Report, Threads, Work
 
 
@@ -59,9 +59,3 @@ class Dask(Executor):
             ) from None
         with connected(self.address) as client, Submission(client, work, tasks) as submission:
             yield from submission.outcomes(report)
-
-
-@hookimpl
-def register_executors(register: Callable[[type[Executor]], None]) -> None:
-    """Register the executor."""
-    register(Dask)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pellicle import hookimpl
 from pellicle.components import (
     AnyTask,
     Executor,
@@ -53,9 +52,3 @@ class Processes(Executor):
                 # The next tasks start before the caller handles the finished ones.
                 finished = pool.receive(report)
                 finished += pool.start()
-
-
-@hookimpl
-def register_executors(register: Callable[[type[Executor]], None]) -> None:
-    """Register the executor."""
-    register(Processes)

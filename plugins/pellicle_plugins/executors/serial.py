@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from typing import Literal
 
-from pellicle import hookimpl
 from pellicle.components import AnyTask, Executor, Outcome, Outcomes, Report, Work
 
 from .execution import execute
@@ -23,9 +22,3 @@ class Serial(Executor):
         """Yield each task, in order, with what ``work`` returned or raised."""
         for task in tasks:
             yield task, execute(work, task, partial(report, task))
-
-
-@hookimpl
-def register_executors(register: Callable[[type[Executor]], None]) -> None:
-    """Register the executor."""
-    register(Serial)

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import inf, pi, tan
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import ForceCurve, Indenter
+from pellicle.components import ForceCurve
 from pellicle.units import Quantity
 from pellicle_plugins.analytic import master_curves
 from pellicle_plugins.analytic.layer_curves import Profile, cone_profile
@@ -47,9 +45,3 @@ class Cone(Axisymmetric):
 
     def _make_layer_curves(self) -> Profile:
         return cone_profile(self.half_angle)
-
-
-@hookimpl
-def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
-    """Register the cone."""
-    register(Cone)

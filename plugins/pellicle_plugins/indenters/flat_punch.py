@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import ForceCurve, Indenter
+from pellicle.components import ForceCurve
 from pellicle.units import Length
 from pellicle_plugins.analytic import master_curves
 from pellicle_plugins.analytic.layer_curves import Punch
@@ -33,9 +31,3 @@ class FlatPunch(Axisymmetric):
 
     def _make_layer_curves(self) -> Punch:
         return Punch(self.radius)
-
-
-@hookimpl
-def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
-    """Register the flat punch."""
-    register(FlatPunch)

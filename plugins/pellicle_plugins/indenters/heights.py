@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Indenter
 from pellicle.errors import ConfigError
 from pellicle.files import is_file, read_text
 from pellicle.grid import shape_of_run
@@ -235,9 +232,3 @@ def _checked(raw: Any, name: str, field: str) -> Array:
             f"{name} holds {count} {kinds} or infinite heights; fill or crop them first", field
         )
     return np.array(array, dtype=np.float64, order="C")
-
-
-@hookimpl
-def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
-    """Register the heights."""
-    register(Heights)

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import inf
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import ForceCurve, Indenter
+from pellicle.components import ForceCurve
 from pellicle.units import Length
 from pellicle_plugins.analytic import master_curves
 from pellicle_plugins.analytic.layer_curves import Profile, smooth_profile
@@ -46,9 +44,3 @@ class Paraboloid(Axisymmetric):
     def whole_shape(self) -> Sphere:
         """Return the sphere of the same radius."""
         return Sphere(radius=self.radius)
-
-
-@hookimpl
-def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
-    """Register the paraboloid."""
-    register(Paraboloid)

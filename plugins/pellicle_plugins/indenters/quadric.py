@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Indenter
 from pellicle.units import Length
@@ -29,9 +27,3 @@ class Quadric(Indenter):
     def profile(self, x: Array, y: Array) -> Array:
         """Return −(x²/2R_x + y²/2R_y) [m]."""
         return -(x**2 / 2 / self.radius_x + y**2 / 2 / self.radius_y)
-
-
-@hookimpl
-def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
-    """Register the quadric."""
-    register(Quadric)

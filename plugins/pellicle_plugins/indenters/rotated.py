@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import cos, sin
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Indenter
 from pellicle.units import Quantity
 
 from .transformed import RigidMotion, profile_of
@@ -30,9 +27,3 @@ class Rotated(RigidMotion):
         """Return f(x cos α + y sin α, y cos α − x sin α) [m]."""
         c, s = cos(self.angle), sin(self.angle)
         return profile_of(self.part, c * x + s * y, c * y - s * x, "part")
-
-
-@hookimpl
-def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
-    """Register the rotated indenter."""
-    register(Rotated)

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Indenter
 from pellicle.units import Quantity
 
 from .transformed import Transformed, profile_of
@@ -33,9 +30,3 @@ class Scaled(Transformed):
         profile = profile_of(self.part, x, y, "part")
         # −inf · 0 would be NaN.
         return np.multiply(profile, self.factor, out=profile.copy(), where=np.isfinite(profile))
-
-
-@hookimpl
-def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
-    """Register the scaled indenter."""
-    register(Scaled)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import ceil, pi
 from typing import Annotated, ClassVar, Literal, NamedTuple, Self
 
@@ -11,7 +10,6 @@ import scipy.fft
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Footprint, Indenter
 from pellicle.errors import ConfigError
@@ -177,9 +175,3 @@ def _climb(series: _Series, x: UniformAxis, y: UniformAxis, point: Array) -> flo
             break
         point = point - np.linalg.solve(curvature, slope)
     return float(2 * np.sum((series.c * np.exp(1j * (q @ point))).real))
-
-
-@hookimpl
-def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
-    """Register the self-affine punch."""
-    register(SelfAffine)

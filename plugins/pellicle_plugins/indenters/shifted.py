@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Indenter
 from pellicle.units import Quantity
 
 from .transformed import RigidMotion, profile_of
@@ -29,9 +26,3 @@ class Shifted(RigidMotion):
     def profile(self, x: Array, y: Array) -> Array:
         """Return f(x − x₀, y − y₀) [m]."""
         return profile_of(self.part, x - self.x, y - self.y, "part")
-
-
-@hookimpl
-def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
-    """Register the shifted indenter."""
-    register(Shifted)

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Footprint, Indenter
-from pellicle.config.component_field import FromRegistry
+from pellicle.components import Footprint, FromRegistry, Indenter
 from pellicle.errors import ConfigError
 
 from .transformed import profile_of
@@ -107,9 +104,3 @@ class Sum(Indenter):
 
 _SIMPLEX = 0.01 * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 """Initial simplex of the search for the lowest point, relative to the domain."""
-
-
-@hookimpl
-def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
-    """Register the sum."""
-    register(Sum)

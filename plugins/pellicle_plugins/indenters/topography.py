@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from math import ceil, floor
 from typing import Annotated, ClassVar, Literal, Self, get_args
 
@@ -11,9 +11,7 @@ import numpy as np
 from numpy.polynomial.legendre import legvander
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
-from pellicle import hookimpl
 from pellicle.arrays import Array, Mask
-from pellicle.components import Indenter
 from pellicle.errors import ConfigError
 from pellicle.grid import pair
 from pellicle.model.input_path import InputPath
@@ -255,9 +253,3 @@ def _levelled(heights: Array, degree: int) -> Array:
 def _lengths(values: Sequence[float], digits: int = 3) -> str:
     """Return two lengths [m] as text, such as ``2 µm × 3 µm``."""
     return " × ".join(readable(value, "m", digits) for value in values)
-
-
-@hookimpl
-def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
-    """Register the topography."""
-    register(Topography)

@@ -7,8 +7,7 @@ from typing import Annotated, Self
 from pydantic import Field, model_validator
 
 from pellicle.arrays import Array
-from pellicle.components import Footprint, Indenter
-from pellicle.config.component_field import FromRegistry
+from pellicle.components import Footprint, FromRegistry, Indenter
 from pellicle.errors import ConfigError
 
 

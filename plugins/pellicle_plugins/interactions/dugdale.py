@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 import numpy as np
 from pydantic import ConfigDict
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Interaction, Kernel
+from pellicle.components import Kernel
 from pellicle.grid import Grid
 from pellicle.numerics.gap_law import GapLaw
 
@@ -96,9 +94,3 @@ class Spread:
     def cutoff(self) -> float:
         """Return the end of the drop [m]."""
         return self.range + self.drop / 2
-
-
-@hookimpl
-def register_interactions(register: Callable[[type[Interaction]], None]) -> None:
-    """Register the interaction."""
-    register(Dugdale)

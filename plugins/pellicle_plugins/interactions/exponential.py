@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Interaction
 from pellicle.units import Length, WorkOfAdhesion
@@ -41,9 +39,3 @@ class Exponential(Interaction):
     def cutoff(self) -> float:
         """Return the gap [m] at which the energy is 10⁻⁶ w."""
         return -float(np.log(_CUTOFF)) * self.range
-
-
-@hookimpl
-def register_interactions(register: Callable[[type[Interaction]], None]) -> None:
-    """Register the interaction."""
-    register(Exponential)

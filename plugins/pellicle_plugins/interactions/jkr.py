@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import ConfigDict, Field, PrivateAttr
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Interaction, Kernel
 from pellicle.grid import Grid
@@ -86,9 +84,3 @@ class Joined(Linear):
 
     needs_contact: ClassVar[bool] = True
     averaged: ClassVar[bool] = True
-
-
-@hookimpl
-def register_interactions(register: Callable[[type[Interaction]], None]) -> None:
-    """Register the interaction."""
-    register(JKR)

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import ClassVar, Literal
 
 import numpy as np
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Interaction
 
 from .adhesive import Adhesive
 
@@ -44,9 +41,3 @@ class Linear(Adhesive):
 
     def _closed(self, gap: Array) -> Array:
         return np.maximum(1 - gap / self.reach, 0.0)
-
-
-@hookimpl
-def register_interactions(register: Callable[[type[Interaction]], None]) -> None:
-    """Register the interaction."""
-    register(Linear)

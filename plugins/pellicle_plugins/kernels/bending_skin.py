@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Kernel
 from pellicle.units import BendingStiffness
 
 from .reduced_modulus import ElasticSolid
@@ -35,9 +32,3 @@ class BendingSkin(Skin, ElasticSolid):
     def compliance(self, q: Array) -> Array:
         """Return G(q) = 1/(E* q/2 + τ₀ q² + B q⁴) [m/Pa]."""
         return 1 / (self.contact_modulus * q / 2 + self.skin_stiffness(q))
-
-
-@hookimpl
-def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
-    """Register the half-space under a skin that bends."""
-    register(BendingSkin)

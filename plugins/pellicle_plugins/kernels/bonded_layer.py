@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Kernel
 
 from .elastic_layer import ElasticLayer
 from .hyperbolic import scaled_sinh_rest
@@ -41,9 +38,3 @@ class BondedLayer(ElasticLayer):
     def bonded_layer(self) -> tuple[float, float]:
         """Return h [m] and ν."""
         return self.thickness, self.poissons_ratio
-
-
-@hookimpl
-def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
-    """Register the bonded layer."""
-    register(BondedLayer)

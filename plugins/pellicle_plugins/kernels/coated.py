@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Branch, HasRelaxation, HasTimeSpan, Kernel, MayBeBondedLayer
-from pellicle.config.component_field import FromRegistry
+from pellicle.components import (
+    Branch,
+    FromRegistry,
+    HasRelaxation,
+    HasTimeSpan,
+    Kernel,
+    MayBeBondedLayer,
+)
 from pellicle.numerics.kernel_calls import mean_compliance
 
 from .skin import Skin
@@ -71,9 +75,3 @@ class Coated(Skin):
         if self.bending or not isinstance(self.substrate, MayBeBondedLayer):
             return None
         return self.substrate.bonded_layer()
-
-
-@hookimpl
-def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
-    """Register the skin on another kernel."""
-    register(Coated)

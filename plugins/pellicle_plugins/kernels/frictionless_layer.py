@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Kernel
 
 from .elastic_layer import ElasticLayer
 
@@ -34,9 +31,3 @@ class FrictionlessLayer(ElasticLayer):
         numerator = np.expm1(-y) ** 2
         denominator = -np.expm1(-2 * y) + 2 * y * np.exp(-y)
         return 2 / (self.contact_modulus * q) * (numerator / denominator)
-
-
-@hookimpl
-def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
-    """Register the layer on a smooth base."""
-    register(FrictionlessLayer)

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Kernel
 from pellicle.units import Tension
 
 from .elastic_constants import IsotropicSolid
@@ -42,9 +39,3 @@ class GurtinMurdoch(Skin, IsotropicSolid):
         eta = 2 * self.surface_stiffness * q / self.contact_modulus
         hindered = (1 + eta) / (1 + (1 - self.coupling_ratio**2) * eta)
         return 1 / (self.contact_modulus * q / 2 * hindered + self.skin_stiffness(q))
-
-
-@hookimpl
-def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
-    """Register the half-space with surface elasticity."""
-    register(GurtinMurdoch)

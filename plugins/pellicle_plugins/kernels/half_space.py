@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
 from pydantic import ConfigDict
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Kernel
 
 from .reduced_modulus import ElasticSolid
 
@@ -33,9 +30,3 @@ class HalfSpace(ElasticSolid):
     def radial_primitive(self, r: Array) -> Array:
         """Return ∫₀^r G r dr = r/(π E*) [m³/N]."""
         return r / (np.pi * self.contact_modulus)
-
-
-@hookimpl
-def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
-    """Register the half-space."""
-    register(HalfSpace)

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Annotated, Final, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Kernel
 from pellicle.errors import ConfigError, shown
@@ -96,9 +95,3 @@ class Layered(Kernel):
         if self.substrate != "rigid":
             return math.inf
         return sum(layer.thickness * layer.uniaxial_compliance for layer in self.layers)
-
-
-@hookimpl
-def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
-    """Register the layers."""
-    register(Layered)

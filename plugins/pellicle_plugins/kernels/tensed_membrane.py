@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Kernel
 from pellicle.units import Tension
 
 from .reduced_modulus import ElasticSolid
@@ -48,9 +45,3 @@ class TensedMembrane(ElasticSolid):
         if s == 0:
             return r / (np.pi * self.contact_modulus)
         return struve_minus_bessel_primitive(r / s) * (s / (2 * self.contact_modulus))
-
-
-@hookimpl
-def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
-    """Register the tensed half-space."""
-    register(TensedMembrane)

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Annotated, Final, Literal, Self
 
 from pydantic import ConfigDict, Field, field_validator, model_validator
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Branch, HasRelaxation, Kernel
-from pellicle.config.component_field import FromRegistry
+from pellicle.components import Branch, FromRegistry, HasRelaxation, Kernel
 from pellicle.model import Model
 from pellicle.numerics.kernel_calls import mean_compliance
 from pellicle.units import Quantity, Time
@@ -192,9 +189,3 @@ class Viscoelastic(Kernel):
             laws = "neither" if self.relaxation is None else "both"
             raise ValueError(f"{laws} of relaxation and power_law; give one of them")
         return self
-
-
-@hookimpl
-def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
-    """Register the solid that relaxes."""
-    register(Viscoelastic)

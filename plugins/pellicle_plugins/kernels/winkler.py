@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import ConfigDict, Field
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Kernel
 from pellicle.units import FoundationStiffness
@@ -34,9 +32,3 @@ class Winkler(Kernel):
     def mean_compliance(self) -> float:
         """Return 1/k [m/Pa]."""
         return 1 / self.foundation
-
-
-@hookimpl
-def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
-    """Register the bed of springs."""
-    register(Winkler)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from pydantic import Field
 
-from pellicle import analysis, hookimpl
-from pellicle.components import Output, Runs
+from pellicle import analysis
+from pellicle.components import Runs
 from pellicle.errors import ConfigError
 from pellicle.report.style import colour, sparse_marker
 from pellicle.results.result import Result
@@ -266,9 +266,3 @@ def _refuse(run: xr.Dataset) -> None:
         )
     if "stiffness" not in run:
         raise ConfigError("needs the stiffness of each step; set loading.stiffness = true")
-
-
-@hookimpl
-def register_outputs(register: Callable[[type[Output]], None]) -> None:
-    """Register the adhesive curve."""
-    register(AdhesiveCurve)

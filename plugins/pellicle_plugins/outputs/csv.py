@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable
 from os import SEEK_END
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-from pellicle import hookimpl
 from pellicle.components import Output, Runs
 from pellicle.files import storage_errors
 from pellicle.results.variables import header
@@ -53,9 +51,3 @@ class Csv(Output):
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Return the file, which is complete."""
         return (Path(f"{stem}.csv"),)
-
-
-@hookimpl
-def register_outputs(register: Callable[[type[Output]], None]) -> None:
-    """Register the table."""
-    register(Csv)

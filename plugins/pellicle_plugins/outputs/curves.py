@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from pellicle import hookimpl
 from pellicle.analysis import Leg, legs
-from pellicle.components import Output, Runs
+from pellicle.components import Runs
 from pellicle.errors import ConfigError
 from pellicle.model.base import Model
 from pellicle.model.expression import names_in
@@ -322,9 +321,3 @@ def _fold(names: Sequence[str]) -> str:
 
 def _at(column: xr.DataArray, point: dict[str, int]) -> xr.DataArray:
     return column.isel({dim: index for dim, index in point.items() if dim in column.dims})
-
-
-@hookimpl
-def register_outputs(register: Callable[[type[Output]], None]) -> None:
-    """Register the curves."""
-    register(Curves)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
-from pellicle import analysis, hookimpl
-from pellicle.components import Output, Runs
+from pellicle import analysis
+from pellicle.components import Runs
 from pellicle.report.style import LINES, colour
 from pellicle.results.path import has_interaction
 from pellicle.units import axis_unit
@@ -82,9 +81,3 @@ class Distributions(TableFigure):
             if axes.get_legend_handles_labels()[1]:
                 axes.legend(frameon=False)
         figure.suptitle(self.title)
-
-
-@hookimpl
-def register_outputs(register: Callable[[type[Output]], None]) -> None:
-    """Register the distributions."""
-    register(Distributions)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import ClassVar, Literal
 
-from pellicle import hookimpl
 from pellicle.components import Output, Runs
 from pellicle.report.plotting import FIGURES, STUDY_FIGURES, TIME, save_figures, save_study_figures
 from pellicle.report.style import FigureStyle
@@ -34,9 +32,3 @@ class Figures(Output):
         if runs.axes is not None:
             return save_study_figures(runs.table, stem.parent, stem.name, self.formats, self.style)
         return save_figures(Result(runs.open()), stem.parent, stem.name, self.formats, self.style)
-
-
-@hookimpl
-def register_outputs(register: Callable[[type[Output]], None]) -> None:
-    """Register the figures."""
-    register(Figures)

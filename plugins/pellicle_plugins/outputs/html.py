@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
@@ -13,7 +13,7 @@ import numpy as np
 import tomli_w
 from pydantic import Field
 
-from pellicle import Grid, hookimpl
+from pellicle import Grid
 from pellicle.components import Output, Runs
 from pellicle.config.describe import inputs
 from pellicle.errors import StorageError
@@ -307,9 +307,3 @@ def _reproduce(configuration: dict[str, Any], stem: Path) -> Iterator[Code]:
         "With that file in the current folder, and the files that it names at their paths; their "
         "content is compared with its hash where the configuration has one:",
     )
-
-
-@hookimpl
-def register_outputs(register: Callable[[type[Output]], None]) -> None:
-    """Register the page."""
-    register(Html)

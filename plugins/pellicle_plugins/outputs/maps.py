@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from math import ceil
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Field
 
-from pellicle import hookimpl
-from pellicle.components import Output, Runs
+from pellicle.components import Runs
 from pellicle.model.expression import names_in
 from pellicle.report.fields import diverging, extent, outline_contact
 from pellicle.report.style import NO_CONTACT, add_colour_bar
@@ -150,9 +149,3 @@ def _name_colours(figure: Figure, field: str) -> None:
         ncols=2,
         fontsize="small",
     )
-
-
-@hookimpl
-def register_outputs(register: Callable[[type[Output]], None]) -> None:
-    """Register the maps."""
-    register(Maps)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
-from pellicle import analysis, hookimpl
-from pellicle.components import Output, Runs
+from pellicle import analysis
+from pellicle.components import Runs
 from pellicle.report.fields import extent
 from pellicle.report.style import MARKERS, NO_CONTACT, colour
 from pellicle.results.result import Result
@@ -111,9 +111,3 @@ def _rows(name: Label, step: xr.Dataset, patches: analysis.Patches) -> Iterator[
     neighbours = analysis.coordination(patches.labels, grid)
     for index, values in enumerate(zip(patches.area, force, neighbours, strict=True)):
         yield name.key, step["step"].item(), index + 1, *values
-
-
-@hookimpl
-def register_outputs(register: Callable[[type[Output]], None]) -> None:
-    """Register the patches."""
-    register(Patches)

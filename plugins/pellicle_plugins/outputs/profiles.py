@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
-from pellicle import hookimpl
 from pellicle.arrays import Mask
-from pellicle.components import Output, Runs
+from pellicle.components import Runs
 from pellicle.model.expression import names_in
 from pellicle.report.lines import EDGE_CELLS, edge_cells
 from pellicle.report.style import LINES, MARKERS, colour
@@ -107,9 +106,3 @@ class Profiles(XYFigure):
 def _rows(curve: str, series: str, x: xr.DataArray, y: xr.DataArray) -> Iterator[dict[str, object]]:
     for px, py in zip(x.values, y.values, strict=True):
         yield {"curve": curve, "series": series, "x": px, "y": py}
-
-
-@hookimpl
-def register_outputs(register: Callable[[type[Output]], None]) -> None:
-    """Register the profiles."""
-    register(Profiles)

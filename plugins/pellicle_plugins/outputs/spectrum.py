@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from pellicle import analysis, hookimpl
-from pellicle.components import Output, Runs
+from pellicle import analysis
+from pellicle.components import Runs
 from pellicle.report.style import colour, sparse_marker
 from pellicle.results.result import Result
 
@@ -92,9 +91,3 @@ def _spectra(step: xr.Dataset) -> dict[str, analysis.Spectrum]:
         for name, heights in surfaces.items()
         if np.isfinite(heights).all()
     }
-
-
-@hookimpl
-def register_outputs(register: Callable[[type[Output]], None]) -> None:
-    """Register the spectrum."""
-    register(Spectrum)

@@ -5,13 +5,12 @@ from __future__ import annotations
 import glob
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
-from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Output, Runs
 from pellicle.files import storage_errors
@@ -111,9 +110,3 @@ def _growing(times: Iterable[float]) -> Iterator[float]:
     for time in times:
         last = time if time > last else math.nextafter(last, math.inf)
         yield last
-
-
-@hookimpl
-def register_outputs(register: Callable[[type[Output]], None]) -> None:
-    """Register the files for ParaView."""
-    register(Vtk)

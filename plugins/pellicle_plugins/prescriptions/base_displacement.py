@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from pellicle import hookimpl
 from pellicle.components import Depth, Prescription, Setting
 from pellicle.numerics.equilibrium import Equilibrium
 from pellicle.results.variables import Variable
@@ -38,9 +36,3 @@ class BaseDisplacement(Prescription):
     def report(self, setting: Setting, step: Equilibrium) -> dict[str, float]:
         """Return the displacement of the base."""
         return {"base_displacement": step.depth + step.force / self.spring_constant}
-
-
-@hookimpl
-def register_prescriptions(register: Callable[[type[Prescription]], None]) -> None:
-    """Register the prescription."""
-    register(BaseDisplacement)

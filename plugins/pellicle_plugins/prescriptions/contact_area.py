@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import ClassVar, Literal
 
 import numpy as np
 
-from pellicle import hookimpl
 from pellicle.components import Depth, Force, Prescription, Search, Setting
 from pellicle.errors import ConfigError
 from pellicle.numerics.equilibrium import Equilibrium
@@ -95,9 +93,3 @@ def area_search(setting: Setting, area: float) -> Force | Search:
         quantity="contact area",
         unit="m**2",
     )
-
-
-@hookimpl
-def register_prescriptions(register: Callable[[type[Prescription]], None]) -> None:
-    """Register the prescription."""
-    register(ContactArea)

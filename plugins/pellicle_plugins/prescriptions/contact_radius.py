@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import ClassVar, Literal
 
 import numpy as np
 
-from pellicle import hookimpl
 from pellicle.components import Force, Prescription, Search, Setting
 from pellicle.errors import ConfigError
 from pellicle.results.variables import Variable
@@ -32,9 +30,3 @@ class ContactRadius(Prescription):
     def target(self, setting: Setting, value: float) -> Force | Search:
         """Return the search for the force with the area of the circle."""
         return area_search(setting, np.pi * value**2)
-
-
-@hookimpl
-def register_prescriptions(register: Callable[[type[Prescription]], None]) -> None:
-    """Register the prescription."""
-    register(ContactRadius)

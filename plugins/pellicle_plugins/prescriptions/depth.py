@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import ClassVar, Literal
 
-from pellicle import hookimpl
 from pellicle.components import Depth, Prescription, Setting
 from pellicle.errors import ConfigError
 from pellicle.units import readable
@@ -41,9 +39,3 @@ def refuse_beyond_full_contact(setting: Setting, depth: float, value: float) -> 
             f"measured from the mean plane, and this indenter's is {readable(-mean, 'm', 4)} above "
             "its lowest point, at any load; give less, or prescribe mean_pressure"
         )
-
-
-@hookimpl
-def register_prescriptions(register: Callable[[type[Prescription]], None]) -> None:
-    """Register the prescription."""
-    register(IndenterDepth)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import ClassVar, Literal
 
-from pellicle import hookimpl
 from pellicle.components import Force, Prescription, Setting
 
 
@@ -20,9 +18,3 @@ class NormalForce(Prescription):
     def target(self, setting: Setting, value: float) -> Force:
         """Return the force itself."""
         return Force(value)
-
-
-@hookimpl
-def register_prescriptions(register: Callable[[type[Prescription]], None]) -> None:
-    """Register the prescription."""
-    register(NormalForce)

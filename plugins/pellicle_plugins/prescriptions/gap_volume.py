@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import ClassVar, Literal
 
-from pellicle import hookimpl
 from pellicle.components import Depth, Force, Prescription, Search, Setting
 from pellicle.errors import ConfigError
 from pellicle.numerics.equilibrium import Equilibrium
@@ -62,9 +60,3 @@ def _at_first_touch(setting: Setting) -> float:
 
 def _volume(step: Equilibrium) -> float:
     return float(step.gap.sum()) * step.problem.grid.cell_area
-
-
-@hookimpl
-def register_prescriptions(register: Callable[[type[Prescription]], None]) -> None:
-    """Register the prescription."""
-    register(GapVolume)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import ClassVar, Literal
 
-from pellicle import hookimpl
 from pellicle.components import Depth, Prescription, Setting
 from pellicle.errors import ConfigError
 from pellicle.numerics.equilibrium import Equilibrium
@@ -49,9 +47,3 @@ class MeanPlaneDepth(Prescription):
     def report(self, setting: Setting, step: Equilibrium) -> dict[str, float]:
         """Return the depth of the mean plane."""
         return {"mean_plane_depth": step.depth + setting.mean_height}
-
-
-@hookimpl
-def register_prescriptions(register: Callable[[type[Prescription]], None]) -> None:
-    """Register the prescription."""
-    register(MeanPlaneDepth)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import ClassVar, Literal
 
-from pellicle import hookimpl
 from pellicle.components import Force, Prescription, Setting
 
 
@@ -21,9 +19,3 @@ class MeanPressure(Prescription):
     def target(self, setting: Setting, value: float) -> Force:
         """Return the force on one period."""
         return Force(value * setting.grid.area)
-
-
-@hookimpl
-def register_prescriptions(register: Callable[[type[Prescription]], None]) -> None:
-    """Register the prescription."""
-    register(MeanPressure)

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
 
-from pellicle import hookimpl
 from pellicle.arrays import Array, Mask
-from pellicle.components import Monitor, Solver
+from pellicle.components import Monitor
 from pellicle.numerics.grid_transfer import highest
 from pellicle.numerics.initial_guess import first_guess, with_force
 from pellicle.numerics.path import Start
@@ -364,9 +362,3 @@ def _iterate(
         progress=progress.after(error / scale, history.fewest),
         may_relax=before is None or before.may_relax,
     )
-
-
-@hookimpl
-def register_solvers(register: Callable[[type[Solver]], None]) -> None:
-    """Register the solver."""
-    register(ActiveSet)

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
 
-from pellicle import hookimpl
 from pellicle.arrays import Array, Mask
-from pellicle.components import Solver
 from pellicle.grid import Grid
 from pellicle.numerics.initial_guess import dot, first_guess, with_force
 from pellicle.numerics.problem import Problem
@@ -168,9 +165,3 @@ def _step_length(problem: Problem, state: _Iterate, change: Array) -> float:
     lowest = np.unravel_index(int(problem.profile.argmax()), problem.grid.shape)
     single[lowest] = 1.0
     return 1.0 / float(problem.operator(single)[lowest])
-
-
-@hookimpl
-def register_solvers(register: Callable[[type[Solver]], None]) -> None:
-    """Register the published method."""
-    register(ConjugateGradient)

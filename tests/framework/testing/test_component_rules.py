@@ -231,7 +231,7 @@ def test_the_example_of_a_prescription_is_one_of_its_values() -> None:
         unit: ClassVar[str] = "1"
 
     entry = replace(registry().components["prescription"]["contact_area"], component=Share)
-    (value,) = explain.example_table(entry)["loading"]["contact_area"]
+    (value,) = explain.example_table(entry)["contact_area"]
     assert Share.quantity()(value) > 0
 
 

@@ -44,6 +44,6 @@ class MeanGap(pl.Prescription):
 
 
 @pl.hookimpl
-def register_prescriptions(register):
+def register_components(register):
     """Register the prescription."""
     register(MeanGap)

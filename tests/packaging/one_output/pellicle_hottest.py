@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Literal
 
-from pellicle import Output, hookimpl
+from pellicle import Output
 
 
 class Hottest(Output):
@@ -17,9 +17,3 @@ class Hottest(Output):
         pressures = runs.column("max(pressure)").values.ravel()
         path.write_text("".join(f"{pressure!r}\n" for pressure in pressures.tolist()))
         return (path,)
-
-
-@hookimpl
-def register_outputs(register):
-    """Register the output."""
-    register(Hottest)

@@ -26,9 +26,3 @@ class QuadraticSoftening(pl.Interaction):
     def cutoff(self):
         """Return g₀ [m]."""
         return self.range
-
-
-@pl.hookimpl
-def register_interactions(register):
-    """Register the interaction."""
-    register(QuadraticSoftening)

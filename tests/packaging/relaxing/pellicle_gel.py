@@ -31,9 +31,3 @@ class Gel(pl.Kernel):
     def without_skin(self):
         """Return this kernel, which has no skin."""
         return self
-
-
-@pl.hookimpl
-def register_kernels(register):
-    """Register the kernel."""
-    register(Gel)

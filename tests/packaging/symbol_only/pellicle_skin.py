@@ -21,6 +21,6 @@ class Skin(Kernel):
 
 
 @hookimpl
-def register_kernels(register):
+def register_components(register):
     """Register the kernel."""
     register(Skin)

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pellicle import Kernel, hookimpl
+from pellicle import Kernel
 from pellicle.units import Length, Modulus, Quantity
 
 
@@ -19,9 +19,3 @@ class PowerLaw(Kernel):
     def compliance(self, q):
         """Return G(q) = 2l / (E* (ql)ⁿ) [m/Pa]."""
         return 2 * self.length / (self.reduced_modulus * (q * self.length) ** self.exponent)
-
-
-@hookimpl
-def register_kernels(register):
-    """Register the kernel."""
-    register(PowerLaw)

@@ -1,4 +1,4 @@
-"""Fields of runs and of composite components that hold a component."""
+"""Fields that hold a component."""
 
 from __future__ import annotations
 
@@ -6,25 +6,28 @@ from typing import TYPE_CHECKING, Any, Final
 
 from pydantic_core import core_schema
 
-from pellicle.components import Component
-from pellicle.plugins import registry
+from .base import Component
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
     from pydantic.json_schema import JsonSchemaValue
 
-# Keyword of a JSON schema for a choice among the components of a family.
-_FAMILY: Final = "x-pellicle-family"
+FAMILY: Final = "x-pellicle-family"
+"""Keyword of a JSON schema for a choice among the components of a family."""
 
 
 class FromRegistry:
-    """Annotation of a field that holds a registered component of the field's family."""
+    """Annotation of a field that holds an installed component of the field's family.
+
+    ``kernel: Annotated[Kernel, FromRegistry()]`` takes a table with ``type`` and the fields of that
+    component, or the component itself.
+    """
 
     def __get_pydantic_core_schema__(
         self, source: type[Component], handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
         return core_schema.no_info_plain_validator_function(
-            lambda value: registry().make(source, value),
+            lambda value: _made(source, value),
             serialization=core_schema.plain_serializer_function_ser_schema(
                 lambda component, info: component.model_dump(
                     mode=info.mode, exclude_none=info.exclude_none, context=info.context
@@ -43,4 +46,10 @@ class FromRegistry:
         # Validators of the model wrap the schema of the field.
         while "family" not in inner.get("metadata", {}):
             inner = inner["schema"]
-        return {_FAMILY: inner["metadata"]["family"]}
+        return {FAMILY: inner["metadata"]["family"]}
+
+
+def _made(base: type[Component], value: object) -> Component:
+    from pellicle.plugins import registry
+
+    return registry().make(base, value)
