@@ -162,7 +162,7 @@ def fit_source(config: FitConfig, source: Source, *, progress: bool) -> Fit:
     if isinstance(problem, PellicleError):
         raise problem
     simulated = problem.simulated(config, progress=progress)
-    with status_line(progress) as report:
+    with status_line("fitting", progress) as report:
         result = fit_problem(simulated, report)
     record = watch.record(config, [data_of(problem.curve, config)])
     return replace(result, config=config, record=record)

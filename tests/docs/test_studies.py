@@ -12,7 +12,7 @@ import xarray as xr
 from images import compliance
 from typer.testing import CliRunner
 
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.config.study import from_toml
 from pellicle_plugins.analytic.adhesion import Adhesion
 from pellicle_plugins.analytic.axisymmetric import indent

@@ -13,7 +13,7 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.results import checksum, storage, version_1
 
 DATA = Path(__file__).parents[1] / "data"

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellicle.files import atomic_write
-from pellicle.report.saving import save_figure
-from pellicle.results.variables import header
+from pellicle.plotting import save_figure
+from pellicle.result import header
 from pellicle.units import axis_unit
 from pellicle_fit.population.images import CONTACT_HEIGHT
 

@@ -23,7 +23,7 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle import memory
-from pellicle.cli import app
+from pellicle.cli.app import app
 
 ROOT = Path(__file__).parents[3]
 DATA = ROOT / "tests/data"
