@@ -11,6 +11,7 @@ from pellicle.components import AnyTask, Executor, Outcome, Say
 from pellicle.errors import PluginError, shown
 from pellicle.runs.lock import locked as locked
 from pellicle.runs.progress import BatchProgress as BatchProgress
+from pellicle.runs.progress import status_line as status_line
 
 
 def mapped(

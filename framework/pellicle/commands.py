@@ -129,10 +129,16 @@ def errors_attributed_to(name: str) -> Iterator[None]:
 
 
 def file_models() -> Mapping[str, type[BaseModel] | Broken]:
-    """Return the model of the file of each command that takes one, or why it cannot be used."""
+    """Return the model of the file of each command that takes one, or why it cannot be used.
+
+    A broken command might take one.
+    """
     models: dict[str, type[BaseModel] | Broken] = {}
-    for name, command in usable_commands().items():
-        if command.file:
+    for name in commands():
+        command = load_command(name)
+        if isinstance(command, Broken):
+            models[name] = command
+        elif command.file:
             model = isolated(commands()[name][0], partial(_model, command.file))
             if isinstance(model, Broken):
                 model = replace(model, error=f"file {command.file!r}: {model.error}")

@@ -11,8 +11,8 @@ from typing import Any, cast
 from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
+from pellicle.batch import status_line
 from pellicle.errors import ConfigError, PellicleError
-from pellicle.runs.progress import status_line
 from pellicle.units import readable
 
 from .compare import compare

@@ -10,8 +10,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from pellicle.batch import status_line
 from pellicle.errors import ConfigError, PellicleError
-from pellicle.runs.progress import status_line
 from pellicle.units import decimal
 
 from .compare import compare

@@ -43,8 +43,11 @@ def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = 
         **contents.clashes,
         **{("command", name): origins for name, origins in owners.items() if len(origins) > 1},
     }
-    failed = [command for name, command in made.items() if ("command", name) not in clashes]
-    failed = [b for b in (*failed, *file_models().values()) if isinstance(b, Broken)]
+    failed = {
+        loaded.origin: loaded
+        for name, loaded in (*file_models().items(), *made.items())
+        if isinstance(loaded, Broken) and ("command", name) not in clashes
+    }
     broken = [
         {
             "entry_point": broken.origin.entry_point,
@@ -52,7 +55,7 @@ def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = 
             "version": broken.origin.version,
             "error": broken.error,
         }
-        for broken in (*contents.broken, *failed)
+        for broken in (*contents.broken, *failed.values())
     ] + [
         {
             "entry_point": f"{family}.{type_}",

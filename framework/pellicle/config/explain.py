@@ -14,7 +14,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from pellicle.components import Component, Prescription
-from pellicle.errors import ConfigError, shown
+from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import Grid
 from pellicle.loading import OPTIONS
 from pellicle.model.messages import similar
@@ -81,6 +81,8 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
     ------
     ConfigError
         There is nothing of that name; the message names similar ones.
+    PluginError
+        The plugin that it is of is broken.
     """
     entries = {**tables, **_TABLES}
     name = re.sub(r"[\s-]+", "_", word.strip().strip("[]").lower())
@@ -97,6 +99,10 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
         if type_ in members and given in ("", family, f"{family}s")
     ]
     if not matches:
+        for broken in registry().broken:
+            entry = broken.origin.entry_point
+            if name in (entry, *entry.split(".")):
+                raise PluginError(f"{shown(word)} is broken: {broken}")
         types = {type_ for members in families.values() for type_ in members}
         hint = similar(name, types | {*entries, *families}) or "see `pellicle plugins`"
         raise ConfigError(
