@@ -62,12 +62,7 @@ def cell_coefficients(
     Array of shape (nx, ny) in m/Pa: the displacement at the centre of a cell under unit
     pressure on the cell that lies i dx and j dy away.
     """
-    nx, ny = shape
-    dx, dy = spacing = float(spacing[0]), float(spacing[1])
-    if nx < 1 or ny < 1:
-        raise ValueError(f"shape must be positive in both directions, got {shape}")
-    if not (dx > 0 and dy > 0):
-        raise ValueError(f"spacing must be positive in both directions, got {spacing}")
+    (nx, ny), (dx, dy) = shape, spacing
     if dx == dy and nx < ny:
         flipped = cell_coefficients(greens_function, radial_primitive, (ny, nx), spacing)
         return np.ascontiguousarray(flipped.T)

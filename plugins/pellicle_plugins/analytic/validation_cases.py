@@ -97,18 +97,12 @@ def _adhesion() -> Iterator[Case]:
             "indenter": {"type": "paraboloid", "radius": _RADIUS},
             "loading": {"depth": {"start": start, "stop": stop, "num": 10}, "stiffness": True},
         }
-        yield Case(
-            f"{name}: pull-off", configuration, _pull_off, float(pull_off.force), "N", 1e-2, source
-        )
-        yield Case(
-            f"{name}: contact radius without load",
-            configuration,
-            _unloaded_radius,
-            float(unloaded.contact_radius),
-            "m",
-            1e-2,
-            source,
-        )
+        for quantity, expected, unit, computed in (
+            ("pull-off", pull_off.force, "N", _pull_off),
+            ("contact radius without load", unloaded.contact_radius, "m", _unloaded_radius),
+        ):
+            row = f"{name}: {quantity}"
+            yield Case(row, configuration, computed, float(expected), unit, 1e-2, source)
 
 
 def _sine() -> Iterator[Case]:

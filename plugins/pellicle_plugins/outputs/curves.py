@@ -158,8 +158,8 @@ class Curves(XYFigure):
         one_axis(runs.table.sizes, self.over, "over")
         x, *ys = (runs.column(text) for text in (self.x, *self.y))
         factor_x, x_label = scaled(self.x, [x], self.x_label, runs.table)
-        factor_y, y_label = self._scaled_y(ys, runs.table)
-        lines = list(self._lines(runs, x, ys))
+        factor_y, y_label, named = self._scaled_y(ys, runs.table)
+        lines = list(self._lines(runs, x, ys, named))
         for line in lines:
             line.draw(axes, factor_x, factor_y, bool(self.log))
         published = list(self._draw_published(axes))
@@ -179,34 +179,31 @@ class Curves(XYFigure):
         values = table[axis].values
         return ("x",) if values.dtype.kind in "if" and is_log_spaced(values) else ()
 
-    def _scaled_y(self, ys: Sequence[xr.DataArray], table: xr.Dataset) -> tuple[float, str]:
-        """Return the factor and the label of the vertical axis; several y have but a common unit.
+    def _scaled_y(
+        self, ys: Sequence[xr.DataArray], table: xr.Dataset
+    ) -> tuple[float, str, Sequence[str]]:
+        """Return the factor and the label of the vertical axis, and the name of each y.
 
-        Without one they are in SI, with their units in the legend.
+        Several y have but a common unit. Without one they are in SI, with their units in the names.
         """
+        # Only a bare variable has a unit.
+        bare = (table.get(text.strip()) for text in self.y)
+        units = ["1" if y is None else y.attrs.get("units", "1") for y in bare]
+        is_common, names = len(set(units)) == 1, list(self.series)
+        if not names:
+            for text, unit in zip(self.y, units, strict=True):
+                head = "" if is_common or unit == "1" else f" [{printed(unit)}]"
+                names.append(f"{in_words(text, table)}{head}")
         if len(ys) == 1 or self.y_label is not None:
-            return scaled(self.y[0], ys, self.y_label, table)
-        units = {self._unit(text, table) for text in self.y}
-        if len(units) > 1 or "" in units:
-            return 1.0, _fold(self.series or [self._named(text, table) for text in self.y])
+            return *scaled(self.y[0], ys, self.y_label, table), names
+        label = textwrap.fill(", ".join(names), _LETTERS)
+        if not is_common or units[0] == "1":
+            return 1.0, label, names
         scale = wording(joined("", ys)).scale
-        heads = self.series or [self._named(text, table) for text in self.y]
-        return scale.factor, f"{_fold(heads)} [{scale.unit}]"
-
-    def _named(self, text: str, table: xr.Dataset) -> str:
-        """Return one of several y in words, with its unit if the axis has none."""
-        alike = len({self._unit(other, table) for other in self.y}) == 1
-        unit = "" if alike else self._unit(text, table)
-        return f"{in_words(text, table)} [{printed(unit)}]" if unit else in_words(text, table)
-
-    @staticmethod
-    def _unit(text: str, table: xr.Dataset) -> str:
-        """Return the SI unit of a bare variable; empty for other expressions."""
-        unit = table[text.strip()].attrs.get("units", "") if text.strip() in table else ""
-        return "" if unit == "1" else unit
+        return scale.factor, f"{label} [{scale.unit}]", names
 
     def _lines(
-        self, runs: Runs, x: xr.DataArray, ys: Sequence[xr.DataArray]
+        self, runs: Runs, x: xr.DataArray, ys: Sequence[xr.DataArray], names: Sequence[str]
     ) -> Iterator[Line | Limit]:
         """Yield what is drawn, in order; entries that only the legend shows have no points."""
         reference = exact(runs) if self.reference else None
@@ -214,7 +211,7 @@ class Curves(XYFigure):
         many = runs.table.sizes[self.by] if self.by else 1
         for number, (text, y) in enumerate(zip(self.y, ys, strict=True)):
             series = self.series[number] if self.series else text
-            named = self.series[number] if self.series else self._named(text, runs.table)
+            named = names[number]
             of_reference = [reference.column(t) for t in (self.x, text)] if reference else []
             for index, point in enumerate(along(runs.table, self.by)):
                 part = runs.table.isel(point)
@@ -312,11 +309,6 @@ def _require_grids(x: xr.DataArray) -> None:
             f"vary the grid over at least {_GRIDS}",
             "extrapolate",
         )
-
-
-def _fold(names: Sequence[str]) -> str:
-    """Return names as the label of an axis, in lines of bounded length."""
-    return textwrap.fill(", ".join(names), _LETTERS)
 
 
 def _at(column: xr.DataArray, point: dict[str, int]) -> xr.DataArray:

@@ -19,19 +19,9 @@ from pellicle.config.describe import inputs
 from pellicle.errors import StorageError
 from pellicle.files import atomic_write
 from pellicle.report.fields import DIVERGING, default_step, draws_contact, without_round_off
-from pellicle.report.page import (
-    Code,
-    Frame,
-    Maps,
-    Notice,
-    Picture,
-    Section,
-    Text,
-    frame,
-    page,
-    side,
-)
-from pellicle.report.page import Field as MapField
+from pellicle.report.maps import Field as MapField
+from pellicle.report.maps import Frame, Maps, frame, side
+from pellicle.report.page import Code, Notice, Picture, Section, Text, page
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction, label_of_step, prescribed_variable
