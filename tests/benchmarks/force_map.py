@@ -21,6 +21,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from tests.plugins.fit import instruments
@@ -103,9 +104,8 @@ def main() -> None:
         print(f"{folder.name}: exit code {ended.returncode}; {'; '.join(lines)}")
     expected = truth(given.pixels, given.pixels)
     for name in NAMES:
-        image = np.load(once / "maps" / f"map-{name}.npy")
-        resumed = np.load(killed / "maps" / f"map-{name}.npy")
-        low, high = (np.load(once / "maps" / f"map-{name}_{end}.npy") for end in ("low", "high"))
+        image, resumed = (_image(folder / "maps" / f"map-{name}.tif") for folder in (once, killed))
+        low, high = (_image(once / "maps" / f"map-{name}_{end}.tif") for end in ("low", "high"))
         known = np.isfinite(image)
         inside = (np.nan_to_num(low, nan=-np.inf) <= expected[name]) & (
             expected[name] <= np.nan_to_num(high, nan=np.inf)
@@ -116,6 +116,12 @@ def main() -> None:
             f"{int((~known).sum())} NaN, median error {error:.3g}, "
             f"{100 * inside[known].mean():.1f} % inside the interval"
         )
+
+
+def _image(path: Path) -> NDArray[np.float32]:
+    """Return the numbers of a TIFF, the smallest y first."""
+    with Image.open(path) as opened:
+        return np.array(opened)[::-1]
 
 
 if __name__ == "__main__":

@@ -93,7 +93,7 @@ def run_alone(options: argparse.Namespace) -> dict[str, Any]:
 
     def carried_out(points: int) -> Any:
         case, tension = options.cases[0], options.tension[0]
-        given = run_of(case, points, tension, options.steps) | {"outputs": [{"type": "hdf5"}]}
+        given = run_of(case, points, tension, options.steps) | {"outputs": []}
         with tempfile.TemporaryDirectory() as folder:
             return pl.run(given, directory=folder, progress=False, threads=1)
 

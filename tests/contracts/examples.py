@@ -110,7 +110,6 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
         "gap_volume": {},
     },
     "output": {
-        "hdf5": {},
         "csv": {},
         "figures": {},
         "curves": {
@@ -125,7 +124,6 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
         "profiles": {"by": "step", "label": "{depth * 1e6} µm", "reference": "axisymmetric"},
         "maps": {"field": "displacement - depth - gap", "name": "indenter"},
         "html": {"points": 8, "frames": 1},
-        "compliance": {"x": "q * indenter.radius"},
         "patches": {"connectivity": 8, "by": "step"},
         "distributions": {"bins": 10, "log": ["y"]},
         "spectrum": {"by": "step", "label": "{depth * 1e6} µm"},

@@ -132,7 +132,7 @@ def test_other_readers_are_not_disturbed(content: bytes, tmp_path: Path) -> None
 def test_steps_count_from_1_everywhere(tmp_path: Path) -> None:
     """File, CSV, dataset, console and messages give a step the same number."""
     file = tmp_path / "count.toml"
-    run = pl.Run(**RUN | {"outputs": [{"type": "hdf5"}, {"type": "csv"}]})
+    run = pl.Run(**RUN | {"outputs": [{"type": "csv"}]})
     file.write_text(run.to_toml(), encoding="utf-8")
     shown = CliRunner().invoke(app, ["run", str(file), "-o", str(tmp_path)])
     assert [line.split()[0] for line in shown.stdout.splitlines()[1:4]] == ["1", "2", "3"]

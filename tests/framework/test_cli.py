@@ -73,7 +73,7 @@ def test_from_starter_file_to_figures(cli: Cli) -> None:
 def test_numbers_shown_are_the_result_s(cli: Cli) -> None:
     """The table shows what is in the file, with four digits and a prefix or, on request, in SI."""
     cli("new", "a.toml")
-    ran = cli("run", "a.toml", *SMALL, "--set", "outputs=[{type='hdf5'}]")
+    ran = cli("run", "a.toml", *SMALL, "--set", "outputs=[]")
     data, shown = pl.load("a/a.h5").dataset, cli("show", "a/a.h5").stdout
     in_si = cli("show", "a/a.h5", "--si").stdout
     assert "depth [m]" in in_si
@@ -114,7 +114,7 @@ def test_quiet(cli: Cli) -> None:
 def test_output_folder(cli: Cli) -> None:
     """``-o`` chooses the folder, and files are named after the run file."""
     cli("new", "a.toml")
-    result = cli("run", "a.toml", *SMALL, "-o", "b/c", "--set", "outputs=[{type='hdf5'}]")
+    result = cli("run", "a.toml", *SMALL, "-o", "b/c", "--set", "outputs=[]")
     assert _files_named(result.stdout) == [Path("b/c/a.h5")]
 
 
@@ -132,7 +132,7 @@ def test_set_reaches_the_result(cli: Cli) -> None:
 def test_threads(cli: Cli) -> None:
     """The number of threads does not change the result."""
     cli("new", "a.toml")
-    only = ["--set", "outputs=[{type='hdf5'}]"]
+    only = ["--set", "outputs=[]"]
     cli("run", "a.toml", *SMALL, *only, "-o", "one", "--threads", "1")
     cli("run", "a.toml", *SMALL, *only, "-o", "two", "--threads", "2")
     one, two = (pl.load(f"{name}/a.h5").dataset for name in ("one", "two"))
@@ -189,7 +189,7 @@ def test_plugins_as_json(cli: Cli) -> None:
         ("indenter", "heights"),
         ("solver", "conjugate_gradient"),
         ("correction", "yastrebov"),
-        ("output", "hdf5"),
+        ("output", "csv"),
     }
     for row in listed["components"]:
         assert row["origin"] == "pellicle"

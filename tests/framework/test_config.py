@@ -61,9 +61,7 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "solver": {"solver": {"type": "conjugate_gradient", "tolerance": 1e-6, "max_iterations": 7}},
     "corrections": {"corrections": [{"type": "yastrebov"}]},
     "no outputs": {"outputs": []},
-    "outputs": {
-        "outputs": [{"type": "hdf5"}, {"type": "csv"}, {"type": "figures", "formats": ["svg"]}]
-    },
+    "outputs": {"outputs": [{"type": "csv"}, {"type": "figures", "formats": ["svg"]}]},
 }
 
 
@@ -142,6 +140,9 @@ def test_outputs_absent_or_empty() -> None:
     assert pl.Run(**BASE).outputs is None
     assert pl.Run(**BASE, outputs=[]).outputs == ()
     assert pl.Run.from_json(pl.Run(**BASE, outputs=[]).to_json()).outputs == ()
+    result_file = pl.Run(**BASE, outputs=[{"type": "hdf5"}])
+    assert [output.suffixes for output in result_file.outputs or ()] == [()]
+    assert pl.Run.from_json(result_file.to_json()) == result_file
 
 
 def test_components_or_tables() -> None:

@@ -18,7 +18,7 @@ import pellicle as pl
 
 HEIGHTS = 1e-1 * np.add.outer(np.arange(8.0), np.arange(8.0) ** 2)
 FILE = """
-outputs = [{ type = "html" }, { type = "hdf5" }]
+outputs = [{ type = "html" }]
 grid = { points = 8, size = "0.4 mm" }
 kernel = { type = "half_space", reduced_modulus = "10 kPa" }
 indenter = { type = "heights", path = "../data/a.npy", unit = "1 um" }

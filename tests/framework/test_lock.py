@@ -17,6 +17,7 @@ from pellicle.cli.app import app
 from pellicle.runs.lock import locked
 
 RUN = """
+outputs = []
 [grid]
 points = 16
 size = "0.4 mm"
@@ -28,8 +29,6 @@ type = "flat_punch"
 radius = "0.1 mm"
 [loading]
 depth = ["5 um", "10 um"]
-[[outputs]]
-type = "hdf5"
 """
 STUDY = (
     RUN
@@ -109,7 +108,7 @@ def test_nothing_is_locked_where_nothing_is_written(
 ) -> None:
     """A run without outputs leaves the folder alone."""
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "work.toml").write_text(RUN.replace('[[outputs]]\ntype = "hdf5"', ""), "utf-8")
+    (tmp_path / "work.toml").write_text(RUN, "utf-8")
     with locked(tmp_path, "work"):
         assert pl.run("work.toml", progress=False).converged
 

@@ -34,7 +34,7 @@ def test_estimate_grows_with_cells_and_steps(boundary: str) -> None:
 SIZE = 1e-3
 LINE = "periodic, a line of cells"
 JKR = {"type": "jkr", "work_of_adhesion": 0.02, "estimate_error": False}
-OUTPUTS = ["hdf5", "csv", "figures", "maps", "html", "vtk", "patches", "spectrum", "distributions"]
+OUTPUTS = ["csv", "figures", "maps", "html", "vtk", "patches", "spectrum", "distributions"]
 HALF_SPACE = {"type": "half_space", "reduced_modulus": 1e4}
 SKIN = {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 0.05}
 LAYER = {"type": "bonded_layer", "youngs_modulus": 1e4, "poissons_ratio": 0.4, "thickness": 1e-4}
@@ -54,7 +54,7 @@ def _kind(points: int, boundary: str = "free", **changes: Any) -> dict[str, Any]
         "kernel": HALF_SPACE,
         "indenter": {"type": "paraboloid", "radius": 1e-3},
         "loading": {"depth": 2e-5 if boundary == "free" else 1e-6},
-        "outputs": [{"type": "hdf5"}],
+        "outputs": [],
     } | changes
 
 

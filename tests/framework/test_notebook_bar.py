@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
+from html import unescape
 from typing import Any
 
 import pytest
 import rich.console
+from rich.table import Table
 
-from pellicle.runs import notebook_bar, progress
+from pellicle.runs import bars, progress
 from pellicle.runs.progress import BatchProgress, ProgressMessage, RunProgress, status_line
 
 ipython = pytest.importorskip("IPython.display")
@@ -23,18 +26,25 @@ class Job:
 
 
 class Cell(list[str]):
-    """What the output of a cell showed, one HTML after the other."""
+    """What the output of a cell showed, one text after the other."""
 
     def display(self, shown: Any, *, display_id: bool) -> Cell:
-        """Show the first HTML; the cell is its own handle."""
+        """Show the first one; the cell is its own handle."""
         assert display_id
         assert not self, "a second output"
-        self.append(shown.data)
+        self.update(shown)
         return self
 
     def update(self, shown: Any) -> None:
         """Replace it."""
-        self.append(shown.data)
+        text: str = shown._repr_html_() or "" if isinstance(shown, ipython.HTML) else plain(shown)
+        self.append(" ".join(text.split()))
+
+
+def plain(table: Table) -> str:
+    """Return the text that a notebook shows of a table."""
+    html: str = table._repr_mimebundle_([], [])["text/html"]
+    return unescape(re.sub("<[^>]*>", "", html))
 
 
 @pytest.fixture
@@ -44,8 +54,8 @@ def cell(monkeypatch: pytest.MonkeyPatch) -> Cell:
     monkeypatch.setattr(ipython, "display", cell.display)
     monkeypatch.setattr("rich.console.Console", lambda **_: console)
     monkeypatch.setattr(progress, "_BETWEEN_UPDATES", 0.0)
-    monkeypatch.setattr(notebook_bar, "_BETWEEN_UPDATES", 0.0)
-    monkeypatch.setattr(notebook_bar, "_BEFORE_SHOWN", 0.0)
+    monkeypatch.setattr(bars, "_BETWEEN_UPDATES", 0.0)
+    monkeypatch.setattr(bars, "_BEFORE_SHOWN", 0.0)
     return cell
 
 
@@ -55,9 +65,9 @@ def test_a_run_has_one_live_bar(cell: Cell) -> None:
         bar.step(0)(3, 1e6)
         bar.step(1)(4, 1e3)
     first, second, last = cell
-    assert "step 1/2 <progress max='2' value='0' " in first
-    assert "step 2/2 <progress max='2' value='1' " in second
-    assert "iteration 4 residual 1.0e+03 × tolerance" in second
+    assert first.startswith("step 1/2 ")
+    assert second.startswith("step 2/2 ")
+    assert "iteration 4 residual 1.0e+03 × tolerance time left" in second
     assert last == ""
 
 
@@ -66,8 +76,9 @@ def test_a_study_has_one_live_bar(cell: Cell, capfd: pytest.CaptureFixture[str])
     job = Job("<b>tip</b>")
     with BatchProgress(3, 1, enabled=True) as bar:
         bar.report(job, ProgressMessage(1, 4, 7, 2e5, 1.5))
-        assert "max='3' value='1.375'" in cell[-1]
-        assert "&lt;b&gt;tip&lt;/b&gt; <progress max='4' value='1.5'" in cell[-1]
+        assert "1 done, 0 failed, 2 left" in cell[-1]
+        assert "<b>tip</b>" in cell[-1]
+        assert "step 2/4 iteration 7" in cell[-1]
         bar.finished(job, "converged", failed=False)
         assert "2 done, 0 failed, 1 left" in cell[-1]
         assert "tip" not in cell[-1]
@@ -76,11 +87,11 @@ def test_a_study_has_one_live_bar(cell: Cell, capfd: pytest.CaptureFixture[str])
 
 
 def test_a_fit_shows_its_stage(cell: Cell) -> None:
-    """How long a fit takes is not known: the bar has no value."""
+    """How long a fit takes is not known: there is no time left."""
     with status_line("fitting", enabled=True) as report:
         report("noise")
-        assert "fitting <progress style=" in cell[-1]
-        assert "noise" in cell[-1]
+        assert cell[-1].startswith("fitting ")
+        assert cell[-1].endswith("noise")
     assert cell[-1] == ""
 
 
@@ -90,7 +101,7 @@ def test_short_or_quiet_work_shows_nothing(
 ) -> None:
     """Nothing flickers, and no empty output is left in the notebook."""
     if enabled:
-        monkeypatch.setattr(notebook_bar, "_BEFORE_SHOWN", 3600.0)
+        monkeypatch.setattr(bars, "_BEFORE_SHOWN", 3600.0)
     with RunProgress(2, enabled) as bar:
         bar.step(0)(3, 1e6)
     with BatchProgress(2, 0, enabled=enabled) as study:

@@ -12,21 +12,18 @@ import numpy as np
 import pytest
 
 from pellicle import Grid
+from pellicle.report.maps import Field, Maps, frame, side
 from pellicle.report.page import (
     Block,
     Cell,
     Code,
     Column,
-    Field,
-    Maps,
     Notice,
     Picture,
     Section,
     Table,
     Text,
-    frame,
     page,
-    side,
 )
 
 EVIL = "</script><script>alert(1)</script> \"quoted\" 'so' <!-- & µ 接触 {{ 7 * 7 }}"

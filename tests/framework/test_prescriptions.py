@@ -108,7 +108,7 @@ def test_resumes_in_the_middle(
     """A run that was interrupted goes on at its next step, from the state of the one before."""
     from pellicle.runs import steps
 
-    run = pl.Run(**BASE, loading=loading, outputs=[{"type": "hdf5"}], title="path")
+    run = pl.Run(**BASE, loading=loading, outputs=[], title="path")
     whole = pl.run(run, directory=tmp_path / "whole", progress=False).dataset
     solve, calls = steps.solve_step, []
 

@@ -55,7 +55,7 @@ def test_silent_on_a_terminal_when_not_enabled(monkeypatch: pytest.MonkeyPatch) 
     def fail() -> None:
         raise AssertionError("made a bar")
 
-    monkeypatch.setattr("pellicle.runs.progress._make_bar", fail)
+    monkeypatch.setattr("pellicle.runs.progress._bars", fail)
     _iterate(RunProgress(2, False))
 
 

@@ -74,7 +74,7 @@ def make_output(type_: str, **fields: Any) -> Output:
             r"^outputs\.1\.name: 'curves' would write NAME-force\.png, as outputs\.0 \('figures'\)",
         ),
         (
-            [make_output("csv"), make_output("hdf5"), Plain(ends=("-more.txt", ".csv"))],
+            [make_output("csv"), make_output("maps"), Plain(ends=("-more.txt", ".csv"))],
             r"^outputs\.2\.type: 'silent' would write NAME\.csv, as outputs\.0 \('csv'\) does; "
             "leave one out$",
         ),
@@ -131,9 +131,7 @@ def test_the_result_of_a_run_is_not_replaced(end: str) -> None:
 
 def test_standard_outputs_in_a_study() -> None:
     """The table of a study is another file than the results and tables of its runs."""
-    run = RUN | {
-        "outputs": [make_output(type_) for type_ in ("hdf5", "csv", "figures", "html", "vtk")]
-    }
+    run = RUN | {"outputs": [make_output(type_) for type_ in ("csv", "figures", "html", "vtk")]}
     pl.Study(run=run, vary={"indenter.radius": [1e-3, 2e-3]})
 
 

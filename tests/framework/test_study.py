@@ -377,7 +377,7 @@ def test_a_study_is_not_loaded_as_a_result(tmp_path: Path) -> None:
 
 def test_interrupted_run_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A run on its own goes on too, to the same fields bit for bit; a finished one does nothing."""
-    outputs = [{"type": "hdf5"}, {"type": "csv"}]
+    outputs = [{"type": "csv"}]
     run = pl.Run(**RUN | {"solver": Counting(), "outputs": outputs})
     break_at(monkeypatch, 1.0, 1.5e-5)
     with pytest.raises(ZeroDivisionError):
@@ -410,9 +410,7 @@ def test_title_and_outputs_make_no_other_run(tmp_path: Path) -> None:
     run = RUN | {"solver": Counting(), "outputs": None}
     pl.run(run, directory=tmp_path, progress=False)
     Counting.solved.clear()
-    pl.run(
-        run | {"outputs": [{"type": "hdf5"}, {"type": "csv"}]}, directory=tmp_path, progress=False
-    )
+    pl.run(run | {"outputs": [{"type": "csv"}]}, directory=tmp_path, progress=False)
     assert Counting.solved == []
 
 

@@ -79,11 +79,7 @@ def _fit(h: Array, v: Array) -> tuple[float, float, float]:
     if exponent is None:
         return nan, nan, nan
     (limit, coefficient), _ = _line((h / h_max) ** exponent, (v - middle) / spread)
-    return (
-        float(middle + spread * limit),
-        float(spread * coefficient / h_max**exponent),
-        exponent,
-    )
+    return float(middle + spread * limit), float(spread * coefficient / h_max**exponent), exponent
 
 
 def _best(h: Array, v: Array) -> float | None:

@@ -37,7 +37,7 @@ from pellicle.components import (
     Solver,
 )
 from pellicle.components.calls import branches_of
-from pellicle.components.output import refuse_shared_files
+from pellicle.components.output import ResultFile, refuse_shared_files
 from pellicle.errors import ConfigError
 from pellicle.files import is_file
 from pellicle.grid import Grid, grid_of_run
@@ -80,8 +80,18 @@ class Run(FromFile):
     ] = ()
     outputs: Annotated[
         tuple[Annotated[Output, FromRegistry()], ...] | None,
-        Field(description="what is written besides the result file; csv and figures if not given"),
+        Field(
+            description="what is written besides the result file: csv and figures if not given, "
+            "nothing if []"
+        ),
     ] = None
+
+    @field_validator("outputs", mode="before")
+    @classmethod
+    def _knows_the_result_file(cls, value: object) -> object:
+        if not isinstance(value, (list, tuple)):
+            return value
+        return [ResultFile() if output == {"type": "hdf5"} else output for output in value]
 
     @field_validator("indenter", mode="wrap")
     @classmethod

@@ -39,8 +39,12 @@ def disagreement(
     radii.
     """
     for width in (_CELLS * cell, _SHARE * size):
-        by_compliance = _by_compliance(compliance, width)
-        by_primitive = _by_primitive(radial_primitive, width)
+        q = _nodes(_LOWEST_WAVE, _WIDEST) / width
+        waves = compliance(q) * np.exp(-((q * width) ** 2) / 2) * q**2
+        by_compliance = width**2 * _trapezoid(waves)
+        r = _nodes(_LOWEST_RADIUS, _WIDEST) * width
+        rings = radial_primitive(r) * np.exp(-((r / width) ** 2) / 2) * r**2
+        by_primitive = 2 * np.pi / width**2 * _trapezoid(rings)
         if abs(by_primitive - by_compliance) > _ALLOWED * by_compliance:
             return (
                 f"radial_primitive(r) gives {by_primitive:.6g} m at the centre of a Gaussian "
@@ -56,20 +60,6 @@ def disagreement(
             "m³/N; they have to agree"
         )
     return ""
-
-
-def _by_compliance(compliance: Radial, width: float) -> float:
-    """Return the displacement [m] at the centre of a Gaussian pressure of 1 Pa from G(q)."""
-    q = _nodes(_LOWEST_WAVE, _WIDEST) / width
-    integrand = compliance(q) * np.exp(-((q * width) ** 2) / 2) * q**2
-    return float(width**2 * _trapezoid(integrand))
-
-
-def _by_primitive(radial_primitive: Radial, width: float) -> float:
-    """Return the displacement [m] at the centre of a Gaussian pressure of 1 Pa from P(r)."""
-    r = _nodes(_LOWEST_RADIUS, _WIDEST) * width
-    integrand = radial_primitive(r) * np.exp(-((r / width) ** 2) / 2) * r**2
-    return float(2 * np.pi / width**2 * _trapezoid(integrand))
 
 
 def _growth(greens_function: Radial, start: float, end: float) -> float:

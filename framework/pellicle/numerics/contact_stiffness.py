@@ -45,6 +45,5 @@ def measure_stiffness(
         total -= float((opened[zone] * traction).sum())
         missed = np.concatenate([missed, traction / attraction.greatest_slope])
     return Stiffness(
-        value=total * problem.grid.cell_area,
-        residual=float(np.sqrt((missed**2).mean())),
+        value=total * problem.grid.cell_area, residual=float(np.sqrt((missed**2).mean()))
     )

@@ -54,15 +54,19 @@ def shifted(grid: Grid, before: Traction, last: Traction, ratio: float) -> Tract
     """
     from scipy.ndimage import map_coordinates
 
-    one, two = (_padded(part, grid.boundary) for part in (before, last))
+    # With a margin in which the fields go on beyond the domain.
+    mode: Literal["wrap", "edge"] = "wrap" if grid.boundary == "periodic" else "edge"
+    one, two = (
+        Traction._make(np.pad(field, _MARGIN, mode=mode) for field in part)
+        for part in (before, last)
+    )
     distance = _signed_distance(two.contact, grid)
     moved = ratio * (_signed_distance(one.contact, grid) - distance)
     shift = _along_normals(_averaged(moved, distance, grid), distance, grid)
     ahead = distance - shift
     reach = _FADES * max(grid.spacing)
     shift *= np.exp(-np.square(np.minimum(np.abs(distance), np.abs(ahead)) / reach))
-    smooth = np.gradient(distance)
-    slopes = [part / edge for part, edge in zip(smooth, grid.spacing, strict=True)]
+    slopes = [part / edge for part, edge in zip(np.gradient(distance), grid.spacing, strict=True)]
     steepness = np.maximum(np.hypot(*slopes), 0.3)
     cells = np.indices(distance.shape)
 
@@ -79,16 +83,6 @@ def shifted(grid: Grid, before: Traction, last: Traction, ratio: float) -> Tract
     contact = ahead < 0
     inside = tuple(slice(_MARGIN, -_MARGIN) for _ in grid.shape)
     return Traction(contact[inside], wall[inside], across[inside])
-
-
-def _padded(part: Traction, boundary: Boundary) -> Traction:
-    """Return the fields with a margin in which they go on beyond the domain."""
-    mode: Literal["wrap", "edge"] = "wrap" if boundary == "periodic" else "edge"
-    return Traction(
-        np.pad(part.contact, _MARGIN, mode=mode),
-        np.pad(part.wall, _MARGIN, mode=mode),
-        np.pad(part.across, _MARGIN, mode=mode),
-    )
 
 
 def _signed_distance(contact: Mask, grid: Grid) -> Array:

@@ -51,11 +51,8 @@ _STEEPEST = 1.5  # power of 1/q towards q = 0; from 2 on displacements are not f
 class Tabulated:
     """A kernel given by G(q) [m/Pa] alone, tabulated in real space between two radii [m].
 
-    Raises
-    ------
-    ConfigError
-        G(q) is not positive and finite, grows at large q, leaves no finite displacement on a free
-        boundary, or cannot be transformed to `ACCURACY`.
+    Refused are a G(q) that is not positive and finite, grows at large q or leaves no finite
+    displacement on a free boundary, and one that cannot be transformed to `ACCURACY`.
     """
 
     def __init__(self, compliance: Symbol, shortest: float, longest: float) -> None:
@@ -65,7 +62,9 @@ class Tabulated:
         self._power_law, rest = _without_power_law(x, values)
         reach = np.log([shortest, longest])
         self._rg, self._p_over_r = _transform(x, values, rest, reach)
-        coarser = _every_other(x.size)
+        # Every other sample, including the last, without the first decade.
+        later = round(np.log(10) / _STEP)
+        coarser = slice(later + (x.size - 1 - later) % 2, None, 2)
         self.error = self._apart(
             reach, *_transform(x[coarser], values[coarser], rest[coarser], reach)
         )
@@ -230,12 +229,6 @@ def _weight(x: Array, g: Array, f: Array, power: float, reach: Array) -> float:
         return float((b * x[nonzero] + part).max(initial=-np.inf) - (b * x[inside] + wanted).min())
 
     return min((power + share * (2 - power) for share in (0.25, 0.5, 0.75)), key=decades)
-
-
-def _every_other(size: int) -> slice:
-    """Return the slice of every other sample, including the last, without the first decade."""
-    later = round(np.log(10) / _STEP)
-    return slice(later + (size - 1 - later) % 2, None, 2)
 
 
 def _real(values: object) -> Array:

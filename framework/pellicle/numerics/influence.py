@@ -62,12 +62,7 @@ def cell_coefficients(
     Array of shape (nx, ny) in m/Pa: the displacement at the centre of a cell under unit
     pressure on the cell that lies i dx and j dy away.
     """
-    nx, ny = shape
-    dx, dy = spacing = float(spacing[0]), float(spacing[1])
-    if nx < 1 or ny < 1:
-        raise ValueError(f"shape must be positive in both directions, got {shape}")
-    if not (dx > 0 and dy > 0):
-        raise ValueError(f"spacing must be positive in both directions, got {spacing}")
+    (nx, ny), (dx, dy) = shape, spacing
     if dx == dy and nx < ny:
         flipped = cell_coefficients(greens_function, radial_primitive, (ny, nx), spacing)
         return np.ascontiguousarray(flipped.T)
@@ -139,16 +134,13 @@ def _overwrite_near(coefficients: Array, radial_primitive: Radial, spacing: Spac
     )
     x = (np.arange(nx) + 0.5) * spacing[0]
     y = (np.arange(ny) + 0.5) * spacing[1]
-    corners = _corner_integrals(radial_primitive, x[:, None], y[None, :])
+    # F(x, y) = ∫₀^x ∫₀^y G over a rectangle is the sum over two triangles.
+    column, row = x[:, None], y[None, :]
+    corners = _triangle(radial_primitive, column, row) + _triangle(radial_primitive, row, column)
     # F is odd in x and in y, which gives the corners at -1/2 of the cells on the axes.
     corners = np.concatenate((-corners[:1], corners), axis=0)
     corners = np.concatenate((-corners[:, :1], corners), axis=1)
     coefficients[:nx, :ny] = np.diff(np.diff(corners, axis=0), axis=1)
-
-
-def _corner_integrals(radial_primitive: Radial, x: Array, y: Array) -> Array:
-    """Return F(x, y) = ∫₀^x ∫₀^y G for broadcastable x, y > 0, the sum over two triangles."""
-    return _triangle(radial_primitive, x, y) + _triangle(radial_primitive, y, x)
 
 
 def _triangle(radial_primitive: Radial, x: Array, y: Array) -> Array:

@@ -81,13 +81,7 @@ def checked_call(kernel: HasCompliance, name: str) -> Callable[[Array], Array]:
 
 
 def positive_compliance(kernel: HasCompliance, q: Array, values: Array) -> Array:
-    """Return the ``values`` of G [m/Pa] at q [rad/m].
-
-    Raises
-    ------
-    ConfigError
-        They are not all positive and finite.
-    """
+    """Return the ``values`` of G [m/Pa] at q [rad/m]; refuse them unless positive and finite."""
     invalid = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
     if invalid.size:
         raise ConfigError(
@@ -115,11 +109,6 @@ def refuse_growth(
         The checked call of the kernel.
     shortest
         The largest wavenumber of the grid [rad/m].
-
-    Raises
-    ------
-    PluginError
-        G(q) grows.
     """
     if not shortest > 0:
         return
@@ -140,15 +129,7 @@ def refuse_growth(
 
 
 def refuse_contradiction(kernel: HasClosedForm, grid: Grid) -> None:
-    """Refuse a kernel whose closed form is not the transform of its compliance.
-
-    Raises
-    ------
-    PluginError
-        The two differ; the message says where.
-    ConfigError
-        A compliance is not positive or not finite.
-    """
+    """Refuse a kernel whose closed form is not the transform of its compliance."""
     compliance = checked_call(kernel, "compliance")
 
     def positive(q: Array) -> Array:

@@ -195,12 +195,7 @@ class Problem:
         )
 
 
-def height_scale(
-    profile: Array,
-    contact: Mask | Cells,
-    depth: float,
-    wave: float = 0.0,
-) -> float:
+def height_scale(profile: Array, contact: Mask | Cells, depth: float, wave: float = 0.0) -> float:
     """Return the length [m] to which gaps are compared: the indenter's height range in contact.
 
     If the indenter is flat over the contact (a punch, a single cell), the length is the depth or,

@@ -57,18 +57,15 @@ class TimeStep:
         sum to 1; γ then falls as 1/Δ.
         """
         ratios = [duration / branch.time for branch in branches]
-        weights = [b.share * _mean_decay(x) for b, x in zip(branches, ratios, strict=True)]
+        # (1 − e^(−x))/x is the mean of e^(−t) over 0 < t < x.
+        weights = [
+            b.share * (-math.expm1(-x) / x if x else 1.0)
+            for b, x in zip(branches, ratios, strict=True)
+        ]
         permanent = max(0.0, 1.0 - math.fsum(branch.share for branch in branches))
         return cls(
-            tuple(math.exp(-x) for x in ratios),
-            tuple(weights),
-            math.fsum([permanent, *weights]),
+            tuple(math.exp(-x) for x in ratios), tuple(weights), math.fsum([permanent, *weights])
         )
-
-
-def _mean_decay(x: float) -> float:
-    """Return (1 − e^(−x))/x, the mean of e^(−t) over 0 < t < x; 1 for x = 0."""
-    return -math.expm1(-x) / x if x else 1.0
 
 
 @dataclass(frozen=True)

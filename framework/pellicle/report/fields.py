@@ -14,7 +14,7 @@ from pellicle.results.path import has_interaction, has_times, label_of_step
 from pellicle.results.result import Result
 from pellicle.units import axis_unit
 
-from .lines import EDGE_CELLS, edge_cells, smooth
+from .lines import EDGE_CELLS, edge_cells
 from .style import NO_CONTACT, add_colour_bar
 
 if TYPE_CHECKING:
@@ -110,15 +110,8 @@ def outline_contact(step: xr.Dataset, axes: Axes, length: float) -> None:
     for mask, style in ((contact, "solid"), (acts, "dotted")):
         # matplotlib warns of a contour that does not exist.
         if mask.any() and not mask.all() and min(mask.shape) > 1:
-            axes.contour(
-                x,
-                y,
-                mask.T.astype(float),
-                levels=[0.5],
-                colors="black",
-                linewidths=0.8,
-                linestyles=style,
-            )
+            line: dict[str, Any] = {"colors": "black", "linewidths": 0.8, "linestyles": style}
+            axes.contour(x, y, mask.T.astype(float), levels=[0.5], **line)
 
 
 def profile(result: Result, axes: Axes, step: int | None = None) -> None:
@@ -151,7 +144,7 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
     x = line["x"].values * length
     pressure, contact = line["pressure"].values * scale, line["contact"].values
     edge = np.zeros_like(contact) if pulls else edge_cells(contact)
-    axes.plot(*smooth(x, np.where(edge, np.nan, pressure)), color="C0")
+    axes.plot(x, np.where(edge, np.nan, pressure), color="C0")
     if edge.any():
         axes.plot(x[edge], pressure[edge], ".", color="C0", markersize=3)
     about = f"\ndots: {EDGE_CELLS}" if edge.any() else ""
@@ -161,7 +154,7 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
     axes.set_ylabel(f"{'' if pulls else 'contact '}pressure [{name}]", color="C0")
     axes.set_title(_caption(result, step))
     gap_axes = axes.twinx()
-    gap_axes.plot(*smooth(x, gap * gap_scale), color="C1", linestyle="--")
+    gap_axes.plot(x, gap * gap_scale, color="C1", linestyle="--")
     gap_axes.set_ylabel(f"gap [{gap_name}]", color="C1")
     if pulls:
         axes.axhline(0.0, color="C0", linewidth=0.6)
@@ -178,15 +171,9 @@ def _shade(axes: Axes, x: Array, where: Mask) -> None:
     """Shade the cells at ``x`` where a mask holds, over the whole height of the axes."""
     # An empty shade would set the limits of the axes to round-off.
     if where.any():
+        over = axes.get_xaxis_transform()
         shade = axes.fill_between(
-            x,
-            0,
-            1,
-            where=where,
-            step="mid",
-            transform=axes.get_xaxis_transform(),
-            color="0.9",
-            zorder=0,
+            x, 0, 1, where=where, step="mid", transform=over, color="0.9", zorder=0
         )
         # Otherwise 0 and 1 are edges of the vertical axis.
         shade.sticky_edges.y.clear()

@@ -60,15 +60,10 @@ def _point_along(axes: Axes, x: Array, y: Array, colour: Any) -> None:
     starts = np.flatnonzero(finite[:-1] & finite[1:] & (y[1:] != y[:-1]))
     if starts.size:
         start = int(starts[starts.size // 2])
+        arrow = {"arrowstyle": "-|>", "mutation_scale": 15, "shrinkA": 0, "shrinkB": 0}
         axes.annotate(
             "",
             xy=((x[start] + x[start + 1]) / 2, (y[start] + y[start + 1]) / 2),
             xytext=(x[start], y[start]),
-            arrowprops={
-                "arrowstyle": "-|>",
-                "mutation_scale": 15,
-                "color": colour,
-                "shrinkA": 0,
-                "shrinkB": 0,
-            },
+            arrowprops=arrow | {"color": colour},
         )

@@ -65,11 +65,7 @@ def side(points: int, maps: int) -> int:
 
 
 def frame(
-    label: str,
-    grid: Grid,
-    fields: Sequence[Array],
-    points: int,
-    empty: Collection[int] = (),
+    label: str, grid: Grid, fields: Sequence[Array], points: int, empty: Collection[int] = ()
 ) -> Frame:
     """Return fields of the grid's shape as maps of at most ``points`` pixels a side.
 

@@ -15,27 +15,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from pellicle.files import for_document
 
-from .maps import Field, Frame, Maps, frame, side
+from .maps import Maps
 
 if TYPE_CHECKING:
     from jinja2 import Template
-
-__all__ = [
-    "Cell",
-    "Code",
-    "Column",
-    "Field",
-    "Frame",
-    "Maps",
-    "Notice",
-    "Picture",
-    "Section",
-    "Table",
-    "Text",
-    "frame",
-    "page",
-    "side",
-]
 
 
 @dataclass(frozen=True)

@@ -20,13 +20,7 @@ from pellicle.results.wording import wording
 from .fields import pressure_map, profile
 from .legs import MOST_LEGS, draw_legs, name_legs
 from .saving import save_figure
-from .style import (
-    MARKERS,
-    FigureStyle,
-    colour,
-    is_log_spaced,
-    is_ordered,
-)
+from .style import MARKERS, FigureStyle, colour, is_log_spaced, is_ordered
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -133,7 +127,7 @@ def save_study_figures(
     formats: Iterable[str],
     style: FigureStyle | None = None,
 ) -> tuple[Path, ...]:
-    """Write the figures of `study_figures` as ``directory/name-figure.format``.
+    """Write the figures of `study_drawings` as ``directory/name-figure.format``.
 
     Parameters are as for `save_figures`; ``table`` is that of `pellicle.run_study`.
 
@@ -142,22 +136,22 @@ def save_study_figures(
     StorageError
         A file cannot be written.
     """
+    return _save(study_drawings(table), directory, name, formats, style)
+
+
+def study_drawings(table: xr.Dataset) -> dict[str, Callable[[Figure], None]]:
+    """Return what fills each figure of a study by its variable: force, contact fraction or area.
+
+    A free domain has no nominal area of which the contact is a fraction.
+    """
 
     def fill(variable: str, figure: Figure) -> None:
         study_curves(table, figure.add_subplot(), variable)
 
-    figures = {variable: partial(fill, variable) for variable in study_figures(table)}
-    return _save(figures, directory, name, formats, style)
-
-
-def study_figures(table: xr.Dataset) -> tuple[str, ...]:
-    """Return the variables drawn for a study: force, and contact fraction or area.
-
-    A free domain has no nominal area of which the contact is a fraction.
-    """
     if "force" not in table:
-        return ()
-    return "force", "contact_fraction" if is_periodic(table) else "contact_area"
+        return {}
+    area = "contact_fraction" if is_periodic(table) else "contact_area"
+    return {variable: partial(fill, variable) for variable in ("force", area)}
 
 
 def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
@@ -251,10 +245,7 @@ def _parts(table: xr.Dataset, dimensions: Sequence[str]) -> Iterator[xr.Dataset]
 
 
 def _curve(
-    result: Result,
-    axes: Axes,
-    series: Sequence[tuple[str, str | None, str]],
-    against: str,
+    result: Result, axes: Axes, series: Sequence[tuple[str, str | None, str]], against: str
 ) -> None:
     """Draw variables, with label and style, against another over the steps of a run."""
     data = result.dataset

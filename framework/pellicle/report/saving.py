@@ -49,13 +49,7 @@ def save_figure(
 def save_pages(
     draws: Iterable[Callable[[Figure], None]], path: Path, size: tuple[float, float]
 ) -> Path:
-    """Let each function fill a page of ``size`` [inch] of a PDF file, and return the file.
-
-    Raises
-    ------
-    StorageError
-        The file cannot be written.
-    """
+    """Let each function fill a page of ``size`` [inch] of a PDF file, and return the file."""
     from matplotlib.backends.backend_pdf import PdfPages
 
     # The fonts are embedded as the file is closed, after the figures.

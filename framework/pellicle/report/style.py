@@ -67,13 +67,7 @@ class FigureStyle(Model):
 
     @contextmanager
     def applied(self) -> Iterator[None]:
-        """Apply the style to what is drawn inside the context.
-
-        Raises
-        ------
-        ConfigError
-            The style file cannot be read, or is not one.
-        """
+        """Apply the style to what is drawn inside the context."""
         import matplotlib.style
         from cycler import cycler
 

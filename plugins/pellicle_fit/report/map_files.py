@@ -1,4 +1,4 @@
-"""Images of force maps as files: VTK, TIFF, numpy arrays, and a figure."""
+"""Images of force maps as files: TIFF, and a figure."""
 
 from __future__ import annotations
 
@@ -8,10 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellicle.arrays import Array
 from pellicle.files import atomic_write
 from pellicle.plotting import save_figure
-from pellicle.report.vtk import array, element, encoded, file_of, writer
 from pellicle.result import header
 from pellicle.units import axis_unit
 from pellicle_fit.population.images import CONTACT_HEIGHT
@@ -37,36 +35,12 @@ def save_map(images: xr.Dataset, stem: Path, title: str) -> tuple[Path, ...]:
     StorageError
         A file cannot be written.
     """
-    files = [save_vti(images, stem.with_name(f"{stem.name}.vti"))]
-    for name, image in images.data_vars.items():
-        path = stem.with_name(f"{stem.name}-{name}")
-        files += [
-            save_tiff(image, path.with_name(f"{path.name}.tif")),
-            save_npy(image.values, path.with_name(f"{path.name}.npy")),
-        ]
+    files = [
+        save_tiff(image, stem.with_name(f"{stem.name}-{name}.tif"))
+        for name, image in images.data_vars.items()
+    ]
     draw, size = map_figure(images, title), figure_size(images)
     return (*files, *save_figure(draw, stem, ("png", "pdf"), size))
-
-
-def save_vti(images: xr.Dataset, path: Path) -> Path:
-    """Write all images as point data of a VTK image, for ParaView; NaN where there is no value."""
-    x, y = images["x"].values, images["y"].values
-    pitch = _pitches(images)
-    whole = f"0 {x.size - 1} 0 {y.size - 1} 0 0"
-    grid = {
-        "Origin": f"{float(x[0])!r} {float(y[0])!r} 0",
-        "Spacing": f"{pitch[0]!r} {pitch[1]!r} 1",
-    }
-    with (
-        writer(path) as xml,
-        file_of(xml, "ImageData", WholeExtent=whole, **grid),
-        element(xml, "Piece", Extent=whole),
-        element(xml, "PointData"),
-    ):
-        for name, image in images.data_vars.items():
-            values = np.ascontiguousarray(image.values)
-            array(xml, header(str(name), image), values.dtype, [encoded(values.tobytes())])
-    return path
 
 
 def save_tiff(image: xr.DataArray, path: Path) -> Path:
@@ -79,13 +53,6 @@ def save_tiff(image: xr.DataArray, path: Path) -> Path:
     text = header(str(image.name), image)
     with atomic_write(path) as part:
         picture.save(part, format="TIFF", description=text, resolution_unit="cm", **per_cm)
-    return path
-
-
-def save_npy(values: Array, path: Path) -> Path:
-    """Write an image as a numpy array, rows along y, the smallest y first."""
-    with atomic_write(path) as part, part.open("wb") as file:
-        np.save(file, values)
     return path
 
 

@@ -58,13 +58,7 @@ class Adhesion:
         not_negative(tension=self.tension)
 
     def equilibrium(self, contact_radius: ArrayLike) -> AdhesiveContact:
-        """Return the equilibrium, stable or not, at contact radii > 0 [m] of any shape.
-
-        Raises
-        ------
-        pellicle.errors.ConfigError
-            A radius is not positive or reaches the end of the profile.
-        """
+        """Return the equilibrium, stable or not, at contact radii > 0 [m] of any shape."""
         radius = np.asarray(contact_radius, dtype=float)
         limit = self.indenter.contact_radius_limit
         if not np.all((radius > 0) & (radius < limit)):
@@ -102,23 +96,11 @@ class Adhesion:
         return self._equilibrium(np.array(_rising_root(slope, self._guess(), self._last)))
 
     def at_depth(self, depth: float) -> AdhesiveContact:
-        """Return the equilibrium at a depth [m] that is stable if the depth is fixed.
-
-        Raises
-        ------
-        pellicle.errors.ConfigError
-            The depth is below the lowest one.
-        """
+        """Return the equilibrium at a depth [m] that is stable if the depth is fixed."""
         return self._stable(depth, "depth", inf)
 
     def at_force(self, force: float) -> AdhesiveContact:
-        """Return the equilibrium at a force [N] that is stable under a dead load.
-
-        Raises
-        ------
-        pellicle.errors.ConfigError
-            The force is below that of pull-off.
-        """
+        """Return the equilibrium at a force [N] that is stable under a dead load."""
         return self._stable(force, "force", 0.0)
 
     def _stable(self, value: float, quantity: str, spring_constant: float) -> AdhesiveContact:
@@ -133,11 +115,6 @@ class Adhesion:
 
         start = xi_at(self.indenter, end.contact_radius) if end.contact_radius else self._guess()
         return self._equilibrium(np.array(_rising_root(excess, float(start), self._last)))
-
-    @property
-    def _length(self) -> float:
-        """Elastocapillary length s = 2τ₀/E* [m]."""
-        return 2 * self.tension / self.reduced_modulus
 
     @property
     def _never_sticks(self) -> bool:
@@ -169,7 +146,7 @@ class Adhesion:
 
     def _curves(self, xi: Array) -> tuple[RadiusCurves, Array]:
         """Return the contact without adhesion and the retraction D [m], each of shape (n,)."""
-        hard = radius_curves(self.indenter, self._length, xi)
+        hard = radius_curves(self.indenter, 2 * self.tension / self.reduced_modulus, xi)
         # k′ = (k/a) (d log k / dξ) / (d log a / dξ).
         area_rate = 4 * pi * self.work_of_adhesion / self.reduced_modulus * hard.radius**2
         retraction = np.sqrt(

@@ -25,13 +25,7 @@ _EXCESS_CELLS = 0.115
 
 
 def curve_of(path: xr.Dataset, work_of_adhesion: float) -> analysis.AdhesiveCurve:
-    """Return the adhesive curve of the load steps of a run, for a work of adhesion [J/m²].
-
-    Raises
-    ------
-    ConfigError
-        The contact is not a circle, or `pellicle.analysis.adhesive_curve` refuses the path.
-    """
+    """Return the adhesive curve of the load steps of a run, for a work of adhesion [J/m²]."""
     grid = Result(path).grid
     area = path["contact_area"].values
     if area.size:
@@ -72,13 +66,7 @@ def excess_radius(kernel: Kernel, spacing: float) -> float:
 
 
 def _require_circle(contact: Mask, grid: Grid) -> None:
-    """Refuse a contact that is not a full circle, to a cell or 2 %.
-
-    Raises
-    ------
-    ConfigError
-        The semi-axes differ, or the contact does not fill its ellipse.
-    """
+    """Refuse a contact that is not a full circle, to a cell or 2 %."""
     shape = analysis.ellipse(contact, grid)
     major, minor = shape.semi_major_axis, shape.semi_minor_axis
     allowed = _ROUND + max(grid.spacing) / major

@@ -104,12 +104,6 @@ def indent(
         τ₀ [N/m], zero included.
     contact_radius, depth, force
         a [m], δ [m] or P [N].
-
-    Raises
-    ------
-    pellicle.errors.ConvergenceError
-        If two resolutions differ by more than 1e-10 in force or depth, or 1e-6 in
-        edge pressure.
     """
     positive(reduced_modulus=reduced_modulus)
     not_negative(tension=tension)

@@ -22,13 +22,7 @@ def not_negative(**values: float) -> None:
 
 
 def single(**values: float | None) -> tuple[str, float]:
-    """Return name and value of the one value that is not None.
-
-    Raises
-    ------
-    ConfigError
-        There is not exactly one, or it is negative or not finite.
-    """
+    """Return name and value of the one value that is not None."""
     present = {name: value for name, value in values.items() if value is not None}
     if len(present) != 1:
         raise ConfigError(f"give exactly one of {', '.join(values)}; got {list(present) or 'none'}")

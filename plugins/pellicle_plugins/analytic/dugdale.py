@@ -86,7 +86,9 @@ def dugdale_contact(
     angle = angles.reshape(a.shape)
     touching = scaled > 0
     # The point contact has an infinite ratio c/a, but a finite c.
-    zone = np.where(touching, scaled / np.cos(angle), _point_zone(transition))
+    linear = 4 / 3 * (pi / 2 - 1) * transition**2
+    point_zone = 2 / (linear + sqrt(linear**2 + 4 * (pi / 4 * transition)))
+    zone = np.where(touching, scaled / np.cos(angle), point_zone)
     width = np.where(touching, scaled * np.tan(angle), zone)
     force = scaled**3 - transition * (scaled * width + zone**2 * angle)
     depth = scaled**2 - 4 / 3 * transition * width
@@ -110,12 +112,6 @@ def rigid_limit(
     a = np.asarray(contact_radius, dtype=float)
     force = 4 / 3 * reduced_modulus * a**3 / radius - 2 * pi * work_of_adhesion * radius
     return AdhesiveContact(a, a**2 / radius, force)
-
-
-def _point_zone(transition: float) -> float:
-    """Return c in units of (πwR²/K)^(1/3) where the contact is a point."""
-    square, linear = pi / 4 * transition, 4 / 3 * (pi / 2 - 1) * transition**2
-    return 2 / (linear + sqrt(linear**2 + 4 * square))
 
 
 def _zone_angle(radius: float, transition: float) -> float:

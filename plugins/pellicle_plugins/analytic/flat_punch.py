@@ -37,11 +37,7 @@ class FlatPunchContact:
 
 
 def flat_punch(
-    radius: float,
-    reduced_modulus: float,
-    *,
-    depth: float | None = None,
-    force: float | None = None,
+    radius: float, reduced_modulus: float, *, depth: float | None = None, force: float | None = None
 ) -> FlatPunchContact:
     """Return the contact of a flat punch, F = 2 E* a δ, for one given quantity.
 

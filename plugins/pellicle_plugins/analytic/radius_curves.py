@@ -67,13 +67,7 @@ def xi_at(indenter: HasAbelTransform, radius: Array) -> Array:
 
 
 def radius_curves(indenter: HasAbelTransform, length: float, xi: Array) -> RadiusCurves:
-    """Return the contact without adhesion at ξ, of shape (n,), for s = ``length`` [m].
-
-    Raises
-    ------
-    pellicle.errors.ConvergenceError
-        Two mesh levels, or the interpolant and the nodes, differ by more than 1e-9.
-    """
+    """Return the contact without adhesion at ξ, of shape (n,), for s = ``length`` [m]."""
     index = np.floor(xi / _PANEL).astype(int)
     values = np.empty((3, 3, xi.size))
     for panel in np.unique(index):

@@ -30,13 +30,7 @@ _LINE = 401
 
 
 def contact(run: xr.Dataset, step: int) -> AxisymmetricContact | None:
-    """Return the reference contact of a load step, counted from 1; None if 0 is prescribed.
-
-    Raises
-    ------
-    ConfigError
-        The axisymmetric equation does not describe the run.
-    """
+    """Return the reference contact of a load step, counted from 1; None if 0 is prescribed."""
     return _contact(run.attrs["configuration"], step)
 
 
@@ -91,13 +85,7 @@ def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
 
 
 def exact(runs: Runs) -> Runs:
-    """Return the table of ``runs`` with the numbers of the semi-analytic solution, and no others.
-
-    Raises
-    ------
-    ConfigError
-        The axisymmetric equation does not describe a run, or a field is requested.
-    """
+    """Return the table of ``runs`` with the numbers of the semi-analytic solution alone."""
 
     def no_fields(_name: str) -> xr.Dataset:
         raise ConfigError(
@@ -168,11 +156,6 @@ def exact_line(run: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     The same step with finer points along that dimension, the edge of the contact among them.
-
-    Raises
-    ------
-    ConfigError
-        The axisymmetric equation does not describe the run.
     """
     import xarray as xr
 

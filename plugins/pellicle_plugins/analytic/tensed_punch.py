@@ -76,11 +76,6 @@ def punch(
         τ₀ [N/m], zero included.
     depth, force
         δ [m] or P [N].
-
-    Raises
-    ------
-    pellicle.errors.ConvergenceError
-        If two resolutions differ by more than 1e-9 in force or 1e-6 in ring force.
     """
     positive(radius=radius, reduced_modulus=reduced_modulus)
     not_negative(tension=tension)

@@ -1,21 +1,25 @@
-"""Validation cases with known results: closed forms and the axisymmetric integral equation.
-
-Cases import the solutions themselves, so that loading this plugin does not import scipy.optimize.
-"""
+"""Validation cases with known results: closed forms and the axisymmetric integral equation."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from math import pi, radians
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from pellicle import hookimpl
 from pellicle.components import Case, Suite
+from pellicle.results.result import Result
+from pellicle_plugins.indenters.paraboloid import Paraboloid
 
-if TYPE_CHECKING:
-    from pellicle.results.result import Result
+from . import hertz
+from .adhesion import Adhesion
+from .adhesive_path import curve_of
+from .axisymmetric import indent
+from .cone import cone
+from .flat_punch import flat_punch
+from .full_contact import pressure_amplitude
 
 _MODULUS = 10e3
 _RADIUS = 1e-3
@@ -31,9 +35,7 @@ def closed_forms() -> Iterator[Case]:
 
 
 def _hertz() -> Iterator[Case]:
-    from .hertz import sphere
-
-    true = sphere(_RADIUS, _MODULUS, depth=_DEPTH)
+    true = hertz.sphere(_RADIUS, _MODULUS, depth=_DEPTH)
     paraboloid = {"type": "paraboloid", "radius": _RADIUS}
     case = _with("Hertz paraboloid", "Hertz 1882", paraboloid, 3 * true.semi_x)
     yield case("force", true.force, "N", 1e-3, _force)
@@ -42,9 +44,7 @@ def _hertz() -> Iterator[Case]:
 
 
 def _ellipse() -> Iterator[Case]:
-    from .hertz import ellipse
-
-    true = ellipse(_RADIUS, 2 * _RADIUS, _MODULUS, depth=_DEPTH)
+    true = hertz.ellipse(_RADIUS, 2 * _RADIUS, _MODULUS, depth=_DEPTH)
     quadric = {"type": "quadric", "radius_x": _RADIUS, "radius_y": 2 * _RADIUS}
     case = _with("Hertz ellipse", "Hertz 1882", quadric, 3 * true.semi_y)
     yield case("force", true.force, "N", 1e-3, _force)
@@ -52,8 +52,6 @@ def _ellipse() -> Iterator[Case]:
 
 
 def _cone() -> Iterator[Case]:
-    from .cone import cone
-
     angle = radians(70)
     true = cone(angle, _MODULUS, depth=_DEPTH)
     tip = {"type": "cone", "half_angle": angle}
@@ -63,8 +61,6 @@ def _cone() -> Iterator[Case]:
 
 
 def _flat_punch() -> Iterator[Case]:
-    from .flat_punch import flat_punch
-
     radius = 0.1 * _RADIUS
     true = flat_punch(radius, _MODULUS, depth=_DEPTH)
     end = {"type": "flat_punch", "radius": radius}
@@ -73,10 +69,6 @@ def _flat_punch() -> Iterator[Case]:
 
 
 def _tensed_paraboloid() -> Iterator[Case]:
-    from pellicle_plugins.indenters.paraboloid import Paraboloid
-
-    from .axisymmetric import indent
-
     true = indent(Paraboloid(radius=_RADIUS), _MODULUS, _TENSION, depth=_DEPTH)
     paraboloid = {"type": "paraboloid", "radius": _RADIUS}
     source = "integral equation, after Long et al. 2017"
@@ -88,11 +80,6 @@ def _tensed_paraboloid() -> Iterator[Case]:
 
 
 def _adhesion() -> Iterator[Case]:
-    from pellicle_plugins.indenters.paraboloid import Paraboloid
-
-    from .adhesion import Adhesion
-    from .axisymmetric import indent
-
     paraboloid = Paraboloid(radius=_RADIUS)
     for name, tension, source in (
         ("adhesive paraboloid", 0.0, "Johnson, Kendall & Roberts 1971"),
@@ -110,29 +97,15 @@ def _adhesion() -> Iterator[Case]:
             "indenter": {"type": "paraboloid", "radius": _RADIUS},
             "loading": {"depth": {"start": start, "stop": stop, "num": 10}, "stiffness": True},
         }
-        yield Case(
-            f"{name}: pull-off",
-            configuration,
-            _pull_off,
-            float(pull_off.force),
-            "N",
-            1e-2,
-            source,
-        )
-        yield Case(
-            f"{name}: contact radius without load",
-            configuration,
-            _unloaded_radius,
-            float(unloaded.contact_radius),
-            "m",
-            1e-2,
-            source,
-        )
+        for quantity, expected, unit, computed in (
+            ("pull-off", pull_off.force, "N", _pull_off),
+            ("contact radius without load", unloaded.contact_radius, "m", _unloaded_radius),
+        ):
+            row = f"{name}: {quantity}"
+            yield Case(row, configuration, computed, float(expected), unit, 1e-2, source)
 
 
 def _sine() -> Iterator[Case]:
-    from .full_contact import pressure_amplitude
-
     wavelength, amplitude, points = 1e-3, 1e-6, 64
     wave = np.cos(2 * pi * (np.arange(points) + 0.5) / points)
     true = pressure_amplitude(amplitude, wavelength, _MODULUS, _TENSION)
@@ -196,14 +169,10 @@ def _area(result: Result) -> float:
 
 
 def _pull_off(result: Result) -> float:
-    from .adhesive_path import curve_of
-
     return float(curve_of(result.dataset, _WORK).instability().force)
 
 
 def _unloaded_radius(result: Result) -> float:
-    from .adhesive_path import curve_of
-
     return float(curve_of(result.dataset, _WORK).at_zero_load().contact_radius)
 
 

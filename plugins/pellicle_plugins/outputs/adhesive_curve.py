@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
@@ -14,7 +14,7 @@ from pydantic import Field
 
 from pellicle import analysis
 from pellicle.components import Runs
-from pellicle.errors import ConfigError, StorageError
+from pellicle.errors import ConfigError
 from pellicle.report.style import colour, sparse_marker
 from pellicle.results.result import Result
 from pellicle.units import Quantity, axis_unit
@@ -98,32 +98,29 @@ class AdhesiveCurve(TableFigure):
 
     def check(self, runs: Runs) -> None:
         """Refuse runs that have no adhesive curve."""
-        for _, run in self._paths(runs):
+        for *_, run in self.opened(runs):
             _refuse(run)
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure, the curve and its summary."""
-        paths = list(self._paths(runs))
+        paths, ordered = list(self.opened(runs)), self.is_ordered(runs)
         drawn = [
-            self._drawn(name, colour(number, len(paths), ordered=self.is_ordered(runs)), run)
-            for number, (name, run) in enumerate(paths)
+            self._drawn(name, colour(number, len(paths), ordered=ordered), run)
+            for number, (name, _, run) in enumerate(paths)
         ]
         files = self.save(lambda figure: self._fill(figure.add_subplot(), drawn), stem)
-        summary = stem.with_name(f"{stem.name}-summary")
+        rows = (
+            (drawing.name.key, *row)
+            for drawing in drawn
+            if (curve := drawing.curve)
+            for row in zip(curve.contact_radius, curve.depth, curve.force, strict=True)
+        )
+        summary = map(self._summary, drawn)
         return (
             *files,
-            write_csv(stem, [row for drawing in drawn for row in _rows(drawing)], _HEADS),
-            write_csv(summary, [self._summary(drawing) for drawing in drawn], _SUMMARY_HEADS),
+            write_csv(stem, _HEADS, rows),
+            write_csv(stem.with_name(f"{stem.name}-summary"), _SUMMARY_HEADS, summary),
         )
-
-    def _paths(self, runs: Runs) -> Iterator[tuple[Label, xr.Dataset]]:
-        """Yield the name of each curve and its run, if its file exists."""
-        for name, point in self.picked(runs.table):
-            try:
-                run = runs.open(str(point["run"].item()))
-            except StorageError:
-                continue
-            yield name, run
 
     def _drawn(self, name: Label, hue: Any, run: xr.Dataset) -> _Drawn:
         _refuse(run)
@@ -135,9 +132,9 @@ class AdhesiveCurve(TableFigure):
         drawn = _Drawn(name, hue, path, curve, "")
         return replace(drawn, status=_status(curve, drawn.points(), path))
 
-    def _summary(self, drawn: _Drawn) -> dict[str, object]:
+    def _summary(self, drawn: _Drawn) -> tuple[object, ...]:
         pull_off, zero_load, fixed_depth = drawn.points().values()
-        values = (
+        return (
             drawn.name.key,
             self.work_of_adhesion,
             pull_off.force,
@@ -150,18 +147,14 @@ class AdhesiveCurve(TableFigure):
             fixed_depth.depth,
             drawn.status,
         )
-        return dict(zip(_SUMMARY_HEADS, values, strict=True))
 
     def _fill(self, axes: Axes, drawn: list[_Drawn]) -> None:
         curves = [(drawing, drawing.curve) for drawing in drawn if drawing.curve is not None]
-        depths = [drawing.path["depth"].values for drawing in drawn] + [
-            curve.depth for _, curve in curves
-        ]
-        forces = [drawing.path["force"].values for drawing in drawn] + [
-            curve.force for _, curve in curves
-        ]
-        length, length_name = axis_unit(np.concatenate([np.zeros(1), *depths]), "m")
-        newton, newton_name = axis_unit(np.concatenate([np.zeros(1), *forces]), "N")
+        zero = np.zeros(1)
+        depths = [zero, *(d.path["depth"].values for d in drawn), *(c.depth for _, c in curves)]
+        forces = [zero, *(d.path["force"].values for d in drawn), *(c.force for _, c in curves)]
+        length, length_name = axis_unit(np.concatenate(depths), "m")
+        newton, newton_name = axis_unit(np.concatenate(forces), "N")
         for drawing in drawn:
             path = drawing.path["depth"].values * length, drawing.path["force"].values * newton
             axes.plot(*path, "--", color=drawing.colour, linewidth=0.8)
@@ -181,14 +174,8 @@ class AdhesiveCurve(TableFigure):
         _zoom(axes, [curve for _, curve in curves], length, newton)
         axes.legend(frameon=False, fontsize="small", loc="upper left")
         problems = dict.fromkeys(drawing.status for drawing in drawn if drawing.curve is None)
-        axes.text(
-            0.02,
-            0.02,
-            "\n".join(textwrap.fill(problem, _LINE) for problem in problems),
-            color="red",
-            fontsize="small",
-            transform=axes.transAxes,
-        )
+        text = "\n".join(textwrap.fill(problem, _LINE) for problem in problems)
+        axes.text(0.02, 0.02, text, color="red", fontsize="small", transform=axes.transAxes)
 
 
 def _draw(
@@ -203,8 +190,7 @@ def _draw(
     ``factors`` are those from m and N to the units of the axes; ``marked`` holds the markers of the
     stable part.
     """
-    points = drawn.points()
-    length, newton = factors
+    points, (length, newton) = drawn.points(), factors
     end = points["last at fixed depth"].contact_radius
     # Without that point on the curve all of it is stable at a fixed depth.
     stable = ~(curve.contact_radius < end)
@@ -218,9 +204,7 @@ def _draw(
 
 
 def _status(
-    curve: analysis.AdhesiveCurve,
-    points: dict[str, analysis.AdhesiveContact],
-    path: xr.Dataset,
+    curve: analysis.AdhesiveCurve, points: dict[str, analysis.AdhesiveContact], path: xr.Dataset
 ) -> str:
     """Return which points are not on the path, not resolved, or steeper than the theory allows."""
     spacing = max(Result(path).grid.spacing)
@@ -269,22 +253,8 @@ def _zoom(axes: Axes, curves: list[analysis.AdhesiveCurve], length: float, newto
     axes.set_ylim(-1.1 * strongest * newton, 1.1 * strongest * newton)
 
 
-def _rows(drawn: _Drawn) -> Iterator[dict[str, object]]:
-    if drawn.curve is None:
-        return
-    columns = drawn.curve.contact_radius, drawn.curve.depth, drawn.curve.force
-    for values in zip(*columns, strict=True):
-        yield dict(zip(_HEADS, (drawn.name.key, *values), strict=True))
-
-
 def _refuse(run: xr.Dataset) -> None:
-    """Refuse a run that has no adhesive curve, however many steps are solved.
-
-    Raises
-    ------
-    ConfigError
-        The run has no stiffness, an interaction or a periodic domain.
-    """
+    """Refuse a run that has no adhesive curve, however many steps are solved."""
     result = Result(run)
     if result.configuration.get("interaction"):
         raise ConfigError(

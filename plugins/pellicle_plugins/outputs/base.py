@@ -6,14 +6,13 @@ import csv
 import json
 import re
 from abc import abstractmethod
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
 
-from pellicle.arrays import Array
 from pellicle.components import Output, Runs
 from pellicle.config.run import Run
 from pellicle.config.wording import words_at
@@ -108,13 +107,18 @@ class TableFigure(Output):
         """Return whether the curves belong to numbers to compare."""
         return is_ordered(runs.table, self.by)
 
-    def steps(self, runs: Runs) -> Iterator[tuple[Label, xr.Dataset]]:
-        """Yield the name of each curve or panel and the last load step of its run, if finished."""
+    def opened(self, runs: Runs) -> Iterator[tuple[Label, xr.Dataset, xr.Dataset]]:
+        """Yield the name, the point of the table and the run of each, if there is its file."""
         for name, point in self.picked(runs.table):
             try:
                 run = runs.open(str(point["run"].item()))
             except StorageError:
                 continue
+            yield name, point, run
+
+    def steps(self, runs: Runs) -> Iterator[tuple[Label, xr.Dataset]]:
+        """Yield the name of each curve or panel and the last load step of its run, if finished."""
+        for name, point, run in self.opened(runs):
             number = min(int(point["step"].item()), Result(run).planned_steps)
             if number in run["step"]:
                 yield name, without_round_off(run.sel(step=number))
@@ -150,11 +154,9 @@ class XYFigure(TableFigure):
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure and its numbers."""
         rows: list[dict[str, object]] = []
-        files = self.save(
-            lambda figure: rows.extend(self.draw(figure.add_subplot(), runs)),
-            stem,
-        )
-        return (*files, write_csv(stem, rows))
+        files = self.save(lambda figure: rows.extend(self.draw(figure.add_subplot(), runs)), stem)
+        heads = list(dict.fromkeys(head for row in rows for head in row))
+        return (*files, write_csv(stem, heads, ([row.get(head) for head in heads] for row in rows)))
 
 
 def one_axis(dims: Iterable[object], chosen: str | None, field: str) -> None:
@@ -188,29 +190,21 @@ def label(template: str | None, data: xr.Dataset, dim: str | None, whole: xr.Dat
     """
     if template is not None:
         variables = names(data)
-        text = _PLACEHOLDER.sub(
-            lambda match: format(
-                _mean(np.asarray(evaluate(match[1], variables))), match[2] or ".3g"
-            ),
-            template,
-        )
+
+        def mean(match: re.Match[str]) -> str:
+            values = np.asarray(evaluate(match[1], variables))
+            known = values[~np.isnan(values)]
+            return format(known.mean() if known.size else np.nan, match[2] or ".3g")
+
+        text = _PLACEHOLDER.sub(mean, template)
         return Label(text, text)
-    axes = [dim] if dim else json.loads(data.attrs.get("axes", "[]"))
-    values = [data[axis] for axis in axes if data[axis].ndim == 0]
-    words = [wording(whole[value.name]).text(value.item()) for value in values]
-    return Label(", ".join(words), ", ".join(map(_assignment, values)))
-
-
-def _mean(values: Array) -> float:
-    """Return the mean of the values that are not NaN; NaN without any."""
-    numbers = values[~np.isnan(values)]
-    return float(numbers.mean()) if numbers.size else np.nan
-
-
-def _assignment(value: xr.DataArray) -> str:
-    unit = value.attrs.get("units", "1")
-    text = readable(value.item(), unit, DIGITS) if unit != "1" else str(value.item())
-    return f"{value.name} = {text}"
+    words, keys = [], []
+    for axis in [dim] if dim else json.loads(data.attrs.get("axes", "[]")):
+        if data[axis].ndim == 0:
+            value, unit = data[axis].item(), data[axis].attrs.get("units", "1")
+            words.append(wording(whole[axis]).text(value))
+            keys.append(f"{axis} = {readable(value, unit, DIGITS) if unit != '1' else value}")
+    return Label(", ".join(words), ", ".join(keys))
 
 
 def scaled(
@@ -240,16 +234,11 @@ def joined(name: str, arrays: Sequence[xr.DataArray]) -> xr.DataArray:
     return xr.DataArray(values, dims="value", name=name, attrs=arrays[0].attrs)
 
 
-def in_words(text: str, data: xr.Dataset, further: Mapping[str, str] | None = None) -> str:
-    """Return an expression over a result or a table with words in place of its names.
-
-    ``further`` has the words of names that are in neither.
-    """
+def in_words(text: str, data: xr.Dataset) -> str:
+    """Return an expression over a result or a table with words in place of its names."""
     configuration = json.loads(data.attrs.get(FIRST_RUN, data.attrs.get("configuration", "{}")))
 
     def words(name: str) -> str:
-        if further and name in further:
-            return further[name]
         if name in data.variables:
             return wording(data[name]).words
         return words_at(configuration, Run, name) if "." in name else words_of_name(name)
@@ -272,12 +261,9 @@ def set_scales(axes: Axes, log: Sequence[str], *, signed: bool = False) -> None:
     axes.grid(alpha=0.3)
 
 
-def write_csv(stem: Path, rows: Sequence[dict[str, object]], heads: Sequence[str] = ()) -> Path:
-    """Write the numbers drawn beside their figure, under ``heads`` even if there is no row."""
+def write_csv(stem: Path, heads: Sequence[str], rows: Iterable[Iterable[object]]) -> Path:
+    """Write the numbers drawn beside their figure."""
     path = Path(f"{stem}.csv")
-    heads = list(dict.fromkeys([*heads, *(head for row in rows for head in row)]))
     with storage_errors(path), path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, heads)
-        writer.writeheader()
-        writer.writerows(rows)
+        csv.writer(file).writerows([heads, *rows])
     return path

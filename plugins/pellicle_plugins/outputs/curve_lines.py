@@ -86,12 +86,11 @@ class Line:
         """Draw the points times the factors of the axes; on ``log`` axes without arrows."""
         points, style = self.points, self.style
         x, y = points.x * factor_x, points.y * factor_y
+        drawn = style.keywords() | {"label": self.legend or None}
         if self.path:
-            draw_legs(
-                axes, self.path, x, y, arrows=not log, label=self.legend or None, **style.keywords()
-            )
+            draw_legs(axes, self.path, x, y, arrows=not log, **drawn)
         else:
-            axes.plot(x, y, label=self.legend or None, **style.keywords())
+            axes.plot(x, y, **drawn)
         if style.number is None:
             return
         bad = points.good < 1
@@ -133,18 +132,9 @@ class Limit:
         x = np.linspace(0, float(self._points.x.max()), 200)
         y = np.append(fit.limit, fit(x[1:]))
         axes.plot(x * factor_x, y * factor_y, color=colour, linewidth=0.8, zorder=1)
-        spread = [fit.limit - fit.lowest], [fit.highest - fit.limit]
-        axes.errorbar(
-            [0.0],
-            [fit.limit * factor_y],
-            np.maximum(spread, 0.0) * factor_y,
-            fmt="_",
-            color=colour,
-            markersize=12,
-            linewidth=0.8,
-            capsize=3,
-            clip_on=False,
-        )
+        spread = np.maximum([[fit.limit - fit.lowest], [fit.highest - fit.limit]], 0.0) * factor_y
+        style: dict[str, Any] = {"markersize": 12, "linewidth": 0.8, "capsize": 3, "clip_on": False}
+        axes.errorbar([0.0], [fit.limit * factor_y], spread, fmt="_", color=colour, **style)
 
     def rows(self) -> Iterator[dict[str, object]]:
         """Yield the limit, its range and the exponent."""

@@ -48,12 +48,12 @@ _EXACT = LineStyle("black", None, "")
 """Style of a reference."""
 
 
-def _several(value: object) -> object:
-    return (value,) if isinstance(value, str) else value
-
-
 _Texts = Annotated[
-    tuple[str, ...], BeforeValidator(_several, json_schema_input_type=str | tuple[str, ...])
+    tuple[str, ...],
+    BeforeValidator(
+        lambda value: (value,) if isinstance(value, str) else value,
+        json_schema_input_type=str | tuple[str, ...],
+    ),
 ]
 """One text, or a list of them."""
 
@@ -146,7 +146,7 @@ class Curves(XYFigure):
         if not has_path(table):
             return True
         used = set[str]().union(*(names_in(text) for text in (self.x, *self.y)))
-        of_runs = {name for name in used & {*map(str, table.variables)} if _of_run(table[name])}
+        of_runs = {name for name in map(str, table.variables) if "step" not in table[name].dims}
         return bool(used & ({*map(str, table.variables), *FIELDS, WALL_PRESSURE} - of_runs))
 
     def draw(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
@@ -158,8 +158,8 @@ class Curves(XYFigure):
         one_axis(runs.table.sizes, self.over, "over")
         x, *ys = (runs.column(text) for text in (self.x, *self.y))
         factor_x, x_label = scaled(self.x, [x], self.x_label, runs.table)
-        factor_y, y_label = self._scaled_y(ys, runs.table)
-        lines = list(self._lines(runs, x, ys))
+        factor_y, y_label, named = self._scaled_y(ys, runs.table)
+        lines = list(self._lines(runs, x, ys, named))
         for line in lines:
             line.draw(axes, factor_x, factor_y, bool(self.log))
         published = list(self._draw_published(axes))
@@ -179,34 +179,31 @@ class Curves(XYFigure):
         values = table[axis].values
         return ("x",) if values.dtype.kind in "if" and is_log_spaced(values) else ()
 
-    def _scaled_y(self, ys: Sequence[xr.DataArray], table: xr.Dataset) -> tuple[float, str]:
-        """Return the factor and the label of the vertical axis; several y have but a common unit.
+    def _scaled_y(
+        self, ys: Sequence[xr.DataArray], table: xr.Dataset
+    ) -> tuple[float, str, Sequence[str]]:
+        """Return the factor and the label of the vertical axis, and the name of each y.
 
-        Without one they are in SI, with their units in the legend.
+        Several y have but a common unit. Without one they are in SI, with their units in the names.
         """
+        # Only a bare variable has a unit.
+        bare = (table.get(text.strip()) for text in self.y)
+        units = ["1" if y is None else y.attrs.get("units", "1") for y in bare]
+        is_common, names = len(set(units)) == 1, list(self.series)
+        if not names:
+            for text, unit in zip(self.y, units, strict=True):
+                head = "" if is_common or unit == "1" else f" [{printed(unit)}]"
+                names.append(f"{in_words(text, table)}{head}")
         if len(ys) == 1 or self.y_label is not None:
-            return scaled(self.y[0], ys, self.y_label, table)
-        units = {self._unit(text, table) for text in self.y}
-        if len(units) > 1 or "" in units:
-            return 1.0, _fold(self.series or [self._named(text, table) for text in self.y])
+            return *scaled(self.y[0], ys, self.y_label, table), names
+        label = textwrap.fill(", ".join(names), _LETTERS)
+        if not is_common or units[0] == "1":
+            return 1.0, label, names
         scale = wording(joined("", ys)).scale
-        heads = self.series or [self._named(text, table) for text in self.y]
-        return scale.factor, f"{_fold(heads)} [{scale.unit}]"
-
-    def _named(self, text: str, table: xr.Dataset) -> str:
-        """Return one of several y in words, with its unit if the axis has none."""
-        alike = len({self._unit(other, table) for other in self.y}) == 1
-        unit = "" if alike else self._unit(text, table)
-        return f"{in_words(text, table)} [{printed(unit)}]" if unit else in_words(text, table)
-
-    @staticmethod
-    def _unit(text: str, table: xr.Dataset) -> str:
-        """Return the SI unit of a bare variable; empty for other expressions."""
-        unit = table[text.strip()].attrs.get("units", "") if text.strip() in table else ""
-        return "" if unit == "1" else unit
+        return scale.factor, f"{label} [{scale.unit}]", names
 
     def _lines(
-        self, runs: Runs, x: xr.DataArray, ys: Sequence[xr.DataArray]
+        self, runs: Runs, x: xr.DataArray, ys: Sequence[xr.DataArray], names: Sequence[str]
     ) -> Iterator[Line | Limit]:
         """Yield what is drawn, in order; entries that only the legend shows have no points."""
         reference = exact(runs) if self.reference else None
@@ -214,7 +211,7 @@ class Curves(XYFigure):
         many = runs.table.sizes[self.by] if self.by else 1
         for number, (text, y) in enumerate(zip(self.y, ys, strict=True)):
             series = self.series[number] if self.series else text
-            named = self.series[number] if self.series else self._named(text, runs.table)
+            named = names[number]
             of_reference = [reference.column(t) for t in (self.x, text)] if reference else []
             for index, point in enumerate(along(runs.table, self.by)):
                 part = runs.table.isel(point)
@@ -261,15 +258,9 @@ class Curves(XYFigure):
 
     def _draw_published(self, axes: Axes) -> Iterator[dict[str, object]]:
         for number, other in enumerate(self.published):
+            style = "-" if other.style == "line" else "*x+"[number % 3]
             axes.plot(
-                other.x,
-                other.y,
-                linestyle="-" if other.style == "line" else "none",
-                marker="" if other.style == "line" else "*x+"[number % 3],
-                color="black",
-                markersize=9,
-                zorder=5,
-                label=other.label,
+                other.x, other.y, style, color="black", markersize=9, zorder=5, label=other.label
             )
             for x, y in zip(other.x, other.y, strict=True):
                 yield {"curve": other.label, "series": "published", "x": x, "y": y}
@@ -285,19 +276,13 @@ class Curves(XYFigure):
             # Runs may have fewer steps than the table.
             converged = (converged | (table["status"] == "")).all("step")
         x, y, good = xr.broadcast(x, y, converged.astype(float))
+        columns = [x, y, y, y, good.fillna(0.0), xr.ones_like(x)]
         if self.over is not None:
             finished = (x + y).notnull()
             x, y, good = (column.where(finished) for column in (x, y, good))
-            columns = [
-                x.mean(self.over),
-                y.mean(self.over),
-                y.min(self.over),
-                y.max(self.over),
-                good.min(self.over).fillna(0.0),
-                finished.sum(self.over),
-            ]
-        else:
-            columns = [x, y, y, y, good.fillna(0.0), xr.ones_like(x)]
+            middle = x.mean(self.over), y.mean(self.over)
+            ends = y.min(self.over), y.max(self.over)
+            columns = [*middle, *ends, good.min(self.over).fillna(0.0), finished.sum(self.over)]
         long = [str(dim) for dim, size in columns[0].sizes.items() if size > 1]
         if len(long) > 1:
             raise ConfigError(
@@ -324,16 +309,6 @@ def _require_grids(x: xr.DataArray) -> None:
             f"vary the grid over at least {_GRIDS}",
             "extrapolate",
         )
-
-
-def _fold(names: Sequence[str]) -> str:
-    """Return names as the label of an axis, in lines of bounded length."""
-    return textwrap.fill(", ".join(names), _LETTERS)
-
-
-def _of_run(variable: xr.DataArray) -> bool:
-    """Return whether a variable of a table has one value for all steps of a run."""
-    return "step" not in variable.dims
 
 
 def _at(column: xr.DataArray, point: dict[str, int]) -> xr.DataArray:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -45,11 +44,15 @@ class Distributions(TableFigure):
         """Write the figure and its numbers."""
         curves = [(name, self._densities(step)) for name, step in self.steps(runs)]
         files = self.save(
-            lambda figure: self._fill(figure, curves, self.is_ordered(runs)),
-            stem,
-            _SIZE,
+            lambda figure: self._fill(figure, curves, self.is_ordered(runs)), stem, _SIZE
         )
-        return (*files, write_csv(stem, list(_rows(curves)), _HEADS))
+        rows = (
+            (name.key, field, *row)
+            for name, densities in curves
+            for field, bins in densities.items()
+            for row in zip(bins.edges, bins.edges[1:], bins.mean, bins.density, strict=False)
+        )
+        return (*files, write_csv(stem, _HEADS, rows))
 
     def _densities(self, step: xr.Dataset) -> dict[str, analysis.Distribution]:
         contact = step["contact"].values
@@ -78,10 +81,3 @@ class Distributions(TableFigure):
             if axes.get_legend_handles_labels()[1]:
                 axes.legend(frameon=False)
         figure.suptitle(self.title)
-
-
-def _rows(curves: _Curves) -> Iterator[dict[str, object]]:
-    for name, densities in curves:
-        for field, bins in densities.items():
-            for row in zip(bins.edges, bins.edges[1:], bins.mean, bins.density, strict=False):
-                yield dict(zip(_HEADS, (name.key, field, *row), strict=True))

@@ -6,7 +6,6 @@ import json
 import shlex
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
@@ -19,25 +18,10 @@ from pellicle.components import Output, Runs
 from pellicle.config.describe import inputs
 from pellicle.errors import StorageError
 from pellicle.files import atomic_write
-from pellicle.report.fields import (
-    DIVERGING,
-    default_step,
-    draws_contact,
-    without_round_off,
-)
-from pellicle.report.page import (
-    Code,
-    Frame,
-    Maps,
-    Notice,
-    Picture,
-    Section,
-    Text,
-    frame,
-    page,
-    side,
-)
-from pellicle.report.page import Field as MapField
+from pellicle.report.fields import DIVERGING, default_step, draws_contact, without_round_off
+from pellicle.report.maps import Field as MapField
+from pellicle.report.maps import Frame, Maps, frame, side
+from pellicle.report.page import Code, Notice, Picture, Section, Text, page
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction, label_of_step, prescribed_variable
@@ -45,14 +29,7 @@ from pellicle.results.result import Result, first_message
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
 from pellicle.results.variables import WALL_PRESSURE
 from pellicle.results.wording import wording
-from pellicle.studies.summary import (
-    caveats,
-    failures,
-    progress_of,
-    reasons,
-    run_names,
-    runs_of,
-)
+from pellicle.studies.summary import caveats, failures, progress_of, reasons, run_names, runs_of
 
 from .html_curves import curves_of_run, curves_of_study
 from .html_tables import (
@@ -143,24 +120,23 @@ class Html(Output):
 
     def _sections_of_run(self, result: Result, configuration: dict[str, Any]) -> list[Section]:
         """Return what the page of a run shows before methods and provenance."""
-        grid = Grid(**configuration["grid"])
+        data, grid = result.dataset, Grid(**configuration["grid"])
         maps, chosen = self._maps_of_steps(result, grid)
-        sentences = _sentences(result, grid)
-        numbers = step_tables(result.dataset), path_tables(result), oscillation_tables(result)
+        step_shown = default_step(data) % data.sizes["step"]
+        first = sentence_of_step(data, step_shown, grid.boundary, result.configuration)
+        rest = sentences_of_path(data, result.path_summary)
+        sentences = [Text(first, lead=True), *([Text(rest)] if rest else [])]
+        numbers = [*step_tables(data), *path_tables(result), *oscillation_tables(result)]
         return [
             Section("In short", [*sentences, _status(result), _setup(configuration)]),
             Section("Maps", [maps]),
             Section("Curves", curves_of_run(result, chosen, maps.begin)),
-            Section("Numbers", [*chain.from_iterable(numbers)]),
+            Section("Numbers", numbers),
             Section("Inputs", [input_table(list(inputs(configuration)))]),
         ]
 
     def _sections_of_study(
-        self,
-        table: xr.Dataset,
-        first_run: dict[str, Any],
-        varied: tuple[str, ...],
-        folder: Path,
+        self, table: xr.Dataset, first_run: dict[str, Any], varied: tuple[str, ...], folder: Path
     ) -> list[Section]:
         """Return what the page of a study shows before methods and provenance.
 
@@ -170,11 +146,22 @@ class Html(Output):
         frames = dict(self._frames_of_runs(table, rows, folder))
         sentence = sentence_of_study(table, len(rows))
         lead = [Text(sentence, lead=True)] if sentence else []
-        status, setup = _status_of_study(table, len(rows)), _setup(first_run, varied)
+        failed, warnings = failures(table), [*caveats(table)]
+        if failed:
+            details = [*reasons(table), *warnings]
+            status = Notice(f"{failed[0].upper()}{failed[1:]}.", False, details)
+        else:
+            converged = f"Every step of all {len(rows)} runs converged."
+            status = Notice(converged, not warnings, warnings)
+        which = "The last step in contact" if draws_contact(table) else "The last step"
+        of_runs = _share_in_words(len(frames), len(rows), "run")
+        caption = f"{which} of {of_runs}, each in colours over its own range."
+        mapped = tuple(_mapped(table).values())
+        maps = Maps(caption, "run", mapped, list(frames.values()), shared=False)
         numbers = [run_table(table, rows, list(frames)), *study_path_tables(table, rows)]
         return [
-            Section("In short", [*lead, status, setup]),
-            Section("Maps", _maps_of_runs(table, list(frames.values()), len(rows))),
+            Section("In short", [*lead, status, _setup(first_run, varied)]),
+            Section("Maps", [maps] if frames else []),
             Section("Curves", curves_of_study(table)),
             Section("Numbers", numbers),
             Section("Inputs", [input_table(inputs_of_study(table, list(inputs(first_run))))]),
@@ -204,12 +191,7 @@ class Html(Output):
         shown_steps = _share_in_words(len(chosen), steps, "load step")
         caption = f"{names} at prescribed {words}, in {shown_steps}{colours}."
         maps = Maps(
-            caption,
-            "load step",
-            tuple(mapped.values()),
-            frames,
-            begin=max(begin, 0),
-            shared=False,
+            caption, "load step", tuple(mapped.values()), frames, begin=max(begin, 0), shared=False
         )
         return maps, chosen
 
@@ -263,27 +245,9 @@ def _frame(
     return frame(label, grid, [step[name].values for name in mapped], points, empty)
 
 
-def _maps_of_runs(table: xr.Dataset, frames: list[Frame], count: int) -> list[Maps]:
-    mapped = _mapped(table)
-    which = "The last step in contact" if draws_contact(table) else "The last step"
-    of_runs = _share_in_words(len(frames), count, "run")
-    caption = f"{which} of {of_runs}, each in colours over its own range."
-    maps = Maps(caption, "run", tuple(mapped.values()), frames, shared=False)
-    return [maps] if frames else []
-
-
 def _share_in_words(number: int, count: int, noun: str) -> str:
     """Return how many are shown in words: "each run", "3 of 8 runs"."""
     return f"each {noun}" if number == count else f"{number} of {count} {noun}s"
-
-
-def _sentences(result: Result, grid: Grid) -> list[Text]:
-    """Return the result of a run in a sentence or two."""
-    data = result.dataset
-    step_shown = default_step(data) % data.sizes["step"]
-    first = sentence_of_step(data, step_shown, grid.boundary, result.configuration)
-    rest = sentences_of_path(data, result.path_summary)
-    return [Text(first, lead=True), *([Text(rest)] if rest else [])]
 
 
 def _setup(configuration: dict[str, Any], varied: tuple[str, ...] = ()) -> Picture:
@@ -318,13 +282,6 @@ def _status(result: Result) -> Notice:
         sentences.append(f"{subject[0].upper()}{subject[1:]}.")
         details.append(f"S{message[1:]}")
     return Notice(" ".join(sentences), not details and done == total, details)
-
-
-def _status_of_study(table: xr.Dataset, count: int) -> Notice:
-    failed, warnings = failures(table), [*caveats(table)]
-    if not failed:
-        return Notice(f"Every step of all {count} runs converged.", not warnings, warnings)
-    return Notice(f"{failed[0].upper()}{failed[1:]}.", False, [*reasons(table), *warnings])
 
 
 def _reproduce(configuration: dict[str, Any], stem: Path) -> Iterator[Code]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from pellicle.report.fields import profile
 from pellicle.report.page import Picture
-from pellicle.report.plotting import TIME, drawings, study_curves, study_figures
+from pellicle.report.plotting import TIME, drawings, study_drawings
 from pellicle.report.saving import svg
 from pellicle.results.path import label_of_step
 from pellicle.results.result import Result
@@ -67,13 +67,9 @@ def _profiles(result: Result, chosen: list[int], begin: int) -> Picture:
 
 def curves_of_study(table: xr.Dataset) -> list[Picture]:
     """Return a figure for each variable that is drawn over a study."""
-
-    def fill(variable: str, figure: Figure) -> None:
-        study_curves(table, figure.add_subplot(), variable)
-
     return [
-        _picture(partial(fill, name), f"{wording(table[name]).words.capitalize()} over the study.")
-        for name in study_figures(table)
+        _picture(fill, f"{wording(table[name]).words.capitalize()} over the study.")
+        for name, fill in study_drawings(table).items()
     ]
 
 
@@ -81,9 +77,7 @@ _Marks = list[list[tuple[float, float]]]
 
 
 def _picture(
-    fill: Callable[[Figure], None],
-    caption: str,
-    marked: Callable[[Figure], _Marks] | None = None,
+    fill: Callable[[Figure], None], caption: str, marked: Callable[[Figure], _Marks] | None = None
 ) -> Picture:
     """Return a picture, with the marks that ``marked`` returns for the filled figure."""
     marks: _Marks = []

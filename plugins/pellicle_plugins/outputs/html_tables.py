@@ -33,11 +33,10 @@ def _column(variable: xr.DataArray) -> tuple[Column, Wording]:
 
 def path_tables(result: Result) -> list[Table]:
     """Return the numbers of the whole path, where there is an interaction."""
-    rows: list[list[str | Cell]] = [
-        [declared.words, readable(value, declared.unit, DIGITS), declared.meaning]
-        for name, value in result.path_summary.items()
-        if name in names_of("path")
-        for declared in (VARIABLES[name],)
+    rows = [
+        [VARIABLES[n].words, readable(value, VARIABLES[n].unit, DIGITS), VARIABLES[n].meaning]
+        for n, value in result.path_summary.items()
+        if n in names_of("path")
     ]
     columns = [Column(head, words=True) for head in ("path", "value", "meaning")]
     caption = "Events on the path, to a step, and its work."
@@ -52,7 +51,7 @@ def oscillation_tables(result: Result) -> list[Table]:
         shown = wording_of(name, values)
         columns.append(Column(shown.words, shown.scale.unit, VARIABLES[name].meaning))
         cells.append([shown.number(value) for value in values])
-    rows: list[list[str | Cell]] = [list(row) for row in zip(*cells, strict=True)]
+    rows = list(zip(*cells, strict=True))
     caption = "Response over the last whole cycle of each oscillation."
     return [Table(caption, columns, rows)] if rows else []
 
@@ -68,7 +67,7 @@ def study_path_tables(table: xr.Dataset, runs: list[xr.Dataset]) -> list[Table]:
         return []
     axes = [str(name) for name in table.coords if name != "step"]
     columns = [(name, *_column(table[name])) for name in (*axes, *names)]
-    rows: list[list[str | Cell]] = [
+    rows = [
         [str(number), *(shown.number(run[name].item()) for name, _, shown in columns)]
         for number, run in enumerate(runs, start=1)
     ]
@@ -113,7 +112,6 @@ def step_tables(data: xr.Dataset) -> list[Table]:
         "Shape of the contact in each load step.": shape,
         "Residuals and effort of each load step.": effort,
     }
-    # Files of earlier versions lack the shape.
     return [_table_of_steps(data, names, caption) for caption, names in tables.items() if names]
 
 
@@ -155,8 +153,7 @@ def run_table(table: xr.Dataset, runs: list[xr.Dataset], mapped: list[int]) -> T
             shown.number(row[name].values[done - 1].item()) if done else ""
             for name, (_, shown) in zip(names, numbers, strict=True)
         ]
-        frame_of_run = mapped.index(index) if index in mapped else None
-        run = Cell(str(index + 1), frame=frame_of_run)
+        run = Cell(str(index + 1), frame=mapped.index(index) if index in mapped else None)
         rows.append([run, *point, f"{done}/{total}", *last, _verdict(word), file])
     columns = [
         Column("run", meaning="number of the run, the last axis varying fastest"),
@@ -188,18 +185,12 @@ def _shortened(text: str) -> str:
 
 def inputs_of_study(table: xr.Dataset, fields: list[Input]) -> list[Input]:
     """Return the inputs of a study: its axes, and the inputs of its first run that do not vary."""
-    axes = [
-        Input(
-            str(name),
-            "study",
-            shown.words,
-            shown.listing(axis.values.tolist()),
-            f"varied, {axis.size} values",
-        )
-        for name, axis in table.coords.items()
-        if name != "step"
-        for shown in (wording(axis),)
-    ]
+    axes = []
+    for name, axis in table.coords.items():
+        if name != "step":
+            shown, meaning = wording(axis), f"varied, {axis.size} values"
+            values = shown.listing(axis.values.tolist())
+            axes.append(Input(str(name), "study", shown.words, values, meaning))
     names = tuple(f"{axis.name}." for axis in axes)
     fixed = [field for field in fields if not f"{field.name}.".startswith(names)]
     return [*axes, *fixed]

@@ -68,11 +68,7 @@ class Maps(TableFigure):
         across = min(max(len(panels), 1), _COLUMNS)
         down = ceil(max(len(panels), 1) / across)
         size = (_PANEL * across + 1.2, _PANEL * down + 1.0) if len(panels) > 1 else (5.4, 4.2)
-        return self.save(
-            lambda figure: self._fill(figure, panels, down, across),
-            stem,
-            size,
-        )
+        return self.save(lambda figure: self._fill(figure, panels, down, across), stem, size)
 
     def _fill(
         self,
@@ -87,11 +83,10 @@ class Maps(TableFigure):
         if not panels:
             return
         fields = [field for *_, field in panels]
-        is_bool = fields[0].dtype == bool
+        is_bool, blank = fields[0].dtype == bool, self.field.strip() in _ONLY_IN_CONTACT
         factor, name = 1.0, ""
         if not is_bool:
             factor, name = scaled(self.field, fields, self.field_label, panels[0][1])
-        blank = self.field.strip() in _ONLY_IN_CONTACT
         pulls = any(has_interaction(run) for _, run, _ in panels) and not is_bool
         colours = self._colours(fields, factor, pulls=pulls)
         for axes, (title, run, field) in zip(all_axes, panels, strict=False):

@@ -48,17 +48,14 @@ class Patches(TableFigure):
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure and its numbers."""
-        curves = [(name, step, self._patches(step)) for name, step in self.steps(runs)]
+        curves = [
+            (name, step, analysis.patches(step["contact"], Result(step).grid, self.connectivity))
+            for name, step in self.steps(runs)
+        ]
         files = self.save(
-            lambda figure: self._fill(figure, curves, self.is_ordered(runs)),
-            stem,
-            _SIZE,
+            lambda figure: self._fill(figure, curves, self.is_ordered(runs)), stem, _SIZE
         )
-        rows = [row for curve in curves for row in _rows(*curve)]
-        return (*files, write_csv(stem, rows, _HEADS))
-
-    def _patches(self, step: xr.Dataset) -> analysis.Patches:
-        return analysis.patches(step["contact"], Result(step).grid, self.connectivity)
+        return (*files, write_csv(stem, _HEADS, (row for curve in curves for row in _rows(*curve))))
 
     def _fill(
         self,
@@ -107,10 +104,10 @@ def _map(axes: Axes, name: Label, step: xr.Dataset, patches: analysis.Patches) -
     axes.set_title(f"{name.words}\n{patches.count} patches".lstrip(), fontsize="medium")
 
 
-def _rows(name: Label, step: xr.Dataset, patches: analysis.Patches) -> Iterator[dict[str, object]]:
+def _rows(name: Label, step: xr.Dataset, patches: analysis.Patches) -> Iterator[tuple[object, ...]]:
     grid = Result(step).grid
     pressure = step["pressure"].values.ravel()
     force = np.bincount(patches.labels.ravel(), pressure)[1:] * grid.cell_area
     neighbours = analysis.coordination(patches.labels, grid)
     for index, values in enumerate(zip(patches.area, force, neighbours, strict=True)):
-        yield dict(zip(_HEADS, (name.key, step["step"].item(), index + 1, *values), strict=True))
+        yield name.key, step["step"].item(), index + 1, *values

@@ -11,7 +11,7 @@ from pydantic import Field
 from pellicle.arrays import Mask
 from pellicle.components import Runs
 from pellicle.model.expression import names_in
-from pellicle.report.lines import EDGE_CELLS, edge_cells, smooth
+from pellicle.report.lines import EDGE_CELLS, edge_cells
 from pellicle.report.style import LINES, MARKERS, colour
 from pellicle.results.derived import as_array
 from pellicle.results.path import has_interaction
@@ -56,35 +56,19 @@ class Profiles(XYFigure):
             edge = self._edge(line)
             marked |= bool(edge.any())
             axes.plot(drawn_x[edge], drawn_y[edge], ".", color=hue, markersize=3)
-            drawn_y = np.where(edge, np.nan, drawn_y)
+            drawn_y, style = np.where(edge, np.nan, drawn_y), {"color": hue, "linewidth": 1.2}
+            every, line_or_marker = 1, LINES[number % len(LINES)]
             if self.reference:
-                axes.plot(
-                    drawn_x[:: self._every(x)],
-                    drawn_y[:: self._every(x)],
-                    MARKERS[number % len(MARKERS)],
-                    color=hue,
-                    markersize=3.5,
-                    markerfacecolor="white",
-                    label=name.words or None,
-                )
-            else:
-                axes.plot(
-                    *smooth(drawn_x, drawn_y),
-                    LINES[number % len(LINES)],
-                    color=hue,
-                    linewidth=1.2,
-                    label=name.words or None,
-                )
+                # Cells on both sides of the centre alike.
+                every, line_or_marker = max(1, x.size // _MARKERS), MARKERS[number % len(MARKERS)]
+                style |= {"markersize": 3.5, "markerfacecolor": "white"}
+            label = name.words or None
+            axes.plot(drawn_x[::every], drawn_y[::every], line_or_marker, label=label, **style)
             yield from _rows(name.key, "run", x, y)
             if self.reference:
                 x, y = self._columns(exact_line(line))
-                axes.plot(
-                    x.values * factors[0],
-                    y.values * factors[1],
-                    color="black",
-                    linewidth=0.8,
-                    zorder=1,
-                )
+                drawn_x, drawn_y = x.values * factors[0], y.values * factors[1]
+                axes.plot(drawn_x, drawn_y, color="black", linewidth=0.8, zorder=1)
                 yield from _rows(name.key, "semi-analytic", x, y)
         if self.reference:
             axes.plot([], [], color="black", linewidth=0.8, label="semi-analytic")
@@ -100,15 +84,8 @@ class Profiles(XYFigure):
         shows = "pressure" in names_in(self.y) and not has_interaction(line)
         return edge_cells(contact) if shows else np.zeros_like(contact)
 
-    @staticmethod
-    def _every(x: xr.DataArray) -> int:
-        """Return the distance of markers in cells: cells on both sides of the centre alike."""
-        return max(1, x.size // _MARKERS)
-
     def _name_axes(
-        self,
-        axes: Axes,
-        curves: Sequence[tuple[Label, xr.Dataset, xr.DataArray, xr.DataArray]],
+        self, axes: Axes, curves: Sequence[tuple[Label, xr.Dataset, xr.DataArray, xr.DataArray]]
     ) -> tuple[float, float]:
         """Label the axes, in units that suit all curves, and return the factors to them."""
         line = curves[0][1]

@@ -46,14 +46,10 @@ def sentence_of_step(
         names = [name for name in names if name != "depth"]
     if step["contact_area"].item() <= 0:
         names = [name for name in names if name != size]
-    parts = [_value(step[name]) for name in names]
+    parts = [replace(wording(step[n]), digits=_DIGITS).text(step[n].item()) for n in names]
     parts += ["no contact"] if step["contact_area"].item() <= 0 else []
     marked = "" if step["converged"].item() else " (NOT CONVERGED)"
     return f"{heading}: {', '.join(parts)}{marked}."
-
-
-def _value(variable: xr.DataArray) -> str:
-    return replace(wording(variable), digits=_DIGITS).text(variable.item())
 
 
 def sentences_of_path(data: xr.Dataset, summary: Mapping[str, float]) -> str:
@@ -63,7 +59,10 @@ def sentences_of_path(data: xr.Dataset, summary: Mapping[str, float]) -> str:
         sentences.append(f"Over {data.sizes['step']} load steps: {_range(data['force'])}.")
     names = [n for n in ("pull_off", "pull_off_depth") if np.isfinite(summary.get(n, np.nan))]
     if names:
-        texts = [f"{VARIABLES[n].words} {_number(summary[n], n)}" for n in names]
+        texts = [
+            f"{VARIABLES[n].words} {readable(summary[n], VARIABLES[n].unit, _DIGITS)}"
+            for n in names
+        ]
         sentences.append(f"On the path: {', '.join(texts)}.")
     return " ".join(sentences)
 
@@ -114,7 +113,3 @@ def _range(variable: xr.DataArray) -> str:
     if low == high:
         return f"{shown.words} {shown.scale.with_unit(low)}"
     return f"{shown.words} from {low} to {shown.scale.with_unit(high)}"
-
-
-def _number(value: float, name: str) -> str:
-    return readable(value, VARIABLES[name].unit, _DIGITS)

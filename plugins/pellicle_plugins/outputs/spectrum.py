@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -41,10 +40,15 @@ class Spectrum(TableFigure):
         """Write the figure and its numbers."""
         curves = [(name, _spectra(step)) for name, step in self.steps(runs)]
         files = self.save(
-            lambda figure: self._fill(figure.add_subplot(), curves, self.is_ordered(runs)),
-            stem,
+            lambda figure: self._fill(figure.add_subplot(), curves, self.is_ordered(runs)), stem
         )
-        return (*files, write_csv(stem, list(_rows(curves)), _HEADS))
+        rows = (
+            (name.key, surface, *row)
+            for name, spectra in curves
+            for surface, part in spectra.items()
+            for row in zip(part.wavenumber, part.density, part.count, strict=True)
+        )
+        return (*files, write_csv(stem, _HEADS, rows))
 
     def _fill(self, axes: Axes, curves: _Curves, ordered: bool) -> None:
         highest = max(
@@ -54,30 +58,20 @@ class Spectrum(TableFigure):
         for number, (name, spectra) in enumerate(curves):
             for surface, spectrum in spectra.items():
                 visible = spectrum.density > _ROUND_OFF * highest
+                named = {"label": name.words or None} if surface == "displacement" else {}
                 axes.plot(
                     spectrum.wavenumber[visible],
                     spectrum.density[visible],
                     _STYLES[surface],
                     color=colour(number, len(curves), ordered=ordered),
                     linewidth=1.2,
-                    label=name.words or None if surface == "displacement" else None,
-                    **sparse_marker(number)
-                    if len(curves) > 1 and surface == "displacement"
-                    else {},
+                    **(named | sparse_marker(number) if named and len(curves) > 1 else named),
                 )
+        hue = "0.4" if len(curves) > 1 else "C0"
         for surface, style in _STYLES.items():
-            axes.plot(
-                [],
-                [],
-                style,
-                color="0.4" if len(curves) > 1 else "C0",
-                linewidth=1.2,
-                label=surface,
-            )
+            axes.plot([], [], style, color=hue, linewidth=1.2, label=surface)
         axes.set(
-            xlabel="wavenumber q [rad/m]",
-            ylabel="power spectral density [m⁴]",
-            title=self.title,
+            xlabel="wavenumber q [rad/m]", ylabel="power spectral density [m⁴]", title=self.title
         )
         if highest > 0:
             axes.set(xscale="log", yscale="log")
@@ -97,11 +91,3 @@ def _spectra(step: xr.Dataset) -> dict[str, analysis.Spectrum]:
         for name, heights in surfaces.items()
         if np.isfinite(heights).all()
     }
-
-
-def _rows(curves: _Curves) -> Iterator[dict[str, object]]:
-    for name, spectra in curves:
-        for surface, spectrum in spectra.items():
-            columns = spectrum.wavenumber, spectrum.density, spectrum.count
-            for row in zip(*columns, strict=True):
-                yield dict(zip(_HEADS, (name.key, surface, *row), strict=True))

@@ -58,7 +58,10 @@ class Vtk(Output):
         table, path = runs.table, Path(f"{stem}.pvd")
         files = [_file(stem, number) for number in table["step"].values.tolist()]
         times = table["time"].values if has_times(table) else table["step"].values
-        _write_list(zip(_growing(times.tolist()), files, strict=True), path)
+        with writer(path) as xml, file_of(xml, "Collection"):
+            for time, file in zip(_growing(times.tolist()), files, strict=True):
+                with element(xml, "DataSet", timestep=repr(time), file=file.name):
+                    pass
         return (*files, path)
 
 
@@ -107,11 +110,3 @@ def _growing(times: Iterable[float]) -> Iterator[float]:
     for time in times:
         last = time if time > last else math.nextafter(last, math.inf)
         yield last
-
-
-def _write_list(steps: Iterable[tuple[float, Path]], path: Path) -> None:
-    """Write the list of the files of the steps, each with its time."""
-    with writer(path) as xml, file_of(xml, "Collection"):
-        for time, file in steps:
-            with element(xml, "DataSet", timestep=repr(time), file=file.name):
-                pass

@@ -31,13 +31,7 @@ class IndenterDepth(Prescription):
 
 
 def refuse_beyond_full_contact(setting: Setting, depth: float, value: float) -> None:
-    """Refuse a ``depth`` [m] that no load reaches; ``value`` [m] is what the user prescribed.
-
-    Raises
-    ------
-    ConfigError
-        The mean displacement is 0, and the depth is that of full contact or more.
-    """
+    """Refuse a ``depth`` [m] that no load reaches; ``value`` [m] is what the user prescribed."""
     mean = setting.mean_height
     if depth >= -mean and not setting.operator.has_mean_compliance:
         raise ConfigError(

@@ -65,10 +65,7 @@ class Extension:
     """
 
     def __init__(
-        self,
-        known: Mask,
-        orders: Sequence[float],
-        stretch: tuple[float, float] = (1.0, 1.0),
+        self, known: Mask, orders: Sequence[float], stretch: tuple[float, float] = (1.0, 1.0)
     ) -> None:
         self.shape = known.shape
         self._levels: list[_Level] = []

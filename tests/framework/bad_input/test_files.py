@@ -12,7 +12,7 @@ from pellicle.results import storage
 from tests.framework.bad_input.command_line import Cli, says
 
 
-@pytest.mark.parametrize("type_", ["hdf5", "csv", "figures"])
+@pytest.mark.parametrize("type_", ["csv", "figures"])
 def test_output_folder_that_cannot_be_written(
     cli: Cli, monkeypatch: pytest.MonkeyPatch, type_: str
 ) -> None:

@@ -16,7 +16,6 @@ from typer.testing import CliRunner
 import pellicle as pl
 from pellicle.cli.app import app
 from pellicle.errors import ConvergenceWarning
-from pellicle.plugins import registry
 from tests.pictures import drawn_width, pixels
 
 TENSION, RADIUS = "kernel.tension", "indenter.radius"
@@ -98,7 +97,7 @@ def test_an_output_that_fails_keeps_no_other_from_drawing(tmp_path: Path) -> Non
     with pytest.warns(UserWarning, match=r"^outputs\.1\.type: is not what it"):
         table = carried(
             tmp_path,
-            {"type": "hdf5"},
+            {"type": "maps"},
             Failing(),
             {"type": "distributions", "by": TENSION},
         )
@@ -145,7 +144,7 @@ def test_what_cannot_be_drawn_is_named(
 ) -> None:
     """The message says which axis or name there is, and nothing is solved before."""
     monkeypatch.chdir(tmp_path)
-    plan = study({"type": "hdf5"}, output)
+    plan = study({"type": "maps", "name": "good"}, output)
     (tmp_path / "plan.toml").write_text(tomli_w.dumps(plan), encoding="utf-8")
     with pytest.raises(pl.ConfigError, match=rf"^outputs\.1.*{message}"):
         pl.run_study(plan, tmp_path, progress=False)
@@ -201,37 +200,24 @@ def test_map_of_nothing_finite_is_empty(tmp_path: Path) -> None:
     assert drawn_width(tmp_path / "run-maps.png", columns=(0.7, 1)) > 0
 
 
-@pytest.mark.parametrize("type_", ["compliance", "spectrum"])
-def test_a_single_cell_has_no_waves_to_draw(type_: str, tmp_path: Path) -> None:
+def test_a_single_cell_has_no_waves_to_draw(tmp_path: Path) -> None:
     """The figure and a table of no rows are there all the same."""
     run = {
         "grid": {"points": 1, "size": "1 mm"},
         "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
         "indenter": {"type": "flat_punch", "radius": "2 mm"},
         "loading": {"depth": "1 um"},
-        "outputs": [{"type": type_}],
+        "outputs": [{"type": "spectrum"}],
     }
     with warnings.catch_warnings():
         # The contact reaches the edge of the domain.
         warnings.simplefilter("ignore", ConvergenceWarning)
         pl.run(run, directory=tmp_path, progress=False)
-    assert rows(tmp_path / f"run-{type_}.csv") == []
-    image = pixels(tmp_path / f"run-{type_}.png")
+    assert rows(tmp_path / "run-spectrum.csv") == []
+    image = pixels(tmp_path / "run-spectrum.png")
     # A frame as wide as the figure, nearly, and nothing in it.
     assert (image.max(axis=-1) < 0.2).mean(axis=1).max() > 0.7
-    assert drawn_width(tmp_path / f"run-{type_}.png", columns=(0, 0.75)) == 0
-
-
-def test_symbol_is_drawn_of_the_runs_that_are_there(tmp_path: Path) -> None:
-    """The figure of a study that was interrupted shows what was done."""
-    table = carried(tmp_path)
-    gone = str(table["run"].values[0, 0])
-    (tmp_path / "runs" / f"{gone}.h5").unlink()
-    output = registry().make(pl.Output, {"type": "compliance", "by": TENSION})
-    output.write(pl.Runs.of_study(table, tmp_path), tmp_path / "study-compliance")
-    assert {row["curve"] for row in rows(tmp_path / "study-compliance.csv")} == {
-        "kernel.tension = 1 N/m"
-    }
+    assert drawn_width(tmp_path / "run-spectrum.png", columns=(0, 0.75)) == 0
 
 
 def test_logarithmic_axes_of_nothing_positive(tmp_path: Path) -> None:

@@ -42,7 +42,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the folder of a run whose second step is full contact."""
     folder = tmp_path_factory.mktemp("full")
     outputs = [
-        {"type": "hdf5"},
         {"type": "html"},
         {"type": "maps", "field": "contact", "by": "step"},
         {"type": "maps", "field": "contact + 0", "by": "step", "name": "number"},
@@ -209,7 +208,7 @@ def test_control_characters_stay_out_of_figures_and_pages(tmp_path: Path) -> Non
 
 def test_control_characters_in_a_title_do_no_harm(tmp_path: Path) -> None:
     """A result is kept, which no file could be with NUL in it, and a terminal is told nothing."""
-    outputs = [{"type": "hdf5"}, {"type": "figures", "formats": ["svg"]}]
+    outputs = [{"type": "figures", "formats": ["svg"]}]
     run = pl.Run(**RUN, title=CONTROL, outputs=outputs)
     pl.run(run, directory=tmp_path, progress=False)
     for path in tmp_path.glob("*.svg"):

@@ -166,16 +166,15 @@ def test_figures_have_units(tmp_path: Path) -> None:
 
 
 EVERYTHING: list[dict[str, Any]] = [
-    {"type": "hdf5"},
     {"type": "csv"},
     {"type": "figures"},
     {"type": "maps"},
     {"type": "maps", "formats": ["svg"]},
     {"type": "maps", "name": "gap"},
-    *({"type": type_} for type_ in ("curves", "profiles", "compliance", "patches", "spectrum")),
+    *({"type": type_} for type_ in ("curves", "profiles", "patches", "spectrum")),
     *({"type": type_} for type_ in ("distributions", "vtk", "html")),
 ]
-WITH_NUMBERS = "curves", "profiles", "compliance", "patches", "spectrum", "distributions"
+WITH_NUMBERS = "curves", "profiles", "patches", "spectrum", "distributions"
 NAMES = {
     *(".h5", ".csv", ".html", ".pvd", "-0001.vts", "-0002.vts"),
     *("-maps.png", "-maps.svg", "-gap.png"),
@@ -206,11 +205,11 @@ def test_names_of_files_of_a_study(tmp_path: Path) -> None:
 
 def test_any_run_leaves_its_result(tmp_path: Path) -> None:
     """The file holds the very result that the run returned, whichever outputs are named."""
-    for number, outputs in enumerate(([], [{"type": "hdf5"}], [{"type": "csv"}])):
+    for number, outputs in enumerate(([], [{"type": "csv"}])):
         folder = tmp_path / str(number)
         result = pl.run(_run(outputs), directory=folder, progress=False)
         names = {path.suffix for path in folder.iterdir()}
-        assert names == {".h5", *(f".{one['type']}" for one in outputs)} - {".hdf5"}
+        assert names == {".h5", *(f".{one['type']}" for one in outputs)}
         xr.testing.assert_identical(pl.load(folder / "two-steps.h5").dataset, result.dataset)
 
 

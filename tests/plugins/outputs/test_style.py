@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 import pellicle as pl
 from pellicle.report.fields import pressure_map
-from pellicle.report.lines import edge_cells, smooth
+from pellicle.report.lines import edge_cells
 from pellicle.report.plotting import study_curves
 from pellicle.report.saving import save_figure
 from pellicle.report.style import OKABE_ITO, FigureStyle, colour, is_log_spaced
@@ -154,22 +154,6 @@ def test_edge_cells() -> None:
     assert not edge_cells(contact).any()
     assert not edge_cells(np.arange(64) < 10).any()
     assert not edge_cells(np.ones(64, dtype=bool)).any()
-
-
-def test_smooth_curves_pass_through_their_points() -> None:
-    """A smooth curve stays within the range of its points, and keeps gaps."""
-    x = np.arange(12.0)
-    y = np.array([0, 0, 1, 2, 2, 3, np.nan, np.nan, 5, 4, 4, 0.0])
-    fine_x, fine_y = smooth(x, y)
-    known = np.isfinite(fine_y)
-    for px, py in zip(x, y, strict=True):
-        if np.isfinite(py):
-            nearest = np.argmin(np.abs(fine_x[known] - px))
-            assert fine_x[known][nearest] == pytest.approx(px)
-            assert fine_y[known][nearest] == pytest.approx(py)
-    assert fine_y[known].min() >= 0
-    assert fine_y[known].max() <= 5
-    assert not ((fine_x[known] > 5.01) & (fine_x[known] < 7.99)).any()
 
 
 @pytest.mark.parametrize(

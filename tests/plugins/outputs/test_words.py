@@ -56,8 +56,6 @@ OUTPUTS: list[dict[str, Any]] = [
     {"type": "patches", "by": "step"},
     {"type": "distributions", "by": "step"},
     {"type": "spectrum", "by": "step"},
-    {"type": "compliance"},
-    {"type": "compliance", "name": "scaled", "x": "q * grid.size.0", "y": "compliance"},
 ]
 VARIED = {
     "kernel.tension": ["0.9 N/m", "1.1 N/m"],
@@ -268,7 +266,6 @@ def test_labels_are_words_with_units(drawn: tuple[list[str], Path, Path]) -> Non
         "Yastrebov correction",
         "mean contact pressure / surface tension²",
         "pressure · domain size along x / major semi-axis",
-        "wavenumber q · domain size along x",
         "step 2",
         "gap [µm]",
     ):
