@@ -96,9 +96,7 @@ REFUSED: list[tuple[Quantity, str, object]] = [
     *((TENSION, UNKNOWN, f"1 {unit}") for unit in ("foo", "N/", "N/m)", "2 N/m", "N + m")),
     *((TENSION, UNKNOWN, f"1 {unit}") for unit in ("N/0", "__import__('os')", "N/m\0")),
     *((TENSION, UNKNOWN, f"1 {unit}") for unit in ("{N/m}", "N/m#x", "N/m\x1b[2J", "[N/m]")),
-    # N/m is a tension, but also a spring constant; a unit without a noun is named itself.
-    (Quantity("N/m", noun="a spring constant"), "is a force, not a spring constant", "1 N"),
-    (Quantity("Pa*m"), "'1 N' is a force, not a value in Pa*m; give", "1 N"),
+    (Quantity("Pa*m"), "'1 N' is a force; give a value with its unit", "1 N"),
     # No factor converts another zero, a logarithm and what vanishes.
     (Quantity("K"), "a unit whose zero is 273.15 K", "20 degC"),
     (Quantity("W"), "a unit whose zero is 0.001 W", "3 dBm"),
