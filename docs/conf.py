@@ -50,7 +50,7 @@ nitpicky = True
 # Names in signatures that the reference does not describe: those of other packages, as their
 # authors import them, and types that users only hand on.
 nitpick_ignore_regex = [
-    ("py:class", r"(xarray|xr|numpy|np|matplotlib|pathlib|collections|pydantic|pellicle)\..*"),
+    ("py:class", r"(xarray|xr|numpy|np|matplotlib|pathlib|collections|pydantic|pellicle\w*)\..*"),
     ("py:class", r"[A-Z]\w*"),
 ]
 

@@ -142,7 +142,9 @@ def stops() -> str:
 
 def starter() -> str:
     """Return the starter file that ``pellicle new`` writes, as a block."""
-    text = (Path(pl.__file__).parent / "cli" / "starter.toml").read_text(encoding="utf-8")
+    text = (Path(pl.__file__).parent / "examples" / "indent" / "indent.toml").read_text(
+        encoding="utf-8"
+    )
     return f"```toml\n{text}```"
 
 

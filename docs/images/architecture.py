@@ -1,6 +1,6 @@
-"""Draws ``architecture.png``: the folders of the framework and the way of a value through them.
+"""Draws ``architecture.png``: packages, folders of the framework, and the way of a value.
 
-Folders and layers are read from the import contract in ``pyproject.toml``. Run it as
+Packages and layers are read from the import contracts in ``pyproject.toml``. Run it as
 ``python docs/images/architecture.py``.
 """
 
@@ -27,12 +27,15 @@ THIN = {"operators", "page", "plotting", "problem", "result", "storage"}
 
 
 def layers() -> list[list[str]]:
-    """Return the modules of each layer, the highest layer first."""
+    """Return the plugins, then the modules of each layer of the framework, the highest first."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    contract = project["tool"]["importlinter"]["contracts"][0]
+    linter = project["tool"]["importlinter"]
     return [
-        [module for module in layer.split(" | ") if module not in THIN]
-        for layer in contract["layers"]
+        [package for package in linter["root_packages"] if package != PACKAGE.name],
+        *(
+            [module for module in layer.split(" | ") if module not in THIN]
+            for layer in linter["contracts"][0]["layers"]
+        ),
     ]
 
 

@@ -2,8 +2,8 @@
 
 Give an indenter, a soft material and the tension in its surface; get the contact pressure, area,
 force and depth. `run` solves a `Run`, `run_study` all runs of a `Study`; `kernel`, `indenter` and
-`solver` create components by type; `displacement` applies one operator; `fit` finds modulus and
-tension from a measured curve, `fit_many`, `fit_map` and `fit_pooled` from many curves.
+`solver` create components by type; `displacement` applies one operator. Applications that are
+installed beside it add names of their own.
 """
 
 import lazy_loader

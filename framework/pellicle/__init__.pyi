@@ -46,6 +46,7 @@ from .factories import interaction as interaction
 from .factories import kernel as kernel
 from .factories import solver as solver
 from .grid import Grid as Grid
+from .hookspecs import RegisterCommand as RegisterCommand
 from .hookspecs import hookimpl as hookimpl
 from .numerics.operators import displacement as displacement
 from .numerics.problem import Problem as Problem

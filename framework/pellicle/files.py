@@ -6,8 +6,6 @@ import codecs
 import json
 import os
 import re
-import socket
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -84,6 +82,8 @@ def check_writable(path: Path) -> None:
     StorageError
         No file can be written there.
     """
+    import tempfile
+
     with storage_errors(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=path.parent):
@@ -121,6 +121,8 @@ def atomic_write(path: Path) -> Iterator[Path]:
 
 
 def _host() -> str:
+    import socket
+
     return socket.gethostname().replace(".", "-")
 
 

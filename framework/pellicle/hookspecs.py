@@ -3,13 +3,43 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING, Protocol
 
 import pluggy
 
-from .components import Component, Suite
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from .components import Component, Suite
 
 hookspec = pluggy.HookspecMarker("pellicle")
 hookimpl = pluggy.HookimplMarker("pellicle")
+
+
+class RegisterCommand(Protocol):
+    """Registers the command of an entry point ``command.NAME``."""
+
+    def __call__(
+        self,
+        function: Callable[..., None],
+        *,
+        file: str = "",
+        show: Callable[[Path, bool, bool], bool] | None = None,
+    ) -> None:
+        """Register a command.
+
+        Parameters
+        ----------
+        function
+            Its parameters are those of the command, as typer reads them; its documentation is the
+            help. Its module imports typer alone; what is heavy is imported inside the function.
+        file
+            ``"package.module:Model"``, the model of the TOML file that the command takes. Folders
+            ``examples/NAME/`` of the package hold examples of it for ``pellicle new --example``.
+        show
+            Prints what the command left at a path, for ``pellicle show``, in SI or as JSON if asked
+            to; returns False, and prints nothing, where the command left nothing there.
+        """
 
 
 @hookspec
@@ -20,3 +50,8 @@ def register_components(register: Callable[[type[Component]], None]) -> None:
 @hookspec
 def register_validations(register: Callable[[Suite], None]) -> None:
     """Call ``register`` with a function that yields cases with known results for `validate`."""
+
+
+@hookspec
+def register_commands(register: RegisterCommand) -> None:
+    """Call ``register`` with the function of the command, which the entry point names."""

@@ -1,5 +1,7 @@
 """Pages, for plugins: the contents of `pellicle.report.page`."""
 
+from pellicle.model.html import summary as summary
+from pellicle.report.page import Block as Block
 from pellicle.report.page import Cell as Cell
 from pellicle.report.page import Code as Code
 from pellicle.report.page import Column as Column

@@ -15,5 +15,8 @@ from pellicle.report.plotting import save_figures as save_figures
 from pellicle.report.plotting import save_study_figures as save_study_figures
 from pellicle.report.plotting import study_curves as study_curves
 from pellicle.report.saving import save_figure as save_figure
+from pellicle.report.saving import save_pages as save_pages
 from pellicle.report.saving import svg as svg
+from pellicle.report.style import LINES as LINES
+from pellicle.report.style import FigureStyle as FigureStyle
 from pellicle.units import axis_unit as axis_unit

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import inspect
 import os
-import re
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, partial
 from importlib.metadata import EntryPoint, entry_points
 from types import SimpleNamespace
 from typing import Any, Literal, TypeVar, get_args, get_origin
@@ -21,34 +20,17 @@ import pluggy
 
 from . import hookspecs
 from .components import FAMILIES, Component, Prescription, Suite
-from .components.foreign_code import diverted_output, noted_interrupts
 from .errors import ConfigError, PellicleError, PluginError, shown
 from .loading import OPTIONS
 from .model.messages import nearest
+from .origins import COMMAND, isolated
+from .origins import DISABLE as DISABLE
+from .origins import GROUP as GROUP
+from .origins import Broken as Broken
+from .origins import Origin as Origin
 from .units import quantity_of
 
-GROUP = "pellicle"
-DISABLE = "PELLICLE_DISABLE_PLUGINS"
 AnyComponent = TypeVar("AnyComponent", bound=Component)
-
-
-@dataclass(frozen=True)
-class Origin:
-    """The entry point and distribution of a component."""
-
-    entry_point: str
-    distribution: str
-    version: str
-
-    @classmethod
-    def of(cls, entry: EntryPoint) -> Origin:
-        """Return the origin of an entry point."""
-        if entry.dist is None:
-            return cls(entry.name, "unknown distribution", "?")
-        return cls(entry.name, entry.dist.name, entry.dist.version)
-
-    def __str__(self) -> str:
-        return f"{self.distribution} {self.version} (entry point {self.entry_point!r})"
 
 
 @dataclass(frozen=True)
@@ -63,14 +45,6 @@ class Registered:
     def summary(self) -> str:
         """The first line of the component's documentation."""
         return (inspect.getdoc(self.component) or "").partition("\n")[0]
-
-
-@dataclass(frozen=True)
-class Broken:
-    """A plugin that cannot be used, and the error."""
-
-    origin: Origin
-    error: str
 
 
 @dataclass(frozen=True)
@@ -107,7 +81,7 @@ class Registry:
             )
         for broken in self.broken:
             if broken.origin.entry_point == f"{family}.{type_}":
-                raise PluginError(f"{family} {type_!r} is broken: {broken.origin}: {broken.error}")
+                raise PluginError(f"{family} {type_!r} is broken: {broken}")
         for origin in self.disabled:
             if origin.entry_point == f"{family}.{type_}":
                 raise PluginError(f"{family} {type_!r} of {origin} is switched off by {DISABLE}")
@@ -194,12 +168,12 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
     disabled: list[Origin] = []
     for entry in sorted(set(entries), key=lambda entry: (entry.name, entry.value)):
         origin = Origin.of(entry)
-        if entry.name.startswith("command."):
-            continue
-        if _is_disabled(origin, disable):
+        if origin.is_disabled(disable):
             disabled.append(origin)
             continue
-        registration = _load_one(entry, origin, families)
+        if entry.name.startswith(COMMAND):
+            continue
+        registration = isolated(entry, partial(_call_hooks, entry, origin, families))
         if isinstance(registration, Broken):
             broken.append(registration)
             continue
@@ -226,40 +200,6 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
         },
         disabled=tuple(disabled),
     )
-
-
-def _load_one(
-    entry: EntryPoint, origin: Origin, families: dict[str, type[Component]]
-) -> tuple[list[Registered], list[Suite]] | Broken:
-    """Return the components and suites that one plugin registers, or its error.
-
-    A plugin may fail in any way, even by sys.exit() or KeyboardInterrupt; only a Ctrl-C of the user
-    ends the command.
-    """
-    registration: tuple[list[Registered], list[Suite]] | Broken
-    with noted_interrupts() as interrupt:
-        try:
-            with diverted_output():
-                registration = _call_hooks(entry, origin, families)
-        except BaseException as error:
-            kind = "" if isinstance(error, PluginError) else f"{type(error).__name__}: "
-            registration = Broken(origin, f"{kind}{error}".removesuffix(": "))
-    if interrupt.is_set():
-        raise KeyboardInterrupt
-    return registration
-
-
-def _is_disabled(origin: Origin, disable: str) -> bool:
-    if origin.distribution == "pellicle":
-        return False
-    named = {_same(name) for name in disable.split(",")} - {""}
-    names_of_origin = {_same(origin.distribution), _same(origin.entry_point)}
-    return bool(named & ({"1", "true", "all"} | names_of_origin))
-
-
-def _same(name: str) -> str:
-    """Return the normalised name: package indexes treat my_plugin and My-Plugin as equal."""
-    return re.sub(r"[-_.]+", "-", name.strip()).lower()
 
 
 def _plugin_of(loaded: object) -> object:
@@ -308,7 +248,7 @@ def _call_hooks(
     manager.add_hookspecs(hookspecs)
     plugin = _plugin_of(entry.load())
     manager.register(plugin)
-    hooks = ["register_components", "register_validations"]
+    hooks = ["register_components", "register_validations", "register_commands"]
     implemented = [caller.name for caller in manager.get_hookcallers(plugin) or ()]
     if not implemented:
         raise PluginError(

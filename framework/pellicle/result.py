@@ -7,3 +7,4 @@ from pellicle.results.result import Result as Result
 from pellicle.results.result import first_message as first_message
 from pellicle.results.result import load as load
 from pellicle.results.status import Status as Status
+from pellicle.results.variables import header as header

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from pellicle.cli.printing import echo
+from pellicle.cli import echo
 from pellicle.errors import ConfigError
 
 

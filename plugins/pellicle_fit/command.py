@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from pellicle.cli.exits import INTERRUPTED, NOT_CONVERGED
-from pellicle.cli.printing import echo, print_json
+import pellicle as pl
+from pellicle.cli import INTERRUPTED, NOT_CONVERGED, echo, print_json
 from pellicle.errors import ConfigError
 
-from .print_fits import print_fit, print_fits, print_notes
+from .print_fits import print_fit, print_fits, print_notes, show_fits
 
 if TYPE_CHECKING:
     from pellicle_fit.config import FitConfig
@@ -226,6 +226,12 @@ def fit(
     if isinstance(result, ManyFits) and result.failed:
         echo(f"{result.failed} of {len(result.rows)} curves could not be fitted", err=True)
         raise typer.Exit(NOT_CONVERGED)
+
+
+@pl.hookimpl
+def register_commands(register: pl.RegisterCommand) -> None:
+    """Register the command."""
+    register(fit, file="pellicle_fit.config:FitConfig", show=show_fits)
 
 
 def _fit(

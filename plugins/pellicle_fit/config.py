@@ -18,6 +18,7 @@ from pydantic import (
     model_validator,
 )
 
+from pellicle import registry
 from pellicle.components import (
     Executor,
     FromRegistry,
@@ -25,14 +26,16 @@ from pellicle.components import (
     HasLayerForceCurve,
     Indenter,
 )
-from pellicle.config.study import DEFAULT_EXECUTOR
 from pellicle.errors import ConfigError, shown
-from pellicle.model.from_file import FromFile, overridden
-from pellicle.model.input_path import InputPath, paths_relative_to
-from pellicle.model.messages import nearest
-from pellicle.model.paths import replaced
-from pellicle.model.toml import read_toml
-from pellicle.plugins import registry
+from pellicle.model import (
+    FromFile,
+    InputPath,
+    nearest,
+    overridden,
+    paths_relative_to,
+    read_toml,
+    replaced,
+)
 from pellicle.units import PoissonsRatio, Quantity
 
 from .curves.cleaning import LARGEST
@@ -124,21 +127,32 @@ class FitConfig(FromFile, Calibration):
 
     curves: Annotated[
         tuple[Path, ...],
-        BeforeValidator(lambda value: [value] if isinstance(value, (str, Path)) else value),
-        Field(description="files, folders, patterns such as beads/*.csv, or tables of files"),
+        BeforeValidator(
+            lambda value: [value] if isinstance(value, (str, Path)) else value,
+            json_schema_input_type=tuple[Path, ...] | Path,
+        ),
+        Field(
+            description="files, folders, patterns such as beads/*.csv, or tables of files",
+            examples=[["beads/*.csv"]],
+        ),
     ] = ()
     indenter: Annotated[
         Indenter | HasForceCurve | dict[str, Any],
         PlainValidator(_indenter, json_schema_input_type=dict[str, Any] | str),
         PlainSerializer(described),
-        Field(description="the indenter: its type and fields"),
+        Field(
+            description="the indenter: its type and fields",
+            examples=[{"type": "sphere", "radius": "5 um"}],
+        ),
     ]
     poissons_ratio: PoissonsRatio | None = Field(
-        None, description="of the solid, to get Young's modulus as well, or if the kernel needs it"
+        None,
+        description="of the solid, to get Young's modulus as well, or if the kernel needs it",
+        examples=[0.5],
     )
     kernel: Annotated[
         dict[str, Any] | None,
-        BeforeValidator(_component),
+        BeforeValidator(_component, json_schema_input_type=dict[str, Any] | str | None),
         Field(description="the solid without its modulus and tension; a half-space if not given"),
     ] = None
     thickness: Annotated[
@@ -151,7 +165,7 @@ class FitConfig(FromFile, Calibration):
     ] = None
     fix: Annotated[
         dict[str, float],
-        BeforeValidator(_fixed),
+        BeforeValidator(_fixed, json_schema_input_type=dict[str, float | str]),
         Field(description=f"values of parameters that are not fitted: {', '.join(FIXABLE)}"),
     ] = Field(default_factory=dict)
     baseline: Baseline = Field(
@@ -172,7 +186,10 @@ class FitConfig(FromFile, Calibration):
     )
     accept: Annotated[
         tuple[str, ...],
-        BeforeValidator(lambda value: [value] if isinstance(value, str) else value),
+        BeforeValidator(
+            lambda value: [value] if isinstance(value, str) else value,
+            json_schema_input_type=tuple[str, ...] | str,
+        ),
         AfterValidator(rules),
         Field(description="rules for the curves of a population, such as r_squared > 0.95"),
     ] = ()
@@ -191,7 +208,7 @@ class FitConfig(FromFile, Calibration):
         FromRegistry(),
         BeforeValidator(_component),
         Field(description="executor of many fits and of simulations"),
-    ] = Field(default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}))
+    ] = Field(default_factory=lambda: registry().make(Executor, {"type": "serial"}))
     cache: Path | None = Field(None, description="folder that keeps simulated force curves")
     grid_points: int = Field(
         GRID_POINTS, description="cells along each edge of the grids of a simulation"
@@ -294,12 +311,6 @@ class FitConfig(FromFile, Calibration):
                 return cls.merged(_from_folder(data, folder), overrides, **options)
         if isinstance(base, FitConfig):
             base = {name: getattr(base, name) for name in base.model_fields_set}
-        if "loading" in (base or {}):
-            raise ConfigError(
-                "makes this a run, not the configuration of a fit: use run in place of fit "
-                "(`pellicle run` in a shell); `pellicle explain fit` lists the keys of a fit",
-                "loading",
-            )
         options = {name: value for name, value in options.items() if value is not None}
         shared = cls.model_fields.keys() - Calibration.model_fields.keys()
         data = {**(base or {}), **{name: options[name] for name in shared & options.keys()}}

@@ -7,7 +7,7 @@ import hashlib
 import json
 import pickle
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import closing, nullcontext
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from operator import length_hint
@@ -16,15 +16,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pellicle import registry, storage
+from pellicle.batch import BatchProgress, locked, mapped
 from pellicle.components import Component, Say
-from pellicle.components.calls import outcomes_of
 from pellicle.errors import PellicleError
 from pellicle.files import atomic_write, check_writable, write_json
-from pellicle.plugins import registry
-from pellicle.results import storage
-from pellicle.results.variables import header
-from pellicle.runs.lock import locked
-from pellicle.runs.progress import StudyProgress
+from pellicle.result import header
 
 from .config import FitConfig
 from .curves.sources import Curves, Source, SourceStream
@@ -190,7 +187,7 @@ def fit_sources(
             check_writable(directory / "fits.h5")
             check_writable(directory / _JOURNAL / "fit.json")
         try:
-            with StudyProgress(length_hint(sources), 0, progress) as bar:
+            with BatchProgress(length_hint(sources), 0, progress) as bar:
                 for batch in _batches(sources):
                     _fit_batch(config, batch, directory, fits, bar, length_hint(sources), progress)
         except BaseException:
@@ -228,7 +225,7 @@ def _fit_batch(
     sources: list[Source],
     directory: Path | None,
     fits: ManyFits,
-    bar: StudyProgress,
+    bar: BatchProgress,
     total: int,
     progress: bool,
 ) -> None:
@@ -261,17 +258,19 @@ def _fit_batch(
             tasks.append(FitTask(number, problem.simulated(config, progress=progress), path))
         except PellicleError as error:
             rows[number]["status"] = _failure(error, source)
+
+    def keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool]:
+        if isinstance(outcome, Exception):
+            rows[task.row]["status"] = _failure(outcome, sources[task.row - first])
+        else:
+            if task.path is not None:
+                write_json(outcome, task.path)
+            _keep(fits, task.row, outcome)
+        status = str(rows[task.row]["status"])
+        return status, status != FITTED
+
     bar.expect(total, len(sources) - len(tasks))
-    with closing(outcomes_of(config.executor, work, tasks, bar.report, dict)) as outcomes:
-        for task, outcome in outcomes:
-            if isinstance(outcome, Exception):
-                rows[task.row]["status"] = _failure(outcome, sources[task.row - first])
-            else:
-                if task.path is not None:
-                    write_json(outcome, task.path)
-                _keep(fits, task.row, outcome)
-            status = str(rows[task.row]["status"])
-            bar.finished(task, status, status != FITTED)
+    mapped(config.executor, work, tasks, dict, keep, bar)
 
 
 def _keep(fits: ManyFits, number: int, outcome: dict[str, Any]) -> None:
@@ -354,7 +353,7 @@ def _write(
     }
     dataset = table(fits.rows).assign_attrs(attributes)
     hdf5, text, groups = (directory / f"fits{end}" for end in (".h5", ".csv", "-groups.csv"))
-    storage.write(dataset, hdf5)
+    storage.write(dataset.assign_attrs(command="fit"), hdf5)
     columns = ["curve", *dataset.data_vars]
     heads = [*(header(str(name), dataset[name]) for name in columns), *attributes]
     cells = zip(*(dataset[name].values.tolist() for name in columns), strict=True)

@@ -11,8 +11,8 @@ from typing import Any, cast
 from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
+from pellicle.batch import status_line
 from pellicle.errors import ConfigError, PellicleError
-from pellicle.runs.progress import status_line
 from pellicle.units import readable
 
 from .compare import compare
@@ -162,7 +162,7 @@ def fit_source(config: FitConfig, source: Source, *, progress: bool) -> Fit:
     if isinstance(problem, PellicleError):
         raise problem
     simulated = problem.simulated(config, progress=progress)
-    with status_line(progress) as report:
+    with status_line("fitting", progress) as report:
         result = fit_problem(simulated, report)
     record = watch.record(config, [data_of(problem.curve, config)])
     return replace(result, config=config, record=record)

@@ -10,8 +10,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from pellicle.batch import status_line
 from pellicle.errors import ConfigError, PellicleError
-from pellicle.runs.progress import status_line
 from pellicle.units import decimal
 
 from .compare import compare
@@ -198,7 +198,7 @@ def pool_sources(config: FitConfig, sources: Sequence[Source], *, progress: bool
             singles.append((problem, fit_single(problem.likelihood(), problem.fixed)))
         except ConfigError as error:
             raise source.named(error, "; leave it out") from None
-    with status_line(progress) as report:
+    with status_line("fitting", progress) as report:
         fit = _fit_pool(singles, config.contact_points, report, config.compare)
     data = [data_of(problem.curve, config) for problem, _ in singles]
     return replace(fit, config=config, record=watch.record(config, data))

@@ -6,7 +6,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pellicle.cli.printing import echo, print_columns
+import typer
+
+from pellicle.cli import NOT_CONVERGED, echo, print_columns, print_json
+from pellicle.files import is_file
 
 if TYPE_CHECKING:
     from pellicle.units import Scale
@@ -75,6 +78,30 @@ def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None, si: bool 
         echo(f"{len(fits.rows)} curves: see {directory / 'fits.csv'}")
     if len(fits.rows) > 1:
         print_columns(_groups(fits, si))
+
+
+def show_fits(directory: Path, si: bool, json: bool) -> bool:
+    """Print the tables that ``pellicle fit`` left in a folder; return False if it left none.
+
+    Raises
+    ------
+    typer.Exit
+        Some curves could not be fitted.
+    """
+    if not is_file(directory / "fits.json"):
+        return False
+    from pellicle_fit.many import ManyFits
+    from pellicle_fit.record import content_of
+
+    content = content_of(directory / "fits.json")
+    fits = ManyFits(content.get("curves", []), notes=content.get("notes", []))
+    if json:
+        print_json(content)
+    else:
+        print_fits(fits, quiet=False, directory=directory, si=si)
+    if fits.failed:
+        raise typer.Exit(NOT_CONVERGED)
+    return True
 
 
 def _curves(rows: list[dict[str, Any]], si: bool) -> list[tuple[str, list[str]]]:

@@ -10,11 +10,11 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any, NamedTuple
 
+from pellicle import registry
 from pellicle.components import Component
 from pellicle.config.provenance import versions
 from pellicle.errors import ConfigError, StorageError
-from pellicle.model.paths import walk
-from pellicle.plugins import registry
+from pellicle.model import walk
 
 from .config import FitConfig
 from .curves.curve import Curve

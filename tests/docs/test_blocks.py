@@ -20,7 +20,7 @@ import pytest
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.components import AreaCorrection, Executor, Indenter, Kernel, Output, Solver
 from pellicle.model import ranges as axes
 from tests.docs.blocks import DOCS, PAGES, ROOT, Block, blocks
@@ -334,5 +334,5 @@ def test_readme_begins_with_the_two_set_up_commands() -> None:
 
 def test_study_of_the_readme_is_the_starter_file() -> None:
     """What the README runs is what ``pellicle new`` writes."""
-    starter = Path(pl.__file__).parent / "cli" / "starter.toml"
+    starter = Path(pl.__file__).parent / "examples" / "indent" / "indent.toml"
     assert (ROOT / "docs/studies/indent.toml").read_bytes() == starter.read_bytes()

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
+from pkgutil import iter_modules
 from typing import Any
 
 import generated
 import pytest
-import typer.main
 
 import pellicle as pl
 from pellicle import hookspecs
-from pellicle.cli import app
+from pellicle.commands import commands, typer_command
 from tests.docs.blocks import DOCS, PAGES, ROOT
 
 HOOKS = [name for name in vars(hookspecs) if name.startswith("register_")]
-COMMANDS: dict[str, Any] = vars(typer.main.get_command(app))["commands"]
+COMMANDS: dict[str, Any] = {name: typer_command(name) for name in commands()}
 COMPONENTS = [
     registered for family in pl.registry().components.values() for registered in family.values()
 ]
@@ -91,6 +92,17 @@ def test_public_name_is_documented(name: str) -> None:
     assert re.search(rf":: pellicle\.{name}$", REFERENCE, re.MULTILINE)
     if name != "__version__":
         assert getattr(pl, name).__doc__
+
+
+def test_what_is_public_is_what_the_linter_lets_pass() -> None:
+    """Each module of the framework is in the table of public packages, or protected."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    contracts = project["tool"]["importlinter"]["contracts"]
+    (protected,) = (c["protected_modules"] for c in contracts if c["type"] == "protected")
+    rows = re.findall(r"^\| (`pellicle.*?) \|", _page("reference-extend.md"), re.MULTILINE)
+    public = [name for row in rows for name in re.findall(r"`([\w.]+)`", row)]
+    modules = [f"pellicle.{module.name}" for module in iter_modules(pl.__path__)]
+    assert sorted([*protected, *public]) == sorted(["pellicle", "pellicle.*.*", *modules])
 
 
 @pytest.mark.parametrize("member", [*pl.Status, *pl.Stop], ids=str)

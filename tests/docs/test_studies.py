@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 from typer.testing import CliRunner
 
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.config.study import Study, from_toml
 from pellicle_plugins.analytic.adhesion import Adhesion
 from pellicle_plugins.analytic.axisymmetric import indent

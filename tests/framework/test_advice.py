@@ -12,7 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.errors import ConfigError
 from pellicle.runs.advice import advise
 from pellicle_plugins.analytic.abel_transform import HasAbelTransform

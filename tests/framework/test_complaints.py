@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle_plugins.outputs.csv import Csv
 
 RUN: dict[str, Any] = {

@@ -13,7 +13,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.components import AreaCorrection, Output
 from pellicle.plugins import registry
 
@@ -282,7 +282,9 @@ def test_not_json(text: str) -> None:
 def _starter() -> dict[str, Any]:
     from importlib.resources import files
 
-    return tomllib.loads(files("pellicle.cli").joinpath("starter.toml").read_text(encoding="utf-8"))
+    return tomllib.loads(
+        files("pellicle").joinpath("examples/indent/indent.toml").read_text(encoding="utf-8")
+    )
 
 
 def test_schema_is_one() -> None:

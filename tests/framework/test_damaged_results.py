@@ -14,7 +14,7 @@ import pytest
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.results import checksum
 
 RUN: dict[str, Any] = {

@@ -11,7 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.cli.encoding import encode_readably
 from pellicle.files import read_text
 from pellicle.model.toml import read_toml

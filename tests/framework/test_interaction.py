@@ -13,7 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.cli.app import app
 
 FILE = """
 outputs = []

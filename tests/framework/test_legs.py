@@ -13,7 +13,7 @@ from jsonschema import Draft202012Validator
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.config.describe import inputs
 
 LEGS: list[dict[str, Any]] = [

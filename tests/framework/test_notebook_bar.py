@@ -9,7 +9,7 @@ import pytest
 import rich.console
 
 from pellicle.runs import notebook_bar, progress
-from pellicle.runs.progress import ProgressMessage, RunProgress, StudyProgress, status_line
+from pellicle.runs.progress import BatchProgress, ProgressMessage, RunProgress, status_line
 
 ipython = pytest.importorskip("IPython.display")
 
@@ -64,7 +64,7 @@ def test_a_run_has_one_live_bar(cell: Cell) -> None:
 def test_a_study_has_one_live_bar(cell: Cell, capfd: pytest.CaptureFixture[str]) -> None:
     """It counts runs, has a line for each run at work, and prints no line for each finished run."""
     job = Job("<b>tip</b>")
-    with StudyProgress(3, 1, enabled=True) as bar:
+    with BatchProgress(3, 1, enabled=True) as bar:
         bar.report(job, ProgressMessage(1, 4, 7, 2e5, 1.5))
         assert "max='3' value='1.375'" in cell[-1]
         assert "&lt;b&gt;tip&lt;/b&gt; <progress max='4' value='1.5'" in cell[-1]
@@ -77,7 +77,7 @@ def test_a_study_has_one_live_bar(cell: Cell, capfd: pytest.CaptureFixture[str])
 
 def test_a_fit_shows_its_stage(cell: Cell) -> None:
     """How long a fit takes is not known: the bar has no value."""
-    with status_line(enabled=True) as report:
+    with status_line("fitting", enabled=True) as report:
         report("noise")
         assert "fitting <progress style=" in cell[-1]
         assert "noise" in cell[-1]
@@ -93,8 +93,8 @@ def test_short_or_quiet_work_shows_nothing(
         monkeypatch.setattr(notebook_bar, "_BEFORE_SHOWN", 3600.0)
     with RunProgress(2, enabled) as bar:
         bar.step(0)(3, 1e6)
-    with StudyProgress(2, 0, enabled=enabled) as study:
+    with BatchProgress(2, 0, enabled=enabled) as study:
         study.finished(Job("a"), "converged", failed=False)
-    with status_line(enabled=enabled) as report:
+    with status_line("fitting", enabled=enabled) as report:
         report("noise")
     assert cell == []

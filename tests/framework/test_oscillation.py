@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.analysis import Oscillation, oscillations
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.results.variables import names_of
 
 K = 3.0 + 0.4j

@@ -16,7 +16,7 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.plugins import Origin, registry
 from pellicle.results import storage
 

@@ -7,7 +7,8 @@ import pytest
 from typer.testing import CliRunner
 
 from pellicle import ConfigError, StorageError
-from pellicle.cli import app, scaffold
+from pellicle.cli import scaffold
+from pellicle.cli.app import app
 from pellicle.cli.scaffold import write_plugin
 from pellicle.components import FAMILIES
 from pellicle.plugins import Registry

@@ -19,7 +19,7 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle import files, memory
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.components import Monitor
 from pellicle.results import storage
 from pellicle.results.dimensions import with_paths

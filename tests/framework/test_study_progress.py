@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import pytest
 from rich.console import Console
 
-from pellicle.runs.progress import ProgressMessage, StudyProgress
+from pellicle.runs.progress import BatchProgress, ProgressMessage
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Screen:
         """Return itself, whichever console is asked for."""
         return self._console
 
-    def lines(self, progress: StudyProgress, width: int = 200) -> list[str]:
+    def lines(self, progress: BatchProgress, width: int = 200) -> list[str]:
         """Return what stands on it, or would on one of another width."""
         assert progress._bar is not None
         paper = Console(file=io.StringIO(), width=width)
@@ -61,7 +61,7 @@ def screen(monkeypatch: pytest.MonkeyPatch) -> Screen:
 
 def test_runs_done_failed_and_left(screen: Screen) -> None:
     """The line of the study counts runs; those done before count as done."""
-    with StudyProgress(5, 1, enabled=True) as progress:
+    with BatchProgress(5, 1, enabled=True) as progress:
         (line,) = screen.lines(progress)
         assert line.startswith("runs")
         assert "1 done, 0 failed, 4 left" in line
@@ -73,7 +73,7 @@ def test_runs_done_failed_and_left(screen: Screen) -> None:
 
 def test_one_line_for_each_run_at_work(screen: Screen) -> None:
     """A run has a line from its first word to its end: its name, step and iteration."""
-    with StudyProgress(3, 0, enabled=True) as progress:
+    with BatchProgress(3, 0, enabled=True) as progress:
         progress.report(ONE, ProgressMessage(0, 4, 3, 2e5, 0.25))
         progress.report(TWO, ProgressMessage(1, 2, 7, 3.0, 1.5))
         study, one, two = screen.lines(progress)
@@ -94,7 +94,7 @@ def test_one_line_for_each_run_at_work(screen: Screen) -> None:
 def test_narrow_terminal(screen: Screen) -> None:
     """Where there is no room for all it is the names that are cut, and nothing in them is lost."""
     job = Job("loading.depth = [1e-6, 2e-6], kernel.tension = 1 N/m, indenter.radius = 1 mm")
-    with StudyProgress(1000, 100, enabled=True) as progress:
+    with BatchProgress(1000, 100, enabled=True) as progress:
         progress.report(job, ProgressMessage(0, 4, 3, 2e5, 0.25))
         study, run = screen.lines(progress, width=80)
     assert "100 done, 0 failed, 900 left time left -:--:--" in " ".join(study.split())
@@ -106,7 +106,7 @@ def test_narrow_terminal(screen: Screen) -> None:
 
 def test_time_left(screen: Screen) -> None:
     """It is that of the runs left at the pace so far; runs at work count by their share."""
-    with StudyProgress(5, 1, enabled=True) as progress:
+    with BatchProgress(5, 1, enabled=True) as progress:
         progress.report(ONE, ProgressMessage(0, 2, 1, 1e3, 0.0))
         (line, _) = screen.lines(progress)
         assert "left -:--:--" in line
@@ -130,7 +130,7 @@ def _clock(seconds: float) -> str:
 
 def test_nothing_stays_on_the_terminal(screen: Screen) -> None:
     """The bar goes when the study ends, so that what is printed next stands in its place."""
-    with StudyProgress(2, 0, enabled=True) as progress:
+    with BatchProgress(2, 0, enabled=True) as progress:
         progress.report(ONE, ProgressMessage(0, 1, 1, 1e3, 0.5))
     *_, last = screen.written().splitlines()
     assert last.endswith("\x1b[2K")
@@ -139,7 +139,7 @@ def test_nothing_stays_on_the_terminal(screen: Screen) -> None:
 def test_a_log_has_a_line_for_each_run(capfd: pytest.CaptureFixture[str]) -> None:
     """Without a terminal there are no control codes, and nothing before a run is done."""
     long = Job(f"kernel.tension = {'1' * 200} [N/m]")
-    with StudyProgress(7, 4, enabled=True) as progress:
+    with BatchProgress(7, 4, enabled=True) as progress:
         progress.report(ONE, ProgressMessage(0, 1, 1, 1e3, 0.5))
         assert capfd.readouterr() == ("", "")
         progress.finished(ONE, "converged", failed=False)
@@ -154,7 +154,7 @@ def test_a_log_has_a_line_for_each_run(capfd: pytest.CaptureFixture[str]) -> Non
 
 def test_silent_when_not_enabled(screen: Screen) -> None:
     """A bar that is not asked for writes nothing even on a terminal."""
-    with StudyProgress(2, 0, enabled=False) as progress:
+    with BatchProgress(2, 0, enabled=False) as progress:
         progress.report(ONE, ProgressMessage(0, 1, 1, 1e3, 0.5))
         progress.finished(ONE, "converged", failed=False)
     assert screen.written() == ""
@@ -171,6 +171,6 @@ def test_a_log_that_cannot_be_written_ends_no_study(
 
     monkeypatch.setattr(sys, "stderr", log := io.StringIO())
     monkeypatch.setattr(log, "write", write)
-    with StudyProgress(2, 0, enabled=True) as progress:
+    with BatchProgress(2, 0, enabled=True) as progress:
         progress.finished(ONE, "converged", failed=False)
         progress.finished(TWO, "converged", failed=False)

@@ -20,7 +20,8 @@ from rich.cells import cell_len
 from typer.testing import CliRunner, Result
 
 import pellicle as pl
-from pellicle.cli import app, new
+from pellicle.cli import new
+from pellicle.cli.app import app
 from pellicle.cli.exits import BAD_INPUT, CRASHED
 from pellicle.cli.printing import Column, table_lines
 from pellicle.components import FAMILIES, Case
@@ -296,7 +297,7 @@ def test_a_fault_of_pellicle_has_an_exit_code_of_its_own(
     def broken(*_: object) -> None:
         raise RuntimeError("lost")
 
-    monkeypatch.setattr(new, "_write_starter", broken)
+    monkeypatch.setattr(new, "_write_example", broken)
     done = cli("new", "x.toml", code=CRASHED)
     assert "RuntimeError: lost" in done.stderr
     assert "please report" in done.stderr
@@ -323,7 +324,7 @@ def test_fit_tells_failed_curves_from_unusable_input(cli: Cli, folder: Path) -> 
 
 _SESSION = """
 import json, sys
-from pellicle.cli import app
+from pellicle.cli.app import app
 for words in json.loads(sys.argv[1]):
     print("$", *words)
     try:

@@ -15,12 +15,12 @@ import pytest
 HERE = Path(__file__).parent
 PACKAGES = (
     *("third_party", "symbol_only", "one_output", "mean_gap", "quadratic_softening"),
-    "relaxing",
+    *("relaxing", "hertz"),
 )
 COMMAND_LINE = """
 import json, os, sys
 from typer.testing import CliRunner
-from pellicle.cli import app
+from pellicle.cli.app import app
 
 for line in sys.stdin:
     folder, arguments = json.loads(line)

@@ -1,14 +1,19 @@
 """What an import costs: heavy packages are loaded by what needs them, not by the name alone."""
 
 import json
+import re
 import subprocess
 import sys
 
 import pytest
 
 import pellicle
+from pellicle.commands import commands
 
-HEAVY = {"numpy", "scipy", "pydantic", "pint", "xarray", "h5py", "h5netcdf", "pandas", "matplotlib"}
+HEAVY = {
+    *("numpy", "scipy", "pydantic", "pint", "xarray", "h5py", "h5netcdf", "pandas", "matplotlib"),
+    "pellicle_plugins",
+}
 ON_THE_COMMAND_LINE = """
 import sys
 sys.argv = ["pellicle", *{arguments}]
@@ -38,14 +43,19 @@ def show():
 """A program of typer alone: what it loads is not ours to save."""
 
 
-def loaded(code: str) -> set[str]:
-    """Return the heavy packages that a fresh interpreter has loaded after ``code``."""
+def modules(code: str) -> set[str]:
+    """Return the modules that a fresh interpreter has loaded after ``code``."""
     script = f"{code}\nimport json, sys\nprint()\nprint(json.dumps(sorted(sys.modules)))"
     # Isolated from PYTHON* variables and the current folder.
     done = subprocess.run(
         [sys.executable, "-I", "-c", script], check=True, capture_output=True, encoding="utf-8"
     )
-    return HEAVY & set(json.loads(done.stdout.splitlines()[-1]))
+    return set(json.loads(done.stdout.splitlines()[-1]))
+
+
+def loaded(code: str) -> set[str]:
+    """Return the heavy packages that a fresh interpreter has loaded after ``code``."""
+    return HEAVY & modules(code)
 
 
 def test_importing_pellicle_loads_nothing_heavy() -> None:
@@ -58,11 +68,19 @@ def test_errors_load_nothing_heavy() -> None:
     assert loaded("from pellicle import PellicleError, ConfigError, StorageError") == set()
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["show", "--help"]])
+@pytest.mark.parametrize("arguments", [["--help"], *([name, "--help"] for name in commands())])
 def test_help_loads_nothing_heavy(arguments: list[str]) -> None:
     """Help is printed without the heavy packages, but for those that typer itself loads."""
     ours = loaded(PELLICLE.format(arguments=arguments))
     assert ours <= loaded(BARE.format(arguments=arguments))
+
+
+def test_the_registry_loads_no_more_than_components_need() -> None:
+    """A module of a component imports numpy and its contract; what it computes with comes later."""
+    names = modules("import pellicle\npellicle.registry()")
+    assert HEAVY & names == {"numpy", "scipy", "pydantic", "pellicle_plugins"}
+    public = {name for name in names if re.fullmatch(r"scipy\.[a-z]+", name)}
+    assert public <= {"scipy.fft", "scipy.sparse", "scipy.special", "scipy.version"}
 
 
 def test_a_run_is_made_without_drawing() -> None:

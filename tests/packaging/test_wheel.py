@@ -22,16 +22,17 @@ PACKAGES = (
 )
 DATA = {
     "pellicle/py.typed",
-    "pellicle/cli/starter.toml",
     "pellicle/applications.pyi",
     "pellicle_explore/py.typed",
     "pellicle_explore/start.toml",
     "pellicle_fit/__init__.pyi",
+    "pellicle_fit/examples/fit/fit-curve.csv",
+    "pellicle_fit/examples/fit/fit.toml",
     "pellicle_fit/py.typed",
     "pellicle_plugins/py.typed",
 } | {
     path.relative_to(ROOT / "framework").as_posix()
-    for folder in ("templates", "report")
+    for folder in ("examples", "templates", "report")
     for path in (ROOT / "framework/pellicle" / folder).rglob("*")
     if path.is_file() and path.suffix != ".py" and path.parent.name != "__pycache__"
 }
@@ -82,7 +83,7 @@ def test_wheel_holds_every_module(wheel: set[str]) -> None:
 
 def test_wheel_holds_its_data(wheel: set[str]) -> None:
     """What is no module is installed too: starter file, templates, parts of a page, markers."""
-    assert len(DATA) == 8 + 2 + 8 * 3 + 3
+    assert len(DATA) == 9 + 4 + 2 + 8 * 3 + 3
     assert wheel >= DATA
 
 
@@ -119,7 +120,8 @@ def test_every_component_has_an_entry_point() -> None:
             is_component = isinstance(its, type) and issubclass(its, Component)
             if is_component and its.__module__ == module and "type" in get_annotations(its):
                 made.add(f"{module}:{its.__name__}")
-    assert made == set(project["entry-points"]["pellicle"].values())
+    entries = project["entry-points"]["pellicle"].items()
+    assert made == {target for name, target in entries if not name.startswith("command.")}
 
 
 def test_sdist_can_be_tested(sdist: set[str]) -> None:

@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from pellicle.commands import file_models
+from pellicle.errors import PluginError
+from pellicle.origins import Broken
+
 from .printing import echo, print_columns, print_json
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
-
-_FIT = """\
-curves = ["beads/*.csv"]
-indenter = { type = "sphere", radius = "5 um" }
-poissons_ratio = 0.5"""
 
 
 def explain(
@@ -24,23 +23,22 @@ def explain(
         typer.Argument(
             metavar="TYPE",
             help="Type of a component, such as tensed_membrane; a family, such as kernel; or a "
-            "table: grid, loading, study, run, fit. Without it, all of these are listed.",
+            "table, such as grid, loading, study or run. Without it, all of these are listed.",
         ),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Print the fields of a component or of a table, with unit, default, meaning and an example."""
     from pellicle.config.explain import explanations
-    from pellicle_fit.config import FitConfig
 
-    tables = {"fit": FitConfig}
+    models = file_models()
+    if isinstance(broken := models.get(type_ or ""), Broken):
+        raise PluginError(f"the file of command {type_!r} is broken: {broken}")
+    tables = {name: model for name, model in models.items() if not isinstance(model, Broken)}
     if type_ is None:
         _print_words(tables, json)
         return
     listed = explanations(type_, tables)
-    listed = [
-        e._replace(example=_FIT) if e.name == "fit" and e.kind == "table" else e for e in listed
-    ]
     if json:
         print_json([e._asdict() | {"fields": [row._asdict() for row in e.fields]} for e in listed])
         return

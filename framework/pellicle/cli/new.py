@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import re
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from pellicle.commands import usable_commands
 from pellicle.errors import ConfigError, StorageError
 
 from .printing import echo
-
-_EXAMPLES = "rough", "gel", "layer", "fit"
 
 
 def new(
@@ -28,7 +29,7 @@ def new(
         typer.Option(
             "--example",
             metavar="EXAMPLE",
-            help="Write an example that runs as it is: rough, gel, layer, or fit, with a curve.",
+            help="Write an example that runs as it is, such as rough; any other name lists all.",
         ),
     ] = None,
     plugin: Annotated[
@@ -45,14 +46,11 @@ def new(
     if path is not None and plugin is None and not path.suffix:
         # The folder of results is named after the file without its suffix.
         path = path.with_suffix(".toml")
-    if example is not None:
-        if plugin is not None:
-            raise ConfigError("and --plugin exclude each other; give one of them", "--example")
-        _write_example(example, path)
-        return
     if plugin is None:
-        _write_starter(path or Path("indent.toml"))
+        _write_example(example or "indent", path)
         return
+    if example is not None:
+        raise ConfigError("and --plugin exclude each other; give one of them", "--example")
     from .scaffold import write_plugin
 
     if path is None:
@@ -61,49 +59,38 @@ def new(
     echo(f"wrote {folder}; next: cd {folder}, pip install -e '.[test]', python -m pytest")
 
 
-def _write_starter(path: Path) -> None:
-    from importlib.resources import files
-
-    _write_new(path, files("pellicle.cli").joinpath("starter.toml").read_text(encoding="utf-8"))
-    echo(f"wrote {path}; next: pellicle run {path}")
-
-
 def _write_example(name: str, path: Path | None) -> None:
-    from importlib.resources import files
-    from string import Template
-
-    if name not in _EXAMPLES:
+    """Write an example with the files beside it, whose names follow that of its TOML file."""
+    examples = _examples()
+    if name not in examples:
         raise ConfigError(
-            f"{name!r} is not an example; give one of {', '.join(_EXAMPLES)}", "--example"
+            f"{name!r} is not an example; give one of {', '.join(examples)}", "--example"
         )
+    command, source = examples[name]
     path = path or Path(f"{name}.toml")
-    source = files("pellicle.cli") / "examples" / f"{name}.toml"
-    curve = path.with_name(f"{path.stem}-curve.csv")
-    text = Template(source.read_text(encoding="utf-8")).substitute(curve=curve.name)
-    if name == "fit":
-        _write_new(curve, _curve())
-    _write_new(path, text)
-    echo(f"wrote {path}; next: pellicle {'fit' if name == 'fit' else 'run'} {path}")
+    text = source.read_text(encoding="utf-8")
+    for beside in sorted({*source.parent.glob("[!.]*.*")} - {source}):
+        copy = path.with_name(beside.name.replace(name, path.stem))
+        _write_new(copy, beside.read_bytes())
+        text = text.replace(beside.name, copy.name)
+    _write_new(path, text.encode())
+    echo(f"wrote {path}; next: pellicle {command} {path}")
 
 
-def _curve() -> str:
-    """Return a made-up force curve of a bead on a gel, with noise, as the text of a table."""
-    import numpy as np
-
-    from pellicle.components import HasForceCurve, Indenter
-    from pellicle.plugins import registry
-
-    bead = registry().make(Indenter, {"type": "sphere", "radius": 5e-6})
-    assert isinstance(bead, HasForceCurve)
-    depth = np.linspace(-0.5e-6, 1.5e-6, 400)
-    # E* = 2 kPa, and a tension of 5 mN/m over it: 2τ₀/E* = 5 µm.
-    force = 2e3 * bead.force_curve(depth, 5e-6).force
-    force += 0.003 * force.max() * np.random.default_rng(1).standard_normal(depth.size)
-    rows = [f"{(z + 3e-6) * 1e6:.5f},{f * 1e9:.5f}" for z, f in zip(depth, force, strict=True)]
-    return "\n".join(["position [um],force [nN]", *rows, ""])
+def _examples() -> dict[str, tuple[str, Path]]:
+    """Return the command and the TOML file of each example in the packages of commands."""
+    examples: dict[str, tuple[str, Path]] = {}
+    for name, command in usable_commands().items():
+        package = re.split("[.:]", command.file)[0]
+        spec = find_spec(package) if package else None
+        for folder in (spec and spec.submodule_search_locations) or ():
+            for file in sorted(Path(folder, "examples").glob("*/*.toml")):
+                if file.stem == file.parent.name:
+                    examples.setdefault(file.stem, (name, file))
+    return examples
 
 
-def _write_new(path: Path, text: str) -> None:
+def _write_new(path: Path, content: bytes) -> None:
     """Write a file that must not exist.
 
     Raises
@@ -115,7 +102,7 @@ def _write_new(path: Path, text: str) -> None:
 
     with storage_errors(path):
         try:
-            with path.open("x", encoding="utf-8") as file:
-                file.write(text)
+            with path.open("xb") as file:
+                file.write(content)
         except FileExistsError:
             raise StorageError(f"{path} exists already; give another name") from None

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated
 
 import typer
+
+from pellicle.commands import commands, file_models, typer_command
+from pellicle.origins import Broken, Origin
 
 from .printing import echo, print_json, print_table
 
@@ -14,17 +18,36 @@ def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = 
     from pellicle.plugins import registry
 
     contents = registry()
+    owners = {name: [*map(Origin.of, entries)] for name, entries in commands().items()}
+    made = {name: typer_command(name) for name in owners}
+    installed = [
+        (family, registered.type, registered.origin, registered.summary)
+        for family, members in contents.components.items()
+        for registered in members.values()
+    ] + [
+        ("command", name, owners[name][0], (command.help or "").partition("\n")[0])
+        for name, command in made.items()
+        if not isinstance(command, Broken)
+    ]
     rows = [
         {
             "family": family,
-            "type": registered.type,
-            "origin": registered.origin.distribution,
-            "version": registered.origin.version,
-            "description": registered.summary,
+            "type": type_,
+            "origin": origin.distribution,
+            "version": origin.version,
+            "description": summary,
         }
-        for family, members in contents.components.items()
-        for registered in members.values()
+        for family, type_, origin, summary in installed
     ]
+    clashes: dict[tuple[str, str], Sequence[Origin]] = {
+        **contents.clashes,
+        **{("command", name): origins for name, origins in owners.items() if len(origins) > 1},
+    }
+    failed = {
+        loaded.origin: loaded
+        for name, loaded in (*file_models().items(), *made.items())
+        if isinstance(loaded, Broken) and ("command", name) not in clashes
+    }
     broken = [
         {
             "entry_point": broken.origin.entry_point,
@@ -32,7 +55,7 @@ def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = 
             "version": broken.origin.version,
             "error": broken.error,
         }
-        for broken in contents.broken
+        for broken in (*contents.broken, *failed.values())
     ] + [
         {
             "entry_point": f"{family}.{type_}",
@@ -40,7 +63,7 @@ def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = 
             "version": ", ".join(owner.version for owner in owners),
             "error": f"claimed by {' and by '.join(map(str, owners))}",
         }
-        for (family, type_), owners in contents.clashes.items()
+        for (family, type_), owners in clashes.items()
     ]
     disabled = [str(origin) for origin in contents.disabled]
     if json:

@@ -231,7 +231,7 @@ def print_json(value: object) -> None:
 @contextmanager
 def only_json() -> Iterator[None]:
     """Let nothing but JSON reach standard output; what components print goes to standard error."""
-    from pellicle.components.foreign_code import diverted_output
+    from pellicle.foreign_code import diverted_output
     from pellicle.plugins import registry
 
     # While they are loaded, plugins are judged one by one for what they do to standard output.

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from pellicle.errors import ConfigError
+from pellicle.hookspecs import RegisterCommand, hookimpl
 
 from .exits import INTERRUPTED
 from .printing import echo, print_json, print_table
@@ -85,6 +86,12 @@ def run(
     else:
         stem = folder / file.stem
         _run_one(configuration, stem, display, threads=threads, overwrite=overwrite)
+
+
+@hookimpl
+def register_commands(register: RegisterCommand) -> None:
+    """Register the command."""
+    register(run, file="pellicle.config.run:Run")
 
 
 class _Display(NamedTuple):

@@ -2,11 +2,38 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
+import typer
+
+from pellicle.commands import file_models
+from pellicle.errors import ConfigError, PluginError
+from pellicle.origins import Broken
+
 from .printing import print_json
 
 
-def schema() -> None:
-    """Print the JSON schema of a run or study file, with all installed components, for editors."""
-    from pellicle.config.json_schema import schema as make_schema
+def schema(
+    command: Annotated[
+        str | None,
+        typer.Argument(metavar="COMMAND", help="Command that takes a TOML file, such as run."),
+    ] = None,
+) -> None:
+    """Print the JSON schema of a run or study file, with all installed components, for editors.
 
-    print_json(make_schema())
+    With COMMAND, that of the file which the command takes.
+    """
+    from pellicle.config.json_schema import schema as make_schema
+    from pellicle.config.run import Run
+    from pellicle.model.messages import nearest
+
+    models = file_models()
+    if command is not None and command not in models:
+        raise ConfigError(
+            f"{command!r} is not a command that takes a TOML file; {nearest(command, models)}",
+            "COMMAND",
+        )
+    model = Run if command is None else models[command]
+    if isinstance(model, Broken):
+        raise PluginError(f"the file of command {command!r} is broken: {model}")
+    print_json(make_schema(model))

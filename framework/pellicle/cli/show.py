@@ -7,8 +7,11 @@ from typing import Annotated
 
 import typer
 
+from pellicle.commands import errors_attributed_to, usable_commands
+from pellicle.errors import StorageError
+
 from .exits import NOT_CONVERGED
-from .printing import echo, print_json
+from .printing import echo
 from .results import (
     exit_by_convergence,
     exit_by_status,
@@ -27,7 +30,8 @@ def show(
     results: Annotated[
         Path,
         typer.Argument(
-            metavar="RESULTS", help="Folder of a run, study or fits, result (.h5) or study.h5."
+            metavar="RESULTS",
+            help="Folder of a run, a study or another command; result (.h5) or study.h5.",
         ),
     ],
     si: Annotated[bool, typer.Option("--si", help="Print numbers in SI units.")] = False,
@@ -35,8 +39,7 @@ def show(
         bool, typer.Option("--json", help="Print the result as JSON, in SI units.")
     ] = False,
 ) -> None:
-    """Print the steps of a result, or the runs of a study, and its origin; or the table of fits."""
-    from pellicle.files import is_file
+    """Print the steps of a result, or the runs of a study, and its origin, or another table."""
     from pellicle.results.result import load
     from pellicle.studies.runner import is_table, read
     from pellicle.studies.summary import caveats
@@ -52,10 +55,14 @@ def show(
             echo(message, err=True)
         exit_by_status(table)
         return
-    if is_file(results / "fits.json"):
-        _show_fits(results, si=si, json=json)
-        return
-    result = load(results)
+    try:
+        result = load(results)
+    except StorageError:
+        for name, command in usable_commands().items():
+            with errors_attributed_to(name):
+                if command.show and command.show(results, si, json):
+                    return
+        raise
     total, done = result.planned_steps, result.dataset.sizes["step"]
     if json:
         print_result_json(result)
@@ -69,18 +76,3 @@ def show(
     if done < total:
         echo(f"interrupted: {done} of {total} steps are finished; run it again", err=True)
         raise typer.Exit(NOT_CONVERGED)
-
-
-def _show_fits(directory: Path, *, si: bool, json: bool) -> None:
-    """Print the tables that ``pellicle fit`` left in a folder."""
-    from pellicle_fit.many import ManyFits
-    from pellicle_fit.print_fits import print_fits
-    from pellicle_fit.record import content_of
-
-    content = content_of(directory / "fits.json")
-    fits = ManyFits(content.get("curves", []), notes=content.get("notes", []))
-    if json:
-        print_json(content)
-    else:
-        print_fits(fits, quiet=False, directory=directory, si=si)
-    raise typer.Exit(NOT_CONVERGED if fits.failed else 0)

@@ -12,6 +12,7 @@ from pellicle.errors import PluginError
 from pellicle.numerics.problem import Depth as Depth
 from pellicle.numerics.problem import Force as Force
 from pellicle.numerics.relaxation import Branch as Branch
+from pellicle.results.variables import Variable as Variable
 
 from .base import Component as Component
 from .correction import AreaCorrection as AreaCorrection

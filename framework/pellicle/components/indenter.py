@@ -58,7 +58,7 @@ class ForceCurve(NamedTuple):
 
 @runtime_checkable
 class HasForceCurve(Protocol):
-    """An indenter with a known force on a half-space under tension, for `pellicle.fit`."""
+    """An indenter with a known force on a half-space under tension."""
 
     @property
     def depth_limit(self) -> float:
@@ -85,7 +85,7 @@ class ContactRadius(NamedTuple):
 
 @runtime_checkable
 class HasContactRadius(Protocol):
-    """An indenter of revolution with a known contact radius, for fits of adhesive contacts.
+    """An indenter of revolution with a known contact radius, from which adhesive ones follow.
 
     The adhesive contact of radius a is the one without adhesion and a flat punch of the same
     radius, retracted.
@@ -114,7 +114,7 @@ class LayerForceCurve(NamedTuple):
 
 @runtime_checkable
 class HasLayerForceCurve(Protocol):
-    """An indenter with a known force on a layer bonded to a rigid base, for `pellicle.fit`."""
+    """An indenter with a known force on a layer bonded to a rigid base."""
 
     def layer_depth_limit(self, thickness: float, poissons_ratio: float) -> float:
         """Return the largest depth [m] at which the curve is valid, whatever the tension."""

@@ -14,7 +14,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from pellicle.components import Component, Prescription
-from pellicle.errors import ConfigError, shown
+from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import Grid
 from pellicle.loading import OPTIONS
 from pellicle.model.messages import similar
@@ -81,8 +81,10 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
     ------
     ConfigError
         There is nothing of that name; the message names similar ones.
+    PluginError
+        The plugin that it is of is broken.
     """
-    entries = {**_TABLES, **tables}
+    entries = {**tables, **_TABLES}
     name = re.sub(r"[\s-]+", "_", word.strip().strip("[]").lower())
     families = registry().components
     if name in entries:
@@ -97,6 +99,10 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
         if type_ in members and given in ("", family, f"{family}s")
     ]
     if not matches:
+        for broken in registry().broken:
+            entry = broken.origin.entry_point
+            if name in (entry, *entry.split(".")):
+                raise PluginError(f"{shown(word)} is broken: {broken}")
         types = {type_ for members in families.values() for type_ in members}
         hint = similar(name, types | {*entries, *families}) or "see `pellicle plugins`"
         raise ConfigError(
@@ -108,7 +114,7 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
 
 def words_by_kind(tables: Mapping[str, type[BaseModel]]) -> dict[str, list[str]]:
     """Return what `explanations` knows: tables, these further ones too, and types by family."""
-    return {"table": [*_TABLES, *tables]} | {
+    return {"table": [*{**_TABLES, **tables}]} | {
         family: list(members) for family, members in registry().components.items()
     }
 
@@ -120,6 +126,8 @@ def _of_table(name: str, model: type[BaseModel]) -> Explanation:
     if model is Loading:
         rows = [*_prescription_rows(), *rows]
     example = _toml(*_EXAMPLES[model]) if model in _EXAMPLES else ""
+    if name not in _TABLES:
+        example = _lines(dict(example_values(model)))
     return Explanation(name, "table", "", _documentation(model), rows, example)
 
 
@@ -249,7 +257,11 @@ def _toml(place: str, table: Mapping[str, Any]) -> str:
     """Return a table at its place as TOML, with a line for each key and inner tables on one."""
     name = place.replace("[]", "")
     head = f"[[{name}]]" if place.endswith("[]") else f"[{name}]"
-    return "\n".join([head, *(f"{_key(key)} = {_inline(v)}" for key, v in table.items())])
+    return f"{head}\n{_lines(table)}"
+
+
+def _lines(table: Mapping[str, Any]) -> str:
+    return "\n".join(f"{_key(key)} = {_inline(value)}" for key, value in table.items())
 
 
 def _inline(value: Any) -> str:

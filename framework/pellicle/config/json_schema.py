@@ -18,6 +18,7 @@ from .loading import Loading, loading_model
 from .run import Run
 from .study import Study
 
+_DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _IN_PART = "InPart"
 
 
@@ -97,11 +98,14 @@ def _required(model: type[BaseModel]) -> list[str]:
     return [name for name, info in model.model_fields.items() if info.is_required()]
 
 
-def schema() -> dict[str, Any]:
-    """Return the JSON schema of a run or study file with all installed components.
+def schema(model: type[BaseModel] = Run) -> dict[str, Any]:
+    """Return the JSON schema of a run or study file, or of the file of another model.
 
-    A study file may leave out varied fields, so only the type of a component is required there.
+    It has all installed components. A study file may leave out varied fields, so only the type of a
+    component is required there.
     """
+    if model is not Run:
+        return {"$schema": _DIALECT, **json_schema(model)}
     run, study = json_schema(Run), json_schema(Study)
     definitions = run.pop("$defs") | study.pop("$defs")
     study["properties"].pop("run")
@@ -109,7 +113,7 @@ def schema() -> dict[str, Any]:
     file = _in_part(run)
     file["properties"]["study"] = study
     return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "$schema": _DIALECT,
         **file,
         "if": {"required": ["study"]},
         "else": run,

@@ -172,14 +172,8 @@ class Run(FromFile):
         Raises
         ------
         ConfigError, PluginError
-            As for `from_toml`; a study and the configuration of a fit are refused.
+            As for `from_toml`; a study is refused.
         """
-        if "curves" in data and "loading" not in data:
-            raise ConfigError(
-                "makes this the configuration of a fit: use fit in place of run (`pellicle fit` in "
-                "a shell)",
-                "curves",
-            )
         if "study" in data:
             raise ConfigError(
                 "makes this a study: use run_study, or Study, in place of run (`pellicle run` in a "

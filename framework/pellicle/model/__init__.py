@@ -1,9 +1,6 @@
 """Frozen models of a configuration: error messages, dotted paths, ranges, TOML."""
 
-from .base import Model as Model
-from .input_path import AS_GIVEN as AS_GIVEN
-from .input_path import InputPath as InputPath
-from .input_path import as_given as as_given
-from .input_path import paths_relative_to as paths_relative_to
-from .messages import nearest as nearest
-from .paths import replaced as replaced
+import lazy_loader
+
+# The public names are in __init__.pyi. Of a package that needs one of them the others cost nothing.
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,4 +1,4 @@
-"""Models that can be read from a file: a run, a study, a fit."""
+"""Models that can be read from a file, such as a run or a study."""
 
 from __future__ import annotations
 
@@ -19,6 +19,15 @@ from .toml import parse_override, read_toml
 
 class FromFile(Model):
     """A model that is read from TOML, JSON or a mapping, and written as TOML or JSON."""
+
+    def __init__(self, /, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ConfigError:
+            from pellicle.commands import refuse_file_of_another
+
+            refuse_file_of_another(type(self), data.keys())
+            raise
 
     @classmethod
     def of(cls, configuration: Self | Mapping[str, Any] | str | Path) -> Self:

@@ -58,10 +58,10 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
                 f"{path}: the table of a study, not a result; pellicle.run_study returns it, "
                 "xarray.load_dataset reads it, and runs/ holds the results"
             )
-        if kind == "result" and "curve" in file:
+        if kind == "result" and (command := attributes.get("command")):
             raise StorageError(
-                f"{path}: the table of fits, not a result; pellicle show {path.parent} prints it, "
-                f"pellicle fit --again {path.with_suffix('.json')} -o {path.parent} draws figures"
+                f"{path}: a table that pellicle {command} wrote, not a result; pellicle show "
+                f"{path.parent} prints it; for more, see pellicle {command} --help"
             )
         if kind == "table" and "axes" not in attributes:
             raise StorageError(f"{path}: a result, not the table of a study")

@@ -146,11 +146,11 @@ class RunProgress(_BarContext):
             )
 
 
-class StudyProgress(_BarContext):
-    """Shows a bar for a study and one for each running run, on a terminal or in a notebook.
+class BatchProgress(_BarContext):
+    """Shows a bar for all tasks and one for each that runs, on a terminal or in a notebook.
 
-    Elsewhere there is a line for each finished run. Ctrl-C takes effect at the next report of a
-    run. Nothing is shown if not ``enabled``.
+    Elsewhere there is a line for each finished task. Ctrl-C takes effect at the next report of a
+    task. Nothing is shown if not ``enabled``.
     """
 
     def __init__(self, total: int, done: int, enabled: bool) -> None:
@@ -165,7 +165,7 @@ class StudyProgress(_BarContext):
         )
 
     def expect(self, total: int, done: int) -> None:
-        """Set the number of runs, and count ``done`` more that were finished before."""
+        """Set the number of tasks, and count ``done`` more that were finished before."""
         self._total = total
         self._done += done
         if self._bar is not None:
@@ -173,7 +173,7 @@ class StudyProgress(_BarContext):
             self._advance()
 
     def report(self, task: Task, message: ProgressMessage) -> None:
-        """Show the progress of a run."""
+        """Show the progress of a task."""
         self._interrupt.check()
         if self._bar is None:
             return
@@ -187,7 +187,7 @@ class StudyProgress(_BarContext):
         self._advance()
 
     def finished(self, task: Task, verdict: str, failed: bool) -> None:
-        """Show that a run has finished, with its verdict."""
+        """Show that a task has finished, with its verdict."""
         self._done += 1
         self._failed += failed
         if self._bar is not None:
@@ -242,8 +242,8 @@ def _report(report: Report, step: int, iteration: int, residual_ratio: float) ->
 
 
 @contextmanager
-def status_line(enabled: bool) -> Iterator[Callable[[str], None]]:
-    """Show the stage of a fit while it runs; yield a function that sets its description.
+def status_line(work: str, enabled: bool) -> Iterator[Callable[[str], None]]:
+    """Show at which stage some work is; yield a function that sets the stage.
 
     It is shown on a terminal and in a notebook.
     """
@@ -252,14 +252,14 @@ def status_line(enabled: bool) -> Iterator[Callable[[str], None]]:
         from .notebook_bar import NotebookBar
 
         with NotebookBar() as bar:
-            task = bar.add_task("fitting", total=None, message="")
+            task = bar.add_task(work, total=None, message="")
             yield lambda stage: bar.update(task, message=stage)
         return
     if not (enabled and console.is_terminal):
         yield lambda stage: None
         return
-    with console.status("fitting") as line:
-        yield lambda stage: line.update(f"fitting: {stage}")
+    with console.status(work) as line:
+        yield lambda stage: line.update(f"{work}: {stage}")
 
 
 class _Lasting:

@@ -8,8 +8,8 @@ import tempfile
 import threading
 import time
 import warnings
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from itertools import chain
@@ -18,9 +18,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pellicle import memory
+from pellicle.batch import BatchProgress, locked, mapped
 from pellicle.checks import checked_threads, read_only_dataset
 from pellicle.components import Executor, Output, Runs, Say
-from pellicle.components.calls import outcomes_of
 from pellicle.config.run import Run
 from pellicle.config.study import DEFAULT_EXECUTOR, Study
 from pellicle.errors import ConfigError, ConvergenceWarning, PluginError, StorageError
@@ -32,8 +32,7 @@ from pellicle.results.status import Status
 from pellicle.results.variables import BEYOND_THEORY
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
-from pellicle.runs.lock import locked
-from pellicle.runs.progress import ProgressReporter, StudyProgress
+from pellicle.runs.progress import ProgressReporter
 
 from . import table
 from .planned import check_outputs
@@ -41,8 +40,6 @@ from .summary import caveats, failures, progress_of, run_names
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    _Outcomes = Generator[tuple["RunTask", xr.Dataset | Exception], None, None]
 
 _TABLE_SHARE = 0.05
 _LONG = 10.0
@@ -219,24 +216,23 @@ def _execute(
     files = _Writer(directory)
     files.write(rows)
     messages: dict[str, None] = {}
-    todo = list(unfinished.values())
+
+    def keep(task: RunTask, outcome: xr.Dataset | Exception) -> tuple[str, bool]:
+        del unfinished[task.index]
+        if isinstance(outcome, Exception):
+            _collect(task, rows)
+            rows.fail(task.index, _one_line(outcome))
+        else:
+            rows.put(task.index, outcome)
+            rows.beyond_theory[task.index] = outcome.attrs.pop(BEYOND_THEORY)
+            messages.update(dict.fromkeys(outcome.attrs.pop(_WARNINGS)))
+        # On a full disk all later runs would fail: writing the table at once detects that.
+        files.write(rows, at_once=isinstance(outcome, StorageError))
+        return _verdict(outcome)
+
     try:
-        with (
-            StudyProgress(len(study.points), resumed, progress) as bar,
-            closing(_outcomes(study.executor, todo, bar, threads)) as outcomes,
-        ):
-            for task, outcome in outcomes:
-                del unfinished[task.index]
-                if isinstance(outcome, Exception):
-                    _collect(task, rows)
-                    rows.fail(task.index, _one_line(outcome))
-                else:
-                    rows.put(task.index, outcome)
-                    rows.beyond_theory[task.index] = outcome.attrs.pop(BEYOND_THEORY)
-                    messages |= dict.fromkeys(outcome.attrs.pop(_WARNINGS))
-                # On a full disk all later runs would fail: writing the table at once detects that.
-                files.write(rows, at_once=isinstance(outcome, StorageError))
-                bar.finished(task, *_verdict(outcome))
+        with BatchProgress(len(study.points), resumed, progress) as bar:
+            _solve_all(study.executor, list(unfinished.values()), keep, bar, threads)
     finally:
         for task in unfinished.values():
             _collect(task, rows)
@@ -253,24 +249,27 @@ def _execute(
     return StudyResult(whole, (*files.paths, *chain(*written)), resumed)
 
 
-def _outcomes(
-    executor: Executor | None, todo: Sequence[RunTask], bar: StudyProgress, threads: int | None
-) -> _Outcomes:
-    """Yield each task with its outcome.
+def _solve_all(
+    executor: Executor | None,
+    todo: Sequence[RunTask],
+    keep: Callable[[RunTask, xr.Dataset | Exception], tuple[str, bool]],
+    bar: BatchProgress,
+    threads: int | None,
+) -> None:
+    """Execute tasks and keep their outcomes.
 
     Without an executor they are executed in this process, until those left would take long at the
     pace of the last and can be shared.
     """
     import xarray as xr
 
-    def outcomes(by: Executor, tasks: Sequence[RunTask]) -> _Outcomes:
-        work = partial(solve, threads=threads or by.threads)
-        return outcomes_of(by, work, tasks, bar.report, xr.Dataset)
+    def solve_by(by: Executor, tasks: Sequence[RunTask]) -> None:
+        mapped(by, partial(solve, threads=threads or by.threads), tasks, xr.Dataset, keep, bar)
 
     while todo and executor is None:
         task, *todo = todo
         start = time.monotonic()
-        yield from outcomes(registry().make(Executor, {"type": DEFAULT_EXECUTOR}), [task])
+        solve_by(registry().make(Executor, {"type": DEFAULT_EXECUTOR}), [task])
         left = len(todo) * (time.monotonic() - start)
         if left > _LONG and _can_share(todo, threads or 1):
             executor = registry().make(Executor, {"type": "processes", "threads": threads or 1})
@@ -279,7 +278,7 @@ def _outcomes(
                 "as many as cores and memory allow (study.executor decides otherwise)"
             )
     if executor:
-        yield from outcomes(executor, todo)
+        solve_by(executor, todo)
 
 
 def _can_share(todo: Sequence[RunTask], threads: int) -> bool:

@@ -7,8 +7,9 @@ from typing import get_args
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.components import Footprint, HasForceCurve, Indenter
-from pellicle.components.calls import force_curve_of
+from pellicle.checks import read_only, real_array
+from pellicle.components import Footprint, ForceCurve, HasForceCurve, Indenter
+from pellicle.errors import shown
 from pellicle.grid import Grid
 
 from .component import check
@@ -108,18 +109,26 @@ def force_curve_rises(indenter: Indenter, grid: Grid) -> None:
     scale = 0.01 * (_range(indenter.profile(*grid.coordinates())) or min(grid.size))
     unit = min(scale, 0.1 * indenter.depth_limit)
     depth, length, step = unit * np.array([-1.0, 0.0, 0.5, 1.0, 2.0]), unit, 1e-4 * unit
-    curve = force_curve_of(indenter, depth, length)
+    curve = _force_curve(indenter, depth, length)
     require(not curve.force[:2].any(), f"forces {curve.force[:2]} m² at depths ≤ 0")
     require((np.diff(curve.force[1:]) > 0).all(), f"forces {curve.force} m² at rising depths")
     for name, low, high in (
         ("by_depth", (depth - step, length), (depth + step, length)),
         ("by_length", (depth, length - step), (depth, length + step)),
     ):
-        below, above = (force_curve_of(indenter, *at).force[2:] for at in (low, high))
+        below, above = (_force_curve(indenter, *at).force[2:] for at in (low, high))
         derivative = getattr(curve, name)[2:]
         require_close(
             derivative, (above - below) / (2 * step), f"force_curve().{name}", relative=1e-3
         )
+
+
+def _force_curve(indenter: HasForceCurve, depth: Array, length: float) -> ForceCurve:
+    curve = indenter.force_curve(read_only(depth), length)
+    require(isinstance(curve, ForceCurve), f"{shown(curve)}, not a pellicle.ForceCurve")
+    for part, values in curve._asdict().items():
+        real_array(indenter, f"force_curve().{part}", values, depth.shape)
+    return curve
 
 
 def run_converges(indenter: Indenter, grid: Grid) -> None:

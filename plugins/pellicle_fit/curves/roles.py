@@ -9,7 +9,7 @@ from typing import Annotated, NamedTuple
 from pydantic import BeforeValidator, Field
 
 from pellicle.errors import ConfigError, shown
-from pellicle.model.messages import nearest
+from pellicle.model import nearest
 from pellicle.units import Quantity
 
 EXAMPLE = "position [um],force [nN]"
@@ -94,7 +94,10 @@ def role_of(text: str) -> Role:
 
 ColumnMap = Annotated[
     dict[str, str] | None,
-    BeforeValidator(lambda value: None if value is None else column_map(value)),
+    BeforeValidator(
+        lambda value: None if value is None else column_map(value),
+        json_schema_input_type=dict[str, str] | str | None,
+    ),
     Field(
         description="roles of columns by name, by number or by path in the file: "
         '{ "Z" = "extension nm", "Defl" = "deflection nm" }'

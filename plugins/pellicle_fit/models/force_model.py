@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 
 from pellicle.arrays import Array
 from pellicle.components import Component, ForceCurve, HasForceCurve
-from pellicle.components.calls import force_curve_of
 from pellicle_fit.parameters import MODULUS, TENSION, Parameter, Values
+
+from .checked_curve import checked_curve
 
 _LENGTHS = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0)
 """Elastocapillary lengths s of the initial guesses, over the measured range of positions."""
@@ -162,7 +163,7 @@ class ClosedFormModel(TensionModel):
 
     def force_curve(self, depth: Array, length: float) -> ForceCurve:
         """Return F/E* [m²] and its partial derivatives at depths [m] and s = ``length`` [m]."""
-        return force_curve_of(self.indenter, depth, length)
+        return checked_curve(self.indenter, ForceCurve, depth, length)
 
     def description(self) -> dict[str, Any]:
         """Return the indenter as JSON data."""

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from pellicle.arrays import Array
-from pellicle.components import ForceCurve, HasLayerForceCurve, MayBeBondedLayer
-from pellicle.components.calls import layer_force_curve_of
+from pellicle.components import ForceCurve, HasLayerForceCurve, LayerForceCurve, MayBeBondedLayer
 from pellicle_fit.parameters import MODULUS, TENSION, THICKNESS, Coordinates, Parameter, Values
 
+from .checked_curve import checked_curve
 from .force_model import ForceModel, ModelForce, TensionModel, described
 from .solid import Solid, layer_table
 
@@ -39,8 +39,8 @@ class LayerModel(TensionModel):
 
     def force_curve(self, depth: Array, length: float) -> ForceCurve:
         """Return F/E* [m²] and its partial derivatives at depths [m] and s = ``length`` [m]."""
-        curve = layer_force_curve_of(
-            self.indenter, depth, length, self.thickness, self.poissons_ratio
+        curve = checked_curve(
+            self.indenter, LayerForceCurve, depth, length, self.thickness, self.poissons_ratio
         )
         return ForceCurve(curve.force, curve.by_depth, curve.by_length)
 
@@ -72,8 +72,8 @@ class FreeLayerModel(ForceModel):
         """Return force and derivatives at depths [m] of shape (n,); 0 where ``depth`` ≤ 0."""
         modulus = values[MODULUS]
         length = 2 * values[TENSION] / modulus
-        curve = layer_force_curve_of(
-            self.indenter, depth, length, values[THICKNESS], self.poissons_ratio
+        curve = checked_curve(
+            self.indenter, LayerForceCurve, depth, length, values[THICKNESS], self.poissons_ratio
         )
         return ModelForce(
             modulus * curve.force,

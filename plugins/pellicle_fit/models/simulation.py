@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import shutil
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -13,14 +14,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import platformdirs
 
+from pellicle import Grid, Study, registry, run_study, storage
 from pellicle.arrays import Array
 from pellicle.components import Executor, Indenter
-from pellicle.config.study import Study
-from pellicle.errors import ConfigError, ConvergenceError
-from pellicle.grid import Grid
-from pellicle.plugins import registry
-from pellicle.studies.runner import execute, is_table, read
-from pellicle.studies.summary import failures
+from pellicle.errors import ConfigError, ConvergenceError, ConvergenceWarning
 from pellicle.units import readable
 
 from .interpolated import SCALE, SimulatedCurve, stretched
@@ -220,18 +217,22 @@ def half_widths(indenter: Indenter, depth: float) -> tuple[float, float]:
 
 
 def _table(study: Study, cache: Path, progress: bool) -> xr.Dataset:
-    """Return the table of a study, run unless it is cached; the fields of its runs are deleted."""
+    """Return the table of a study, run unless it is cached.
+
+    Once all runs have converged they are deleted, so a table without them is whole.
+    """
     runs = [point.run.identity for point in study.points]
     folder = cache / hashlib.sha256("".join(runs).encode()).hexdigest()[:16]
-    if is_table(folder):
-        cached, _ = read(folder)
-        if not failures(cached):
-            return cached
-    table = execute(study, folder, progress=progress).table
-    if reasons := failures(table):
+    if (folder / "study.h5").exists() and not (folder / "runs").exists():
+        return storage.table(folder / "study.h5")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", ConvergenceWarning)
+            table = run_study(study, folder, progress=progress)
+    except ConvergenceWarning as warning:
         raise ConvergenceError(
-            f"the force curve needs the study in {folder}: {reasons}; another number of grid "
+            f"the force curve needs the study in {folder}: {warning}; another number of grid "
             "points may help"
-        )
+        ) from None
     shutil.rmtree(folder / "runs")
     return table

@@ -8,11 +8,10 @@ from typing import Any
 
 from pydantic.fields import FieldInfo
 
+from pellicle import registry
 from pellicle.components import Component, Kernel
 from pellicle.errors import ConfigError, shown
-from pellicle.model.base import Model
-from pellicle.model.paths import get, replaced, walk
-from pellicle.plugins import registry
+from pellicle.model import Model, get, replaced, walk
 from pellicle.units import Quantity, quantity_of
 
 DEFAULT_KERNEL = "tensed_membrane"

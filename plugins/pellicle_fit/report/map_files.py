@@ -10,9 +10,9 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.files import atomic_write
-from pellicle.report.saving import save_figure
+from pellicle.plotting import save_figure
 from pellicle.report.vtk import array, element, encoded, file_of, writer
-from pellicle.results.variables import header
+from pellicle.result import header
 from pellicle.units import axis_unit
 from pellicle_fit.population.images import CONTACT_HEIGHT
 

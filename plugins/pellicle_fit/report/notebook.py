@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from io import BytesIO
 
-from pellicle.model.html import summary
-from pellicle.report.style import FigureStyle
+from pellicle.page import summary
+from pellicle.plotting import FigureStyle
 from pellicle.units import decimal
 from pellicle_fit.many import ManyFits
 from pellicle_fit.result import FitResult

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from pathlib import Path
 
-from pellicle.report.saving import save_figure
+from pellicle.plotting import save_figure
 from pellicle_fit.many import ManyFits
 
 from . import distributions

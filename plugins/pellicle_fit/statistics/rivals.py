@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from pellicle import registry
 from pellicle.components import HasContactRadius, HasForceCurve, HasLayerForceCurve, Indenter
 from pellicle.errors import PellicleError
-from pellicle.plugins import registry
 from pellicle_fit.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
 from pellicle_fit.models.effects import DRAG, DRIFT, DragModel, DriftModel
 from pellicle_fit.models.force_model import ClosedFormModel, ForceModel, TensionModel

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from pellicle.arrays import Array
-from pellicle_plugins.kernels.bonded_layer import BondedLayer
+from pellicle_plugins.kernels.elastic_layer import BondedLayer
 
 from .axisymmetric_equation import LEVELS
 from .layer_curves import Shape

@@ -41,11 +41,6 @@ class Dask(Executor):
 
         If the iterator is closed early, running tasks end at their next report, for which this
         waits up to 10 s. They also end if this process dies.
-
-        Raises
-        ------
-        ConfigError
-            The extra is not installed, or no scheduler answers.
         """
         if not tasks:
             return

@@ -8,6 +8,7 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
 from importlib.metadata import version
+from math import inf
 from queue import Empty, SimpleQueue
 from typing import Any, Generic, Self
 from uuid import uuid4
@@ -25,20 +26,10 @@ _CHECK_INTERVAL = 2.0
 _END_TIMEOUT = 10.0
 """Largest time to wait for running tasks to end at their next report [s]."""
 _POLL_INTERVAL = 0.05
-_NO_WORKERS = (
-    "the dask scheduler has no workers; runs wait until there are some: start them with `dask "
-    "worker ADDRESS`"
-)
 
 
 def connected(address: str) -> Client:
-    """Return a client of the scheduler at ``address``.
-
-    Raises
-    ------
-    ConfigError
-        No scheduler answers.
-    """
+    """Return a client of the scheduler at ``address``."""
     try:
         return Client(address, set_as_default=False)
     except (OSError, ValueError) as error:
@@ -63,7 +54,10 @@ class Submission(Generic[AnyTask]):
 
     def __enter__(self) -> Self:
         self._client.subscribe_topic(self._name, lambda event: self._events.put(event[1]))
-        largest = _largest_worker(self._client)
+        workers = self._client.scheduler_info()["workers"].values()
+        limits = [worker["memory_limit"] for worker in workers]
+        # A worker without a limit has 0.
+        largest = max(limits) if limits and all(limits) else inf
         for index, task in enumerate(self._tasks):
             try:
                 if task.memory > largest:
@@ -77,10 +71,18 @@ class Submission(Generic[AnyTask]):
         return self
 
     def __exit__(self, *_error: object) -> None:
-        self._client.cancel(list(self._futures.values()), force=True)
-        self._client.unsubscribe_topic(self._name)
+        client, name = self._client, self._name
+        client.cancel(list(self._futures.values()), force=True)
+        client.unsubscribe_topic(name)
+
+        def runs_ours(dask_worker: Any) -> bool:
+            return any(str(key).startswith(name) for key in dask_worker.state.tasks)
+
         end = time.monotonic() + _END_TIMEOUT
-        while self._futures and _runs_any(self._client, self._name) and time.monotonic() < end:
+        while self._futures and client.status == "running" and time.monotonic() < end:
+            # Withdrawn tasks are those of their workers until they end.
+            if not any(client.run(runs_ours, on_error="ignore").values()):
+                break
             time.sleep(_POLL_INTERVAL)
 
     def outcomes(self, report: Report[AnyTask]) -> Iterator[tuple[AnyTask, Any]]:
@@ -130,7 +132,11 @@ class Submission(Generic[AnyTask]):
             except Empty:
                 if not warned and not self._client.scheduler_info()["workers"]:
                     warned = True
-                    warnings.warn(_NO_WORKERS, stacklevel=2)
+                    warnings.warn(
+                        "the dask scheduler has no workers; runs wait until there are some: start "
+                        "them with `dask worker ADDRESS`",
+                        stacklevel=2,
+                    )
                 continue
             if message is not None:
                 report(self._tasks[index], pickle.loads(message))
@@ -172,39 +178,18 @@ def execute_on_worker(payload: bytes, our_version: str, topic: str, index: int) 
     return execute_remotely(payload, say)
 
 
-def _runs_any(client: Client, prefix: str) -> bool:
-    """Return whether a worker runs a task whose key begins with ``prefix``, withdrawn or not."""
-
-    def runs(dask_worker: Any) -> bool:
-        return any(str(key).startswith(prefix) for key in dask_worker.state.tasks)
-
-    return client.status == "running" and any(client.run(runs, on_error="ignore").values())
-
-
-def _largest_worker(client: Client) -> float:
-    """Return the memory limit of the largest worker [bytes], or inf without a limit."""
-    limits = [worker["memory_limit"] for worker in client.scheduler_info()["workers"].values()]
-    return float("inf") if not all(limits) else max(limits, default=float("inf"))
-
-
 def _outcome(future: Future[bytes]) -> Any:
     try:
         return pickle.loads(future.result())
     except CancelledError:
         return PellicleError("the connection to the scheduler was lost")
     except Exception as error:
-        if missing := _missing(error):
-            return PellicleError(
-                f"scheduler or workers lack {missing}; install there what is installed here, "
-                "pip install 'pellicle[cluster]' at the least"
-            )
-        return error
-
-
-def _missing(error: BaseException | None) -> str | None:
-    """Return the module that was not found, if that is the cause of an error."""
-    while error is not None:
-        if isinstance(error, ModuleNotFoundError):
-            return error.name
-        error = error.__cause__
-    return None
+        cause: BaseException | None = error
+        while cause is not None and not isinstance(cause, ModuleNotFoundError):
+            cause = cause.__cause__
+        if cause is None:
+            return error
+        return PellicleError(
+            f"scheduler or workers lack {cause.name}; install there what is installed here, "
+            "pip install 'pellicle[cluster]' at the least"
+        )

@@ -26,17 +26,11 @@ def pack(work: Work[AnyTask, Outcome], task: AnyTask) -> bytes:
 
     cloudpickle sends definitions in scripts and notebooks by value, since workers cannot import
     them.
-
-    Raises
-    ------
-    PellicleError
-        The task cannot be pickled.
     """
     try:
-        payload: bytes = cloudpickle.dumps((work, task))
+        return bytes(cloudpickle.dumps((work, task)))
     except Exception as error:
         raise PellicleError(f"{task.name} does not pickle: {_line(error)}") from error
-    return payload
 
 
 def execute_remotely(payload: bytes, say: Say) -> bytes:
@@ -44,12 +38,8 @@ def execute_remotely(payload: bytes, say: Say) -> bytes:
     try:
         work, task = pickle.loads(payload)
     except Exception as error:
-        return pickle.dumps(
-            PellicleError(
-                f"a worker cannot read its task: {_line(error)}; what a run uses must be installed "
-                "where its worker is"
-            )
-        )
+        message = f"a worker cannot read its task: {_line(error)}; what a run uses must be "
+        return pickle.dumps(PellicleError(f"{message}installed where its worker is"))
     outcome: Any = execute(work, task, say)
     try:
         packed: bytes = cloudpickle.dumps(outcome)

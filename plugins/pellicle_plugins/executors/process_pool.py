@@ -23,18 +23,9 @@ _THREAD_VARIABLES = (
 
 
 class ProcessPool(Generic[AnyTask]):
-    """Workers that share tasks; only as many tasks run at once as fit into memory.
+    """At most so many workers that share tasks; only as many run at once as fit into memory.
 
-    Parameters
-    ----------
-    work
-        The function that executes a task.
-    tasks
-        The tasks, started in this order, except that a small one may overtake a large one.
-    workers
-        Largest number of workers at once.
-    threads
-        Threads of each worker's linear algebra.
+    Tasks start in their order, except that a small one may overtake a large one.
     """
 
     def __init__(
@@ -75,7 +66,11 @@ class ProcessPool(Generic[AnyTask]):
             task = self._waiting.pop(index or 0)
             try:
                 if index is None:
-                    raise _too_large(task, available)
+                    assert available is not None
+                    raise ConfigError(
+                        f"{task.name} needs about {memory.shortage(_needed(task), available)}; use "
+                        "fewer points or fewer steps"
+                    )
                 payload = pack(self._work, task)
                 worker = self._worker()
             except Exception as error:
@@ -124,11 +119,3 @@ class ProcessPool(Generic[AnyTask]):
 
 def _needed(task: Any) -> float:
     return float(task.memory) + memory.PROCESS
-
-
-def _too_large(task: Any, available: float | None) -> ConfigError:
-    assert available is not None
-    return ConfigError(
-        f"{task.name} needs about {memory.shortage(_needed(task), available)}; use fewer points or "
-        "fewer steps"
-    )

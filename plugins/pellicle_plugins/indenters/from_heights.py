@@ -4,11 +4,27 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar
 
-from pydantic import Field, PrivateAttr, SerializerFunctionWrapHandler, model_serializer
+from pydantic import (
+    BeforeValidator,
+    Field,
+    PrivateAttr,
+    SerializerFunctionWrapHandler,
+    model_serializer,
+)
 
 from pellicle.arrays import Array
 from pellicle.components import Footprint, Indenter
 from pellicle.errors import ConfigError
+from pellicle.units import Length
+
+
+def _one_of_it(value: object) -> object:
+    """Return ``"1 um"`` for ``"um"``; any other value unchanged."""
+    return f"1 {value}" if isinstance(value, str) and value.strip().isalpha() else value
+
+
+HeightUnit = Annotated[Length, BeforeValidator(_one_of_it, json_schema_input_type=float | str)]
+"""A length [m] that heights without a unit count: ``"um"``, ``"1 um"``, or a number of metres."""
 
 
 class FromHeights(Indenter):

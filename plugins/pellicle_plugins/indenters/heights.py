@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -11,16 +13,17 @@ from pydantic import AfterValidator, Field, model_validator
 
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
-from pellicle.files import is_file, read_text
+from pellicle.files import read_text
 from pellicle.grid import shape_of_run
 from pellicle.model.input_path import InputPath
 from pellicle.model.matlab import read_mat
 
-from .from_heights import FromHeights
-from .height_unit import HeightUnit
-from .text_numbers import separated_by_blanks
-from .topography_reader import require_content, require_memory
+from .file_checks import require_content, require_file, require_memory
+from .from_heights import FromHeights, HeightUnit
+from .text_table import read_tables
 
+_KINDS = {".npy": "npy", ".h5": "hdf5", ".hdf5": "hdf5", ".nc": "hdf5", ".mat": "mat"}
+"""What a file is by its ending; text otherwise."""
 _BYTES = 10
 """Peak memory while an array is read and checked, per value beside the value itself [bytes]."""
 
@@ -77,13 +80,7 @@ class Heights(FromHeights):
         return self
 
     def profile(self, x: Array, y: Array) -> Array:
-        """Return (heights − highest) · unit [m].
-
-        Raises
-        ------
-        ConfigError
-            The array is not of the grid's shape.
-        """
+        """Return (heights − highest) · unit [m]; the grid is of the shape of the array."""
         shape = np.broadcast_shapes(x.shape, y.shape)
         name, field = (str(self.path), "path") if self.path else ("the array", "values")
         _require_shape(self._heights.shape, shape, name, field)
@@ -92,80 +89,65 @@ class Heights(FromHeights):
 
 
 def _load(path: Path, dataset: str | None) -> Any:
-    if not is_file(path):
-        raise ConfigError(f"{path}: no such file; give the file that holds the heights", "path")
-    if path.stat().st_size == 0:
-        raise ConfigError(f"{path} is empty; give a file that holds a 2-D array", "path")
-    readers = {".npy": _load_npy, ".h5": _load_hdf5, ".hdf5": _load_hdf5, ".nc": _load_hdf5}
-    readers[".mat"] = _load_mat
-    reader = readers.get(path.suffix.lower(), _load_text)
+    """Return the only array of a file, or the one called ``dataset``, of usable shape and type."""
+    require_file(path)
+    kind = _KINDS.get(path.suffix.lower(), "text")
     try:
-        return reader(path, dataset)
+        with _arrays(path, kind) as arrays:
+            if not arrays:
+                raise ValueError("it holds no array")
+            is_only = len(arrays) == 1 and (dataset is None or kind in ("npy", "text"))
+            name = next(iter(arrays)) if is_only else dataset
+            if name is None or name not in arrays:
+                content = f"no array {name!r}" if name else "more than one array"
+                raise ConfigError(
+                    f"{path} has {content}; give one of: {', '.join(arrays)}", "dataset"
+                )
+            if kind != "text":
+                _require_header(arrays[name], path)
+            return arrays[name][...]
     except ConfigError:
         raise
     except (OSError, ValueError, EOFError, MemoryError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise ConfigError(
-            f"{path} cannot be read as {reader.__name__.removeprefix('_load_')} ({reason}); give a "
-            "2-D array of numbers as .npy, text or .h5",
+            f"{path} cannot be read as {kind} ({reason}); give a 2-D array of numbers as .npy, "
+            "text or .h5",
             "path",
         ) from None
 
 
-def _load_npy(path: Path, dataset: str | None) -> Any:
-    try:
-        # A mapped array takes no memory, whatever shape and type its header claims.
-        mapped = np.lib.format.open_memmap(path, mode="r")
-    except ValueError as error:
-        if not any(word in str(error) for word in ("pickle", "magic", "Python objects")):
-            raise
-        raise ConfigError(
-            f"{path} is pickled or not an .npy file, and a pickle can run any code; save a plain "
-            "array with numpy.save(…, allow_pickle=False)",
-            "path",
-        ) from None
+@contextmanager
+def _arrays(path: Path, kind: str) -> Iterator[Mapping[str, Any]]:
+    """Yield the arrays of an open file by name; those of HDF5 and .npy are not read yet."""
+    if kind == "text":
+        yield {name: table.values for name, table in read_tables(read_text(path), path).items()}
+    elif kind == "mat":
+        yield {name: value for name, value in read_mat(path).items() if np.ndim(value) == 2}
+    elif kind == "hdf5":
+        import h5py
 
-    _require_header(mapped, path)
-    return mapped
-
-
-def _load_text(path: Path, dataset: str | None) -> Any:
-    lines = [line.partition("#")[0] for line in read_text(path).splitlines()]
-    if not any(map(str.strip, lines)):
-        raise ValueError("it holds no numbers")
-    return np.loadtxt(separated_by_blanks(lines), ndmin=2)
-
-
-def _load_hdf5(path: Path, dataset: str | None) -> Any:
-    import h5py
-
-    with h5py.File(path, "r") as file:
-        names: list[str] = []
-        file.visititems(
-            lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None
-        )
-        if dataset is None and len(names) == 1:
-            dataset = names[0]
-        if dataset is None or dataset not in names:
-            if not names:
-                raise ValueError("it holds no array")
-            content = f"no array {dataset!r}" if dataset else "more than one array"
-            raise ConfigError(f"{path} has {content}; give one of: {', '.join(names)}", "dataset")
-        _require_header(file[dataset], path)
-        return file[dataset][...]
-
-
-def _load_mat(path: Path, dataset: str | None) -> Any:
-    arrays = {name: value for name, value in read_mat(path).items() if np.ndim(value) == 2}
-    if dataset is None and len(arrays) == 1:
-        (dataset,) = arrays
-    if dataset not in arrays:
-        if not arrays:
-            raise ValueError("it holds no matrix")
-        content = f"no array {dataset!r}" if dataset else "more than one array"
-        raise ConfigError(f"{path} has {content}; give one of: {', '.join(arrays)}", "dataset")
-    _require_header(arrays[dataset], path)
-    return arrays[dataset]
+        with h5py.File(path, "r") as file:
+            arrays: dict[str, Any] = {}
+            file.visititems(
+                lambda name, item: (
+                    arrays.update({name: item}) if isinstance(item, h5py.Dataset) else None
+                )
+            )
+            yield arrays
+    else:
+        try:
+            # A mapped array takes no memory, whatever shape and type its header claims.
+            mapped = np.lib.format.open_memmap(path, mode="r")
+        except ValueError as error:
+            if not any(word in str(error) for word in ("pickle", "magic", "Python objects")):
+                raise
+            raise ConfigError(
+                f"{path} is pickled or not an .npy file, and a pickle can run any code; save a "
+                "plain array with numpy.save(…, allow_pickle=False)",
+                "path",
+            ) from None
+        yield {"": mapped}
 
 
 def _require_header(array: Any, path: Path) -> None:

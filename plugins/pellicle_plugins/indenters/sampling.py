@@ -17,13 +17,7 @@ class UniformAxis(NamedTuple):
 
     @classmethod
     def of(cls, points: Array) -> UniformAxis:
-        """Return the axis on which ``points`` [m] lie.
-
-        Raises
-        ------
-        ConfigError
-            There is only one point, so the spacing is unknown.
-        """
+        """Return the axis on which ``points`` [m] lie; one point has no spacing."""
         if points.size < 2:
             raise ConfigError("needs a grid of at least 2 points each way", "type")
         spacing = (points[-1] - points[0]) / (points.size - 1)

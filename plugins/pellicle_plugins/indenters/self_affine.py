@@ -62,13 +62,7 @@ class SelfAffine(Indenter):
         return self
 
     def profile(self, x: Array, y: Array) -> Array:
-        """Return heights minus their maximum [m]; ``x`` and ``y`` span one whole period.
-
-        Raises
-        ------
-        ConfigError
-            The spacing cannot resolve the shortest wavelength, or no wavelength fits the domain.
-        """
+        """Return heights minus their maximum [m]; ``x`` and ``y`` span one whole period."""
         axes = UniformAxis.of(x.ravel()), UniformAxis.of(y.ravel())
         coarsest = max(axis.spacing for axis in axes)
         if 2 * coarsest >= self.cutoff_wavelength * (1 - _ROUNDING):

@@ -47,11 +47,6 @@ class Sum(Indenter):
         The lowest point of the sum of the unbounded parts is located between the cells. Parts that
         end with the domain are known at the cells only: the distance of their highest cell from 0
         is taken as that of the highest cell of the sum, correct to second order in the spacing.
-
-        Raises
-        ------
-        ConfigError
-            A part has no profile on these points, or the parts have no cell in common.
         """
         shape = np.broadcast_shapes(x.shape, y.shape)
         smooth, rough = np.zeros(shape), np.zeros(shape)

@@ -17,10 +17,11 @@ from pellicle.grid import pair
 from pellicle.model.input_path import InputPath
 from pellicle.units import Length, Quantity, readable
 
-from .from_heights import FromHeights
-from .height_unit import HeightUnit
+from .file_checks import require_memory
+from .from_heights import FromHeights, HeightUnit
 from .sampling import UniformAxis
-from .topography_reader import Scan, library, read_scan, require_memory
+from .scan import Scan
+from .topography_reader import library, read_scan
 
 _Position = Annotated[float, Quantity("m", at_least=0)]
 _Level = Literal["none", "mean", "tilt", "curvature"]
@@ -37,7 +38,7 @@ class Topography(FromHeights):
 
     The domain lies within the scan, at its middle or about ``centre``; the part of the scan under
     the domain is filled, levelled and interpolated to the cells.
-    Reading needs the extra ``topography``.
+    Text is read as it is; other formats, and filling, need the extra ``topography``.
     """
 
     libraries: ClassVar[tuple[str, ...]] = ("SurfaceTopography",)
@@ -46,7 +47,9 @@ class Topography(FromHeights):
     path: Annotated[
         InputPath,
         Field(
-            title="file", examples=["scan.x3p"], description="file that SurfaceTopography can read"
+            title="file",
+            examples=["scan.x3p"],
+            description="text, or a file that SurfaceTopography can read",
         ),
     ]
     channel: Annotated[
@@ -128,18 +131,7 @@ class Topography(FromHeights):
             )
 
     def profile(self, x: Array, y: Array) -> Array:
-        """Return the heights at the cells minus the highest measured one under the domain [m].
-
-        Raises
-        ------
-        ConfigError
-            The domain reaches beyond the scan, or too many points under it are missing.
-
-        Warns
-        -----
-        UserWarning
-            Cells are finer than the points of the scan.
-        """
+        """Return the heights at the cells minus the highest measured one under the domain [m]."""
         from scipy.interpolate import make_interp_spline
 
         axes = UniformAxis.of(x.ravel()), UniformAxis.of(y.ravel())

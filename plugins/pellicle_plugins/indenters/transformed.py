@@ -1,14 +1,17 @@
-"""Indenters that transform another indenter."""
+"""Another indenter moved, turned or scaled."""
 
 from __future__ import annotations
 
-from typing import Annotated, Self
+from math import cos, sin
+from typing import Annotated, Literal, Self
 
+import numpy as np
 from pydantic import Field, model_validator
 
 from pellicle.arrays import Array
 from pellicle.components import Footprint, FromRegistry, Indenter
 from pellicle.errors import ConfigError
+from pellicle.units import Quantity
 
 
 class Transformed(Indenter):
@@ -43,14 +46,59 @@ class RigidMotion(Transformed):
         return self
 
 
-def profile_of(part: Indenter, x: Array, y: Array, field: str) -> Array:
-    """Return the profile [m] of the part in ``field``; its errors name that field.
+class Shifted(RigidMotion):
+    """Another indenter moved sideways, off the centre of the domain."""
 
-    Raises
-    ------
-    ConfigError
-        The part has no profile on these points.
-    """
+    type: Literal["shifted"] = "shifted"
+    x: Annotated[
+        float, Quantity("m"), Field(title="shift along x", description="shift along x [m]")
+    ] = 0.0
+    y: Annotated[
+        float, Quantity("m"), Field(title="shift along y", description="shift along y [m]")
+    ] = 0.0
+
+    def profile(self, x: Array, y: Array) -> Array:
+        """Return f(x − x₀, y − y₀) [m]."""
+        return profile_of(self.part, x - self.x, y - self.y, "part")
+
+
+class Rotated(RigidMotion):
+    """Another indenter rotated about the vertical through the centre of the domain."""
+
+    type: Literal["rotated"] = "rotated"
+    angle: Annotated[
+        float,
+        Quantity("rad"),
+        Field(description="angle [rad] from x towards y, or as '30 degree'"),
+    ]
+
+    def profile(self, x: Array, y: Array) -> Array:
+        """Return f(x cos α + y sin α, y cos α − x sin α) [m]."""
+        c, s = cos(self.angle), sin(self.angle)
+        return profile_of(self.part, c * x + s * y, c * y - s * x, "part")
+
+
+class Scaled(Transformed):
+    """Another indenter with its heights multiplied by a factor."""
+
+    type: Literal["scaled"] = "scaled"
+    factor: Annotated[
+        float,
+        Quantity("1", at_least=0),
+        Field(
+            title="height factor", examples=[0.5], description="factor of the heights; 0 is flat"
+        ),
+    ]
+
+    def profile(self, x: Array, y: Array) -> Array:
+        """Return factor · f [m], or −inf where f is −inf."""
+        profile = profile_of(self.part, x, y, "part")
+        # −inf · 0 would be NaN.
+        return np.multiply(profile, self.factor, out=profile.copy(), where=np.isfinite(profile))
+
+
+def profile_of(part: Indenter, x: Array, y: Array, field: str) -> Array:
+    """Return the profile [m] of the part in ``field``; its errors name that field."""
     try:
         return part.profile(x, y)
     except ConfigError as error:

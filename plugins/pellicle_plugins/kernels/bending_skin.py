@@ -9,7 +9,7 @@ from pydantic import Field
 from pellicle.arrays import Array
 from pellicle.units import BendingStiffness
 
-from .reduced_modulus import ElasticSolid
+from .elastic_constants import ElasticSolid
 from .skin import Skin
 
 

@@ -9,7 +9,7 @@ from pydantic import ConfigDict
 
 from pellicle.arrays import Array
 
-from .reduced_modulus import ElasticSolid
+from .elastic_constants import ElasticSolid
 
 
 class HalfSpace(ElasticSolid):

@@ -30,12 +30,26 @@ _TINY = float(np.finfo(np.float64).tiny)
 
 def struve_minus_bessel(z: Array) -> Array:
     """H0(z) - Y0(z) for an array of any shape with z > 0."""
-    return _blockwise(z, _difference_series, _difference_tail)
+
+    def below(z: Array) -> Array:
+        return _series(z, *_difference_coefficients())
+
+    def above(z: Array) -> Array:
+        return _tail(z, -0.5) * (2.0 / np.pi) / z
+
+    return _blockwise(z, below, above)
 
 
 def struve_minus_bessel_primitive(z: Array) -> Array:
     """Integral of t (H0(t) - Y0(t)) over 0 < t < z, that is z (H1(z) - Y1(z)) - 2/pi, z >= 0."""
-    return _blockwise(z, _primitive_series, _primitive_tail)
+
+    def below(z: Array) -> Array:
+        return z * z * _series(z, *_primitive_coefficients())
+
+    def above(z: Array) -> Array:
+        return (z * _tail(z, 0.5) - 1.0) * (2.0 / np.pi)
+
+    return _blockwise(z, below, above)
 
 
 def _blockwise(z: Array, below: Callable[[Array], Array], above: Callable[[Array], Array]) -> Array:
@@ -95,30 +109,18 @@ def _horner(x: Array, coefficients: Array) -> Array:
     return value
 
 
-def _difference_series(z: Array) -> Array:
-    """H0(z) - Y0(z) for 0 < z < 4."""
-    return _series(z, *_difference_coefficients())
-
-
-def _primitive_series(z: Array) -> Array:
-    """Primitive for 0 <= z < 4."""
-    return z * z * _series(z, *_primitive_coefficients())
-
-
-def _laplace_integral(z: Array, exponent: float) -> Array:
-    """Integrate exp(-v) (1 + v^2/z^2)^exponent over v > 0 for a vector z >= 4, by Gauss panels."""
-    x, weight = np.polynomial.legendre.leggauss(24)
-    panels = 5.0 * np.arange(10)[:, None]
-    v = (panels + 2.5 * (x + 1.0)).ravel()
-    weights = np.tile(2.5 * weight, 10) * np.exp(-v)
-    return np.asarray((1.0 + (v / z[:, None]) ** 2) ** exponent @ weights, dtype=np.float64)
-
-
 @lru_cache(maxsize=2)
 def _tail_coefficients(exponent: float) -> tuple[float, ...]:
-    """Chebyshev coefficients of the Laplace integral in x = 16/(z + 4) - 1 on (-1, 1)."""
+    """Chebyshev coefficients in x = 16/(z + 4) - 1 on (-1, 1) of the Laplace integral.
+
+    This is int_0^inf exp(-v) (1 + v^2/z^2)^exponent dv, by Gauss panels.
+    """
     x = chebyshev.chebpts1(_CHEBYSHEV_DEGREE + 1)
-    values = _laplace_integral(16.0 / (x + 1.0) - 4.0, exponent)
+    z = 16.0 / (x + 1.0) - 4.0
+    nodes, weight = np.polynomial.legendre.leggauss(24)
+    v = (5.0 * np.arange(10)[:, None] + 2.5 * (nodes + 1.0)).ravel()
+    weights = np.tile(2.5 * weight, 10) * np.exp(-v)
+    values = (1.0 + (v / z[:, None]) ** 2) ** exponent @ weights
     return tuple(float(c) for c in chebyshev.chebfit(x, values, _CHEBYSHEV_DEGREE))
 
 
@@ -126,13 +128,3 @@ def _tail(z: Array, exponent: float) -> Array:
     """Laplace integral for z >= 4 by Clenshaw's recurrence."""
     x = 16.0 / (z + 4.0) - 1.0
     return np.asarray(chebyshev.chebval(x, _tail_coefficients(exponent)), dtype=np.float64)
-
-
-def _difference_tail(z: Array) -> Array:
-    """H0(z) - Y0(z) for z >= 4."""
-    return _tail(z, -0.5) * (2.0 / np.pi) / z
-
-
-def _primitive_tail(z: Array) -> Array:
-    """Primitive for z >= 4."""
-    return (z * _tail(z, 0.5) - 1.0) * (2.0 / np.pi)

@@ -10,7 +10,7 @@ from pydantic import Field
 from pellicle.arrays import Array
 from pellicle.units import Tension
 
-from .reduced_modulus import ElasticSolid
+from .elastic_constants import ElasticSolid
 from .struve import struve_minus_bessel, struve_minus_bessel_primitive
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from pellicle.cli import app
+from pellicle.cli.app import app
 from tests.framework.bad_input.command_line import Cli, Outcome
 from tests.framework.sentences.bad_files import START
 

@@ -15,7 +15,7 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.cli.app import app
 from tests.framework.bad_input.command_line import says
 from tests.framework.sentences.bad_files import START
 

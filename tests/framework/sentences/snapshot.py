@@ -23,7 +23,8 @@ from typer.testing import CliRunner
 HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE.parents[2])]
 
-from pellicle.cli import app  # noqa: E402
+from pellicle.cli.app import app  # noqa: E402
+from pellicle.commands import typer_command  # noqa: E402
 from pellicle.results.status import Status  # noqa: E402
 from tests.framework.sentences import bad_files  # noqa: E402
 from tests.physics.frozen.fit_curves import CASES  # noqa: E402
@@ -105,7 +106,8 @@ def fixed() -> Iterator[tuple[str, str]]:
     """Yield sentences that no command need say: statuses of steps, and help."""
     yield "statuses", "\n".join(f"{name}: {s.value}" for name, s in Status.__members__.items())
     group: Any = get_command(app)
-    for name, command in group.commands.items():
+    for name in group.commands:
+        command = typer_command(name)
         context = command.context_class(command, info_name=name)
         options = [_help(p, context) for p in command.params]
         yield f"{name} --help", "\n".join([" ".join((command.help or "").split()), *options])

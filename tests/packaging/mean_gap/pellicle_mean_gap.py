@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 import pellicle as pl
-from pellicle.results.variables import Variable
+from pellicle.components import Variable
 from pellicle.units import Quantity
 
 

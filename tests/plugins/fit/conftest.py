@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner, Result
 
-from pellicle.cli import app
+from pellicle.cli.app import app
 from tests.shared_fits import share_fits
 
 

@@ -457,7 +457,7 @@ def test_fit_reports_what_it_is_at() -> None:
     words: list[str] = []
     fit_problem(problem, words.append)
     assert {"interval of tension", "interval of reduced_modulus"} <= set(words)
-    with status_line(enabled=True) as report:
+    with status_line("fitting", enabled=True) as report:
         report("shows nothing without a terminal")
 
 

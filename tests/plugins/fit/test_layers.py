@@ -53,7 +53,7 @@ def curve(
 @pytest.fixture(autouse=True)
 def no_study(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let no fit run a study."""
-    monkeypatch.setattr(simulation, "execute", None)
+    monkeypatch.setattr(simulation, "run_study", None)
 
 
 def holds(estimate: pl.Estimate | None, truth: float) -> bool:

@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.batch import locked
+from pellicle.cli.app import app
 from pellicle.errors import ConfigError, StorageError
-from pellicle.runs.lock import locked
 from pellicle_fit import many
 from pellicle_fit.curves.curve import Curve
 from pellicle_fit.curves.sources import Source
@@ -230,7 +230,7 @@ def test_files(cli: Cli, tmp_path: Path) -> None:
     for command in (["show", "out/fits.h5"], ["plot", "out"]):
         refusal = CliRunner().invoke(app, command)
         assert refusal.exit_code == 2
-        assert "the table of fits" in refusal.stderr
+        assert "a table that pellicle fit wrote" in refusal.stderr
     # Another choice costs no fit.
     notes = cli(*arguments, "--accept", "r_squared > 2", code=1).stderr
     assert "none of 5 curves was accepted" in notes

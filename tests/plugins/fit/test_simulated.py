@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 import pellicle as pl
 from pellicle_fit.models import simulation
 from pellicle_fit.models.interpolated import SimulatedCurve
-from pellicle_fit.models.simulation import half_widths, plan, simulate
+from pellicle_fit.models.simulation import Plan, half_widths, plan, simulate
 from pellicle_fit.models.solid import scaled, solid
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
@@ -135,7 +136,7 @@ def test_quadric_is_simulated_once(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         assert estimate.high / estimate.low < 1.5
     assert "the force curve is simulated" in fit.messages[-1]
     assert fit.to_dict()["model"]["kernel"] == {"type": "tensed_membrane"}
-    monkeypatch.setattr(simulation, "execute", None)
+    monkeypatch.setattr(simulation, "run_study", None)
     again = pl.fit(
         depth * 1e3,
         force * 1e6,
@@ -200,6 +201,34 @@ def test_what_counts_against_the_modulus_is_refused() -> None:
     material = solid({"type": "bending_skin", "bending": "1 pN*m"})
     with pytest.raises(pl.ConfigError, match="scales with the modulus"):
         scaled(material.kernel, 1e-6, (material.modulus, material.tension))
+
+
+@pytest.mark.slow
+def test_a_study_that_fails_is_no_force_curve(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its table says which runs and why, and it is not taken for whole by the next fit."""
+
+    def hasty(*arguments: Any) -> Plan:
+        planned = plan(*arguments)
+        return replace(
+            planned, table=planned.table | {"solver": {"type": "active_set", "max_iterations": 1}}
+        )
+
+    monkeypatch.setattr(simulation, "_OCTAVES", 1)
+    monkeypatch.setattr(simulation, "_RATIOS", simulation._RATIOS[:2])
+    monkeypatch.setattr(simulation, "plan", hasty)
+    for _ in range(2):
+        with pytest.raises(pl.ConvergenceError, match="of 8 runs 8 did not converge") as error:
+            simulate(
+                pl.indenter("paraboloid", radius=1e-6),
+                solid("tensed_membrane"),
+                1e-6,
+                cache=tmp_path,
+                grid_points=16,
+            )
+    (folder,) = (tmp_path / "force-curves").iterdir()
+    assert str(folder) in str(error.value)
 
 
 @pytest.mark.parametrize(

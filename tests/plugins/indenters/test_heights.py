@@ -46,6 +46,25 @@ def test_file(tmp_path: Path, name: str) -> None:
     assert profile.max() == 0
 
 
+@pytest.mark.parametrize(
+    ("above", "below"), [("# rough\n", ""), ("My scan, nm\n\nWidth: 8 um\n", "# end\n")]
+)
+def test_text_has_a_header(tmp_path: Path, above: str, below: str) -> None:
+    """Words above the rows are no heights, as `topography` sees it too."""
+    rows = "\n".join(" ".join(map(repr, row)) for row in ROUGH.tolist())
+    (tmp_path / "a.txt").write_text(f"{above}{rows}  # last\n{below}")
+    profile = _profile(pl.indenter("heights", path=tmp_path / "a.txt", unit="1 um"))
+    assert profile == pytest.approx((ROUGH - ROUGH.max()) * 1e-6, rel=1e-14)
+
+
+@pytest.mark.parametrize("row", ["3 NA 5", "#N/A 4 5", "- - -", "3 4x 5"])
+def test_row_with_words_is_refused(tmp_path: Path, row: str) -> None:
+    """No row is lost in silence, below which the others would move up."""
+    (tmp_path / "a.txt").write_text(f"1 2 3\n{row}\n4 5 6\n")
+    with pytest.raises(pl.ConfigError, match=r"^path: .* among the numbers of line 2; write nan"):
+        pl.indenter("heights", path=tmp_path / "a.txt", unit="1 um")
+
+
 def test_one_of_several_arrays(tmp_path: Path) -> None:
     """``dataset`` names the array in an HDF5 file of several."""
     with h5py.File(tmp_path / "a.h5", "w") as file:

@@ -23,7 +23,7 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle import memory
-from pellicle.cli import app
+from pellicle.cli.app import app
 
 ROOT = Path(__file__).parents[3]
 DATA = ROOT / "tests/data"
@@ -404,7 +404,7 @@ def test_coordinates_under_a_header_with_sizes(unit: float, tmp_path: Path) -> N
         (
             lambda c: c,
             SIZED.replace("3 um", "30 um"),
-            r"states a size of 4e-06 × 3e-05 m, and its coordinates are as 4 to 3",
+            r"states a size of 4 um × 30 um, and its coordinates are as 4 to 3",
         ),
     ],
 )
@@ -474,31 +474,65 @@ def test_numbers_between_commas_or_semicolons(tmp_path: Path, text: str) -> None
     assert heights[0] == pytest.approx(heights[1], abs=0)
 
 
+ROWS = "1 2 3 4 5\n2 2 2 2 2\n5 4 3 2 1\n2 2 2 2 2\n"
+WITHOUT_UNIT = [
+    "# Width: 10 µm\n# Height: 8 µm",
+    "# Width: 10 μm\n# Height: 8000 nm",
+    "x-length = 10\ny-length = 8\nx-unit = um",
+]
+WITH_UNIT = [
+    "# Width: 10 µm\n# Height: 8 µm\n# Value units: nm",
+    "# Kanal: Topo\n# Breite: 10 µm\n# Höhe: 8000 nm\n# Einheiten: nm",
+    "# チャネル：Topo\n# 幅：10 µm\n# 高さ：8 µm\n# 値の単位：nm",
+    "# File Format = ASCII\n# x-length = 10000\n# y-length = 8000\n# Bit2nm = 1",
+    "File Format = ASCII\nNX = 5\nNY = 4\nScale X = 2\nUnit X = um\nUnit Data = nm",
+    "# x-pixels: 5\n# x-length: 10\n# y-length: 8\n# x-unit: um\n# y-unit: um\n# z-unit: nm",
+    "h=4 w=5\npixel size=2e-6 m\nheight conversion factor (-> nm)=1.0",
+    "Wyko ASCII Data File Format 0 0 1\nX Size\t4\nY Size\t5\nPixel_size\t7\t4\t0.002\n"
+    "Wavelength\t7\t4\t640\nMult\t7\t4\t640\nRAW_DATA\t3\t80",
+    "# Channel: Phase\n# Value units: deg\n9 8 7 6\n"
+    "# Channel: Topo\n# Width: 10 um\n# Height: 8 um\n# Value units: nm",
+]
+
+
+@pytest.mark.parametrize("header", WITHOUT_UNIT + WITH_UNIT)
+def test_headers_of_programs(tmp_path: Path, header: str) -> None:
+    """The exports of Gwyddion, SPIP, Nova, Attocube and two profilometers are one scan.
+
+    Nanometres of heights, given or stated, do not make a scan of micrometres a thousandth.
+    """
+    path = tmp_path / "a.asc"
+    path.write_text(f"{header}\n{ROWS}", "utf-16" if "Kanal" in header else "utf-8")
+    unit = {"unit": "1 nm"} if header in WITHOUT_UNIT else {}
+    profile = _profile(pl.Grid(points=[5, 4], size=["10 um", "8 um"]), path, level="none", **unit)
+    rows = np.array([row.split() for row in ROWS.splitlines()], dtype=float)
+    assert profile == pytest.approx(1e-9 * (rows - 5).T, abs=1e-20)
+
+
 @pytest.mark.parametrize(
-    "header",
+    ("text", "message"),
     [
-        "# Width: 10 µm\n# Height: 8 µm",
-        "# Width: 10 μm\n# Height: 8000 nm",
-        "x-length = 10\ny-length = 8\nx-unit = um",
-        "# Width: 10 µm\n# Height: 8 µm\n# Value units: nm",
+        ("h=4 w=5\n1 2 3 4 5\n", "states 4 rows of heights and has 1"),
+        ("# Channel: Phase\n# Value units: deg\n" + ROWS, "'Phase' of .* is in deg, not heights"),
+        ("Width: 10,5 µm\nHeight: 8,2 µm\n" + ROWS, "states its size in ',5 µm', which is"),
+        (ROWS + "1 2 3\n", "rows of 5 and 3 numbers, in lines 1 and 5"),
+        (ROWS.replace("3", "1.2.3"), r"damaged or incomplete \(could not convert .*'1.2.3'"),
     ],
 )
-def test_size_of_a_header_is_in_its_own_unit(tmp_path: Path, header: str) -> None:
-    """Nanometres of heights, given or stated, do not make a scan of micrometres a thousandth."""
-    path = tmp_path / "a.txt"
-    rows = "\n".join("1 2 3 4 5" for _ in range(4))
-    path.write_text(f"{header}\n{rows}", encoding="utf-8")
-    unit = {} if "Value" in header else {"unit": "1 nm"}
-    profile = _profile(pl.Grid(points=[5, 4], size=["10 um", "8 um"]), path, level="none", **unit)
-    assert profile == pytest.approx(1e-9 * np.tile(np.arange(-4, 1), (4, 1)).T, abs=1e-20)
+def test_damaged_texts(tmp_path: Path, text: str, message: str) -> None:
+    """Rows that are missing, numbers that are no heights, and sizes in no unit, are refused."""
+    (tmp_path / "a.txt").write_text(text, encoding="utf-8")
+    with pytest.raises(pl.ConfigError, match=message):
+        pl.indenter("topography", path=tmp_path / "a.txt", unit="1 nm", size="10 um")
 
 
-def test_size_with_decimal_commas_is_refused(tmp_path: Path) -> None:
-    """A width of 10,5 µm is not taken for 10."""
-    path = tmp_path / "a.txt"
-    path.write_text("# Width: 10,5 µm\n# Height: 8,2 µm\n1 2 3 4\n2 3 4 5\n3 4 5 6\n", "utf-8")
-    with pytest.raises(pl.ConfigError, match=r"^path: .* states its size in ',5 µm', which is"):
-        pl.indenter("topography", path=path, unit="1 nm")
+def test_text_needs_no_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Plain text is read where SurfaceTopography is not installed."""
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
+    monkeypatch.setitem(sys.modules, "SurfaceTopography.IO", None)
+    (tmp_path / "a.txt").write_text(ROWS)
+    scan = pl.indenter("topography", path=tmp_path / "a.txt", unit="1 nm", size="10 um")
+    assert scan.profile(*pl.Grid(points=[5, 4], size="10 um").coordinates()).shape == (5, 4)
 
 
 @pytest.mark.parametrize("mark", ["\t", ",", ";"])

@@ -14,7 +14,7 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.errors import ConvergenceWarning
 from pellicle.plugins import registry
 from tests.pictures import drawn_width, pixels

@@ -16,7 +16,7 @@ import pytest
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.plotting import profile, save_figure, svg, without_round_off
 from pellicle.report.page import Section, Text, page
 from tests.pictures import colourfulness, drawn_width, pixels

@@ -18,7 +18,7 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
+from pellicle.cli.app import app
 from pellicle.report.fields import default_step
 from pellicle.results.variables import VARIABLES, names_of
 from pellicle.units import readable

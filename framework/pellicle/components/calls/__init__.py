@@ -5,8 +5,7 @@ far below that of the call. `pellicle.operators` calls kernels in the same way.
 """
 
 from .correction import corrected_area
-from .executor import outcomes_of
-from .indenter import force_curve_of, layer_force_curve_of, profile_of
+from .indenter import profile_of
 from .kernel import branches_of, instantaneous
 from .output import files_of, require_files
 from .prescription import check_value, check_variables, report_of, target_of
@@ -19,10 +18,7 @@ __all__ = [
     "check_variables",
     "corrected_area",
     "files_of",
-    "force_curve_of",
     "instantaneous",
-    "layer_force_curve_of",
-    "outcomes_of",
     "profile_of",
     "report_of",
     "require_files",

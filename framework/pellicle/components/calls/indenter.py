@@ -1,28 +1,20 @@
-"""Calls of an indenter: its profile and its force curves."""
+"""Calls of an indenter: its profile."""
 
 from __future__ import annotations
 
-from typing import TypeVar, get_args
+from typing import get_args
 
 import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to, read_only, real_array
-from pellicle.components.indenter import (
-    Footprint,
-    ForceCurve,
-    HasForceCurve,
-    HasLayerForceCurve,
-    Indenter,
-    LayerForceCurve,
-)
+from pellicle.components.indenter import Footprint, Indenter
 from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import Grid
 from pellicle.units import DIGITS, LARGEST, readable
 
 # Rounding error of heights over the size of the domain.
 _ROUNDING = 1e-12
-_Curve = TypeVar("_Curve", ForceCurve, LayerForceCurve)
 
 
 def profile_of(indenter: Indenter, grid: Grid) -> Array:
@@ -108,60 +100,3 @@ def _hidden_height(profile: Array, footprint: Footprint) -> float:
         return np.inf
     lowest_around = np.min([profile[i + a, j + b] for a in range(3) for b in range(3)], axis=0)
     return top - float(lowest_around.max())
-
-
-def force_curve_of(indenter: HasForceCurve, depth: Array, length: float) -> ForceCurve:
-    """Return force over reduced modulus and its derivatives at depths of shape (n,) [m].
-
-    Raises
-    ------
-    PluginError
-        The curve is not three arrays of that shape, finite at every finite depth.
-    """
-    with errors_attributed_to(indenter):
-        value = indenter.force_curve(read_only(depth), length)
-    call = "force_curve(depth, length)"
-    return _checked_curve(indenter, call, ForceCurve, value, depth, length)
-
-
-def layer_force_curve_of(
-    indenter: HasLayerForceCurve,
-    depth: Array,
-    length: float,
-    thickness: float,
-    poissons_ratio: float,
-) -> LayerForceCurve:
-    """Return force over reduced modulus on a layer and its derivatives, as `force_curve_of`.
-
-    Raises
-    ------
-    PluginError
-        The curve is not four arrays of the shape of ``depth``, finite at every finite depth.
-    """
-    with errors_attributed_to(indenter):
-        value = indenter.layer_force_curve(read_only(depth), length, thickness, poissons_ratio)
-    call = "layer_force_curve(depth, length, thickness, poissons_ratio)"
-    return _checked_curve(indenter, call, LayerForceCurve, value, depth, length)
-
-
-def _checked_curve(
-    indenter: object, call: str, kind: type[_Curve], value: object, depth: Array, length: float
-) -> _Curve:
-    """Return a force curve of finite arrays of the shape of ``depth``, or raise PluginError."""
-    if not isinstance(value, kind):
-        raise PluginError(
-            f"{component_name(indenter)}: {call} returned {shown(value)}; it has to return a "
-            f"pellicle.{kind.__name__}"
-        )
-    arrays = {
-        part: real_array(indenter, f"{call}.{part}", values, depth.shape)
-        for part, values in value._asdict().items()
-    }
-    for part, values in arrays.items():
-        finite = np.isfinite(values)
-        if not finite.all() and not finite[np.isfinite(depth)].all():
-            raise PluginError(
-                f"{component_name(indenter)}: {call}.{part} has values that are NaN or infinite, "
-                f"for length = {length:.3g} m; it has to be finite"
-            )
-    return kind(**arrays)

@@ -16,7 +16,7 @@ from io import StringIO
 from types import FrameType
 from typing import TextIO
 
-from pellicle.errors import PluginError
+from .errors import PluginError
 
 # File descriptors, which C libraries and subprocesses write to directly.
 _OUT, _ERR = 1, 2

@@ -1,24 +1,42 @@
-"""Calls of an executor: each task once, with its outcome."""
+"""Many tasks by an executor: the lock of their folder, their progress, and the loop over them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from typing import Any, cast
 
 from pellicle.checks import component_name, errors_attributed_to
-from pellicle.components.executor import AnyTask, Executor, Outcome, Report, Say
+from pellicle.components import AnyTask, Executor, Outcome, Say
 from pellicle.errors import PluginError, shown
+from pellicle.runs.lock import locked as locked
+from pellicle.runs.progress import BatchProgress as BatchProgress
+from pellicle.runs.progress import status_line as status_line
 
 
-def outcomes_of(
+def mapped(
     executor: Executor,
     work: Callable[[AnyTask, Say], Outcome],
     tasks: Sequence[AnyTask],
-    report: Report[AnyTask],
     kind: type[Outcome],
-) -> Generator[tuple[AnyTask, Outcome | Exception], None, None]:
-    """Yield each task once with its outcome: a value of type ``kind``, or the exception raised.
+    keep: Callable[[AnyTask, Outcome | Exception], tuple[str, bool]],
+    progress: BatchProgress,
+) -> None:
+    """Execute tasks, and keep the outcome of each as soon as it is there.
+
+    An error of one task does not end the others. Ctrl-C does, at the next report or outcome.
+
+    Parameters
+    ----------
+    executor, work, tasks
+        As for `Executor.map`.
+    kind
+        Type of the values that ``work`` returns.
+    keep
+        Function of a task and its outcome, which is a value of type ``kind`` or the exception that
+        was raised. It returns a verdict in words, and whether the task failed.
+    progress
+        The bar, inside its context.
 
     Raises
     ------
@@ -30,10 +48,10 @@ def outcomes_of(
     ids = {id(task) for task in tasks}
     remaining = {id(task): task for task in tasks}
     with errors_attributed_to(executor):
-        pairs: Any = executor.map(work, tasks, report)
+        pairs: Any = executor.map(work, tasks, progress.report)
     if not isinstance(pairs, Iterator) or not hasattr(pairs, "close"):
         raise PluginError(f"{name}: map() returned {shown(pairs)}; it has to be written with yield")
-    with closing(cast("Generator[Any]", pairs)):
+    with closing(cast("Any", pairs)):
         for pair in _items(executor, pairs):
             if not isinstance(pair, tuple) or len(pair) != 2 or id(pair[0]) not in ids:
                 raise PluginError(
@@ -50,7 +68,7 @@ def outcomes_of(
                     f"{name}: map() yields {task.name} with {shown(outcome)}; it has to yield it "
                     "with what its work returned or raised"
                 )
-            yield task, outcome
+            progress.finished(task, *keep(task, outcome))
     if remaining:
         first = next(iter(remaining.values()))
         raise PluginError(

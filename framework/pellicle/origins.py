@@ -1,0 +1,97 @@
+"""Where plugins come from, and how each is loaded on its own, whatever its code does.
+
+It imports nothing heavy: help texts are printed from command modules alone.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import Distribution, EntryPoint
+from typing import TypeVar
+
+from .errors import PluginError
+from .foreign_code import diverted_output, noted_interrupts
+
+GROUP = "pellicle"
+DISABLE = "PELLICLE_DISABLE_PLUGINS"
+COMMAND = "command."
+"""What the names of entry points of commands begin with."""
+_OWN = "pellicle"
+Loaded = TypeVar("Loaded")
+
+
+@dataclass(frozen=True)
+class Origin:
+    """The entry point and distribution of a plugin."""
+
+    entry_point: str
+    distribution: str
+    version: str
+
+    @classmethod
+    def of(cls, entry: EntryPoint) -> Origin:
+        """Return the origin of an entry point."""
+        if entry.dist is None:
+            return cls(entry.name, "unknown distribution", "?")
+        return cls(entry.name, *_name_and_version(entry.dist))
+
+    @property
+    def is_own(self) -> bool:
+        """Whether it is a part of pellicle."""
+        return self.distribution == _OWN
+
+    def is_disabled(self, disable: str) -> bool:
+        """Return whether the value of the environment variable `DISABLE` switches it off."""
+        if self.is_own:
+            return False
+        named = {_same(name) for name in disable.split(",")} - {""}
+        names = {"1", "true", "all", _same(self.distribution), _same(self.entry_point)}
+        return bool(named & names)
+
+    def __str__(self) -> str:
+        return f"{self.distribution} {self.version} (entry point {self.entry_point!r})"
+
+
+@dataclass(frozen=True)
+class Broken:
+    """A plugin that cannot be used, and the error."""
+
+    origin: Origin
+    error: str
+
+    def __str__(self) -> str:
+        return f"{self.origin}: {self.error}"
+
+
+def isolated(entry: EntryPoint, load: Callable[[], Loaded]) -> Loaded | Broken:
+    """Return what a function that runs code of the plugin of an entry point returns, or the error.
+
+    A plugin may fail in any way, even by sys.exit() or KeyboardInterrupt; only a Ctrl-C of the user
+    ends the command.
+    """
+    loaded: Loaded | Broken
+    with noted_interrupts() as interrupt:
+        try:
+            with diverted_output():
+                loaded = load()
+        except BaseException as error:
+            kind = "" if isinstance(error, PluginError) else f"{type(error).__name__}: "
+            loaded = Broken(Origin.of(entry), f"{kind}{error}".removesuffix(": "))
+    if interrupt.is_set():
+        raise KeyboardInterrupt
+    return loaded
+
+
+@cache
+def _name_and_version(distribution: Distribution) -> tuple[str, str]:
+    """Return what the metadata of a distribution say, which are parsed at each access."""
+    metadata = distribution.metadata
+    return metadata["Name"], metadata["Version"]
+
+
+def _same(name: str) -> str:
+    """Return the normalised name: package indexes treat my_plugin and My-Plugin as equal."""
+    return re.sub(r"[-_.]+", "-", name.strip()).lower()

@@ -1,0 +1,119 @@
+"""A measured surface, and the data sets of its file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from math import inf
+from pathlib import Path
+from typing import NamedTuple
+
+from pellicle.arrays import Array
+from pellicle.errors import ConfigError
+from pellicle.units import Quantity
+
+Edge = tuple[float, str | None]
+"""An edge length and its unit; None for that of the heights."""
+
+
+class Scan(NamedTuple):
+    """A measured surface."""
+
+    heights: Array
+    """Heights [m] along x, then y; NaN where a point is missing."""
+    size: tuple[float, float]
+    """Edge lengths [m]."""
+    digest: str
+    """SHA-256 of the file."""
+
+
+class Channel(NamedTuple):
+    """A data set as its file states it."""
+
+    name: str
+    unit: str | None
+    """Unit of its values; None if it is not stated."""
+    is_height: bool
+    is_areal: bool
+    edges: Sequence[Edge]
+    """Edge lengths; empty if they are not stated."""
+    read: Callable[[], Array]
+    """Return the values along x, then y; NaN where a point is missing."""
+
+
+def metres(unit: str) -> float | None:
+    """Return a unit of length [m]; None for any other."""
+    with suppress(ValueError):
+        return Quantity("m")(f"1 {unit}")
+    return None
+
+
+def chosen(channels: Sequence[Channel], name: str | None, path: Path) -> Channel:
+    """Return the channel of heights with a name; the first of all if it is None."""
+    names = dict.fromkeys(repr(channel.name) for channel in channels if channel.is_height)
+    heights = ", ".join(names) or "none"
+    by_name = {channel.name: channel for channel in channels}
+    if name is not None and name not in by_name:
+        raise ConfigError(
+            f"{name!r} is not in {path}; its channels of heights are: {heights}", "channel"
+        )
+    channel = channels[0] if name is None else by_name[name]
+    if not channel.is_height:
+        raise ConfigError(
+            f"{channel.name!r} of {path} is in {channel.unit}, not heights; its channels of "
+            f"heights are: {heights}",
+            "channel",
+        )
+    if not channel.is_areal:
+        raise ConfigError(
+            f"{path} is a profile along a line, and contact needs an area; give an areal scan, or, "
+            "for line contact, the heights alone as type = 'heights' with grid.points = […, 1]",
+            "path",
+        )
+    return channel
+
+
+def height_scale(channel: Channel, given: float | None, path: Path) -> float:
+    """Return the length that a value of 1 stands for [m], as stated or else ``given``."""
+    if channel.unit is None:
+        if given is None:
+            raise ConfigError(
+                f"is missing, and {path} does not state the unit of its heights; give the "
+                "length that 1 stands for: '1 um'",
+                "unit",
+            )
+        return given
+    if given is not None:
+        raise ConfigError(f"{path} states its own unit, {channel.unit}; leave this out", "unit")
+    if (scale := metres(channel.unit)) is None:
+        raise ConfigError(f"{path} is in {channel.unit}, which is not a unit of length", "path")
+    return scale
+
+
+def edge_lengths(
+    channel: Channel, given: tuple[float, float] | None, scale: float, path: Path
+) -> tuple[float, float]:
+    """Return the edge lengths [m], as stated or else ``given``; a value of 1 is ``scale`` [m]."""
+    # Programs that do not know the size write 0.
+    if not channel.edges or not all(0 < edge < inf for edge, _ in channel.edges):
+        if given is None:
+            raise ConfigError(
+                f"is missing, and {path} does not state it; give the edge lengths of the scan, "
+                "such as ['80 um', '60 um']",
+                "size",
+            )
+        return given
+    size = []
+    for edge, unit in channel.edges:
+        in_metres = metres(unit) if unit else scale
+        if in_metres is None:
+            raise ConfigError(
+                f"{path} states its size in {unit!r}, which is not a unit of length; in its "
+                "header, write decimals with a point and units such as um",
+                "path",
+            )
+        size.append(edge * in_metres)
+    x, y = size
+    if given is not None:
+        raise ConfigError(f"{path} states its own size, {x:g} × {y:g} m; leave this out", "size")
+    return x, y

@@ -1,0 +1,198 @@
+"""Commands of plugins that break, clash or are for others: each costs itself alone."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from importlib.metadata import Distribution, EntryPoint, entry_points
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from pellicle import commands
+from pellicle.cli.app import app
+from pellicle.origins import GROUP
+
+HELLO = '''
+from pathlib import Path
+import pellicle as pl
+from pellicle.cli import echo
+
+def hello(name: str = "you") -> None:
+    """Greet someone."""
+    echo(f"hello {name}")
+'''
+
+
+def registers(arguments: str) -> str:
+    """Return a hook that registers a command."""
+    return f"@pl.hookimpl\ndef register_commands(register):\n    register({arguments})\n"
+
+
+BROKEN = {
+    "error at import": ("1 / 0", "ZeroDivisionError: division by zero"),
+    "exit at import": ("raise SystemExit(0)", "SystemExit: 0"),
+    "no function": ("hello = 3", "3 is neither a function nor a module with hooks"),
+    "none": ("@pl.hookimpl\ndef register_commands(register): ...", "registers 0 commands"),
+    "no such function": ("del hello", "AttributeError: module"),
+    "file of another form": (registers("hello, file='x'"), "file is 'x'; give one like"),
+    "[brackets] in the error": ("raise ValueError('[/x]')", "ValueError: [/x]"),
+}
+"""What follows `HELLO`, and what is said."""
+UNREADABLE = "hello.__annotations__['name'] = int | bytes"
+NO_MODEL = registers("hello, file='nothing.there:Model'")
+Install = Callable[..., None]
+
+
+class Installed(Distribution):
+    """A distribution that exists in memory only."""
+
+    def __init__(self, name: str) -> None:
+        self.header = f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.5\n"
+
+    def read_text(self, filename: str) -> str | None:
+        """Return the metadata; there is no other file."""
+        return self.header if filename == "METADATA" else None
+
+    def locate_file(self, path: object) -> Path:
+        """Return the path of a file, of which there is none."""
+        raise FileNotFoundError(path)
+
+
+@pytest.fixture
+def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install]:
+    """Return a function that installs ``hello`` of a package beside the commands that there are."""
+    entries = {*entry_points(group=GROUP)}
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr("pellicle.commands.entry_points", lambda group: entries)
+    monkeypatch.chdir(tmp_path)
+
+    def write(more: str = "", name: str = "hello", package: str = "greetings") -> None:
+        module = f"{package}_{tmp_path.name.replace('-', '_')}"
+        (tmp_path / f"{module}.py").write_text(f"{HELLO}\n{more}\n", encoding="utf-8")
+        named = module if "register_commands" in more else f"{module}:hello"
+        entry = EntryPoint(f"command.{name}", named, GROUP)
+        vars(entry)["dist"] = Installed(package)
+        entries.add(entry)
+        forget()
+
+    def forget() -> None:
+        commands.commands.cache_clear()
+        commands.load_command.cache_clear()
+
+    yield write
+    monkeypatch.undo()
+    forget()
+
+
+def call(*words: str, code: int = 0) -> Result:
+    """Call the command line, and check its exit code."""
+    done = CliRunner().invoke(app, words, env={"COLUMNS": "200"})
+    assert done.exit_code == code, done.output
+    return done
+
+
+def test_a_function_is_a_command(install: Install) -> None:
+    """Its parameters are options, and its errors tell typer's in one line."""
+    install()
+    assert call("hello", "--name", "Ada").stdout == "hello Ada\n"
+    assert "--name NAME" in " ".join(call("hello", "--help").stdout.split())
+    assert call("hello", "--nome", code=2).stderr.startswith("error: No such option: --nome ")
+
+
+@pytest.mark.parametrize("case", BROKEN)
+def test_a_broken_command_costs_itself_alone(case: str, install: Install) -> None:
+    """It says its error in the help, in the list of plugins and when it is called."""
+    more, reason = BROKEN[case]
+    install(more)
+    assert f"broken: {reason.partition(':')[0]}" in call("--help").stdout
+    (broken,) = json.loads(call("plugins", "--json").stdout)["broken"]
+    assert broken["entry_point"] == "command.hello"
+    assert reason in broken["error"]
+    for words in (["hello"], ["hello", "--name", "Ada"], ["hello", "--help"]):
+        (line,) = call(*words, code=2).stderr.splitlines()
+        assert line.startswith("error: command 'hello' is broken: greetings 1.5 (entry point")
+        assert reason in line
+    assert "Usage" in call("run", "--help").stdout
+
+
+def test_parameters_that_typer_cannot_read_break_a_command(install: Install) -> None:
+    """They are read when it is called, so the help still lists it."""
+    install(UNREADABLE)
+    assert "Greet someone" in call("--help").stdout
+    assert "error: command 'hello' is broken" in call("hello", code=2).stderr
+    (broken,) = json.loads(call("plugins", "--json").stdout)["broken"]
+    assert broken["entry_point"] == "command.hello"
+
+
+def test_a_model_that_is_missing_breaks_what_asks_for_it(install: Install) -> None:
+    """The command runs; explain and schema of it say why they cannot, and those of others do."""
+    install(NO_MODEL)
+    assert call("hello").stdout == "hello you\n"
+    for asked in ("explain", "schema"):
+        refusal = call(asked, "hello", code=2).stderr
+        assert "file 'nothing.there:Model': ModuleNotFoundError" in refusal
+        assert call(asked, "run").stdout
+    (broken,) = json.loads(call("plugins", "--json").stdout)["broken"]
+    assert broken["entry_point"] == "command.hello"
+    Path("a.toml").write_text("kernel = 1\nnonsense = 2\n", encoding="utf-8")
+    assert "nonsense: is not a field here" in call("run", "a.toml", code=2).stderr
+
+
+def test_of_two_claimants_none_is_used(install: Install) -> None:
+    """Both are named, and one of them works when the other is switched off."""
+    install()
+    install(package="salutations")
+    refusal = call("hello", code=2).stderr
+    assert "claimed by greetings 1.5" in refusal
+    assert "and by salutations 1.5" in refusal
+    (clash,) = json.loads(call("plugins", "--json").stdout)["broken"]
+    assert clash["origin"] == "greetings, salutations"
+
+
+def test_a_command_of_a_name_of_ours_is_not_used(install: Install) -> None:
+    """Or a plugin could take `run` away."""
+    install(name="run")
+    assert "FILE" in call("run", "--help").stdout
+    (broken,) = json.loads(call("plugins", "--json").stdout)["broken"]
+    assert broken["origin"] == "pellicle, greetings"
+    assert "claimed by pellicle" in broken["error"]
+
+
+def test_one_of_two_claimants_is_switched_off(
+    install: Install, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The other one is then the command."""
+    monkeypatch.setenv("PELLICLE_DISABLE_PLUGINS", "salutations")
+    install()
+    install("raise SystemExit", package="salutations")
+    assert call("hello").stdout == "hello you\n"
+
+
+SHOWS = """
+def show(path, si, json):
+    if not (path / "hello.txt").exists():
+        {otherwise}
+    echo((path / "hello.txt").read_text())
+    return True
+
+""" + registers("hello, show=show")
+
+
+def test_show_asks_the_command_that_left_something(install: Install) -> None:
+    """And says as ever what it cannot show where none did."""
+    install(SHOWS.format(otherwise="return False"))
+    Path("left").mkdir()
+    missing = call("show", "left", code=2).stderr
+    assert "is a folder that holds no result yet" in missing
+    Path("left/hello.txt").write_text("hello again", encoding="utf-8")
+    assert call("show", "left").stdout == "hello again\n"
+
+
+def test_what_fails_in_a_command_names_its_plugin(install: Install) -> None:
+    """It is no fault of pellicle."""
+    install(f"def hello() -> None: 1 / 0\n{SHOWS.format(otherwise='raise KeyError(path)')}")
+    origin = "error: command 'hello' of greetings 1.5 (entry point 'command.hello') failed"
+    assert call("hello", code=2).stderr == f"{origin}: ZeroDivisionError: division by zero\n"
+    assert call("show", "nothing", code=2).stderr.startswith(f"{origin}: KeyError")

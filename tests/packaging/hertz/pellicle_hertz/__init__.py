@@ -1,0 +1,1 @@
+"""The force on a rigid sphere."""

@@ -1,0 +1,87 @@
+"""A force curve that lies is refused where it enters a fit, and its indenter is named."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+
+import pellicle as pl
+from pellicle_plugins.indenters.sphere import Sphere
+
+DEPTH = np.linspace(-1e-6, 2e-6, 60)
+FORCE = 1e4 * Sphere(radius=1e-5).force_curve(DEPTH, 1e-7).force
+
+
+def liar(change: Callable[..., Any]) -> Any:
+    """Return a sphere whose force curves are changed, given the depths."""
+
+    class Bead(Sphere):
+        """Sphere with other force curves."""
+
+        type: Literal["liar"] = "liar"  # type: ignore[assignment]
+
+        def force_curve(self, depth: Any, length: float) -> Any:
+            """Return the force curve, changed."""
+            return change(super().force_curve(depth, length), depth)
+
+        def layer_force_curve(self, depth: Any, *solid: float) -> Any:
+            """Return the force curve on a layer, changed."""
+            return change(super().layer_force_curve(depth, *solid), depth)
+
+    return Bead(radius=1e-5)
+
+
+def curve_in_a_row(curve: pl.ForceCurve, depth: Any) -> Any:
+    """Return the force alone."""
+    return curve.force
+
+
+def too_short(curve: pl.ForceCurve, depth: Any) -> Any:
+    """Return a force too few."""
+    return curve._replace(force=curve.force[:-1])
+
+
+def complex_force(curve: Any, depth: Any) -> Any:
+    """Return a complex force."""
+    return curve._replace(force=curve.force + 0j)
+
+
+def unknown_sensitivity(curve: pl.ForceCurve, depth: Any) -> Any:
+    """Return NaN for a sensitivity."""
+    return curve._replace(by_length=np.full_like(depth, np.nan))
+
+
+def moves_depth(curve: pl.ForceCurve, depth: Any) -> Any:
+    """Write to the depths."""
+    depth += 1e-6
+    return curve
+
+
+LIES = {
+    curve_in_a_row: "() returned array(",
+    too_short: "().force is array(",
+    complex_force: "().force is array(",
+    unknown_sensitivity: "().by_length has values that are NaN",
+}
+
+
+@pytest.mark.parametrize(
+    "solid", [{}, {"thickness": 1e-5, "poissons_ratio": 0.5}], ids=["half-space", "layer"]
+)
+@pytest.mark.parametrize("change", LIES)
+def test_a_force_curve_that_lies_is_refused(change: Any, solid: dict[str, Any]) -> None:
+    """No modulus is fitted by a force that is none."""
+    method = "layer_force_curve" if solid else "force_curve"
+    with pytest.raises(pl.PluginError) as error:
+        pl.fit(DEPTH, FORCE, indenter=liar(change), **solid)
+    assert f"indenter 'liar': {method}{LIES[change]}" in str(error.value)
+
+
+def test_who_fails_is_named() -> None:
+    """The depths are read-only; whose code stumbled over that is said."""
+    with pytest.raises(ValueError, match="read-only") as error:
+        pl.fit(DEPTH, FORCE, indenter=liar(moves_depth))
+    assert error.value.__notes__ == ["indenter 'liar' failed in force_curve()"]
