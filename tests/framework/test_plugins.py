@@ -455,13 +455,6 @@ def _run_with(source: str, folder: Path, *options: str) -> subprocess.CompletedP
     )
 
 
-def test_a_component_cannot_end_a_command_as_a_success(tmp_path: Path) -> None:
-    """sys.exit(0) in the formula of a kernel is an error with its name, not exit code 0."""
-    done = _run_with(SOFT.replace("return self.scale / q", "raise SystemExit(0)"), tmp_path)
-    assert done.returncode == 2
-    assert done.stderr.startswith("error: kernel 'soft' calls sys.exit(0)")
-
-
 def test_a_component_that_ends_the_process_when_it_is_made_is_named(plugin: Plugin) -> None:
     """sys.exit() in a validator of a plugin is an error that names the component."""
     ending = SOFT.replace(

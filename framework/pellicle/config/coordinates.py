@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -78,19 +78,15 @@ def _words_of_values(key: str, values: Sequence[Any], runs: Sequence[Run]) -> li
         for value in values
     ]
     several = len({*types}) < len(types)
-    return [
-        ", ".join([words, *_fields(value)] if several else [words]) if words else _text(value)
-        for words, value in zip(types, values, strict=True)
-    ]
-
-
-def _fields(component: Component) -> Iterator[str]:
-    """Yield the fields of a component that were given, in words and units."""
-    for name in component.model_fields_set - {"type"}:
-        info, value = component.described_fields[name], getattr(component, name)
-        quantity = quantity_of(info)
-        text = readable(value, quantity.unit if quantity else "1", DIGITS)
-        yield f"{field_words(name, info)} {text}"
+    texts = []
+    for words, value in zip(types, values, strict=True):
+        text = words or _text(value)
+        for name in value.model_fields_set - {"type"} if words and several else ():
+            info = value.described_fields[name]
+            unit = quantity.unit if (quantity := quantity_of(info)) else "1"
+            text += f", {field_words(name, info)} {readable(getattr(value, name), unit, DIGITS)}"
+        texts.append(text)
+    return texts
 
 
 def _text(value: Any) -> str:

@@ -103,13 +103,7 @@ def si_unit(value: Any) -> str:
 # pint takes half a millisecond for a conversion, and a study has thousands of values.
 @lru_cache(maxsize=1000)
 def factor_to_si(unit: str, si: str) -> float:
-    """Return the factor from ``unit`` to the unit ``si``.
-
-    Raises
-    ------
-    ValueError
-        The unit is unknown or does not fit.
-    """
+    """Return the factor from ``unit`` to the unit ``si``; refuse a unit that does not fit."""
     kind, registry = _kind(unit), pint_registry()
     if kind != _kind(si):
         noun = "a pure number" if kind == "dimensionless" else f"a value in {unit}"
