@@ -139,18 +139,3 @@ def test_coefficients_are_positive_and_fall_with_distance(s: float) -> None:
     assert (coefficients > 0).all()
     assert (np.diff(coefficients, axis=0) < 0).all()
     assert (np.diff(coefficients, axis=1) < 0).all()
-
-
-def test_integer_spacing_is_accepted() -> None:
-    """Sides given as integers count as floating-point numbers."""
-    integer = cell_coefficients(*membrane(1.0), (40, 3), (1, 2))
-    np.testing.assert_array_equal(integer, cell_coefficients(*membrane(1.0), (40, 3), (1.0, 2.0)))
-
-
-@pytest.mark.parametrize(
-    ("shape", "spacing"), [((0, 4), (1.0, 1.0)), ((4, 4), (1.0, 0.0)), ((4, 4), (-1.0, 1.0))]
-)
-def test_impossible_grids_are_refused(shape: tuple[int, int], spacing: tuple[float, float]) -> None:
-    """Grids without offsets and cells without area raise a ValueError."""
-    with pytest.raises(ValueError, match="positive"):
-        cell_coefficients(*membrane(1.0), shape, spacing)

@@ -33,18 +33,16 @@ _MOST_MARKED = 80
 
 def force_depth(result: Result, axes: Axes) -> None:
     """Draw force against depth over the load steps."""
-    _curve(result, axes, [("force", None, "o-")], "depth")
+    _curve(result, axes, {"force": None}, "depth")
 
 
 def area_force(result: Result, axes: Axes) -> None:
     """Draw the contact area, of the cells and corrected, against force."""
-    corrected = [
-        (str(name), wording(variable).words.removeprefix(f"{CONTACT_AREA}, "), "s--")
-        for name, variable in result.dataset.data_vars.items()
-        if str(name).startswith(CORRECTED_AREA)
-    ]
-    series = [("contact_area", "cells in contact", "o-"), *corrected]
-    _curve(result, axes, series, "force")
+    labels: dict[str, str | None] = {"contact_area": "cells in contact"}
+    for name, variable in result.dataset.data_vars.items():
+        if str(name).startswith(CORRECTED_AREA):
+            labels[str(name)] = wording(variable).words.removeprefix(f"{CONTACT_AREA}, ")
+    _curve(result, axes, labels, "force")
     if not has_interaction(result.dataset):
         axes.legend()
 
@@ -244,32 +242,22 @@ def _parts(table: xr.Dataset, dimensions: Sequence[str]) -> Iterator[xr.Dataset]
         yield table.isel(dict(zip(dimensions, index, strict=True)))
 
 
-def _curve(
-    result: Result, axes: Axes, series: Sequence[tuple[str, str | None, str]], against: str
-) -> None:
-    """Draw variables, with label and style, against another over the steps of a run."""
+def _curve(result: Result, axes: Axes, labels: Mapping[str, str | None], against: str) -> None:
+    """Draw variables, with their labels, against another over the steps of a run."""
     data = result.dataset
-    y_axis, x_axis = wording(data[series[0][0]]), wording(data[against])
+    y_axis, x_axis = wording(data[next(iter(labels))]), wording(data[against])
     good = data["converged"].values.astype(bool)
     pulls, path = has_interaction(data), legs(data["depth"].values)
     hysteretic = pulls or (has_times(data) and len(path) <= MOST_LEGS)
-    for number, (variable, label, style) in enumerate(series):
-        x = data[against].values * x_axis.scale.factor
+    x = data[against].values * x_axis.scale.factor
+    for number, (variable, label) in enumerate(labels.items()):
         y = data[variable].values * y_axis.scale.factor
-        _draw_line(
-            axes,
-            x,
-            y,
-            good,
-            path if hysteretic else None,
-            color=f"C{number}",
-            marker=style[0] if hysteretic else "o",
-            linestyle=style[1:],
-            label=label,
-        )
+        style = {"color": f"C{number}", "linestyle": "--" if number else "-", "label": label}
+        style["marker"] = "s" if number and hysteretic else "o"
+        _draw_line(axes, x, y, good, path if hysteretic else None, **style)
     axes.set(xlabel=x_axis.head, ylabel=y_axis.head)
     if hysteretic:
-        name_legs(axes, [path], "C0" if len(series) == 1 else "0.4")
+        name_legs(axes, [path], "C0" if len(labels) == 1 else "0.4")
         if axes.get_legend_handles_labels()[1]:
             axes.legend(fontsize="small")
     if pulls:

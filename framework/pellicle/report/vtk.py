@@ -59,25 +59,19 @@ def file_of(xml: XMLGenerator, kind: str, **attributes: str) -> Iterator[None]:
 
 
 def array(
-    xml: XMLGenerator, name: str, dtype: np.dtype[Any], text: Iterable[str], **attributes: str
+    xml: XMLGenerator, name: str, dtype: np.dtype[Any], blocks: Iterable[bytes], **attributes: str
 ) -> None:
-    """Write numbers, given as texts that `encoded` or `base64_of` returns."""
+    """Write numbers, given as `base64_of` takes them."""
     kind = _TYPES[dtype.str[1:]]
     with element(xml, "DataArray", **attributes, type=kind, Name=name, format="binary"):
-        for part in text:
-            xml.characters(part)
+        for text in base64_of(blocks):
+            xml.characters(text)
 
 
 def rows_of(number: int, size: int) -> list[slice]:
     """Return slices of rows of ``size`` bytes that make blocks of about 4 MB."""
     many = max(1, BLOCK // size)
     return [slice(start, start + many) for start in range(0, number, many)]
-
-
-def encoded(data: bytes) -> str:
-    """Return bytes in base64, compressed."""
-    blocks = (data[start : start + BLOCK] for start in range(0, len(data), BLOCK))
-    return "".join(base64_of(blocks))
 
 
 def base64_of(blocks: Iterable[bytes]) -> Iterator[str]:

@@ -72,33 +72,26 @@ def _innermost(indenter: Mapping[str, Any]) -> Mapping[str, Any]:
     return indenter
 
 
-def _layers(kernel: Mapping[str, Any], path: str = "kernel") -> Iterator[str]:
-    """Yield the paths of the layers of a solid, from the top."""
-    if "thickness" in kernel:
-        yield path
-    for index in range(len(kernel.get("layers") or ())):
-        yield f"{path}.layers.{index}"
+def _solids(
+    kernel: Mapping[str, Any], path: str = "kernel"
+) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    """Yield the path and the configuration of a solid, and of those that it is made of."""
+    yield path, kernel
     for name in ("substrate", "solid"):
         if isinstance(inner := kernel.get(name), Mapping):
-            yield from _layers(inner, f"{path}.{name}")
-
-
-def _solids(kernel: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
-    yield kernel
-    for name in ("substrate", "solid"):
-        if isinstance(inner := kernel.get(name), Mapping):
-            yield from _solids(inner)
+            yield from _solids(inner, f"{path}.{name}")
 
 
 def _solid(
     kernel: Mapping[str, Any], inputs_by_name: Mapping[str, Input], varied: tuple[str, ...]
 ) -> Iterator[str]:
-    layers = list(_layers(kernel))
-    # Layers on a half-space have a solid below them; a single layer lies on a rigid base.
-    on_rigid = bool(layers) and not any(
-        "layers" in solid and isinstance(solid.get("substrate"), Mapping)
-        for solid in _solids(kernel)
-    )
+    layers, on_rigid = list[str](), True
+    for path, solid in _solids(kernel):
+        layers += [path] * ("thickness" in solid)
+        layers += [f"{path}.layers.{index}" for index in range(len(solid.get("layers") or ()))]
+        # Layers on a half-space have a solid below them; a single layer lies on a rigid base.
+        on_rigid &= not ("layers" in solid and isinstance(solid.get("substrate"), Mapping))
+    on_rigid &= bool(layers)
     bands = len(layers) + (not on_rigid)
     height = (_BOTTOM - _SURFACE) / bands
     for band in range(bands):
@@ -124,12 +117,10 @@ def _surface(
     kernel: Mapping[str, Any], inputs_by_name: Mapping[str, Input], varied: tuple[str, ...]
 ) -> Iterator[str]:
     names = ("tension", "bending", "surface_stiffness")
-    path = "kernel"
-    for solid in _solids(kernel):
+    for path, solid in _solids(kernel):
         skin = [name for name in names if solid.get(name) or f"{path}.{name}" in varied]
         if skin:
             break
-        path += ".substrate" if "substrate" in solid else ".solid"
     # The surface is pressed down where the indenter, drawn later, hides its bottom.
     yield (
         f'<path class="surface" d="M {_LEFT} {_SURFACE} L 120 {_SURFACE} Q 215 {_SURFACE} '

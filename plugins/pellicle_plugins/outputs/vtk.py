@@ -14,7 +14,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.components import Output, Runs
 from pellicle.files import storage_errors
-from pellicle.report.vtk import array, base64_of, element, encoded, file_of, rows_of, writer
+from pellicle.report.vtk import array, element, file_of, rows_of, writer
 from pellicle.results.path import has_times
 from pellicle.results.variables import FIELDS, WALL_PRESSURE
 
@@ -90,15 +90,15 @@ def _write_step(step: xr.Dataset, path: Path) -> None:
     with writer(path) as xml, file_of(xml, "StructuredGrid", WholeExtent=extent):
         with element(xml, "FieldData"):
             for name, number in numbers.items():
-                array(xml, name, number.dtype, [encoded(number.tobytes())], NumberOfTuples="1")
+                array(xml, name, number.dtype, [number.tobytes()], NumberOfTuples="1")
         with element(xml, "Piece", Extent=extent):
             with element(xml, "PointData", Scalars="pressure"):
                 for name, field in fields.items():
                     blocks = (field[rows].tobytes() for rows in rows_of(y.size, 8 * x.size))
-                    array(xml, name, field.dtype, base64_of(blocks))
+                    array(xml, name, field.dtype, blocks)
             with element(xml, "Points"):
                 blocks = (points(rows).tobytes() for rows in rows_of(y.size, 24 * x.size))
-                array(xml, "Points", np.dtype(float), base64_of(blocks), NumberOfComponents="3")
+                array(xml, "Points", np.dtype(float), blocks, NumberOfComponents="3")
 
 
 def _growing(times: Iterable[float]) -> Iterator[float]:

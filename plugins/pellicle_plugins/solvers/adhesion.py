@@ -327,7 +327,9 @@ class AdhesionSolver(ScaledSolver):
             transferred = on_contact.transferred(wall)
             balanced = _with_wall_force(problem, contact, transferred, traction)
             if balanced is None:
-                return _released(problem, on_contact.preconditioner, before)
+                nothing = np.zeros(problem.grid.shape)
+                released = on_contact.preconditioner.on(nothing > 0)
+                return _finished(problem, released, nothing, nothing, nothing, before)
             wall = balanced
             displacement = problem.operator(wall + traction)
             if not on_contact.cells.size:
@@ -361,12 +363,6 @@ class AdhesionSolver(ScaledSolver):
         # What an inner solve has closed may be open by more than the tolerance.
         displacement = problem.operator(wall + traction)
         return _finished(problem, on_contact, wall, traction, displacement, before, settled)
-
-
-def _released(problem: Problem, preconditioner: Preconditioner, before: _Round | None) -> _Round:
-    """Return the round without contact and tractions."""
-    nothing = np.zeros(problem.grid.shape)
-    return _finished(problem, preconditioner.on(nothing > 0), nothing, nothing, nothing, before)
 
 
 def _finished(

@@ -162,7 +162,8 @@ def test_vtk_of_more_than_a_block() -> None:
     for cells in (vtk.BLOCK // 8, vtk.BLOCK // 8 + 5, vtk.BLOCK // 4):
         values = np.arange(cells, dtype=float)
         array = Xml.Element("DataArray", type="Float64")
-        array.text = vtk.encoded(values.tobytes())
+        blocks = (values[rows].tobytes() for rows in vtk.rows_of(cells, 8))
+        array.text = "".join(vtk.base64_of(blocks))
         assert np.array_equal(decoded(array), values)
 
 
