@@ -46,7 +46,7 @@ BROKEN: dict[str, Any] = {
             "marks cells of its caller",
             Refused("changes what it is given"),
             "free",
-            area=lambda f, c, h: f(np.logical_not(c, out=c), h),
+            area=lambda f, c, h: f(np.logical_or(c, True, out=c), h),
         ),
     ],
     "no_contact_has_no_area": [

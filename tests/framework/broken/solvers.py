@@ -101,7 +101,6 @@ def fill(f: Any, problem: Any, state: Any, monitor: Any) -> Any:
 
 
 STALLED = pl.Stop.STALLED
-ARRAY = Refused("not an array: its pressure is start.pressure", "pellicle.Solution(pressure or")
 READ_ONLY = Refused("changes what it is given", "read-only")
 OFF = Marked("CONTACT_RESIDUAL")
 BROKEN: dict[str, Any] = {
@@ -137,12 +136,8 @@ BROKEN: dict[str, Any] = {
             lambda problem: setattr(problem.operator, "applications", 0),
         ),
         harms("lowers the profile", READ_ONLY, lambda problem: np.copyto(problem.profile, -1.0)),
-        Broken("is out of date", ARRAY, solve=returns(lambda s: type(s)(pressure=1, iterations=1))),
     ],
     "start_belongs_to_the_caller": [
-        Broken("scales its start", ARRAY, solve=starts(lambda start: 0.5 * start)),
-        Broken("copies its start", ARRAY, solve=starts(lambda start: start.copy())),
-        Broken("clips its start", ARRAY, solve=starts(lambda start: np.maximum(start, 0))),
         Broken("writes into its start", READ_ONLY, solve=after(overwritten)),
         Broken("echoes", OFF, solve=after(lambda s, start: replace(s, state=start, stop=STALLED))),
     ],

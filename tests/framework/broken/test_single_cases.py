@@ -21,26 +21,11 @@ from tests.framework.broken.corrections import Correction
 from tests.framework.broken.executors import EXECUTORS, Executor
 from tests.framework.broken.general import Tied, TwoFaced
 from tests.framework.broken.interactions import INTERACTIONS
-from tests.framework.broken.kernels import KERNELS
-from tests.framework.broken.outputs import OUTPUTS, Output
+from tests.framework.broken.outputs import Output
 from tests.framework.broken.prescriptions import Volume
 from tests.framework.broken.solvers import Solver
 
 STEP: Any = PARTS | {"loading": {"depth": "2 um"}}
-
-
-@pytest.mark.parametrize("code", [0, 3])
-def test_a_component_cannot_end_the_process(code: int, tmp_path: Path) -> None:
-    """A component that calls sys.exit() is named; the run does not end as if all were well."""
-
-    def leave(*_: Any) -> None:
-        raise SystemExit(code)
-
-    methods: Any = dict.fromkeys(("compliance", "write"), leave)
-    kernel, output = (make(f, Broken("leaves", Taken(""), **methods)) for f in (KERNELS, OUTPUTS))
-    for parts in ({"kernel": kernel}, {"outputs": [output]}):
-        with pytest.raises(pl.PluginError, match=rf"'broken' calls sys.exit\({code}\)"):
-            run(tmp_path, **parts)
 
 
 def _change(data: Any) -> None:
