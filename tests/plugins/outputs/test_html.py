@@ -516,6 +516,9 @@ def test_study_with_failures(tmp_path: Path) -> None:
 
 def show(browser: Chrome, path: Path) -> None:
     """Open a page and wait for its maps."""
+    browser.get("about:blank")
+    # What other pages said is not of this one.
+    browser.get_log("browser")  # type: ignore[no-untyped-call]
     browser.get(path.as_uri())
     drawn(browser)
 
