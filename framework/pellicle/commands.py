@@ -17,12 +17,11 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-import pluggy
 import typer
 
-from . import hookspecs
 from .errors import ConfigError, PellicleError, PluginError
-from .origins import COMMAND, DISABLE, GROUP, Broken, Origin, isolated
+from .hookspecs import manager_of
+from .origins import COMMAND, DISABLE, GROUP, REMEDY, Broken, Origin, claimed_by, isolated
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -72,9 +71,8 @@ def load_command(name: str) -> Command | Broken:
     """
     first, *others = commands()[name]
     if others and not Origin.of(first).is_own:
-        claimants = " and by ".join(str(Origin.of(entry)) for entry in (first, *others))
-        remedy = f"uninstall one, or name its distribution in {DISABLE}"
-        return Broken(Origin.of(first), f"claimed by {claimants}; {remedy}")
+        claim = claimed_by(map(Origin.of, (first, *others)))
+        return Broken(Origin.of(first), f"{claim}; {REMEDY}")
     return isolated(first, partial(_loaded, first))
 
 
@@ -87,10 +85,7 @@ def _loaded(entry: EntryPoint) -> Command:
     def register(function: Callable[..., None], **more: Any) -> None:
         registered.append(Command(function, **more))
 
-    manager = pluggy.PluginManager(GROUP)
-    manager.add_hookspecs(hookspecs)
-    manager.register(loaded)
-    manager.hook.register_commands(register=register)
+    manager_of(loaded).hook.register_commands(register=register)
     if len(registered) != 1:
         raise PluginError(
             f"registers {len(registered)} commands; implement the hook "

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Protocol
 
 import pluggy
+
+from .origins import GROUP
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from .components import Component, Suite
 
-hookspec = pluggy.HookspecMarker("pellicle")
-hookimpl = pluggy.HookimplMarker("pellicle")
+hookspec = pluggy.HookspecMarker(GROUP)
+hookimpl = pluggy.HookimplMarker(GROUP)
 
 
 class RegisterCommand(Protocol):
@@ -55,3 +58,11 @@ def register_validations(register: Callable[[Suite], None]) -> None:
 @hookspec
 def register_commands(register: RegisterCommand) -> None:
     """Call ``register`` with the function of the command, which the entry point names."""
+
+
+def manager_of(plugin: object) -> pluggy.PluginManager:
+    """Return a manager by which the hooks of one plugin, and no other, are called."""
+    manager = pluggy.PluginManager(GROUP)
+    manager.add_hookspecs(sys.modules[__name__])
+    manager.register(plugin)
+    return manager

@@ -6,7 +6,7 @@ It imports nothing heavy: help texts are printed from command modules alone.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import Distribution, EntryPoint
@@ -19,6 +19,8 @@ GROUP = "pellicle"
 DISABLE = "PELLICLE_DISABLE_PLUGINS"
 COMMAND = "command."
 """What the names of entry points of commands begin with."""
+REMEDY = f"uninstall one, or name its distribution in {DISABLE}"
+"""What to do where several plugins claim one name."""
 _OWN = "pellicle"
 Loaded = TypeVar("Loaded")
 
@@ -64,6 +66,11 @@ class Broken:
 
     def __str__(self) -> str:
         return f"{self.origin}: {self.error}"
+
+
+def claimed_by(origins: Iterable[Origin]) -> str:
+    """Return who claims one name, in words."""
+    return f"claimed by {' and by '.join(map(str, origins))}"
 
 
 def isolated(entry: EntryPoint, load: Callable[[], Loaded]) -> Loaded | Broken:

@@ -16,14 +16,12 @@ from importlib.metadata import EntryPoint, entry_points
 from types import SimpleNamespace
 from typing import Any, Literal, TypeVar, get_args, get_origin
 
-import pluggy
-
 from . import hookspecs
 from .components import FAMILIES, Component, Prescription, Suite
 from .errors import ConfigError, PellicleError, PluginError, shown
 from .loading import OPTIONS
 from .model.messages import nearest
-from .origins import COMMAND, isolated
+from .origins import COMMAND, REMEDY, claimed_by, isolated
 from .origins import DISABLE as DISABLE
 from .origins import GROUP as GROUP
 from .origins import Broken as Broken
@@ -75,10 +73,7 @@ class Registry:
         if isinstance(type_, str) and type_ in types:
             return types[type_].component
         if owners := self.clashes.get((family, str(type_))):
-            raise PluginError(
-                f"{family} {type_!r} is claimed by {' and by '.join(map(str, owners))}; uninstall "
-                f"one, or name its distribution in {DISABLE}"
-            )
+            raise PluginError(f"{family} {type_!r} is {claimed_by(owners)}; {REMEDY}")
         for broken in self.broken:
             if broken.origin.entry_point == f"{family}.{type_}":
                 raise PluginError(f"{family} {type_!r} is broken: {broken}")
@@ -244,10 +239,8 @@ def _call_hooks(
     PluginError
         The plugin, or one of its components, breaks a rule.
     """
-    manager = pluggy.PluginManager(GROUP)
-    manager.add_hookspecs(hookspecs)
     plugin = _plugin_of(entry.load())
-    manager.register(plugin)
+    manager = hookspecs.manager_of(plugin)
     hooks = ["register_components", "register_validations", "register_commands"]
     implemented = [caller.name for caller in manager.get_hookcallers(plugin) or ()]
     if not implemented:

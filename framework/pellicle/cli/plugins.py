@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from pellicle.commands import commands, file_models, typer_command
-from pellicle.origins import Broken, Origin
+from pellicle.origins import Broken, Origin, claimed_by
 
 from .printing import echo, print_json, print_table
 
@@ -61,7 +61,7 @@ def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = 
             "entry_point": f"{family}.{type_}",
             "origin": ", ".join(owner.distribution for owner in owners),
             "version": ", ".join(owner.version for owner in owners),
-            "error": f"claimed by {' and by '.join(map(str, owners))}",
+            "error": claimed_by(owners),
         }
         for (family, type_), owners in clashes.items()
     ]
