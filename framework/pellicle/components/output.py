@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from fnmatch import fnmatchcase
 from itertools import product
 from pathlib import Path
@@ -29,9 +29,6 @@ class Output(Component):
 
     family: ClassVar[str] = "output"
     place: ClassVar[str] = "outputs[]"
-    replaced_methods: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("open", "close", "study", "endings", "resume"), "write(runs, stem)"
-    )
     scope: ClassVar[Literal["run", "study", "both"]] = "both"
     """Whether the output can show a run, a study or both.
 
