@@ -86,15 +86,7 @@ def stem_of(output: Output, stem: Path) -> Path:
 
 
 def refuse_shared_files(outputs: Sequence[Output], *, of_study: bool = False) -> None:
-    """Refuse outputs that would write the same file, or one that the framework writes itself.
-
-    Raises
-    ------
-    ConfigError
-        Two would write one file; the message names both and the field to change.
-    PluginError
-        The suffixes of an output are not a tuple of texts.
-    """
+    """Refuse outputs that would write the same file, or one that the framework writes itself."""
     for index, output in enumerate(outputs):
         if of_study and output.scope != "run":
             name, owner, reserved = "study", "the table of the study", [".h5", ".csv"]

@@ -32,11 +32,6 @@ def check_indenter(indenter: Indenter, grid: Grid | None = None) -> None:
     grid
         Points that suit the indenter, the lowest point among them; 13 × 11 on 1.3 mm × 1.1 mm if
         None.
-
-    Raises
-    ------
-    AssertionError
-        A rule is broken; the message states the rule and the violation.
     """
     check(indenter, "indenter", RULES, grid or Grid(points=[13, 11], size=["1.3 mm", "1.1 mm"]))
 
@@ -134,14 +129,7 @@ def _force_curve(indenter: HasForceCurve, depth: Array, length: float) -> ForceC
 def run_converges(indenter: Indenter, grid: Grid) -> None:
     """Pressed into a half-space, the indenter makes contact and the run converges."""
     depth = 0.01 * _range(indenter.profile(*grid.coordinates())) or 0.01 * min(grid.size)
-    dataset = solved(
-        {
-            "grid": grid,
-            "kernel": {"type": "half_space", "reduced_modulus": 1e4},
-            "indenter": indenter,
-            "loading": {"depth": depth},
-        }
-    )
+    dataset = solved(grid=grid, indenter=indenter, loading={"depth": depth})
     require(dataset["force"].item() > 0, f"no contact at a depth of {depth:g} m")
 
 

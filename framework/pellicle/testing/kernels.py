@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle.checks import read_only
 from pellicle.components import HasRelaxation, Kernel
 from pellicle.components.calls import branches_of
 from pellicle.grid import Grid
@@ -15,11 +16,13 @@ from pellicle.numerics.kernel_calls import HasClosedForm, mean_compliance
 from pellicle.numerics.operators import displacement
 
 from .component import check
-from .rules import Rule, require, require_close
+from .rules import Rule, require, require_close, require_pure, require_vectorised
 from .runs import solved
 
 _WIDTH = 1e-4
 """Width w of the Gaussian pressure exp(−r²/2w²) [m]."""
+_WAVES = read_only(np.geomspace(1.0, 1e9, 24))
+"""Wavenumbers q [rad/m]."""
 _FORMS = ("greens_function", "radial_primitive")
 
 
@@ -31,42 +34,18 @@ def check_kernel(kernel: Kernel) -> None:
     has one, agrees with it; so do the operators of both boundaries; a small indentation converges
     on both. A kernel with ``branches`` has valid ones, and its ``scaled`` kernels are those of a
     stiffer or softer solid under the same skin; the indentation is then that of ``scaled(1)``.
-
-    Raises
-    ------
-    AssertionError
-        A rule is broken; the message states the rule and the violation.
     """
     check(kernel, "kernel", RULES)
 
 
-def _wavenumbers() -> Array:
-    return np.geomspace(1.0, 1e9, 24)
-
-
 def compliance_is_vectorised(kernel: Kernel) -> None:
     """compliance(q) is a float array of the shape of q; each value depends on its own q only."""
-    single = [np.ravel(kernel.compliance(_wavenumbers()[i : i + 1]))[0] for i in range(24)]
-    for shape in ((24,), (4, 6), (2, 3, 4)):
-        values = kernel.compliance(_wavenumbers().reshape(shape))
-        require(
-            isinstance(values, np.ndarray) and values.dtype == np.float64,
-            f"compliance(q) is {type(values).__name__} of {getattr(values, 'dtype', 'no')} dtype",
-        )
-        require_close(
-            values,
-            np.reshape(single, shape),
-            f"compliance of q of shape {shape}",
-            relative=1e-12,
-        )
+    require_vectorised(kernel.compliance, _WAVES, "compliance(q)", relative=1e-12)
 
 
 def compliance_leaves_its_argument(kernel: Kernel) -> None:
     """A kernel is pure: it does not change q, and a second call returns the same."""
-    q = _wavenumbers()
-    first = np.array(kernel.compliance(q))
-    require_close(q, _wavenumbers(), "after compliance(q), q")
-    require_close(kernel.compliance(q), first, "the second compliance(q)")
+    require_pure(kernel.compliance, _WAVES, "compliance(q)")
 
 
 def compliance_is_positive_and_finite(kernel: Kernel) -> None:
@@ -127,14 +106,8 @@ def _indent(kernel: Kernel, boundary: str) -> None:
     # A run of a kernel that relaxes would need times.
     if isinstance(kernel, HasRelaxation):
         kernel = kernel.scaled(1.0)
-    solved(
-        {
-            "grid": {"points": 24, "size": "1 mm", "boundary": boundary},
-            "kernel": kernel,
-            "indenter": {"type": "paraboloid", "radius": "1 mm"},
-            "loading": {"depth": ["5 um", "20 um"]},
-        }
-    )
+    grid = {"points": 24, "size": "1 mm", "boundary": boundary}
+    solved(grid=grid, kernel=kernel, loading={"depth": ["5 um", "20 um"]})
 
 
 def closed_form_is_whole(kernel: Kernel) -> None:
@@ -147,9 +120,7 @@ def closed_form_leaves_its_argument(kernel: Kernel) -> None:
     """greens_function(r) and radial_primitive(r) do not change r."""
     for name in _FORMS:
         if method := getattr(kernel, name, None):
-            r = np.geomspace(1e-6, 1.0, 9)
-            method(r)
-            require_close(r, np.geomspace(1e-6, 1.0, 9), f"after {name}(r), r")
+            require_pure(method, np.geomspace(1e-6, 1.0, 9), f"{name}(r)")
 
 
 def primitive_is_the_integral_of_the_closed_form(kernel: Kernel) -> None:
@@ -246,8 +217,8 @@ def scaled_by_one_is_the_kernel(kernel: Kernel) -> None:
     elastic = kernel.scaled(1.0)
     require(not branches_of(elastic), f"scaled(1) has the branches {branches_of(elastic)}")
     require_close(
-        elastic.compliance(_wavenumbers()),
-        kernel.compliance(_wavenumbers()),
+        elastic.compliance(_WAVES),
+        kernel.compliance(_WAVES),
         "the compliance [m/Pa] of scaled(1)",
         relative=1e-12,
     )
@@ -262,7 +233,7 @@ def scaled_stiffens_the_solid_alone(kernel: Kernel) -> None:
     """The stiffness of scaled(share) is 1/G + (share − 1)/G₀, with G₀ of without_skin()."""
     if not isinstance(kernel, HasRelaxation):
         return
-    q = _wavenumbers()
+    q = _WAVES
     whole, solid = 1 / kernel.compliance(q), 1 / kernel.without_skin().compliance(q)
     for share in (0.01, 0.5, 3.0):
         require_close(
@@ -286,8 +257,8 @@ def without_skin_has_no_skin(kernel: Kernel) -> None:
         branches_of(solid) == branches_of(kernel), "without_skin() relaxes as another kernel does"
     )
     require_close(
-        solid.without_skin().compliance(_wavenumbers()),
-        solid.compliance(_wavenumbers()),
+        solid.without_skin().compliance(_WAVES),
+        solid.compliance(_WAVES),
         "the compliance [m/Pa] of without_skin().without_skin()",
         relative=1e-12,
     )

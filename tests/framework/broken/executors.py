@@ -25,8 +25,6 @@ class Executor(pl.Executor):
             return work(task, say)
         except Exception as error:
             return error
-        except SystemExit as error:
-            return RuntimeError(str(error))
 
 
 def _study(executor: Any, folder: Path) -> str:
@@ -62,13 +60,6 @@ def twice(f: Any, work: Any, task: Any, say: Any) -> Any:
 def fragile(f: Any, work: Any, tasks: Any, report: Any) -> Iterator[Any]:
     with ThreadPoolExecutor(len(tasks)):
         yield from f(work, tasks, report)
-
-
-def leaving(f: Any, work: Any, task: Any, say: Any) -> Any:
-    try:
-        return work(task, say)
-    except Exception as error:
-        return error
 
 
 def swallowing(f: Any, work: Any, task: Any, say: Any) -> Any:
@@ -136,7 +127,6 @@ BROKEN: dict[str, Any] = {
         ),
         Broken("lets exceptions out", CALM, attempt=lambda f, work, task, say: work(task, say)),
     ],
-    "exit_is_an_outcome": Broken("lets an exit out", CALM, attempt=leaving),
     "messages_are_reported": Broken(
         "reports everything for the first task",
         Taken("a bar that is wrong is no wrong number"),

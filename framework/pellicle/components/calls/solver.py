@@ -23,13 +23,7 @@ from pellicle.numerics.solution import Solution, State, Stop
 
 
 def check_solver(solver: Solver, problem: Problem) -> None:
-    """Let a solver refuse a problem.
-
-    Raises
-    ------
-    ConfigError
-        The solver cannot solve the problem.
-    """
+    """Let a solver refuse a problem."""
     with errors_attributed_to(solver):
         reason = solver.refuses(problem)
     if reason:
@@ -42,13 +36,6 @@ def solution_of(
     """Return the solution of a load step, with a copy of its pressure.
 
     A negative or non-finite pressure is accepted here; the status of the step reports it.
-
-    Raises
-    ------
-    ConfigError
-        The solver refuses the problem.
-    PluginError
-        The solver does not return a `Solution` of the grid's shape, or changes the problem.
     """
     check_solver(solver, problem)
     adheres = problem.law is not None
@@ -115,13 +102,7 @@ def _in_contact(state: State | Array | None) -> bool:
 
 
 def response_of(solver: Solver, problem: Problem, state: State, monitor: Monitor) -> Array:
-    """Return dp/dδ [Pa/m] with the contact of ``state`` fixed.
-
-    Raises
-    ------
-    PluginError
-        The result is not an array of the grid's shape, or not 0 off the contact.
-    """
+    """Return dp/dδ [Pa/m] with the contact of ``state`` fixed."""
     view, parts = _read_only_problem(problem), problem.operator.parts()
     with errors_attributed_to(solver):
         value = solver.response(view, _read_only_state(state), monitor)
