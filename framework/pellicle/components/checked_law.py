@@ -66,7 +66,6 @@ def law_of(interaction: Interaction, kernel: Kernel, grid: Grid) -> Law:
             "rounding error of that; give a longer range or, for adhesion of no range, jkr",
             "interaction",
         )
-    # Laws of packages written before it lack the attribute.
     return Law(law, resolve, averaged=bool(getattr(law.law, "averaged", False)))
 
 

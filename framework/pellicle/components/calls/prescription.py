@@ -50,7 +50,17 @@ def target_of(prescription: Prescription, setting: Setting, value: float) -> Dep
             f"{name}: {call} returned {shown(target)}; it has to return a pellicle.Depth, Force "
             "or Search"
         )
-    _check_numbers(prescription, setting, target, call)
+    for field in ("value", "compliance", "goal", "resolution", "width", "guess"):
+        number = getattr(target, field, None)
+        if number is None:
+            continue
+        number = real_number(prescription, f"{call}.{field}", number)
+        signed = field in ("goal", "guess") or (
+            field == "value" and (isinstance(target, Depth) or setting.law is not None)
+        )
+        if not np.isfinite(number) or (number < 0 and not signed):
+            allowed = "finite" if signed else "finite and ≥ 0"
+            raise PluginError(f"{name}: {call}.{field} is {number:g}; it has to be {allowed}")
     if not isinstance(target, Search):
         return target
     quantity = target.measure
@@ -64,26 +74,6 @@ def target_of(prescription: Prescription, setting: Setting, value: float) -> Dep
             return real_number(prescription, f"{call}.measure(step)", quantity(step))
 
     return replace(target, measure=measure)
-
-
-def _check_numbers(
-    prescription: Prescription, setting: Setting, target: Depth | Force | Search, call: str
-) -> None:
-    """Refuse a target whose numbers are not finite, or negative where they have no sign."""
-    for field in ("value", "compliance", "goal", "resolution", "width", "guess"):
-        number = getattr(target, field, None)
-        if number is None:
-            continue
-        number = real_number(prescription, f"{call}.{field}", number)
-        signed = field in ("goal", "guess") or (
-            field == "value" and (isinstance(target, Depth) or setting.law is not None)
-        )
-        if not np.isfinite(number) or (number < 0 and not signed):
-            allowed = "finite" if signed else "finite and ≥ 0"
-            raise PluginError(
-                f"{component_name(prescription)}: {call}.{field} is {number:g}; it has to be "
-                f"{allowed}"
-            )
 
 
 def report_of(prescription: Prescription, setting: Setting, step: Equilibrium) -> dict[str, float]:

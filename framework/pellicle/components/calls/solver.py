@@ -41,33 +41,22 @@ def solution_of(
     adheres = problem.law is not None
     sticks = adheres and start is not None and start.is_loaded
     if not problem.needs_solving and not sticks:
-        return _solution_without_load(problem)
-    value = _solve(solver, problem, start, monitor)
+        nothing = np.zeros(problem.grid.shape)
+        if not adheres:
+            return Solution(nothing, 0, Stop.DONE)
+        stop = Stop.DONE if problem.prescribed == "depth" else Stop.PULLED_OFF
+        return Solution(State(nothing, nothing, problem.depth(np.zeros(1))), 0, stop)
+    view, parts = _read_only_problem(problem), problem.operator.parts()
+    fields = dict(vars(view))
+    with errors_attributed_to(solver):
+        value = solver.solve(view, None if start is None else _read_only_state(start), monitor)
+    _require_unchanged(solver, "solve()", fields, dict(vars(view)), "problem")
+    _require_unchanged(solver, "solve()", parts, problem.operator.parts(), "problem.operator")
     state = _checked_state(solver, problem, value)
     jumped = bool(value.jumped) or (adheres and _in_contact(state) != _in_contact(start))
     return Solution(
         state, int(value.iterations), value.stop, jumped, adheres and bool(value.extrapolated)
     )
-
-
-def _solution_without_load(problem: Problem) -> Solution:
-    """Return the solution of a step at which nothing touches."""
-    nothing = np.zeros(problem.grid.shape)
-    if problem.law is None:
-        return Solution(nothing, 0, Stop.DONE)
-    stop = Stop.DONE if problem.prescribed == "depth" else Stop.PULLED_OFF
-    return Solution(State(nothing, nothing, problem.depth(np.zeros(1))), 0, stop)
-
-
-def _solve(solver: Solver, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
-    """Return what a solver returns for a problem that it cannot change."""
-    view = _read_only_problem(problem)
-    fields, parts = dict(vars(view)), problem.operator.parts()
-    with errors_attributed_to(solver):
-        value = solver.solve(view, None if start is None else _read_only_state(start), monitor)
-    _require_unchanged(solver, "solve()", fields, dict(vars(view)), "problem")
-    _require_unchanged(solver, "solve()", parts, problem.operator.parts(), "problem.operator")
-    return value
 
 
 def _checked_state(solver: Solver, problem: Problem, value: object) -> State | Array:
