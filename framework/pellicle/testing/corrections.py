@@ -9,7 +9,7 @@ from pellicle.checks import real_number
 from pellicle.components import AreaCorrection
 
 from .component import check
-from .rules import Rule, require, require_close
+from .rules import require, require_close, rules_of
 from .runs import solved
 
 _SPACING = (2e-6, 3e-6)
@@ -25,7 +25,7 @@ def check_correction(correction: AreaCorrection) -> None:
     ``periodic_area`` does not depend on where the edge of the domain lies; and the area goes into
     the result of a run.
     """
-    check(correction, "correction", RULES)
+    check(correction, "correction", rules_of(__name__))
 
 
 def _islands() -> Mask:
@@ -115,15 +115,3 @@ def goes_into_the_result(correction: AreaCorrection) -> None:
     dataset = solved(loading={"depth": "50 um"}, corrections=[correction])
     area = dataset[f"contact_area_{correction.type_name}"].item()
     require(area > 0, f"{area:g} m² for {dataset['contact_area'].item():g} m² of cells")
-
-
-RULES: list[Rule] = [
-    area_is_pure,
-    no_contact_has_no_area,
-    full_contact_is_the_domain,
-    area_is_near_the_count,
-    area_scales_with_the_cells,
-    area_does_not_depend_on_the_view,
-    periodic_area_has_no_seam,
-    goes_into_the_result,
-]

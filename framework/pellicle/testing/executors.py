@@ -17,7 +17,7 @@ from uuid import uuid4
 from pellicle.components import Executor, Say
 
 from .component import check
-from .rules import Rule, require
+from .rules import require, rules_of
 from .runs import ignore
 
 _TASKS = 7
@@ -33,7 +33,7 @@ def check_executor(executor: Executor) -> None:
     ``report`` receives the messages of the work with their task, in the calling thread; and if the
     iterator is closed early, no task continues.
     """
-    check(executor, "executor", RULES)
+    check(executor, "executor", rules_of(__name__))
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Chore:
         return f"chore {self.number}"
 
 
-def work(task: Chore, say: Say) -> int:
+def _work(task: Chore, say: Say) -> int:
     """Send two messages, leave two files if the task has a folder; return its number squared."""
     say(("begun", task.number))
     say(("nearly done", task.number))
@@ -64,14 +64,14 @@ def work(task: Chore, say: Say) -> int:
     return task.number**2
 
 
-def fail_third(task: Chore, say: Say) -> int:
+def _fail_third(task: Chore, say: Say) -> int:
     """Raise in the third task."""
     if task.number == 3:
         raise ValueError("the third task is bad")
     return task.number**2
 
 
-def die_third(task: Chore, say: Say) -> int:
+def _die_third(task: Chore, say: Say) -> int:
     """End the process of the third task, unless it is the one that must not die."""
     if task.number == 3:
         if os.getpid() != task.home:
@@ -128,7 +128,7 @@ def _observed(executor: Executor) -> Observations:
 
     with TemporaryDirectory() as folder:
         tasks, equal = _chores(folder=folder), [Chore(8), Chore(8)]
-        pairs = list(executor.map(work, [*tasks, *equal], report))
+        pairs = list(executor.map(_work, [*tasks, *equal], report))
         return Observations(tasks, equal, pairs, messages, callers, os.listdir(folder))
 
 
@@ -156,25 +156,18 @@ def equal_tasks_are_two_tasks(executor: Executor) -> None:
 def no_tasks_yield_nothing(executor: Executor) -> None:
     """Without tasks map() yields nothing."""
     none: list[Chore] = []
-    pairs = list(executor.map(work, none, ignore))
+    pairs = list(executor.map(_work, none, ignore))
     require(not pairs, f"{pairs}")
 
 
 def failure_is_an_outcome(executor: Executor) -> None:
     """An exception of work is yielded unchanged as its task's outcome, and stops no other task."""
     tasks = _chores()
-    bad = _require_squares(tasks, list(executor.map(fail_third, tasks, ignore)), but=3)[3]
+    bad = _require_squares(tasks, list(executor.map(_fail_third, tasks, ignore)), but=3)[3]
     require(
         isinstance(bad, ValueError) and str(bad) == "the third task is bad",
         f"for ValueError('the third task is bad') task 3 comes with {bad!r}",
     )
-
-
-def death_of_a_worker_is_an_outcome(executor: Executor) -> None:
-    """A task that ends its worker process comes with an exception, and stops no other task."""
-    tasks = _chores(home=os.getpid())
-    bad = _require_squares(tasks, list(executor.map(die_third, tasks, ignore)), but=3)[3]
-    require(isinstance(bad, Exception), f"task 3 comes with {bad!r}")
 
 
 def messages_are_reported(executor: Executor) -> None:
@@ -202,7 +195,7 @@ def report_that_raises_ends_the_tasks(executor: Executor) -> None:
         raise KeyboardInterrupt
 
     try:
-        list(executor.map(work, _chores(), report))
+        list(executor.map(_work, _chores(), report))
     except KeyboardInterrupt:
         return
     require(not messages, "KeyboardInterrupt raised by report does not come out of map()")
@@ -211,7 +204,7 @@ def report_that_raises_ends_the_tasks(executor: Executor) -> None:
 def nothing_goes_on_after_closing(executor: Executor) -> None:
     """After the iterator is closed early, no task continues or begins."""
     with TemporaryDirectory() as folder:
-        running = executor.map(work, _chores(folder=folder), ignore)
+        running = executor.map(_work, _chores(folder=folder), ignore)
         list(islice(running, 1))
         close = getattr(running, "close", None)
         require(close is not None, "map() returns an iterator without close(); write it with yield")
@@ -223,14 +216,8 @@ def nothing_goes_on_after_closing(executor: Executor) -> None:
         require(not later, f"after close(): {', '.join(later)}")
 
 
-RULES: list[Rule] = [
-    each_task_comes_once_with_its_outcome,
-    each_task_is_executed_once,
-    equal_tasks_are_two_tasks,
-    no_tasks_yield_nothing,
-    failure_is_an_outcome,
-    messages_are_reported,
-    report_that_raises_ends_the_tasks,
-    nothing_goes_on_after_closing,
-    death_of_a_worker_is_an_outcome,
-]
+def death_of_a_worker_is_an_outcome(executor: Executor) -> None:
+    """A task that ends its worker process comes with an exception, and stops no other task."""
+    tasks = _chores(home=os.getpid())
+    bad = _require_squares(tasks, list(executor.map(_die_third, tasks, ignore)), but=3)[3]
+    require(isinstance(bad, Exception), f"task 3 comes with {bad!r}")

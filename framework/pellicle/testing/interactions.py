@@ -14,7 +14,7 @@ from pellicle.numerics.gap_law import GapLaw
 from pellicle.plugins import registry
 
 from .component import check
-from .rules import Rule, require, require_close, require_pure, require_vectorised
+from .rules import require, require_close, require_pure, require_vectorised, rules_of
 from .runs import solved
 
 _ROUNDING = 1e-12
@@ -34,7 +34,7 @@ def check_interaction(interaction: Interaction) -> None:
     the traction; what `resolved` returns does the same with the same work of adhesion w on every
     grid; a rigid sphere is pulled by 2πwR; and a small run under a pulling force converges.
     """
-    check(interaction, "interaction", RULES)
+    check(interaction, "interaction", rules_of(__name__))
 
 
 def _work(law: GapLaw) -> float:
@@ -105,6 +105,15 @@ def closed_gap_attracts(interaction: Interaction) -> None:
         require(_traction(law) < 0, f"traction(0) of {name} is {_traction(law):g} Pa")
 
 
+def values_are_finite(interaction: Interaction) -> None:
+    """Energy, traction and slope are finite from a closed gap to the cutoff."""
+    for name, law, function in _functions(interaction):
+        gaps = _gaps(law)
+        values = function(gaps)
+        for bad in np.flatnonzero(~np.isfinite(values)):
+            raise AssertionError(f"{name} is {values[bad]} at {gaps[bad]:g} m")
+
+
 def values_are_vectorised(interaction: Interaction) -> None:
     """Each function of the gap is a float array of its shape; a value depends on its gap only."""
     for name, law, function in _functions(interaction):
@@ -115,15 +124,6 @@ def functions_leave_their_argument(interaction: Interaction) -> None:
     """An interaction is pure: it does not change the gap, and a second call returns the same."""
     for name, law, function in _functions(interaction):
         require_pure(function, _gaps(law), name)
-
-
-def values_are_finite(interaction: Interaction) -> None:
-    """Energy, traction and slope are finite from a closed gap to the cutoff."""
-    for name, law, function in _functions(interaction):
-        gaps = _gaps(law)
-        values = function(gaps)
-        for bad in np.flatnonzero(~np.isfinite(values)):
-            raise AssertionError(f"{name} is {values[bad]} at {gaps[bad]:g} m")
 
 
 def energy_rises_to_nothing(interaction: Interaction) -> None:
@@ -147,6 +147,20 @@ def attraction_falls_with_the_gap(interaction: Interaction) -> None:
         require(fall >= -_ROUNDING * strength, f"traction of {name} falls by {-fall:g} Pa")
         most = float(traction.max())
         require(most <= 0, f"traction of {name} is {most:g} Pa, which repels")
+
+
+def rigid_sphere_is_pulled_by_2_pi_w_r(interaction: Interaction) -> None:
+    """The traction on a rigid paraboloid that touches a rigid plane adds up to 2πwR (Bradley 1932).
+
+    It is added over rings of equal width.
+    """
+    for name, law in _laws(interaction):
+        radii = np.linspace(0.0, float(np.sqrt(2 * _RADIUS * law.cutoff())), _RINGS)
+        density = -2 * np.pi * radii * law.traction(radii**2 / (2 * _RADIUS))
+        pull = float((0.5 * (density[1:] + density[:-1])).sum() * radii[1])
+        require_close(
+            pull, 2 * np.pi * _work(law) * _RADIUS, f"the pull [N] of {name}", relative=2 * _LEFT
+        )
 
 
 def traction_is_the_derivative_of_the_energy(interaction: Interaction) -> None:
@@ -194,20 +208,6 @@ def resolved_keeps_the_work_of_adhesion(interaction: Interaction) -> None:
     law_of(interaction, _kernel(modulus), Grid(points=16, size=size, boundary="free"))
 
 
-def rigid_sphere_is_pulled_by_2_pi_w_r(interaction: Interaction) -> None:
-    """The traction on a rigid paraboloid that touches a rigid plane adds up to 2πwR (Bradley 1932).
-
-    It is added over rings of equal width.
-    """
-    for name, law in _laws(interaction):
-        radii = np.linspace(0.0, float(np.sqrt(2 * _RADIUS * law.cutoff())), _RINGS)
-        density = -2 * np.pi * radii * law.traction(radii**2 / (2 * _RADIUS))
-        pull = float((0.5 * (density[1:] + density[:-1])).sum() * radii[1])
-        require_close(
-            pull, 2 * np.pi * _work(law) * _RADIUS, f"the pull [N] of {name}", relative=2 * _LEFT
-        )
-
-
 def run_under_a_pull_converges(interaction: Interaction) -> None:
     """A sphere that is pressed, and then pulled by 0.5πwR, stays in contact; the run converges."""
     modulus, size = _sizes(interaction)
@@ -222,19 +222,3 @@ def run_under_a_pull_converges(interaction: Interaction) -> None:
     require_close(data["force"], [0.1 * unit, -0.5 * unit], "the force [N]", relative=1e-4)
     areas = data["contact_area"].values
     require(bool(areas[0] > areas[1] > 0), f"the contact areas are {areas} m²")
-
-
-RULES: list[Rule] = [
-    cutoff_is_a_length,
-    closed_gap_attracts,
-    values_are_finite,
-    values_are_vectorised,
-    functions_leave_their_argument,
-    energy_rises_to_nothing,
-    attraction_falls_with_the_gap,
-    rigid_sphere_is_pulled_by_2_pi_w_r,
-    traction_is_the_derivative_of_the_energy,
-    slope_is_the_derivative_of_the_traction,
-    resolved_keeps_the_work_of_adhesion,
-    run_under_a_pull_converges,
-]

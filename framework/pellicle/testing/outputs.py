@@ -26,7 +26,7 @@ from pellicle.runs.runner import execute, solve
 from pellicle.studies import runner as studies
 
 from .component import check
-from .rules import Rule, require
+from .rules import require, rules_of
 from .runs import PARABOLOID
 
 _STEPS = 2
@@ -48,7 +48,7 @@ def check_output(output: Output) -> None:
     its `suffixes`, also if a run is interrupted and repeated; an output of scope ``"run"`` shows
     every step; and it works in the runs and studies of its scope.
     """
-    check(output, "output", RULES)
+    check(output, "output", rules_of(__name__))
 
 
 @cache
@@ -171,12 +171,3 @@ def works_in_a_study(output: Output) -> None:
         statuses = {*result.table["status"].values.ravel()}
         require(all(path.is_file() for path in result.files), f"files {result.files}")
         require(bool(result.table["converged"].all()), f"the runs end as {statuses}")
-
-
-RULES: list[Rule] = [
-    leaves_its_data_as_they_are,
-    leaves_the_files_it_returns,
-    loses_no_step,
-    works_in_a_run,
-    works_in_a_study,
-]

@@ -22,7 +22,7 @@ from pellicle.runs.compose import compose
 from pellicle.runs.target_search import reach
 
 from .component import check
-from .rules import Rule, require, require_close
+from .rules import require, require_close, rules_of
 from .runs import HALF_SPACE, ROUGH, ignore
 
 # A contact area of whole cells misses its value by more than other quantities do.
@@ -46,7 +46,7 @@ def check_prescription(prescription: Prescription, values: Sequence[float] = ())
         The prescribed quantity [its unit] under these two forces. They can be left out if a result
         has a variable named like the prescription's type, for example from ``report``.
     """
-    check(prescription, "prescription", RULES, tuple(values))
+    check(prescription, "prescription", rules_of(__name__), tuple(values))
 
 
 @cache
@@ -145,12 +145,3 @@ def step_has_what_is_prescribed(prescription: Prescription, values: Sequence[flo
         again = _value(prescription, step)
         if again is not None:
             require_close(again, value, f"{prescription.type_name} prescribed", relative=_NEAR)
-
-
-RULES: list[Rule] = [
-    report_is_as_declared,
-    target_is_pure,
-    values_are_refused_in_words,
-    search_does_not_fall,
-    step_has_what_is_prescribed,
-]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import sys
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -13,6 +14,17 @@ from pellicle.arrays import Array
 
 Rule = Callable[..., None]
 """A function of a component that raises if the component breaks the rule in its docstring."""
+
+
+def rules_of(module: str) -> list[Rule]:
+    """Return the rules of a module, which are all of its public functions, in their order."""
+    return [
+        value
+        for name, value in vars(sys.modules[module]).items()
+        if inspect.isfunction(value)
+        and value.__module__ == module
+        and not name.startswith(("_", "check_"))
+    ]
 
 
 def keep(rules: Iterable[Rule], component: Any, *arguments: Any) -> None:

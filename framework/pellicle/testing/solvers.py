@@ -18,7 +18,7 @@ from pellicle.numerics.problem import Depth, Force, Problem
 from pellicle.numerics.solution import State, Stop
 
 from .component import check
-from .rules import Rule, require, require_close
+from .rules import require, require_close, rules_of
 from .runs import PARABOLOID, ROUGH, ignore, solved
 
 _SKIN = {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 1.0}
@@ -55,7 +55,7 @@ def check_solver(solver: Solver) -> None:
     of stiffness; arguments are unchanged; the monitor is called; ``response`` is that of a flat
     punch; and the ``residual`` of an iterative solver has no side effect.
     """
-    check(solver, "solver", RULES)
+    check(solver, "solver", rules_of(__name__))
 
 
 def _solve(problem: dict[str, Any], solver: Solver, prescribed: str, *values: float) -> xr.Dataset:
@@ -109,40 +109,6 @@ def done_means_solved(solver: Solver) -> None:
         require(solution.stop is not Stop.DONE or residual <= solver.tolerance, what)
 
 
-def prescribed_values_are_met(solver: Solver) -> None:
-    """Pressure, gap and load meet the tolerance, for depth, force and mean pressure."""
-    for case, (_, prescribed, value) in enumerate(_CASES):
-        result = _from_scratch(solver, case)[prescribed].item()
-        require_close(result, value, f"the {prescribed}", relative=solver.tolerance)
-
-
-def start_does_not_matter(solver: Solver) -> None:
-    """Loaded from below or unloaded from above, a step ends where it ends from scratch."""
-    for case, (problem, prescribed, value) in enumerate(_CASES):
-        for before in (0.3, 2.0):
-            after = _solve(problem, solver, prescribed, before * value, value)
-            _require_same_pressure(after, case, 1.0, solver, f"after {before:g} times the load")
-
-
-def pressure_is_proportional_to_the_stiffness(solver: Solver) -> None:
-    """Modulus and tension twice as high double the pressure and leave the shape."""
-    for case, (problem, prescribed, value) in enumerate(_CASES):
-        kernel = {key: v if key == "type" else 2 * v for key, v in problem["kernel"].items()}
-        load = value if prescribed == "depth" else 2 * value
-        doubled = _solve(problem | {"kernel": kernel}, solver, prescribed, load)
-        _require_same_pressure(doubled, case, 2.0, solver, "of twice the stiffness")
-
-
-def _require_same_pressure(
-    result: xr.Dataset, case: int, factor: float, solver: Solver, what: str
-) -> None:
-    pressure = factor * _from_scratch(solver, case)["pressure"].values
-    allowed = _CONDITION * solver.tolerance * float(pressure.max())
-    require_close(
-        result["pressure"].values, pressure, f"the pressure [Pa] {what}", absolute=allowed
-    )
-
-
 def start_belongs_to_the_caller(solver: Solver) -> None:
     """solve() changes neither the start nor the profile, and returns another array."""
     for problem in _problems():
@@ -153,19 +119,6 @@ def start_belongs_to_the_caller(solver: Solver) -> None:
         require(np.array_equal(profile, problem.profile), "solve() changes problem.profile")
         shared = np.shares_memory(solution.pressure, pressure)
         require(not shared, "the pressure returned is the array start.pressure")
-
-
-def monitor_is_called(solver: Solver) -> None:
-    """monitor(iteration, residual / tolerance) is called, the last time with the result's."""
-    for problem in _problems():
-        calls: list[tuple[int, float]] = []
-        solution = solver.solve(problem, None, lambda *call, calls=calls: calls.append(call))
-        require(bool(calls), "monitor is never called")
-        iterations = [iteration for iteration, _ in calls]
-        require(iterations == sorted(iterations), f"iterations {iterations}")
-        what = f"monitor ends at iteration {iterations[-1]}, the result at {solution.iterations}"
-        require(iterations[-1] == solution.iterations, what)
-        require(calls[-1][1] <= 1, f"the last residual is {calls[-1][1]:g} of the tolerance")
 
 
 def response_is_that_of_a_flat_punch(solver: Solver) -> None:
@@ -194,15 +147,48 @@ def residual_has_no_side_effect(solver: Solver) -> None:
             state = solver.step(problem, state)
 
 
-RULES: list[Rule] = [
-    solve_returns_a_solution,
-    pressure_is_nowhere_negative,
-    done_means_solved,
-    start_belongs_to_the_caller,
-    response_is_that_of_a_flat_punch,
-    residual_has_no_side_effect,
-    prescribed_values_are_met,
-    start_does_not_matter,
-    pressure_is_proportional_to_the_stiffness,
-    monitor_is_called,
-]
+def _require_same_pressure(
+    result: xr.Dataset, case: int, factor: float, solver: Solver, what: str
+) -> None:
+    pressure = factor * _from_scratch(solver, case)["pressure"].values
+    allowed = _CONDITION * solver.tolerance * float(pressure.max())
+    require_close(
+        result["pressure"].values, pressure, f"the pressure [Pa] {what}", absolute=allowed
+    )
+
+
+def prescribed_values_are_met(solver: Solver) -> None:
+    """Pressure, gap and load meet the tolerance, for depth, force and mean pressure."""
+    for case, (_, prescribed, value) in enumerate(_CASES):
+        result = _from_scratch(solver, case)[prescribed].item()
+        require_close(result, value, f"the {prescribed}", relative=solver.tolerance)
+
+
+def start_does_not_matter(solver: Solver) -> None:
+    """Loaded from below or unloaded from above, a step ends where it ends from scratch."""
+    for case, (problem, prescribed, value) in enumerate(_CASES):
+        for before in (0.3, 2.0):
+            after = _solve(problem, solver, prescribed, before * value, value)
+            _require_same_pressure(after, case, 1.0, solver, f"after {before:g} times the load")
+
+
+def pressure_is_proportional_to_the_stiffness(solver: Solver) -> None:
+    """Modulus and tension twice as high double the pressure and leave the shape."""
+    for case, (problem, prescribed, value) in enumerate(_CASES):
+        kernel = {key: v if key == "type" else 2 * v for key, v in problem["kernel"].items()}
+        load = value if prescribed == "depth" else 2 * value
+        doubled = _solve(problem | {"kernel": kernel}, solver, prescribed, load)
+        _require_same_pressure(doubled, case, 2.0, solver, "of twice the stiffness")
+
+
+def monitor_is_called(solver: Solver) -> None:
+    """monitor(iteration, residual / tolerance) is called, the last time with the result's."""
+    for problem in _problems():
+        calls: list[tuple[int, float]] = []
+        solution = solver.solve(problem, None, lambda *call, calls=calls: calls.append(call))
+        require(bool(calls), "monitor is never called")
+        iterations = [iteration for iteration, _ in calls]
+        require(iterations == sorted(iterations), f"iterations {iterations}")
+        what = f"monitor ends at iteration {iterations[-1]}, the result at {solution.iterations}"
+        require(iterations[-1] == solution.iterations, what)
+        require(calls[-1][1] <= 1, f"the last residual is {calls[-1][1]:g} of the tolerance")
