@@ -46,7 +46,7 @@ TYPE = 'type: Literal["soft"] = "soft"'
 DOCSTRING = '"""Kernel of a stranger."""'
 FIELD = 'Annotated[float, Field(description="scale of G [m/Pa]")] = 1.0'
 REGISTER = "    register(Soft)\n"
-_NO_SUITE = "@hookimpl\ndef register_validations(register):\n    register(())\n"
+SUITE = "@hookimpl\ndef register_validations(register):\n    register"
 BROKEN = {
     "raises at import": ("", "raise OSError('no library')", "OSError: no library"),
     "exits at import": ("", "raise SystemExit(3)", "SystemExit: 3"),
@@ -58,7 +58,8 @@ BROKEN = {
     "no hook": ("@hookimpl", "", "implements no hook; decorate with @pellicle.hookimpl"),
     "wrong argument": ("(register):", "(add):", "'add'"),
     "fails half-way": (REGISTER, REGISTER + "    1 / 0\n", "ZeroDivisionError"),
-    "no suite": (REGISTER, REGISTER + _NO_SUITE, "() is not a function that yields cases"),
+    "no suite": (REGISTER, f"{REGISTER}{SUITE}(())\n", "() is not a function that yields cases"),
+    "fails at last": (REGISTER, f"{REGISTER}{SUITE}(list)\n    1 / 0\n", "ZeroDivisionError"),
     "no class": ("register(Soft)", "register(Soft())", "not a subclass of pellicle.components.C"),
     "no type": (TYPE, "", "Soft needs a field: type: Literal"),
     "any text as type": (TYPE, 'type: str = "soft"', "Soft needs a field: type: Literal"),
@@ -153,11 +154,7 @@ def test_a_good_plugin_is_registered_with_its_origin(plugin: Plugin) -> None:
 def test_an_entry_point_may_name_the_class(plugin: Plugin) -> None:
     """Then the module needs no hook, and what else is in it does not count."""
     entry = plugin(SOFT.partition("@hookimpl")[0] + "class Soft2(Soft): ...\n", class_="Soft")
-    plugins = load([entry])
-    assert plugins.broken == ()
-    registered = plugins.components["kernel"]["soft"]
-    assert registered.origin == Origin("kernel.soft", "stranger", "1.2")
-    assert registered.component.__name__ == "Soft"
+    assert load([entry]).find("kernel", "soft").__name__ == "Soft"
 
 
 @pytest.mark.parametrize(
@@ -283,20 +280,22 @@ def test_commands_are_not_loaded_with_components(plugin: Plugin) -> None:
 
 
 def test_one_plugin_may_bring_several_families(plugin: Plugin) -> None:
-    """All hooks of a module are called, the one for validation suites included."""
+    """All hooks of a module are called; a package may name it once for each component in it."""
     more = SOFT.replace(REGISTER, f"{REGISTER}    register(Exact)\n") + (
         "from pellicle import AreaCorrection\n"
         "class Exact(AreaCorrection):\n"
         '    """Area of a stranger."""\n'
         '    type: Literal["exact"] = "exact"\n'
         "    def area(self, contact, spacing): return 1.0\n"
-        "@hookimpl\n"
-        "def register_validations(register): register(list)\n"
+        f"{SUITE}(list)\n"
     )
-    plugins = load([plugin(more, name="everything")])
+    first = plugin(more, name="everything")
+    second = EntryPoint("correction.exact", first.value, GROUP)
+    vars(second).update(dist=first.dist)
+    plugins = load([first, second])
     assert plugins.find("correction", "exact").__name__ == "Exact"
     assert plugins.find("kernel", "soft").__name__ == "Soft"
-    assert plugins.suites == (list,)
+    assert (plugins.suites, plugins.clashes) == ((list,), {})
 
 
 @pytest.mark.parametrize(("old", "new", "error"), BROKEN.values(), ids=BROKEN.keys())
@@ -311,7 +310,7 @@ def test_a_broken_plugin_is_named_and_nothing_of_it_registered(
     ]
     assert error in plugins.broken[0].error
     registered = [type_ for members in plugins.components.values() for type_ in members]
-    assert registered == ["half_space"]
+    assert (registered, plugins.suites) == (["half_space"], ())
 
 
 def test_a_missing_module_is_a_broken_plugin() -> None:
@@ -340,14 +339,23 @@ outputs = []
 """
 
 
-def test_a_component_that_ends_the_process_when_it_is_made_is_named(plugin: Plugin) -> None:
-    """sys.exit() in a validator of a plugin is an error that names the component."""
-    ending = SOFT.replace(
-        "    def compliance",
-        "    def model_post_init(self, _): raise SystemExit\n\n    def compliance",
+@pytest.mark.parametrize(
+    ("fault", "error", "told"),
+    [
+        ("raise SystemExit", PluginError, "kernel 'soft' calls sys.exit(None)"),
+        ("{}[0]", KeyError, "kernel 'soft' failed"),
+    ],
+)
+def test_a_component_that_cannot_be_made_is_named(
+    plugin: Plugin, fault: str, error: type[Exception], told: str
+) -> None:
+    """What a validator of a plugin raises, sys.exit() included, comes with the component's name."""
+    failing = SOFT.replace(
+        "    def comp", f"    def model_post_init(self, _): {fault}\n    def comp"
     )
-    with pytest.raises(PluginError, match=r"kernel 'soft' calls sys.exit\(None\)"):
-        load([plugin(ending)]).make(Kernel, {"type": "soft"})
+    with pytest.raises(error) as raised:
+        load([plugin(failing)]).make(Kernel, {"type": "soft"})
+    assert told in " ".join([str(raised.value), *getattr(raised.value, "__notes__", ())])
 
 
 @pytest.mark.slow
@@ -373,14 +381,6 @@ def test_what_a_component_prints_is_not_in_the_json(tmp_path: Path) -> None:
     assert "hello" in done.stderr
 
 
-def test_a_suite_is_registered_only_with_the_rest_of_its_plugin(plugin: Plugin) -> None:
-    """A plugin whose last hook fails leaves neither its components nor its suites."""
-    failing = "@hookimpl\ndef register_validations(register):\n    register(list)\n    1 / 0\n"
-    plugins = load([plugin(SOFT + failing)])
-    assert plugins.suites == ()
-    assert "soft" not in plugins.components["kernel"]
-
-
 def test_a_broken_plugin_is_an_error_when_asked_for(plugin: Plugin) -> None:
     """The message holds type, entry point, distribution, version and what went wrong."""
     plugins = load([plugin("raise OSError('no library')")])
@@ -391,24 +391,20 @@ def test_a_broken_plugin_is_an_error_when_asked_for(plugin: Plugin) -> None:
     )
 
 
-def test_a_component_that_cannot_be_made_is_named(plugin: Plugin) -> None:
-    """What a validator of a plugin raises of its own comes with the component's name."""
-    failing = SOFT.replace(
-        "    def compliance", "    def model_post_init(self, _): {}[0]\n\n    def compliance"
-    )
-    with pytest.raises(KeyError) as raised:
-        load([plugin(failing)]).make(Kernel, {"type": "soft"})
-    assert raised.value.__notes__ == ["kernel 'soft' failed"]
-
-
 def test_two_owners_of_one_name_are_both_named(plugin: Plugin) -> None:
-    """Neither of two claimants is used; asking for the name raises, other names work."""
-    plugins = load([plugin(SOFT), plugin(SOFT, distribution="rival", version="7"), *BUILT_INS])
-    with pytest.raises(PluginError, match="is claimed by") as raised:
-        plugins.find("kernel", "soft")
-    for part in ("stranger 1.2", "rival 7", "uninstall", "PELLICLE_DISABLE_PLUGINS"):
-        assert part in str(raised.value)
-    assert plugins.find("kernel", "half_space").__name__ == "HalfSpace"
+    """No claimant is used, not even our own; asking for the name raises, other names work."""
+    rivals = [plugin(SOFT), plugin(SOFT, distribution="rival", version="7")]
+    thief = plugin(SOFT.replace('"soft"', '"half_space"'), name="better")
+    plugins = load([*rivals, thief, *BUILT_INS, *entry_points(group=GROUP, name="kernel.winkler")])
+    for type_, owners in (
+        ("soft", ["stranger 1.2", "rival 7"]),
+        ("half_space", ["stranger 1.2 (entry point 'better')", "pellicle "]),
+    ):
+        with pytest.raises(PluginError, match="is claimed by") as raised:
+            plugins.find("kernel", type_)
+        for part in (*owners, "uninstall", "PELLICLE_DISABLE_PLUGINS"):
+            assert part in str(raised.value)
+    assert list(plugins.components["kernel"]) == ["winkler"]
 
 
 def test_another_version_of_a_plugin_makes_another_run(
@@ -428,29 +424,6 @@ def test_another_version_of_a_plugin_makes_another_run(
     assert first == same != other
 
 
-def test_entry_points_of_one_module_do_not_clash(plugin: Plugin) -> None:
-    """A package may name a module once for each component in it."""
-    first = plugin(SOFT + "@hookimpl\ndef register_validations(register):\n    register(list)\n")
-    second = EntryPoint("indenter.blunt", first.value, GROUP)
-    vars(second).update(dist=first.dist)
-    plugins = load([first, second])
-    assert plugins.clashes == {}
-    assert plugins.find("kernel", "soft").__name__ == "Soft"
-    assert plugins.suites == (list,)
-
-
-def test_a_built_in_cannot_be_replaced_silently(plugin: Plugin) -> None:
-    """A stranger that takes a built-in's name clashes with it."""
-    thief = plugin(SOFT.replace('"soft"', '"half_space"'), name="better")
-    plugins = load([thief, *BUILT_INS])
-    with pytest.raises(PluginError) as raised:
-        plugins.find("kernel", "half_space")
-    assert "stranger 1.2 (entry point 'better')" in str(raised.value)
-    assert "pellicle " in str(raised.value)
-    without = load([thief, *BUILT_INS], disable="stranger")
-    assert without.find("kernel", "half_space").__name__ == "HalfSpace"
-
-
 @pytest.mark.parametrize(
     "disable", ["1", "all", "my-stranger", "My_Stranger", "kernel.soft", "other, kernel.soft"]
 )
@@ -463,16 +436,11 @@ def test_strangers_are_switched_off(plugin: Plugin, disable: str) -> None:
         plugins.find("kernel", "soft")
 
 
-@pytest.mark.parametrize("disable", ["", "0", "strange", "soft"])
-def test_what_is_not_named_stays_on(plugin: Plugin, disable: str) -> None:
-    """Only whole names switch a plugin off."""
-    assert "soft" in load([plugin(SOFT)], disable).components["kernel"]
-
-
-@pytest.mark.parametrize("disable", ["1", "pellicle", "kernel.half_space"])
-def test_built_ins_stay_on(disable: str) -> None:
-    """Components of pellicle itself cannot be switched off."""
-    assert list(load(BUILT_INS, disable).components["kernel"]) == ["half_space"]
+@pytest.mark.parametrize("disable", ["", "0", "strange", "soft", "pellicle", "kernel.half_space"])
+def test_what_is_not_named_or_our_own_stays_on(plugin: Plugin, disable: str) -> None:
+    """Only whole names switch a plugin off, and none pellicle's own components."""
+    kernels = load([plugin(SOFT), *BUILT_INS], disable).components["kernel"]
+    assert kernels.keys() == {"soft", "half_space"}
 
 
 def test_a_plugin_that_is_switched_off_is_not_imported(plugin: Plugin) -> None:
