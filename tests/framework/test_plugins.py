@@ -2,23 +2,24 @@
 
 import itertools
 import json
-import os
-import subprocess
 import sys
 import tomllib
 from collections.abc import Callable
 from importlib import import_module
 from importlib.metadata import Distribution, EntryPoint, entry_points
 from pathlib import Path
+from typing import Any
 
 import pytest
 from jsonschema import Draft202012Validator
+from typer.testing import CliRunner
 
 from pellicle import ConfigError, Kernel, PluginError, Run
+from pellicle.cli.app import app
 from pellicle.components import FAMILIES
 from pellicle.config.explain import explanations, words_by_kind
 from pellicle.config.json_schema import json_schema
-from pellicle.plugins import GROUP, Broken, Origin, Registry, load
+from pellicle.plugins import GROUP, Broken, Origin, Registry, load, registry
 
 BUILT_INS = tuple(entry_points(group=GROUP, name="kernel.half_space"))
 SOFT = '''
@@ -50,11 +51,7 @@ SUITE = "@hookimpl\ndef register_validations(register):\n    register"
 BROKEN = {
     "raises at import": ("", "raise OSError('no library')", "OSError: no library"),
     "exits at import": ("", "raise SystemExit(3)", "SystemExit: 3"),
-    "hook of one family": (
-        "register_components",
-        "register_kernels",
-        "the unknown hook 'register_kernels'; did you mean 'register_components'?",
-    ),
+    "hook of one family": ("register_comp", "register_k", "; did you mean 'register_components'?"),
     "no hook": ("@hookimpl", "", "implements no hook; decorate with @pellicle.hookimpl"),
     "wrong argument": ("(register):", "(add):", "'add'"),
     "fails half-way": (REGISTER, REGISTER + "    1 / 0\n", "ZeroDivisionError"),
@@ -70,17 +67,9 @@ BROKEN = {
     "no method": ("compliance", "stiffness", "Soft lacks the method compliance"),
     "no docstring": (DOCSTRING, "", "Soft lacks a docstring"),
     "bare field": (FIELD, "float = 1.0", "Soft.scale lacks Field(description=…)"),
-    "unknown unit": (
-        "float,",
-        "float, Quantity('cubit'),",
-        "Soft.scale: Quantity('cubit') has an unknown unit",
-    ),
+    "unknown unit": ("float,", "float, Quantity('ell'),", "Soft.scale: Quantity('ell') has an unk"),
     "other family": (TYPE, TYPE + '\n    family = "x"', "Soft.family is 'x'; leave it to Kernel"),
-    "no family": (
-        "Soft(Kernel)",
-        "Soft(Component)",
-        "Soft is of no family; derive it from a base",
-    ),
+    "no family": ("Soft(Kernel)", "Soft(Component)", "Soft is of no family; derive it from a base"),
     "its own base": (
         f"Soft(Kernel):\n    {DOCSTRING}",
         f"Soft(Component):\n    {DOCSTRING}\n    family = 'x'; place = 'x'",
@@ -358,27 +347,22 @@ def test_a_component_that_cannot_be_made_is_named(
     assert told in " ".join([str(raised.value), *getattr(raised.value, "__notes__", ())])
 
 
-@pytest.mark.slow
-def test_what_a_component_prints_is_not_in_the_json(tmp_path: Path) -> None:
+def test_what_a_component_prints_is_not_in_the_json(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """`run --json` prints nothing else on standard output, whatever components print."""
-    metadata = tmp_path / "stranger-1.2.dist-info"
-    metadata.mkdir()
-    (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: stranger\nVersion: 1.2\n")
-    (metadata / "entry_points.txt").write_text("[pellicle]\nkernel.soft = stranger\n")
-    source = SOFT.replace("        return", "        print('hello')\n        return")
-    (tmp_path / "stranger.py").write_text(source)
-    (tmp_path / "a.toml").write_text(SOFT_RUN)
-    done = subprocess.run(
-        [sys.executable, "-m", "pellicle", "run", "a.toml", "--json"],
-        cwd=tmp_path,
-        env=os.environ | {"PYTHONPATH": os.pathsep.join([str(tmp_path), *filter(None, sys.path)])},
-        capture_output=True,
-        encoding="utf-8",
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
+    paraboloid: Any = registry().find("indenter", "paraboloid")
+    profile = paraboloid.profile
+
+    def printing(*given: Any) -> Any:
+        sys.stdout.write("hello")
+        return profile(*given)
+
+    monkeypatch.setattr(paraboloid, "profile", printing)
+    file = tmp_path / "a.toml"
+    file.write_text(SOFT_RUN.replace('"soft", scale', '"half_space", reduced_modulus'))
+    done = CliRunner().invoke(app, ["run", str(file), "-o", str(tmp_path), "--json"])
     assert json.loads(done.stdout)["converged"] is True
-    assert "hello" in done.stderr
 
 
 def test_a_broken_plugin_is_an_error_when_asked_for(plugin: Plugin) -> None:
@@ -448,26 +432,7 @@ def test_a_plugin_that_is_switched_off_is_not_imported(plugin: Plugin) -> None:
     assert load([plugin("raise OSError")], disable="stranger").broken == ()
 
 
-def test_an_unknown_type_gets_the_nearest_known() -> None:
-    """The message names the family, the near miss and everything that is known."""
-    with pytest.raises(ConfigError) as raised:
-        load(BUILT_INS).make(Kernel, {"type": "halfspace"})
-    assert str(raised.value) == (
-        "type: 'halfspace' is not a kernel; did you mean 'half_space'? Known: half_space"
-    )
-
-
 def test_an_unknown_type_points_to_what_is_broken(plugin: Plugin) -> None:
     """A type of a broken plugin whose entry point has another name is not a dead end."""
     with pytest.raises(ConfigError, match="1 broken: see `pellicle plugins`"):
         load([plugin("raise OSError", name="mine")]).find("kernel", "soft")
-
-
-@pytest.mark.parametrize(
-    ("given", "problem"),
-    [({}, "has no type"), ("half_space", "'half_space' is not a table"), (3, "3 is not a table")],
-)
-def test_a_component_without_a_type_is_told_the_types(given: object, problem: str) -> None:
-    """What is no table, or has no type, is answered with the known types."""
-    with pytest.raises(ConfigError, match=f"{problem}; give a table .* one of: half_space"):
-        load(BUILT_INS).make(Kernel, given)
