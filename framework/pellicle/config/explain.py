@@ -76,13 +76,6 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
         A type such as ``half_space``, also with its family as in ``kernel.half_space``.
     tables
         Further tables that have fields, by name.
-
-    Raises
-    ------
-    ConfigError
-        There is nothing of that name; the message names similar ones.
-    PluginError
-        The plugin that it is of is broken.
     """
     entries = {**tables, **_TABLES}
     name = re.sub(r"[\s-]+", "_", word.strip().strip("[]").lower())

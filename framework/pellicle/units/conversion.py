@@ -67,13 +67,7 @@ def split(text: str) -> tuple[float, str] | None:
 
 
 def one(unit: str) -> Any:
-    """Return 1 of a unit as a pint quantity in SI, whose arithmetic keeps dimensions.
-
-    Raises
-    ------
-    ValueError
-        The unit is unknown.
-    """
+    """Return 1 of a unit as a pint quantity in SI, whose arithmetic keeps dimensions."""
     if len(unit) <= _LONGEST_UNIT and _UNIT.fullmatch(unit):
         try:
             return pint_registry().Quantity(1.0, unit).to_base_units()
