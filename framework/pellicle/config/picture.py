@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pellicle.arrays import Array
 from pellicle.components.calls import profile_of
 from pellicle.units import axis_unit
 
@@ -20,24 +19,18 @@ _CELLS = 512
 """Cells along an edge up to which the indenter is drawn on the grid of the run."""
 
 
-def profile_along_x(run: Run) -> tuple[Array, Array]:
-    """Return x and the height of the indenter above its lowest point, which they cut [m].
-
-    Where there is no indenter the height is NaN.
-    """
-    nx, ny = run.grid.points
-    coarser = max(1.0, max(nx, ny) / _CELLS)
-    points = math.ceil(nx / coarser), math.ceil(ny / coarser)
-    grid = run.grid.model_copy(update={"points": points})
-    profile = profile_of(run.indenter, grid)
+def draw_indenter(axes: Axes, run: Run) -> None:
+    """Draw the indenter of a run along x, through its lowest point, above the flat surface."""
+    grid = run.grid
+    # An indenter that fills the domain, such as measured heights, is tied to its cells.
+    if max(grid.points) > _CELLS and run.indenter.footprint != "domain":
+        coarser = max(grid.points) / _CELLS
+        points = tuple(math.ceil(n / coarser) for n in grid.points)
+        grid = grid.model_copy(update={"points": points})
+    x, profile = grid.coordinates()[0][:, 0], profile_of(run.indenter, grid)
     _, lowest = np.unravel_index(np.argmax(profile), profile.shape)
     height = -profile[:, lowest]
-    return grid.coordinates()[0][:, 0], np.where(np.isfinite(height), height, np.nan)
-
-
-def draw_indenter(axes: Axes, run: Run) -> None:
-    """Draw the indenter of a run above the surface that it touches first."""
-    x, height = profile_along_x(run)
+    height[~np.isfinite(height)] = np.nan
     length, unit = axis_unit(x, "m")
     # A flat punch has no height.
     scale, height_unit = axis_unit(height, "m") if np.nanmax(height) else (length, unit)

@@ -115,11 +115,10 @@ class Study(FromFile):
 
     @model_validator(mode="after")
     def _expand(self) -> Self:
-        self._set_points()
+        self._create_runs()
         return self
 
-    def _set_points(self) -> None:
-        """Create the runs, or refuse the study."""
+    def _create_runs(self) -> None:
         self._check_axes()
         # Workers may run in another current folder.
         with paths_relative_to(None):
@@ -134,7 +133,7 @@ class Study(FromFile):
         """Return a copy with the fields of ``update``, and the runs that these describe."""
         copy = super().model_copy(update=update, deep=deep)
         if update:
-            copy._set_points()
+            copy._create_runs()
         return copy
 
     @property
@@ -174,11 +173,8 @@ class Study(FromFile):
 
     def _runs_along(self, number: int) -> list[Run]:
         """Return a run for each value along a dimension, at the first value of all others."""
-        return [
-            point.run
-            for point in self.points
-            if not any(index for other, index in enumerate(point.position) if other != number)
-        ]
+        stride = math.prod(self.shape[number + 1 :])
+        return [point.run for point in self.points[: stride * self.shape[number] : stride]]
 
     @property
     def varying(self) -> set[str]:

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     import pint
 
 NUMBER_AND_UNIT = re.compile(
-    r"([-+]?(?:nan\b|inf\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*(.*)", re.DOTALL | re.IGNORECASE
+    r"([-+]?(?:nan\b|inf(?:inity)?\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*(.*)",
+    re.DOTALL | re.IGNORECASE,
 )
 # pint computes with the numbers in a text, and never ends "Pa*9**9**9**9". So only products and
 # quotients of names reach it, each name with one small power, and no power of a parenthesis.
