@@ -19,7 +19,7 @@ def test_frozen() -> None:
     """A model cannot be changed."""
     reader = Reader(path="a.npy")
     with pytest.raises(ValueError, match="frozen"):
-        reader.path = Path("b.npy")
+        reader.path = Path("b.npy")  # type: ignore[misc]
 
 
 def test_paths_are_relative_to_the_file(tmp_path: Path) -> None:
