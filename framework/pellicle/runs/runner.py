@@ -184,7 +184,7 @@ def _written(
     run: Run, result: Result, outputs: Sequence[Output], journal: Journal
 ) -> tuple[Path, ...]:
     def runs() -> Runs:
-        return Runs.of_run(read_only_dataset(result.dataset), run.to_json(as_given=True))
+        return Runs.of_run(read_only_dataset(result.dataset), run.to_json(portable=True))
 
     return tuple(chain(*all_done([journal.close, *writers(outputs, runs, journal.stem, run)])))
 

@@ -70,4 +70,4 @@ def _planned(study: Study) -> Runs:
             .assign_attrs(configuration=run.to_json())
         )
 
-    return Runs(derive(table, study.derived, {}), last_step, study.to_json(as_given=True))
+    return Runs(derive(table, study.derived, {}), last_step, study.to_json(portable=True))

@@ -240,7 +240,7 @@ def _execute(
         whole = rows.dataset()
 
         def runs() -> Runs:
-            return Runs.of_study(read_only_dataset(whole), directory, study.to_json(as_given=True))
+            return Runs.of_study(read_only_dataset(whole), directory, study.to_json(portable=True))
 
         calls = runner.writers(outputs, runs, directory / "study", first)
         written = runner.all_done([partial(_or_warning, call, messages) for call in calls])
