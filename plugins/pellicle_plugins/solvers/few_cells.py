@@ -46,41 +46,34 @@ def solved_on_few_cells(
     cells = np.flatnonzero(may_join)
     unit = float(column[0, 0])
     system = _System(problem, column / unit, cells, unit)
-    start = with_force(problem, np.maximum(trial, 0)).ravel()[cells]
-    solution = _active_set(system, start, margin / unit)
-    if solution is None:
-        return None
-    pressure = np.zeros(trial.shape)
-    pressure.ravel()[cells] = solution
-    return pressure
-
-
-def _active_set(system: _System, pressure: Array, margin: float) -> Array | None:
-    joined = np.flatnonzero(pressure > 0)
-    remaining = _CHANGES * joined.size
-    while remaining > 0 and joined.size <= 2 * MOST_CELLS:
-        remaining -= 1
+    pressed = with_force(problem, np.maximum(trial, 0)).ravel()[cells]
+    joined = np.flatnonzero(pressed > 0)
+    for _ in range(_CHANGES * joined.size):
+        if joined.size > 2 * MOST_CELLS:
+            break
         goal = system.solve(joined)
         if goal is None:
             return None
         values, depth = goal
         if values.min(initial=1.0) > 0:
-            pressure = np.zeros_like(pressure)
-            pressure[joined] = values
+            pressed = np.zeros_like(pressed)
+            pressed[joined] = values
             gap = system.displacement(joined, values) - system.profile - depth
             gap[joined] = 0
             deepest = int(np.argmin(gap))
-            if gap[deepest] >= -margin:
+            if gap[deepest] >= -margin / unit:
+                pressure = np.zeros(trial.shape)
+                pressure.ravel()[cells] = pressed
                 return pressure
             joined = np.append(joined, deepest)
             continue
-        before = pressure[joined]
+        before = pressed[joined]
         tensile = np.flatnonzero(values <= 0)
         lengths = before[tensile] / (before[tensile] - values[tensile])
         length = float(lengths.min())
-        pressure[joined] = before + length * (values - before)
+        pressed[joined] = before + length * (values - before)
         leaving = tensile[lengths <= length]
-        pressure[joined[leaving]] = 0
+        pressed[joined[leaving]] = 0
         joined = np.delete(joined, leaving)
     return None
 
