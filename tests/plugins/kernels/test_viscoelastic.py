@@ -113,7 +113,7 @@ def test_power_law_spans_six_decades_unless_given() -> None:
 
 def coated(**fields: Any) -> Any:
     """Return a tensed skin on a solid that relaxes."""
-    return kernel_of("coated", tension="50 mN/m", substrate=viscoelastic(**fields))
+    return pl.kernel("coated", tension="50 mN/m", substrate=viscoelastic(**fields))
 
 
 @pytest.mark.parametrize("table", [HALF_SPACE, LAYER])
@@ -124,21 +124,17 @@ def test_skin_on_a_solid_that_relaxes_is_elastic(table: dict[str, Any]) -> None:
     assert kernel.without_skin() == kernel.substrate
     stiffness = 0.05 * Q**2 + 0.3 / kernel.substrate.compliance(Q)
     np.testing.assert_allclose(1 / kernel.scaled(0.3).compliance(Q), stiffness, rtol=1e-12)
-    twice = kernel_of("coated", tension="20 mN/m", substrate=kernel)
+    twice: Any = pl.kernel("coated", tension="20 mN/m", substrate=kernel)
     assert twice.without_skin() == kernel.substrate
     np.testing.assert_allclose(
         1 / twice.scaled(0.3).compliance(Q), stiffness + 0.02 * Q**2, rtol=1e-12
     )
 
 
-def kernel_of(type_: str, **fields: Any) -> Any:
-    """Return a kernel."""
-    return pl.kernel(type_, **fields)
-
-
 def test_skin_on_an_elastic_solid_has_no_branches() -> None:
     """An elastic substrate stays one."""
-    assert kernel_of("coated", tension="50 mN/m", substrate=LAYER).branches() == ()
+    elastic: Any = pl.kernel("coated", tension="50 mN/m", substrate=LAYER)
+    assert elastic.branches() == ()
 
 
 class Carried:
@@ -184,18 +180,12 @@ def test_full_contact_under_a_tensed_skin_is_exact_in_time() -> None:
             "sum to 1.1",
         ),
         ({"relaxation": [{"fraction": 0.7, "time": 0}]}, "relaxation.0.time"),
-        ({"relaxation": [{"fraction": 0.7, "time": "-1 s"}]}, "relaxation.0.time"),
-        ({"relaxation": [{"fraction": -0.1, "time": 1}]}, "relaxation.0.fraction"),
-        ({"relaxation": [{"fraction": 0.1, "time": "1 m"}]}, "is a length"),
-        ({"relaxation": []}, "relaxation"),
         ({"relaxation": None}, "neither of relaxation and power_law"),
         (
             {"relaxation": RELAXATION, "power_law": {"exponent": 0.2, "time": 1}},
             "both of relaxation and power_law",
         ),
         ({"power_law": {"exponent": 0.0, "time": 1}}, "power_law.exponent"),
-        ({"power_law": {"exponent": 1.0, "time": 1}}, "power_law.exponent"),
-        ({"power_law": {"exponent": 0.2, "time": 0}}, "power_law.time"),
         ({"power_law": {"exponent": 0.2, "time": 1, "shortest": 1e4}}, "begin before it ends"),
         (
             {"power_law": {"exponent": 0.99, "time": 1, "shortest": 1e-9, "longest": 1e6}},

@@ -4,32 +4,30 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
-from pellicle import Depth, Grid, Problem
-from pellicle.operators import make_operator
+from pellicle import Problem
+from pellicle.arrays import Array, Mask
 from pellicle_plugins.kernels.bending_skin import BendingSkin
 from pellicle_plugins.solvers import relaxation
 from pellicle_plugins.solvers.circulant_stiffness import CirculantStiffness
 from pellicle_plugins.solvers.contact_cg import InnerSolution
 from pellicle_plugins.solvers.preconditioner import Preconditioner
 from pellicle_plugins.solvers.relaxation import relaxed
+from tests.plugins.solvers.problems import make
 
-Array = NDArray[np.float64]
 SHAPE = (16, 12)
 MARGIN = 1e-6
 
 
 def plate(dx: float, dy: float, shape: tuple[int, int] = SHAPE) -> Problem:
     """Return a problem whose gap is its displacement, under a skin that nothing but bends."""
-    grid = Grid(points=shape, size=(dx * shape[0], dy * shape[1]), boundary="periodic")
-    operator = make_operator(BendingSkin(reduced_modulus=1e-12, bending=1.0), grid)
-    return Problem(grid, operator, np.zeros(shape), Depth(0.0))
+    kernel, size = BendingSkin(reduced_modulus=1e-12, bending=1.0), (dx * shape[0], dy * shape[1])
+    return make(shape, "periodic", kernel, 0.0, "depth", 0.0, size)
 
 
 def settle(
-    problem: Problem, contact: NDArray[np.bool_], inner: InnerSolution, margin: float = MARGIN
-) -> tuple[NDArray[np.bool_], Array]:
+    problem: Problem, contact: Mask, inner: InnerSolution, margin: float = MARGIN
+) -> tuple[Mask, Array]:
     """Return what `relaxed` makes of what an inner solve found on a contact."""
     on_contact = Preconditioner(problem.operator).on(contact)
     return relaxed(problem, on_contact, inner, margin)
@@ -43,7 +41,7 @@ def stiffness_matrix(problem: Problem) -> Array:
     return np.array(columns, dtype=np.float64) * stiffness.greatest
 
 
-def loaded(contact: NDArray[np.bool_], seed: int, left: float = 0.0) -> InnerSolution:
+def loaded(contact: Mask, seed: int, left: float = 0.0) -> InnerSolution:
     """Return pressures on a contact, of which one in four pulls, and a gap that is in part < 0.
 
     On the contact the gap is up to ``left``, of either sign.
