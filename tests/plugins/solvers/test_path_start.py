@@ -130,22 +130,3 @@ def test_solver_that_knows_no_extrapolation_starts_from_the_last_state() -> None
     assert start.depth == depth == path[-1].state.depth
     np.testing.assert_array_equal(pressure, path[-1].state.pressure)
     np.testing.assert_array_equal(wall, path[-1].state.wall)
-
-
-def test_resumed_path_is_the_same(tmp_path: Any) -> None:
-    """A run that goes on from its file extrapolates from the steps in it, to the same numbers."""
-    run = pl.Run(
-        title="path",
-        grid={"points": 32, "size": 1.0},
-        kernel={"type": "half_space", "reduced_modulus": 1.0},
-        indenter={"type": "paraboloid", "radius": 2.236},
-        loading={"depth": [0.06, 0.07, 0.08, 0.07]},
-        outputs=[],
-    )
-    whole = pl.run(run, directory=tmp_path / "whole", progress=False).dataset
-    (tmp_path / "part").mkdir()
-    (file,) = (tmp_path / "whole").glob("*.h5")
-    pl.Result(whole.isel(step=slice(0, 2))).save(tmp_path / "part" / file.name)
-    resumed = pl.run(run, directory=tmp_path / "part", progress=False).dataset
-    for name in ("pressure", "gap", "operator_applications"):
-        np.testing.assert_array_equal(resumed[name], whole[name], err_msg=name)

@@ -115,19 +115,6 @@ def test_what_is_right_stays() -> None:
     np.testing.assert_allclose(forces, inner.pressure, rtol=1e-6)
 
 
-@pytest.mark.parametrize("power", [-70, 70])
-def test_units_do_not_matter(power: int) -> None:
-    """Also where single precision could not hold the square of a gap."""
-    before = np.random.default_rng(7).uniform(size=SHAPE) < 0.5
-    inner = loaded(before, 7, 0.01)
-    contact, forces = settle(plate(1.0, 1.0), before, inner)
-    unit = 2.0**power
-    scaled = inner._replace(displacement=inner.displacement * unit, pressure=inner.pressure * unit)
-    contact_scaled, forces_scaled = settle(plate(1.0, 1.0), before, scaled, MARGIN * unit)
-    np.testing.assert_array_equal(contact_scaled, contact)
-    np.testing.assert_array_equal(forces_scaled, forces * unit)
-
-
 def test_turned_by_a_right_angle() -> None:
     """Along y as along x, for cells of two to three."""
     before = np.random.default_rng(7).uniform(size=SHAPE) < 0.5

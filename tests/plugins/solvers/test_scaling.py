@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle import Grid, Problem, Solver, State, Stop
+from pellicle import Problem, Solver, State, Stop
 from pellicle.arrays import Array
 from pellicle_plugins.solvers.active_set import ActiveSet
 from pellicle_plugins.solvers.conjugate_gradient import ConjugateGradient
@@ -117,22 +117,6 @@ def test_every_kernel_is_solved_in_every_unit(kernel: str, boundary: Boundary) -
         scaled = solved(case, ActiveSet(), length, modulus)
         assert abs(scaled[0] - applications) <= 3
         assert scaled[1:3] == pytest.approx((force, depth), rel=1e-6)
-
-
-@pytest.mark.parametrize("kernel", kernels(1.0, 1.0))
-@pytest.mark.parametrize("boundary", BOUNDARIES)
-@pytest.mark.filterwarnings("ignore:grid.points")
-def test_displacements_scale_as_lengths(kernel: str, boundary: Boundary) -> None:
-    """The displacement over the domain depends on the pressure over the modulus alone."""
-    pressure = np.random.default_rng(0).uniform(size=(POINTS, POINTS))
-    expected = None
-    for length, modulus in [(1.0, 1.0), *SCALES]:
-        grid = Grid(points=POINTS, size=length, boundary=boundary)
-        body = pl.kernel(kernel, **kernels(length, modulus)[kernel])
-        share = pl.displacement(pressure * modulus, kernel=body, grid=grid) / length
-        expected = share if expected is None else expected
-        # Tables of kernels without a closed form are good to some 1e-9.
-        np.testing.assert_allclose(share, expected, rtol=0, atol=1e-8 * expected.max())
 
 
 @pytest.mark.parametrize("solver", SOLVERS, ids=lambda solver: solver.type)
