@@ -9,7 +9,6 @@ import numpy as np
 
 from pellicle.arrays import Array, Mask
 from pellicle.components import Monitor
-from pellicle.numerics.grid_transfer import highest
 from pellicle.numerics.initial_guess import first_guess, with_force
 from pellicle.numerics.path import Start
 from pellicle.numerics.problem import Depth, Problem
@@ -19,7 +18,7 @@ from .adhesion import AdhesionSolver
 from .adhesive_response import with_zone
 from .contact_cg import SIGN_CERTAINTY, STRICT_SIGN_CERTAINTY, InnerSolution, inner_solve
 from .few_cells import MOST_CELLS, solved_on_few_cells
-from .nested_grids import coarse_solution, coarser, prolonged
+from .nested_grids import prolonged
 from .preconditioner import OnContact, Preconditioner
 from .relaxation import relaxed
 from .scaling import ScaledSolver
@@ -144,7 +143,7 @@ class ActiveSet(ScaledSolver):
             state = _iterate(problem, preconditioner.on(start.contact), start.wall)
             if state.error <= _CLOSE * state.scale:
                 return state
-        from_coarse = self._prolonged(problem)
+        from_coarse = prolonged(self, problem)
         pressure = first_guess(problem) if from_coarse is None else from_coarse
         state = _iterate(problem, preconditioner.on(pressure > 0), pressure)
         return state if from_coarse is None else _without_pits(problem, state)
@@ -253,16 +252,6 @@ class ActiveSet(ScaledSolver):
             return acting.change(opened) / unit
 
         return with_zone(operator, acting.zone, following, closing, goal) * unit
-
-    def _prolonged(self, problem: Problem) -> Array | None:
-        """Return the pressure [Pa] prolonged from a coarser grid, or None without a solution."""
-        coarse = coarser(problem)
-        if coarse is None:
-            return None
-        if not coarse.needs_solving:
-            # The indenter touches less than half of every coarse cell.
-            coarse = replace(coarse, profile=highest(problem.profile, coarse.grid.shape))
-        return prolonged(coarse_solution(self, coarse).pressure, problem)
 
 
 def _without_pits(problem: Problem, state: _Iterate) -> _Iterate:

@@ -19,7 +19,7 @@ from pellicle.numerics.problem import Problem, adhesive_scale
 from pellicle.numerics.solution import Progress, State, Stop
 
 from .contact_cg import SIGN_CERTAINTY, inner_solve
-from .nested_grids import coarse_solution, coarser, prolonged
+from .nested_grids import prolonged
 from .preconditioner import OnContact, Preconditioner, edges
 from .scaling import ScaledSolver
 
@@ -229,7 +229,10 @@ class AdhesionSolver(ScaledSolver):
         # Without the law, a depth closes cells only beyond the first touch.
         lowest = float(problem.profile.max())
         closes = problem.prescribed == "force" or problem.value > -lowest
-        pressure = self._prolonged(problem) if closes else None
+        # With the traction of the coarser grid too, the first step takes half as many applications,
+        # but may end in a state of the lattice of higher energy than that of a retraction: at
+        # N = 256 by .004 of the pull-off force.
+        pressure = prolonged(self, problem) if closes else None
         if pressure is None:
             pressure = np.zeros(problem.grid.shape)
             if closes and problem.prescribed == "depth":
@@ -286,20 +289,6 @@ class AdhesionSolver(ScaledSolver):
         if problem.prescribed == "force" and not state.contact.any():
             return Stop.PULLED_OFF
         return Stop.STALLED if state.progress.stagnant >= _STAGNATION else None
-
-    def _prolonged(self, problem: Problem) -> Array | None:
-        """Return the wall pressure of a coarser grid.
-
-        With the traction across the gap beside it the first step takes half as many applications,
-        but may end in a state of the lattice of higher energy than that of a retraction: at N = 256
-        by .004 of the pull-off force.
-        """
-        coarse = coarser(problem)
-        if coarse is None or not coarse.needs_solving:
-            return None
-        state = coarse_solution(self, coarse).state
-        assert isinstance(state, State)
-        return prolonged(state.wall, problem)
 
     def _closed(
         self,

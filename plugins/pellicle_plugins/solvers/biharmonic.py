@@ -34,14 +34,8 @@ _DENSE: Final = 0.2
 def sweeps_near(free: Field | Mask, stretch: tuple[float, float]) -> Sweeps:
     """Return Chebyshev sweeps that relax short waves beside a contact, and their transpose.
 
-    Both change a field in its place.
-
-    Parameters
-    ----------
-    free
-        How far each cell may move: 0 on the contact, 1 off it; periodic, of one or two axes.
-    stretch
-        The aspect ratio of the cells, see `stretch_of`.
+    Both change a field in its place. ``free`` is how far each cell may move, 0 on the contact and 1
+    off it, periodic, of one or two axes; ``stretch`` is the aspect ratio, see `stretch_of`.
     """
     weight = np.where(dilated(free < 1, cells=_NEAR), free, np.float32(0))
     if np.count_nonzero(weight) > _DENSE * weight.size:

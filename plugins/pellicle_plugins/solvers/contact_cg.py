@@ -141,7 +141,8 @@ class _Iterate:
         """What the last iteration adds to the displacement, over `_factor` [m]; None once added."""
         self._factor, self._depth_change = 1.0, 0.0
         if uniform:
-            level = uniform.level(self.residual)
+            # The uniform pressure that closes the mean gap on the contact.
+            level = float(self.residual.sum()) / uniform.curvature
             self.pressure += level
             displacement += level * uniform.displacement
             self.residual -= level * uniform.inside
@@ -263,14 +264,11 @@ class _Uniform:
         """Displacement under 1 Pa on the contact [m]."""
         self.inside = displacement.ravel()[cells]
         """The same on the cells of the contact [m]."""
-        self._curvature = float(self.inside.sum())
+        self.curvature = float(self.inside.sum())
 
     @classmethod
     def of(cls, problem: Problem, cells: Cells) -> _Uniform | None:
-        """Return the uniform pressure under depth control on a contact of most cells, else None.
-
-        The contact has to cover more than half of the cells, but not all.
-        """
+        """Return it under depth control on a contact of more than half of the cells, else None."""
         off = problem.profile.size - cells.size
         if (
             problem.prescribed == "force"
@@ -281,15 +279,7 @@ class _Uniform:
         outside = np.ones(problem.grid.shape)
         outside.ravel()[cells] = 0
         uniform = cls(-problem.operator(outside), cells)
-        return uniform if uniform._curvature > 0 else None
-
-    def level(self, residual: Array) -> float:
-        """Return the uniform pressure [Pa] that closes the mean gap on the contact."""
-        return float(residual.sum()) / self._curvature
-
-    def share(self, direction: Array) -> float:
-        """Return the uniform part to subtract from a direction to make it conjugate."""
-        return dot(self.inside, direction) / self._curvature
+        return uniform if uniform.curvature > 0 else None
 
 
 class _Directions:
@@ -331,7 +321,7 @@ class _Directions:
 
             shared(subtract, blocks(direction.size))
         if self._uniform:
-            direction -= self._uniform.share(direction)
+            direction -= dot(self._uniform.inside, direction) / self._uniform.curvature
         return direction
 
     def mean(self, gap: Array) -> float:

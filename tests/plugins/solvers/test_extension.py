@@ -166,23 +166,6 @@ def test_preconditioner_is_symmetric_and_positive(
         assert np.linalg.eigvalsh(dense + dense.T).min() > 0
 
 
-@pytest.mark.parametrize("points", [(97, 61), (100, 36), (127, 128)])
-@pytest.mark.parametrize("boundary", BOUNDARIES)
-def test_preconditioner_of_large_odd_grids_is_symmetric(
-    points: tuple[int, int], boundary: Boundary
-) -> None:
-    """⟨M x, y⟩ = ⟨x, M y⟩ to single precision and ⟨M x, x⟩ > 0, whatever the number of cells."""
-    random = np.random.default_rng(5)
-    for share in (0.002, 0.2, 0.8):
-        contact = random.uniform(size=points) < share
-        on_contact = preconditioned(boundary, contact, tension=0.01)
-        x, y = random.normal(size=(2, on_contact.cells.size))
-        forth, back = on_contact(x), on_contact(y)
-        size = product(np.abs(forth), np.abs(y))
-        assert product(forth, y) == pytest.approx(product(x, back), abs=10 * SINGLE * size)
-        assert product(forth, x) > 0
-
-
 def test_planes_go_on_where_bending_decides() -> None:
     """Between scattered cells E of a plane is the plane, to a part of its slope over a cell."""
     i, j = np.indices((128, 128)) - 64.0

@@ -6,7 +6,6 @@ Operator applications are those on the finest grid; each bound stands next to wh
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 import pytest
@@ -17,7 +16,7 @@ from pellicle.operators import Array
 from pellicle.problem import height_scale, round_off
 from pellicle_plugins.solvers.active_set import ActiveSet
 from pellicle_plugins.solvers.conjugate_gradient import ConjugateGradient
-from tests.plugins.solvers.problems import make, paraboloid, solve
+from tests.plugins.solvers.problems import make, solve
 
 LENGTH, MODULUS = 1e-3, 1e5
 PLATE = pl.kernel("bending_skin", reduced_modulus=MODULUS, tension=0.0, bending=5e-8)
@@ -165,23 +164,3 @@ def test_a_tolerance_below_round_off_is_said_to_be() -> None:
     assert solved.stop is Stop.ROUND_OFF
     assert solved.equilibrium.residual_contact > 1e-8
     assert solved.applications < 1000
-
-
-class Wandering(ConjugateGradient):
-    """Solver that goes nowhere."""
-
-    type: Literal["wandering"] = "wandering"  # type: ignore[assignment]
-
-    def step(self, problem: Problem, state: object) -> object:  # type: ignore[override]
-        """Return the state as it is."""
-        return state
-
-    def terminate(self, problem: Problem, state: object) -> Stop:
-        """Return that it stalls."""
-        return Stop.STALLED
-
-
-def test_a_solver_that_wanders_is_not_said_to_be_at_round_off() -> None:
-    """Where the residual is far above rounding, the status does not blame the tolerance."""
-    problem = make(32, "free", SOLID, paraboloid, "depth", 1e-8, LENGTH)
-    assert solve(problem, Wandering()).stop is Stop.STALLED
