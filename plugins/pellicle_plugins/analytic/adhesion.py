@@ -69,19 +69,12 @@ class Adhesion:
         return self._equilibrium(xi_at(self.indenter, radius))
 
     def instability(self, spring_constant: float = 0.0) -> AdhesiveContact:
-        """Return the last stable equilibrium of a retraction.
+        """Return the last stable equilibrium of a retraction, where dF/dδ = −k_c.
 
-        Parameters
-        ----------
-        spring_constant
-            k_c [N/m] of what holds the indenter; dF/dδ = −k_c there.  0, the default, is a dead
-            load: pull-off, the lowest force.  ``math.inf`` is a fixed depth: the lowest depth.
-
-        Returns
-        -------
-        AdhesiveContact
-            All 0 for a cone whose flank is steeper than the surface at its rim,
-            cot α ≥ √(2w/τ₀): its contact shrinks to nothing without being pulled.
+        k_c = ``spring_constant`` [N/m] is that of what holds the indenter.  0 is a dead load:
+        pull-off, the lowest force.  ``math.inf`` is a fixed depth: the lowest depth.  For a cone
+        whose flank is steeper than the surface at its rim, cot α ≥ √(2w/τ₀), all is 0: its contact
+        shrinks to nothing without being pulled.
         """
         if not spring_constant >= 0:
             raise ConfigError(f"must not be negative, got {spring_constant!r}", "spring_constant")
@@ -184,18 +177,7 @@ def punch_pull_off(
     """Return the last equilibrium of a flat punch, the same for a dead load and a fixed depth.
 
     Its contact opens all at once, at D = √(4πa w / k′); without tension F = −√(8πE*w a³)
-    (Kendall 1971).
-
-    Parameters
-    ----------
-    radius
-        a [m].
-    reduced_modulus
-        E* = E / (1 − ν²) [Pa].
-    tension
-        τ₀ [N/m], zero included.
-    work_of_adhesion
-        w [J/m²].
+    (Kendall 1971).  The radius a is in m, E* = E / (1 − ν²) in Pa, τ₀ in N/m and w in J/m².
     """
     positive(work_of_adhesion=work_of_adhesion)
     contact = punch(radius, reduced_modulus, tension, depth=1.0)

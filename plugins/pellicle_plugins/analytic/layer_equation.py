@@ -22,11 +22,11 @@ from numpy.polynomial.legendre import leggauss
 from pellicle.arrays import Array
 from pellicle_plugins.kernels.elastic_layer import BondedLayer
 
-from .axisymmetric_equation import LEVELS
+from .axisymmetric_equation import LEVELS, influence
 from .layer_curves import Shape
 from .panels import Panel, Points, gauss, graded, joined, points_at
 from .product_integration import clustering, collocation, weights
-from .tension_kernel import auxiliary_g, primitive
+from .tension_kernel import primitive
 
 _ENDS = np.concatenate([[0.0], np.geomspace(1e-5, 0.5, 12), np.arange(1.0, 15.0)])
 """Ends of intervals of qh; beyond the last the layer is a half-space to 1e-10."""
@@ -75,37 +75,21 @@ def half_space(shape: Shape, ratio: float, level: int = 0) -> HalfSpace:
         matrix = np.diag(np.pi * nodes.t**power / np.sin(nodes.eta))
         return HalfSpace(shape, ratio, nodes, measure, matrix, np.pi * measure)
 
-    def influence(distance: Array, source: Points, target: Points) -> Array:
-        value = auxiliary_g(distance / ratio)
-        if pointed:
-            # Cancels between a panel and its mirror image, each of which would diverge at the apex.
-            value = value - auxiliary_g(target.t / ratio)
-        weighted: Array = value / ratio * np.abs(source.t) ** power
-        return weighted
-
     def depth(distance: Array, source: Points, _target: Points) -> Array:
         return 2 * source.t**power * primitive(distance / ratio)
 
     cluster, parity = clustering(ratio), 1 if shape == "punch" else -1
     origin = points_at(np.zeros(1))
     reach = np.concatenate([weights(panel, origin, depth, power=cluster)[0] for panel in panels])
-    matrix = collocation(panels, influence, cluster, parity)
+    matrix = collocation(panels, influence(ratio, power), cluster, parity)
     return HalfSpace(shape, ratio, nodes, measure, matrix, reach)
 
 
 def moments(equation: HalfSpace, slopes: Array, confinement: float, ratio: float) -> Moments:
-    """Return force and depth on a layer.
+    """Return force and depth on a layer of a/h = ``confinement``, 0 for a half-space.
 
-    Parameters
-    ----------
-    equation
-        That of the half-space.
-    slopes
-        h′ at the nodes, of shape (n, number of profiles); of a punch δ/a instead.
-    confinement
-        a/h, 0 for a half-space.
-    ratio
-        Poisson's ratio.
+    ``equation`` is that of the half-space, ``slopes`` h′ at its nodes, of shape (n, profiles), or
+    δ/a of a punch, and ``ratio`` Poisson's.
     """
     t, measure, is_punch = equation.nodes.t, equation.measure, equation.shape == "punch"
     matrix, reach = equation.matrix, equation.reach

@@ -20,7 +20,7 @@ from pellicle.model.matlab import read_mat
 
 from .file_checks import require_content, require_file, require_memory
 from .from_heights import FromHeights, HeightUnit
-from .text_table import read_tables
+from .text_table import FORMAT_MARKS, read_tables
 
 _KINDS = {".npy": "npy", ".h5": "hdf5", ".hdf5": "hdf5", ".nc": "hdf5", ".mat": "mat"}
 """What a file is by its ending; text otherwise."""
@@ -121,7 +121,9 @@ def _load(path: Path, dataset: str | None) -> Any:
 def _arrays(path: Path, kind: str) -> Iterator[Mapping[str, Any]]:
     """Yield the arrays of an open file by name; those of HDF5 and .npy are not read yet."""
     if kind == "text":
-        yield {name: table.values for name, table in read_tables(read_text(path), path).items()}
+        if (text := read_text(path)).startswith(FORMAT_MARKS):
+            raise ConfigError(f"{path} has a scale of its own; read it as 'topography'", "type")
+        yield {name: table.values for name, table in read_tables(text, path).items()}
     elif kind == "mat":
         yield {name: value for name, value in read_mat(path).items() if np.ndim(value) == 2}
     elif kind == "hdf5":
