@@ -103,9 +103,16 @@ def _load(path: Path, dataset: str | None) -> Any:
                 raise ConfigError(
                     f"{path} has {content}; give one of: {', '.join(arrays)}", "dataset"
                 )
+            array = arrays[name]
             if kind != "text":
-                _require_header(arrays[name], path)
-            return arrays[name][...]
+                _require_kind(array, str(path), "path")
+                if (expected := shape_of_run()) is not None:
+                    _require_shape(array.shape, expected, str(path), "path")
+                require_content(array.size, path)
+                needed = float(array.size) * (array.dtype.itemsize + _BYTES)
+                subject = f"{path} with its {array.shape[0]} × {array.shape[1]} values"
+                require_memory(needed, subject, "resample it", "path")
+            return array[...]
     except ConfigError:
         raise
     except (OSError, ValueError, EOFError, MemoryError) as error:
@@ -138,32 +145,8 @@ def _arrays(path: Path, kind: str) -> Iterator[Mapping[str, Any]]:
             )
             yield arrays
     else:
-        try:
-            # A mapped array takes no memory, whatever shape and type its header claims.
-            mapped = np.lib.format.open_memmap(path, mode="r")
-        except ValueError as error:
-            if not any(word in str(error) for word in ("pickle", "magic", "Python objects")):
-                raise
-            raise ConfigError(
-                f"{path} is pickled or not an .npy file, and a pickle can run any code; save a "
-                "plain array with numpy.save(…, allow_pickle=False)",
-                "path",
-            ) from None
-        yield {"": mapped}
-
-
-def _require_header(array: Any, path: Path) -> None:
-    """Refuse an array of unusable shape, type or size before it is read."""
-    _require_kind(array, str(path), "path")
-    if (expected := shape_of_run()) is not None:
-        _require_shape(array.shape, expected, str(path), "path")
-    require_content(array.size, path)
-    require_memory(
-        float(array.size) * (array.dtype.itemsize + _BYTES),
-        f"{path} with its {array.shape[0]} × {array.shape[1]} values",
-        "resample it",
-        "path",
-    )
+        # A mapped array runs no pickle, and takes no memory whatever shape its header claims.
+        yield {"": np.lib.format.open_memmap(path, mode="r")}
 
 
 def _require_shape(

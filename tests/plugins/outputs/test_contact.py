@@ -159,19 +159,6 @@ def test_vtk_of_more_than_a_block() -> None:
         assert np.array_equal(decoded(array), values)
 
 
-@pytest.mark.parametrize(
-    ("fields", "message"),
-    [
-        ({"type": "patches", "connectivity": 5}, r"outputs.0.connectivity: 5.*Known: 4, 8"),
-        ({"type": "distributions", "bins": 0}, r"outputs.0.bins: 0.*≥ 1"),
-    ],
-)
-def test_wrong_fields_are_named(fields: dict[str, Any], message: str) -> None:
-    """A field that is wrong is refused with what is allowed."""
-    with pytest.raises(pl.ConfigError, match=message):
-        pl.Run(**{**ROUGH, "outputs": [fields]})
-
-
 def grids(*points: int) -> dict[str, Any]:
     """Return a study of nested grids, on which 2 + h^1.5 is extrapolated."""
     cell = "grid.size.0 / grid.points"

@@ -132,13 +132,6 @@ def test_the_profile_meets_the_contact_and_shows_the_whole_gap() -> None:
     assert axes.get_title() == "depth 200 nm"
 
 
-def test_a_profile_is_named_after_what_is_prescribed(folder: Path) -> None:
-    """The title of a step under a mean pressure is that pressure."""
-    _, axes = pyplot.subplots()
-    profile(pl.load(folder / "run.h5"), axes, 0)
-    assert axes.get_title() == "mean pressure 0.04 kPa"
-
-
 @pytest.mark.parametrize(
     "output",
     [

@@ -54,18 +54,6 @@ def test_csv(tmp_path: Path) -> None:
     assert {"mean_pressure [Pa]", "contact_fraction", "iterations", "wall_time [s]"} <= {*table[0]}
 
 
-def test_csv_goes_on_below_the_header_that_is_there(tmp_path: Path) -> None:
-    """Steps of an earlier version, which had fewer columns, do not move those of the later ones."""
-    result = pl.run(_run([]), progress=False)
-    output = _run([{"type": "csv"}]).outputs[0]  # type: ignore[index]
-    stem = tmp_path / "steps"
-    output.step(result.dataset.isel(step=[0]).drop_vars(["patches", "perimeter"]), stem)
-    output.step(result.dataset.isel(step=[1]), stem)
-    table = rows(tmp_path / "steps.csv")
-    assert [float(row["force [N]"]) for row in table] == list(result.dataset["force"].values)
-    assert [row["status"] for row in table] == ["converged", "converged"]
-
-
 @pytest.mark.slow
 def test_names_of_files(tmp_path: Path) -> None:
     """Every output writes files of the names that users know."""
