@@ -78,7 +78,8 @@ class Adhesion:
         """
         if not spring_constant >= 0:
             raise ConfigError(f"must not be negative, got {spring_constant!r}", "spring_constant")
-        if self._never_sticks:
+        apex_slope = 2 / pi * float(self.indenter.abel_slope(np.zeros(1))[0])
+        if self.indenter.pointed and apex_slope >= self._rim_slope:
             return AdhesiveContact(*np.zeros(3))
         per_modulus = spring_constant / self.reduced_modulus
 
@@ -108,12 +109,6 @@ class Adhesion:
 
         start = xi_at(self.indenter, end.contact_radius) if end.contact_radius else self._guess()
         return self._equilibrium(np.array(_rising_root(excess, float(start), self._last)))
-
-    @property
-    def _never_sticks(self) -> bool:
-        """Whether the indenter is pointed and steeper than the surface at the rim."""
-        apex_slope = 2 / pi * float(self.indenter.abel_slope(np.zeros(1))[0])
-        return self.indenter.pointed and apex_slope >= self._rim_slope
 
     @property
     def _rim_slope(self) -> float:

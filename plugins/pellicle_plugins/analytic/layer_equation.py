@@ -94,7 +94,11 @@ def moments(equation: HalfSpace, slopes: Array, confinement: float, ratio: float
     t, measure, is_punch = equation.nodes.t, equation.measure, equation.shape == "punch"
     matrix, reach = equation.matrix, equation.reach
     if confinement:
-        q, transform = _layer_part(confinement, equation.ratio, ratio)
+        # The smooth part of the kernel, at Gauss points q a.
+        x, excess, weight = _compliance(ratio)
+        q, length = confinement * x, equation.ratio
+        below = (1 + length * q * (1 + excess)) * (1 + length * q)
+        transform = excess / below * weight * confinement
         waves = np.cos(t[:, None] * q) if is_punch else np.sin(t[:, None] * q)
         part = (waves * (2 * transform)) @ waves.T
         matrix = matrix + part * measure
@@ -103,14 +107,6 @@ def moments(equation: HalfSpace, slopes: Array, confinement: float, ratio: float
     if is_punch:
         return Moments(2 * np.pi * (measure @ unknown), slopes[0])
     return Moments(2 * np.pi * ((measure * t) @ unknown), reach @ unknown)
-
-
-def _layer_part(confinement: float, ratio: float, poissons_ratio: float) -> tuple[Array, Array]:
-    """Return Gauss points q a of the smooth part of the kernel, and its transform there."""
-    x, excess, weight = _compliance(poissons_ratio)
-    q = confinement * x
-    below = (1 + ratio * q * (1 + excess)) * (1 + ratio * q)
-    return q, excess / below * weight * confinement
 
 
 @lru_cache(maxsize=64)

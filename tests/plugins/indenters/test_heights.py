@@ -7,6 +7,7 @@ import pickle
 import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
+from typing import Literal
 
 import h5py
 import numpy as np
@@ -63,6 +64,23 @@ def test_row_with_words_is_refused(tmp_path: Path, row: str) -> None:
     (tmp_path / "a.txt").write_text(f"1 2 3\n{row}\n4 5 6\n")
     with pytest.raises(pl.ConfigError, match=r"^path: .* among the numbers of line 2; write nan"):
         pl.indenter("heights", path=tmp_path / "a.txt", unit="1 um")
+
+
+@pytest.mark.parametrize("floats", ["raise", "warn"])
+@pytest.mark.parametrize(("scale", "unit"), [(1e30, 1e90), (1e-30, 1e-90), (1e300, 1e90)])
+def test_heights_beyond_numbers(
+    scale: float, unit: float, floats: Literal["raise", "warn"]
+) -> None:
+    """Whatever overflows, or vanishes, names the indenter and asks for its units."""
+    run = {
+        "grid": {"points": 8, "size": "1 mm", "boundary": "periodic"},
+        "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
+        "indenter": {"type": "heights", "values": scale * np.eye(8), "unit": unit},
+        "loading": {"force": "1 uN"},
+    }
+    message = "^indenter: its heights .*check the units"
+    with np.errstate(over=floats), pytest.raises(pl.ConfigError, match=message):
+        pl.run(run, progress=False)
 
 
 @pytest.mark.parametrize("begin", ["Wyko ASCII Data File Format 0 0 1", "aISO-1.0"])

@@ -501,32 +501,6 @@ def saved(browser: Chrome, ending: str) -> list[int]:
     return content
 
 
-def test_browser_shows_tables_whole_on_a_narrow_screen(
-    browser: Chrome, ran: tuple[Path, xr.Dataset]
-) -> None:
-    """At 400 px neither page nor tables and code are cut, and each value has its head."""
-    size = {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": False}
-    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
-    try:
-        show(browser, ran[0])
-        wide = browser.execute_script(
-            "return [document.documentElement, ...document.querySelectorAll('.scroll')]"
-            ".filter((part) => part.scrollWidth > part.clientWidth).length"
-        )
-        high = browser.execute_script(
-            "return [...document.querySelectorAll('.scroll, .code pre')]"
-            ".filter((part) => part.scrollHeight > part.clientHeight + 1).length"
-        )
-        heads = browser.execute_script(
-            "return [...document.querySelectorAll('td')].map((cell) => cell.dataset.label)"
-        )
-    finally:
-        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
-    assert (wide, high) == (0, 0)
-    assert all(heads)
-    assert "depth [µm]" in heads
-
-
 def test_browser_prints_no_empty_page(browser: Chrome, ran: tuple[Path, xr.Dataset]) -> None:
     """Each page has words on it, and the maps on the screen are as before."""
     show(browser, ran[0])

@@ -245,19 +245,6 @@ def test_without_an_interaction_nothing_is_added(tmp_path: Path) -> None:
         )
 
 
-def test_steep_contacts_are_marked_once(bead: tuple[Path, pl.Result]) -> None:
-    """Terminal and page say how many steps are beyond the theory, not the same line for each."""
-    folder, result = bead
-    data = result.dataset
-    first, *others = data["step"].values[data["status_code"].values == "STEEP"]
-    assert others
-    shown = CliRunner().invoke(app, ["show", str(folder / "run.h5")])
-    assert shown.output.count("slopes in contact reach") == 1
-    assert f"step {first} and {len(others)} more: converged, but slopes" in shown.output
-    page = unescape((folder / "run.html").read_text(encoding="utf-8"))
-    assert f"In {len(others) + 1} of 9 slopes in contact are beyond the theory." in page
-
-
 def test_the_solution_without_adhesion_is_no_reference(tmp_path: Path) -> None:
     """A curve of contact that does not stick beside one that does would pass for its theory."""
     output = {"type": "curves", "reference": "axisymmetric"}
