@@ -45,7 +45,9 @@ class Dask(Executor):
         if not tasks:
             return
         try:
-            from .dask_tasks import Client, Submission
+            from distributed import Client
+
+            from .dask_tasks import Submission
         except ImportError as error:
             raise ConfigError(
                 f"'dask' needs {error.name}, which is not installed; pip install "

@@ -168,13 +168,16 @@ class Curves(XYFigure):
             log = ("x",) if values.dtype.kind in "if" and is_log_spaced(values) else ()
         for line in lines:
             line.draw(axes, factor_x, factor_y, bool(self.log))
-        published = []
+        published: list[dict[str, object]] = []
         for number, other in enumerate(self.published):
             style = "-" if other.style == "line" else "*x+"[number % 3]
-            shared = {"color": "black", "markersize": 9, "zorder": 5}
-            axes.plot(other.x, other.y, style, label=other.label, **shared)
-            head = {"curve": other.label, "series": "published"}
-            published += [head | {"x": x, "y": y} for x, y in zip(other.x, other.y, strict=True)]
+            axes.plot(
+                other.x, other.y, style, color="black", markersize=9, zorder=5, label=other.label
+            )
+            published += [
+                {"curve": other.label, "series": "published", "x": x, "y": y}
+                for x, y in zip(other.x, other.y, strict=True)
+            ]
         axes.set(xlabel=x_label, ylabel=y_label, title=self.title)
         set_scales(axes, log, signed=has_interaction(runs.table))
         add_legend(axes)
