@@ -10,7 +10,6 @@ import numpy as np
 from pellicle.arrays import Array, Mask
 from pellicle.grid import Boundary
 
-from .front import Traction, same_patches, shifted
 from .problem import Depth, Problem
 from .solution import State
 
@@ -135,12 +134,20 @@ def _sticking_ahead(
     None if a patch of the contact or its zone comes, goes, splits or merges, which is for the
     descent from the last state to find.
     """
+    # The import takes long, and only contacts that stick need it.
+    from .front import Traction, same_patches, shifted
+
+    def traction(state: State) -> Traction:
+        contact = state.contact
+        across = np.where(contact, -strength, state.pressure - state.wall)
+        return Traction(contact, np.where(contact, state.pressure - across, 0.0), across)
+
     law, boundary = problem.law, problem.grid.boundary
     assert law
     if not law.needs_contact:
         return None
     strength = law.strength()
-    one, two = (_traction(state, strength) for state in (before, last))
+    one, two = traction(before), traction(last)
     if not same_patches(one.across != 0, two.across != 0, boundary):
         return None
     ahead = shifted(problem.grid, one, two, ratio)
@@ -153,9 +160,3 @@ def _sticking_ahead(
     least = _JOINING * float(last.wall.max())
     wall = np.where(contact, np.maximum(ahead.wall, least), 0.0)
     return wall + across, wall
-
-
-def _traction(state: State, strength: float) -> Traction:
-    contact = state.contact
-    across = np.where(contact, -strength, state.pressure - state.wall)
-    return Traction(contact, np.where(contact, state.pressure - across, 0.0), across)

@@ -86,11 +86,4 @@ def base64_of(blocks: Iterable[bytes]) -> Iterator[str]:
         sizes.append(len(block))
     head = [len(packed), sizes[0], sizes[-1] % sizes[0], *map(len, packed)]
     yield base64.b64encode(struct.pack(f"={len(head)}Q", *head)).decode("ascii")
-    rest = b""
-    for block in packed:
-        # Three bytes make four letters.
-        data = rest + block
-        whole = len(data) - len(data) % 3
-        yield base64.b64encode(data[:whole]).decode("ascii")
-        rest = data[whole:]
-    yield base64.b64encode(rest).decode("ascii")
+    yield base64.b64encode(b"".join(packed)).decode("ascii")
