@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,6 @@ import pytest
 
 import pellicle as pl
 from pellicle.results.path import path_variables
-from pellicle.runs import steps
 from tests.adhesive_paths import FORCE, pulled_off, relaxing
 
 # The units E* = R = w = 1 have slopes beyond the theory.
@@ -107,32 +105,6 @@ def test_pull_off_at_a_speed_depends_on_the_range_and_not_on_the_cells() -> None
     for coarse, fine in pulls:
         assert coarse == pytest.approx(fine, rel=0.02)
     assert pulls[1][1] < 2 * pulls[0][1] < -3 * FORCE
-
-
-def test_killed_run_goes_on_with_wall_zone_and_memory(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """After four of seven steps, on the way back, bit by bit as one that was not killed."""
-    run = configuration()
-    whole = pl.run(run, progress=False, directory=tmp_path / "whole").dataset
-    assert whole["jumped"].values.tolist()[0]
-    assert (whole["zone_area"][3:] > 0).all()
-    solve_step, solved_steps = steps.solve_step, 0
-
-    def killed(*arguments: Any) -> Any:
-        nonlocal solved_steps
-        if solved_steps == 4:
-            raise KeyboardInterrupt
-        solved_steps += 1
-        return solve_step(*arguments)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(steps, "solve_step", killed)
-        with pytest.raises(KeyboardInterrupt):
-            pl.run(run, directory=tmp_path / "killed", progress=False)
-    resumed = pl.run(run, directory=tmp_path / "killed", progress=False).dataset
-    for name in set(whole.data_vars) - {"wall_time"}:
-        np.testing.assert_array_equal(resumed[name], whole[name], err_msg=name)
 
 
 def test_energy_that_the_solid_stores_is_not_known() -> None:

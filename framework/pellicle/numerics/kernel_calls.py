@@ -98,14 +98,8 @@ def refuse_growth(
 
     For short waves a solid is a half-space, with G(q) ∝ 1/q; for a bed of springs G(q) is constant.
     G(q) of an incompressible layer grows with q down to waves about as long as the layer is thick.
-    These may be shorter than the grid's waves, so still shorter waves are checked.
-
-    Parameters
-    ----------
-    compliance
-        The checked call of the kernel.
-    shortest
-        The largest wavenumber of the grid [rad/m].
+    These may be shorter than the grid's waves, so still shorter waves are checked. ``compliance``
+    is the checked call, ``shortest`` the largest wavenumber of the grid [rad/m].
     """
     if not shortest > 0:
         return
