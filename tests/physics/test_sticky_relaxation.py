@@ -9,7 +9,8 @@ import pytest
 
 import pellicle as pl
 from pellicle.results.path import path_variables
-from tests.adhesive_paths import FORCE, pulled_off, relaxing
+from tests.adhesive_paths import FORCE, PARABOLOID, pulled_off, relaxing, solved
+from tests.physics.tables import coated, half_space, heights
 
 # The units E* = R = w = 1 have slopes beyond the theory.
 pytestmark = pytest.mark.filterwarnings("ignore::pellicle.errors.ConvergenceWarning")
@@ -22,7 +23,7 @@ def configuration(**changes: Any) -> dict[str, Any]:
     return {
         "grid": {"points": 24, "size": 6.0, "boundary": "free"},
         "kernel": relaxing(),
-        "indenter": {"type": "paraboloid", "radius": 1.0},
+        "indenter": PARABOLOID,
         "interaction": LINEAR,
         "loading": {
             "depth": [0.2, 0.4, 0.4, 0.2, -0.2, -0.6, -0.9],
@@ -40,16 +41,11 @@ def test_springs_that_relax_open_as_the_law_softens() -> None:
     times = np.array([0.0, 1.0, 1.5, 1.5, 4.0])
     law = {"type": "linear", "work_of_adhesion": 0.6, "strength": 1.2}
     springs = {"type": "winkler", "foundation": stiffness}
-    data = pl.run(
-        configuration(
-            grid={"points": 8, "size": 1.0, "boundary": "periodic"},
-            kernel=relaxing(share, time, springs),
-            indenter={"type": "heights", "values": np.zeros((8, 8)), "unit": 1.0},
-            interaction=law,
-            loading={"depth": depth, "time": times},
-        ),
-        progress=False,
-    ).dataset
+    data = solved(
+        8, 0.0, depth.tolist(), size=1.0, boundary="periodic", time=times, interaction=law,
+        kernel=relaxing(share, time, springs),
+        indenter=heights(np.zeros((8, 8))),
+    )  # fmt: skip
     slope = 1.2**2 / (2 * 0.6)
     u = carried = 0.0
     for index, (z, t) in enumerate(zip(depth, times, strict=True)):
@@ -90,12 +86,11 @@ def test_limits_are_elastic(law: dict[str, Any], time: float, share: float) -> N
         # The drop at its range is spread as the instantaneous solid requires.
         run["interaction"] = {**LINEAR, "strength": 1.0}
     slow = pl.run(run | {"kernel": relaxing(time=time)}, progress=False).dataset
-    elastic = {"type": "half_space", "reduced_modulus": 5.0 * share}
-    depth = run["loading"]["depth"]
-    other = pl.run(run | {"kernel": elastic, "loading": {"depth": depth}}, progress=False).dataset
+    other = {"kernel": half_space(5.0 * share), "loading": {"depth": run["loading"]["depth"]}}
+    elastic = pl.run(run | other, progress=False).dataset
     after = slice(1, None) if share < 1 else slice(None)
     for name in ("force", "contact_area", "zone_area"):
-        np.testing.assert_allclose(slow[name][after], other[name][after], rtol=1e-7)
+        np.testing.assert_allclose(slow[name][after], elastic[name][after], rtol=1e-7)
 
 
 @pytest.mark.slow
@@ -125,7 +120,7 @@ def test_jkr_needs_a_tension_that_the_cells_resolve(cells: float, message: str) 
     tension = 0.5 * 5.0 * cells * 6.0 / 24
     changes = configuration(
         grid={"points": 24, "size": 6.0, "boundary": "periodic"},
-        kernel={"type": "coated", "tension": tension, "substrate": relaxing()},
+        kernel=coated(relaxing(), tension),
         interaction={"type": "jkr", "work_of_adhesion": 1.0},
     )
     if not message:

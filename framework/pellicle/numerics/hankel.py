@@ -86,10 +86,6 @@ class Tabulated:
                 "kernel",
             )
 
-    def covers(self, shortest: float, longest: float) -> bool:
-        """Return whether all radii between these two [m] are tabulated."""
-        return self.shortest <= shortest and longest <= self.longest
-
     def greens_function(self, r: Array) -> Array:
         """Return G(r) [m/N]; a constant part of G(q) contributes only at r = 0."""
         return np.asarray(self._power_law.greens_function(r) + self._rg(np.log(r)) / r)

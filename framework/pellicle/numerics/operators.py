@@ -286,12 +286,12 @@ def _operator(kernel: HasCompliance, grid: Grid) -> Operator:
         if grid.boundary == "periodic":
             return PeriodicOperator(kernel, grid)
         # These radii cover all coarser grids of the same domain, which reuse the table.
-        radii = 0.2 * min(grid.spacing), 3 * math.hypot(*grid.size)
+        shortest, longest = 0.2 * min(grid.spacing), 3 * math.hypot(*grid.size)
         if isinstance(kernel, Tabulated):
-            if not kernel.covers(*radii):
-                kernel = Tabulated(kernel.compliance, *radii)
+            if shortest < kernel.shortest or kernel.longest < longest:
+                kernel = Tabulated(kernel.compliance, shortest, longest)
         elif not isinstance(kernel, HasClosedForm):
-            kernel = Tabulated(checked_call(kernel, "compliance"), *radii)
+            kernel = Tabulated(checked_call(kernel, "compliance"), shortest, longest)
         return FreeOperator(kernel, grid)
 
 
