@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import runpy
-import subprocess
 import sys
 from pathlib import Path
 
@@ -27,8 +26,6 @@ SCRIPTS = {
         3,
         {"cold": r"[2-5]\d\.\d", "two states": r"1\d\.\d", "contact known": r"\d\.\d"},
     ),
-}
-MEASURING = {
     "cost.py": (
         ["--cases", "rough", "punch", "--points", "32", "--tension", "0.02"],
         2,
@@ -40,7 +37,7 @@ MEASURING = {
         {"bits": "same", "one ÷ several": r"\d+\.\d+"},
     ),
 }
-"""Scripts that measure a process. Columns have patterns that all of their cells match."""
+"""Options of a script, number of rows, and patterns that all cells of a column match."""
 
 
 @pytest.mark.parametrize(("script", "size"), SCRIPTS.items(), ids=SCRIPTS)
@@ -58,16 +55,6 @@ def test_table(
     monkeypatch.setattr(sys, "argv", [script, *options])
     runpy.run_path(str(BENCHMARKS / script), run_name="__main__")
     assert_is_table(capsys.readouterr().out, rows, patterns)
-
-
-@pytest.mark.parametrize(("script", "size"), MEASURING.items(), ids=MEASURING)
-def test_table_of_a_process(script: str, size: tuple[list[str], int, dict[str, str]]) -> None:
-    """The same of scripts that need a process of their own."""
-    options, rows, patterns = size
-    command = [sys.executable, str(BENCHMARKS / script), *options]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
-    assert done.returncode == 0, done.stderr
-    assert_is_table(done.stdout, rows, patterns)
 
 
 def assert_is_table(text: str, rows: int, patterns: dict[str, str]) -> None:
