@@ -503,21 +503,22 @@ def test_foreign_table(tmp_path: Path) -> None:
 
 def test_left_overs_of_the_dead_are_swept(tmp_path: Path) -> None:
     """Half-written files of processes that are no more go; those of the living stay."""
-    dead = subprocess.run(
-        [sys.executable, "-c", "import os; print(os.getpid())"], capture_output=True
-    )
+    # Nobody has asked for its exit code yet, as with the worker of a process that was killed.
+    dead = subprocess.Popen([sys.executable, "-c", ""])
+    os.waitid(os.P_PID, dead.pid, os.WEXITED | os.WNOWAIT)
     host = files._host()
     runs = tmp_path / "runs"
     runs.mkdir()
-    gone = runs / f".a.h5.{host}.{int(dead.stdout)}.part"
+    gone = runs / f".a.h5.{host}.{dead.pid}.part"
     kept = [
         runs / f".a.h5.{host}.{os.getppid()}.part",
-        runs / f".a.h5.elsewhere.{int(dead.stdout)}.part",
+        runs / f".a.h5.elsewhere.{dead.pid}.part",
         runs / ".mine.part",
     ]
     for path in (gone, *kept):
         path.touch()
     carry_out(study(), tmp_path)
+    dead.wait()
     assert not gone.exists()
     assert all(path.exists() for path in kept)
 
