@@ -226,13 +226,7 @@ def first_message(steps: Sequence[tuple[int, str]]) -> str:
 
 
 def file_of_run(path: Path) -> Path:
-    """Return the result file of a run's folder, or the path itself if it is not such a folder.
-
-    Raises
-    ------
-    StorageError
-        The folder holds several result files.
-    """
+    """Return the result file of a run's folder, or the path itself if it is not such a folder."""
     files = sorted(path.glob("*.h5")) if is_folder(path) else []
     if len(files) > 1:
         names = ", ".join(for_document(file.name) for file in files)
