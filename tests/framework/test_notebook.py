@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from html import unescape
-from io import BytesIO
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,6 @@ from matplotlib.figure import Figure
 
 import pellicle as pl
 from pellicle.config.picture import draw_indenter
-from tests.pictures import colourfulness
 
 TITLE = "<b>Bead</b> & tip"
 RUN: dict[str, Any] = {
