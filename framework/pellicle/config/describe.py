@@ -57,27 +57,25 @@ _Row = tuple[str, str, str, Origin | None]
 
 def _table(table: Mapping[str, Any], fields: Mapping[str, FieldInfo], path: str) -> Iterator[_Row]:
     for key, value in table.items():
-        info = fields.get(key)
-        name = f"{path}{key}"
+        info, name = fields.get(key), f"{path}{key}"
+        annotation = info.annotation if info else None
         if isinstance(value, Mapping):
-            yield from _rows_of(value, info.annotation if info else None, name)
+            yield from _rows_of(value, annotation, name)
         elif isinstance(value, list) and value and all(isinstance(v, Mapping) for v in value):
             for index, entry in enumerate(value):
                 if info and any(isinstance(m, LoadSteps) for m in info.metadata):
                     yield from _table(entry, fields_of_leg(entry, info), f"{name}.{index}.")
                 else:
-                    yield from _rows_of(entry, info.annotation if info else None, f"{name}.{index}")
+                    yield from _rows_of(entry, annotation, f"{name}.{index}")
         elif value not in ([], ""):
             quantity = quantity_of(info) if info else None
             text = readable(value, quantity.unit if quantity else "1")
             if isinstance(value, bool):
                 text = "yes" if value else "no"
-            yield name, text, _worded((info.description if info else None) or "", fields), None
-
-
-def _worded(description: str, fields: Mapping[str, FieldInfo]) -> str:
-    """Return the description of a field with words for other fields that it names."""
-    return _SNAKE.sub(lambda match: field_words(match[0], fields.get(match[0])), description)
+            description = (info.description if info else None) or ""
+            # Other fields that it names are named in words.
+            meaning = _SNAKE.sub(lambda m: field_words(m[0], fields.get(m[0])), description)
+            yield name, text, meaning, None
 
 
 def _rows_of(table: Mapping[str, Any], annotation: Any, name: str) -> Iterator[_Row]:

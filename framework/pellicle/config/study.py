@@ -6,11 +6,12 @@ import itertools
 import json
 import math
 from collections.abc import Iterable, Mapping
+from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Self
 
 import numpy as np
-from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from pellicle.components import Executor, FromRegistry
 from pellicle.components.output import refuse_shared_files
@@ -99,7 +100,6 @@ class Study(FromFile):
             "the runs left would take more than 10 s"
         ),
     ] = None
-    _points: tuple[Point, ...] = PrivateAttr()
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: the varied parameters and the number of runs."""
@@ -114,32 +114,21 @@ class Study(FromFile):
         return summary(run.title or "Study", f"{len(self.points)} runs", heads, rows)
 
     @model_validator(mode="after")
-    def _expand(self) -> Self:
-        self._create_runs()
-        return self
-
-    def _create_runs(self) -> None:
+    def _create_runs(self) -> Self:
         self._check_axes()
-        # Workers may run in another current folder.
-        with paths_relative_to(None):
-            self._points = tuple(points_of(self.run, self.dimensions))
         self._check_derived()
         try:
             refuse_shared_files(self.points[0].run.outputs or (), of_study=True)
         except ConfigError as error:
             raise error.within("run") from None
+        return self
 
-    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """Return a copy with the fields of ``update``, and the runs that these describe."""
-        copy = super().model_copy(update=update, deep=deep)
-        if update:
-            copy._create_runs()
-        return copy
-
-    @property
+    @cached_property
     def points(self) -> tuple[Point, ...]:
         """The runs, with the last dimension varying fastest."""
-        return self._points
+        # Workers may run in another current folder.
+        with paths_relative_to(None):
+            return tuple(points_of(self.run, self.dimensions))
 
     @property
     def dimensions(self) -> dict[str, Axes]:
@@ -189,13 +178,7 @@ class Study(FromFile):
 
     @classmethod
     def from_mapping(cls, data: Mapping[str, Any]) -> Self:
-        """Return the study that a mapping of the form of a study file describes.
-
-        Raises
-        ------
-        ConfigError, PluginError
-            As for `from_toml`.
-        """
+        """Return the study that a mapping of the form of a study file describes."""
         study = data.get("study")
         if not isinstance(study, Mapping):
             raise ConfigError(

@@ -80,7 +80,7 @@ def ranged(
     if spacing not in SPACINGS:
         raise ConfigError(f'{shown(spacing)} is not allowed; give "linear" or "log"', "spacing")
     (start, unit), (stop, stop_unit) = (_end(table, end) for end in ("start", "stop"))
-    if (stop_unit or unit) != (unit or stop_unit) or bool(unit) != bool(stop_unit):
+    if unit != stop_unit:
         if not unit or not stop_unit:
             raise ConfigError("give start and stop both with a unit, or both without")
         try:
@@ -89,14 +89,13 @@ def ranged(
             raise ConfigError(str(error), "stop") from None
     if start == stop:
         raise ConfigError("starts where it stops; give two ends, or a list of one value")
-    log = spacing == "log"
-    if log and (start == 0 or stop / start <= 0):
+    if spacing == "log" and (start == 0 or stop / start <= 0):
         raise ConfigError('spacing = "log" needs start and stop ≠ 0 of the same sign')
-    values: list[Any] = list(ramp(start, stop, int(num), log=log))
-    whole = all(isinstance(table[end], int) for end in ("start", "stop"))
-    if whole and all(value.is_integer() for value in values):
-        return tuple(map(int, values))
-    return tuple(f"{value:.15g} {unit}" for value in values) if unit else tuple(values)
+    values = ramp(start, stop, int(num), log=spacing == "log")
+    if unit:
+        return tuple(f"{value:.15g} {unit}" for value in values)
+    whole = isinstance(table["start"], int) and isinstance(table["stop"], int)
+    return tuple(map(int, values) if whole and all(v.is_integer() for v in values) else values)
 
 
 def _end(table: Mapping[str, Any], end: str) -> tuple[float, str]:
