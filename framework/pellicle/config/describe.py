@@ -8,8 +8,9 @@ from typing import Any, NamedTuple
 
 from pydantic.fields import FieldInfo
 
-from pellicle.loading import LoadSteps
+from pellicle.components.base import words_of_type
 from pellicle.plugins import Origin
+from pellicle.results.variables import words_of_name
 from pellicle.units import quantity_of, readable
 
 from .run import Run
@@ -19,7 +20,6 @@ from .wording import (
     model_in,
     model_of_table,
     registered,
-    type_words,
     words_at,
 )
 
@@ -63,8 +63,8 @@ def _table(table: Mapping[str, Any], fields: Mapping[str, FieldInfo], path: str)
             yield from _rows_of(value, annotation, name)
         elif isinstance(value, list) and value and all(isinstance(v, Mapping) for v in value):
             for index, entry in enumerate(value):
-                if info and any(isinstance(m, LoadSteps) for m in info.metadata):
-                    yield from _table(entry, fields_of_leg(entry, info), f"{name}.{index}.")
+                if fields_of_entry := fields_of_leg(entry, info):
+                    yield from _table(entry, fields_of_entry, f"{name}.{index}.")
                 else:
                     yield from _rows_of(entry, annotation, f"{name}.{index}")
         elif value not in ([], ""):
@@ -82,9 +82,10 @@ def _rows_of(table: Mapping[str, Any], annotation: Any, name: str) -> Iterator[_
     """Yield the values in the table of a component or of another part of the run."""
     model = model_of_table(table, annotation)
     if "type" in table:
-        family = model_in(annotation)
-        entry = registered(family, table["type"])
-        summary, origin = (entry.summary, entry.origin) if entry else ("", None)
-        yield name, type_words(family, str(table["type"])), summary, origin
+        type_ = str(table["type"])
+        if entry := registered(model_in(annotation), type_):
+            yield name, words_of_type(entry.component, type_), entry.summary, entry.origin
+        else:
+            yield name, words_of_name(type_), "", None
     inner = {key: value for key, value in table.items() if key != "type"}
     yield from _table(inner, model.model_fields if model else {}, f"{name}.")

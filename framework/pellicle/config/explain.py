@@ -39,7 +39,6 @@ _TABLES: Mapping[str, type[BaseModel]] = {
     "study": Study,
 }
 _KINDS: Mapping[type, str] = {bool: "true or false", int: "whole number", float: "number"}
-_KINDS_OF_TEXT = (str, Path)
 
 
 class FieldRow(NamedTuple):
@@ -199,7 +198,7 @@ def _kind(annotation: Any) -> str:
     if isinstance(annotation, type):
         if issubclass(annotation, BaseModel):
             return "table"
-        if issubclass(annotation, _KINDS_OF_TEXT):
+        if issubclass(annotation, (str, Path)):
             return "text"
         return _KINDS.get(annotation, "table" if issubclass(annotation, dict) else "")
     if get_origin(annotation) is dict:

@@ -132,18 +132,15 @@ def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
         )
     if (steps := number_of_steps([leg.model_dump() for leg in legs])) > _MOST:
         raise ConfigError(f"has {shown(steps)} load steps; give legs of {_MOST} at most")
-    lowest = [math.inf] * len(legs)
-    for sample in sampled(legs):
-        lowest[sample.leg] = min(lowest[sample.leg], sample.value)
-    for index, value in enumerate(lowest):
-        try:
-            quantity(value)
-        except ValueError:
-            raise ConfigError(
-                f"goes down to {value:g} {quantity.unit}; it has to stay "
-                f"{' and '.join(quantity.bounds)} {quantity.unit}",
-                str(index),
-            ) from None
+    lowest = min(sampled(legs))
+    try:
+        quantity(lowest.value)
+    except ValueError:
+        raise ConfigError(
+            f"goes down to {lowest.value:g} {quantity.unit}; it has to stay "
+            f"{' and '.join(quantity.bounds)} {quantity.unit}",
+            str(lowest.leg),
+        ) from None
     return tuple(legs)
 
 
