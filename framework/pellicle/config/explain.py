@@ -68,14 +68,9 @@ class Explanation(NamedTuple):
 
 
 def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Explanation]:
-    """Return what is known of a type, of a family or of a table.
+    """Return what is known of a type, of a family or of a table, one of ``tables`` or of a run.
 
-    Parameters
-    ----------
-    word
-        A type such as ``half_space``, also with its family as in ``kernel.half_space``.
-    tables
-        Further tables that have fields, by name.
+    A type may stand with its family, as in ``kernel.half_space``.
     """
     entries = {**tables, **_TABLES}
     name = re.sub(r"[\s-]+", "_", word.strip().strip("[]").lower())

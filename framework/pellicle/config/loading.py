@@ -147,13 +147,10 @@ class Loading(Model):
     @property
     def variables(self) -> set[str]:
         """The names of the result variables that this loading adds."""
+        timed = self.times is not None
+        used = {"stiffness": self.stiffness, "time": timed, "cycle": self.oscillates}
         names = {variable.name for variable in self.prescription.variables}
-        options = {
-            "stiffness": self.stiffness,
-            "time": self.times is not None,
-            "cycle": self.oscillates,
-        }
-        return names | {name for name, used in options.items() if used}
+        return names | {name for name, is_used in used.items() if is_used}
 
 
 def refuse_pulls(loading: Mapping[str, Any]) -> None:
