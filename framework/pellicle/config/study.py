@@ -15,7 +15,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from pellicle.components import Executor, FromRegistry
 from pellicle.components.output import refuse_shared_files
-from pellicle.errors import ConfigError, Problem, shown
+from pellicle.errors import ConfigError, Problem, all_problems, shown
 from pellicle.model.expression import CONSTANTS, FUNCTIONS, evaluate, names_in
 from pellicle.model.from_file import FromFile, read
 from pellicle.model.html import summary
@@ -256,23 +256,19 @@ class Study(FromFile):
         columns = {*texts, *names, BEYOND_THEORY, "run", "step", "x", "y"}
         reserved = {*FUNCTIONS, *CONSTANTS, *columns}
         varying = self.varying if self.derived else set()
-        problems: list[Problem] = []
-        for name, text in self.derived.items():
-            try:
-                if differ := sorted(names_in(text) & varying):
-                    raise ConfigError(
-                        f"{shown(differ[0])} in {shown(text)} is not one number: runs differ in "
-                        f"it; name an axis, or make {differ[0]} one"
-                    )
-                if name in allowed | reserved:
-                    raise ConfigError(f"{shown(name)} has a meaning already; give another name")
-                if not name.isidentifier():
-                    raise ConfigError(
-                        f"{shown(name)} is not a name; give one of letters, digits and _"
-                    )
-                evaluate(text, dict.fromkeys(allowed - {*FIELDS}, np.float64(1.0)))
-            except ConfigError as error:
-                problems.extend(error.within(f"derived.{name}").problems)
-            allowed.add(name)
-        if problems:
-            raise ConfigError(problems)
+        with all_problems() as within:
+            for name, text in self.derived.items():
+                with within(f"derived.{name}"):
+                    if differ := sorted(names_in(text) & varying):
+                        raise ConfigError(
+                            f"{shown(differ[0])} in {shown(text)} is not one number: runs differ "
+                            f"in it; name an axis, or make {differ[0]} one"
+                        )
+                    if name in allowed | reserved:
+                        raise ConfigError(f"{shown(name)} has a meaning already; give another name")
+                    if not name.isidentifier():
+                        raise ConfigError(
+                            f"{shown(name)} is not a name; give one of letters, digits and _"
+                        )
+                    evaluate(text, dict.fromkeys(allowed - {*FIELDS}, np.float64(1.0)))
+                allowed.add(name)

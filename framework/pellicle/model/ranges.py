@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from numbers import Integral
 from typing import Any
 
-from pellicle.errors import ConfigError, Problem, shown
+from pellicle.errors import ConfigError, all_problems, shown
 from pellicle.units import Quantity, split
 
 Values = tuple[Any, ...]
@@ -22,16 +22,12 @@ def expand(table: object) -> dict[str, Values]:
     if not isinstance(table, Mapping):
         raise ConfigError(f'{shown(table)} is not a table; give one: "kernel.tension" = […]')
     axes: dict[str, Values] = {}
-    problems: list[Problem] = []
-    for key, values in _flat(table, ""):
-        try:
-            if key in axes:
-                raise ConfigError("is given twice; leave one out")
-            axes[key] = _values(values)
-        except ConfigError as error:
-            problems.extend(error.within(key).problems)
-    if problems:
-        raise ConfigError(problems)
+    with all_problems() as within:
+        for key, values in _flat(table, ""):
+            with within(key):
+                if key in axes:
+                    raise ConfigError("is given twice; leave one out")
+                axes[key] = _values(values)
     return axes
 
 
