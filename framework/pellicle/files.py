@@ -7,7 +7,7 @@ import json
 import os
 import re
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from .errors import StorageError
@@ -108,6 +108,10 @@ def _alive(pid: int) -> bool:
         return False
     except PermissionError:
         pass
+    # A worker of a killed process is dead but has its number until the first process of the
+    # system, which in a container may never do so, asks for its exit code.
+    with suppress(OSError):
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     return True
 
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import base64
 import re
-from io import BytesIO
+from html import unescape
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,6 @@ from matplotlib.figure import Figure
 
 import pellicle as pl
 from pellicle.config.picture import draw_indenter
-from tests.pictures import colourfulness
 
 TITLE = "<b>Bead</b> & tip"
 RUN: dict[str, Any] = {
@@ -36,21 +34,13 @@ def words(html: str) -> str:
     return re.sub(r"<[^>]*>", " ", html.partition("<details>")[0])
 
 
-def test_a_result_shows_numbers_and_a_picture(result: pl.Result) -> None:
-    """Its title is escaped; steps have units; the picture is a coloured PNG inside the HTML."""
+def test_a_result_shows_numbers_and_how_it_ended(result: pl.Result) -> None:
+    """Texts are escaped, numbers have units, missing and failed steps are counted."""
     html = result._repr_html_()
     assert TITLE not in html
-    assert "&lt;b&gt;Bead&lt;/b&gt; &amp; tip" in html
-    text = words(html)
-    assert "2 steps, all converged" in text
-    assert "10 µm" in text
-    (source,) = re.findall(r"src='data:image/png;base64,([^']+)'", html)
-    assert (colourfulness(BytesIO(base64.b64decode(source))) > 0.2).mean() > 0.05
     assert "http" not in html.partition("<details>")[0]
-
-
-def test_failures_and_missing_steps_are_said(result: pl.Result) -> None:
-    """The sentence counts steps that are missing or did not converge."""
+    for part in (TITLE, "2 steps, all converged", "10 µm"):
+        assert part in unescape(words(html))
     marked = result.dataset.copy(deep=True).isel(step=[0])
     marked["converged"][0] = False
     assert "1 of 2 steps, 1 did not converge" in words(pl.Result(marked)._repr_html_())
