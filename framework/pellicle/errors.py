@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from typing import NamedTuple
 
 
@@ -59,6 +60,25 @@ class ConfigError(PellicleError, ValueError):
             Problem(f"{field}.{inner}" if inner else field, message)
             for inner, message in self.problems
         )
+
+
+@contextmanager
+def all_problems() -> Iterator[Callable[[str], AbstractContextManager[None]]]:
+    """Raise the problems of all blocks ``with within(field):`` in one error at the end."""
+    problems: list[Problem] = []
+
+    @contextmanager
+    def within(field: str) -> Iterator[None]:
+        try:
+            yield
+        except ConfigError as error:
+            problems.extend((error.within(field) if field else error).problems)
+        except ValueError as error:
+            problems.append(Problem(field, str(error)))
+
+    yield within
+    if problems:
+        raise ConfigError(problems)
 
 
 class PluginError(PellicleError):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 from pydantic_core import core_schema
 
-from .errors import ConfigError, Problem, shown
+from .errors import ConfigError, all_problems, shown
 from .model.legs import KINDS, Leg, json_schema, legs_of
 from .model.ranges import RANGE, SPACINGS, ranged
 from .units import Quantity
@@ -57,14 +57,11 @@ class LoadSteps:
 
     def _all(self, values_by_place: Mapping[str, object]) -> tuple[float, ...]:
         """Return all values in SI, or raise an error that names all values not allowed."""
-        values, problems = [], []
-        for where, value in values_by_place.items():
-            try:
-                values.append(self.quantity(value))
-            except ValueError as error:
-                problems.append(Problem(where, str(error)))
-        if problems:
-            raise ConfigError(problems)
+        values = []
+        with all_problems() as within:
+            for where, value in values_by_place.items():
+                with within(where):
+                    values.append(self.quantity(value))
         return tuple(values)
 
     def __get_pydantic_core_schema__(

@@ -8,8 +8,9 @@ from typing import Any, NamedTuple
 
 from pydantic.fields import FieldInfo
 
-from pellicle.loading import LoadSteps
+from pellicle.components.base import words_of_type
 from pellicle.plugins import Origin
+from pellicle.results.variables import words_of_name
 from pellicle.units import quantity_of, readable
 
 from .run import Run
@@ -19,7 +20,6 @@ from .wording import (
     model_in,
     model_of_table,
     registered,
-    type_words,
     words_at,
 )
 
@@ -57,36 +57,35 @@ _Row = tuple[str, str, str, Origin | None]
 
 def _table(table: Mapping[str, Any], fields: Mapping[str, FieldInfo], path: str) -> Iterator[_Row]:
     for key, value in table.items():
-        info = fields.get(key)
-        name = f"{path}{key}"
+        info, name = fields.get(key), f"{path}{key}"
+        annotation = info.annotation if info else None
         if isinstance(value, Mapping):
-            yield from _rows_of(value, info.annotation if info else None, name)
+            yield from _rows_of(value, annotation, name)
         elif isinstance(value, list) and value and all(isinstance(v, Mapping) for v in value):
             for index, entry in enumerate(value):
-                if info and any(isinstance(m, LoadSteps) for m in info.metadata):
-                    yield from _table(entry, fields_of_leg(entry, info), f"{name}.{index}.")
+                if fields_of_entry := fields_of_leg(entry, info):
+                    yield from _table(entry, fields_of_entry, f"{name}.{index}.")
                 else:
-                    yield from _rows_of(entry, info.annotation if info else None, f"{name}.{index}")
+                    yield from _rows_of(entry, annotation, f"{name}.{index}")
         elif value not in ([], ""):
             quantity = quantity_of(info) if info else None
             text = readable(value, quantity.unit if quantity else "1")
             if isinstance(value, bool):
                 text = "yes" if value else "no"
-            yield name, text, _worded((info.description if info else None) or "", fields), None
-
-
-def _worded(description: str, fields: Mapping[str, FieldInfo]) -> str:
-    """Return the description of a field with words for other fields that it names."""
-    return _SNAKE.sub(lambda match: field_words(match[0], fields.get(match[0])), description)
+            description = (info.description if info else None) or ""
+            # Other fields that it names are named in words.
+            meaning = _SNAKE.sub(lambda m: field_words(m[0], fields.get(m[0])), description)
+            yield name, text, meaning, None
 
 
 def _rows_of(table: Mapping[str, Any], annotation: Any, name: str) -> Iterator[_Row]:
     """Yield the values in the table of a component or of another part of the run."""
     model = model_of_table(table, annotation)
     if "type" in table:
-        family = model_in(annotation)
-        entry = registered(family, table["type"])
-        summary, origin = (entry.summary, entry.origin) if entry else ("", None)
-        yield name, type_words(family, str(table["type"])), summary, origin
+        type_ = str(table["type"])
+        if entry := registered(model_in(annotation), type_):
+            yield name, words_of_type(entry.component, type_), entry.summary, entry.origin
+        else:
+            yield name, words_of_name(type_), "", None
     inner = {key: value for key, value in table.items() if key != "type"}
     yield from _table(inner, model.model_fields if model else {}, f"{name}.")

@@ -39,7 +39,6 @@ _TABLES: Mapping[str, type[BaseModel]] = {
     "study": Study,
 }
 _KINDS: Mapping[type, str] = {bool: "true or false", int: "whole number", float: "number"}
-_KINDS_OF_TEXT = (str, Path)
 
 
 class FieldRow(NamedTuple):
@@ -69,14 +68,9 @@ class Explanation(NamedTuple):
 
 
 def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Explanation]:
-    """Return what is known of a type, of a family or of a table.
+    """Return what is known of a type, of a family or of a table, one of ``tables`` or of a run.
 
-    Parameters
-    ----------
-    word
-        A type such as ``half_space``, also with its family as in ``kernel.half_space``.
-    tables
-        Further tables that have fields, by name.
+    A type may stand with its family, as in ``kernel.half_space``.
     """
     entries = {**tables, **_TABLES}
     name = re.sub(r"[\s-]+", "_", word.strip().strip("[]").lower())
@@ -199,7 +193,7 @@ def _kind(annotation: Any) -> str:
     if isinstance(annotation, type):
         if issubclass(annotation, BaseModel):
             return "table"
-        if issubclass(annotation, _KINDS_OF_TEXT):
+        if issubclass(annotation, (str, Path)):
             return "text"
         return _KINDS.get(annotation, "table" if issubclass(annotation, dict) else "")
     if get_origin(annotation) is dict:

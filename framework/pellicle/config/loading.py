@@ -61,7 +61,8 @@ class Loading(Model):
         if not isinstance(table, Mapping):
             return table
         data = {key: value for key, value in table.items() if value is not None}
-        return {key: value for key, value in model_of(data)(**data) if value is not None}
+        model = loading_model(prescribed_in(data))
+        return {key: value for key, value in model(**data) if value is not None}
 
     @model_validator(mode="after")
     def _check_time(self) -> Self:
@@ -146,35 +147,26 @@ class Loading(Model):
     @property
     def variables(self) -> set[str]:
         """The names of the result variables that this loading adds."""
+        timed = self.times is not None
+        used = {"stiffness": self.stiffness, "time": timed, "cycle": self.oscillates}
         names = {variable.name for variable in self.prescription.variables}
-        options = {
-            "stiffness": self.stiffness,
-            "time": self.times is not None,
-            "cycle": self.oscillates,
-        }
-        return names | {name for name, used in options.items() if used}
-
-
-def model_of(loading: Mapping[str, Any]) -> type[Model]:
-    """Return the model that validates a table ``[loading]``."""
-    return loading_model(prescribed_in(loading))
+        return names | {name for name, is_used in used.items() if is_used}
 
 
 def refuse_pulls(loading: Mapping[str, Any]) -> None:
     """Refuse values of ``[loading]`` that only an interaction allows, such as a force below 0."""
     data = {key: value for key, value in loading.items() if value is not None}
+    type_ = prescribed_in(data)
     try:
-        loading_model(prescribed_in(data), interaction=False)(**data)
+        loading_model(type_, interaction=False)(**data)
     except ConfigError as error:
         try:
-            model_of(data)(**data)
+            loading_model(type_)(**data)
         except ConfigError:
             raise error from None
         raise ConfigError(
-            [
-                Problem(field, f"{reason}; with an [interaction] it may be negative")
-                for field, reason in error.problems
-            ]
+            Problem(field, f"{reason}; with an [interaction] it may be negative")
+            for field, reason in error.problems
         ) from None
 
 

@@ -35,15 +35,7 @@ def now_with(runs: Iterable[Run]) -> dict[str, str]:
 
 
 def versions(used: Collection[type[Component]], others: Iterable[str] = ()) -> dict[str, str]:
-    """Return the version of pellicle, of the owners of components, and of libraries by name.
-
-    Parameters
-    ----------
-    used
-        The components.
-    others
-        Libraries beside those that the components name.
-    """
+    """Return the version of pellicle, of the owners of components, of their and other libraries."""
     libraries = sorted({*others, *(name for component in used for name in component.libraries)})
     numbers = {name: version(name) for name in ("pellicle", "numpy", "scipy")}
     numbers |= registry().versions(used)

@@ -187,7 +187,7 @@ class Run(FromFile):
         return self
 
     @model_validator(mode="after")
-    def _each_correction_once(self) -> Self:
+    def _each_correction_and_file_once(self) -> Self:
         types = [correction.type_name for correction in self.corrections]
         for index, type_ in enumerate(types):
             if type_ in types[:index]:
@@ -196,22 +196,12 @@ class Run(FromFile):
                     "out",
                     f"corrections.{index}.type",
                 )
-        return self
-
-    @model_validator(mode="after")
-    def _each_file_once(self) -> Self:
         refuse_shared_files(self.outputs or ())
         return self
 
     @classmethod
     def from_mapping(cls, data: Mapping[str, Any]) -> Self:
-        """Return the run that a mapping of the form of a run file describes.
-
-        Raises
-        ------
-        ConfigError, PluginError
-            As for `from_toml`; a study is refused.
-        """
+        """Return the run that a mapping of the form of a run file describes; refuse a study."""
         if "study" in data:
             raise ConfigError(
                 "makes this a study: use run_study, or Study, in place of run (`pellicle run` in a "
@@ -264,7 +254,9 @@ class Run(FromFile):
         ) | {"schema": _NUMBERS_VERSION}
         for path, value, _ in walk(self):
             if isinstance(value, Path) and isinstance(get(identifying, path), str):
-                identifying = replaced(identifying, path, _digest_of(value))
+                stat = value.stat() if is_file(value) else None
+                content = stat and _digest(value.absolute(), stat.st_mtime_ns, stat.st_size)
+                identifying = replaced(identifying, path, content or str(value))
         solving = self.kernel, self.indenter, self.interaction, self.solver, self.corrections
         versions = registry().versions(components_in((*solving, self.loading.prescription)))
         if others := {name: number for name, number in versions.items() if name != "pellicle"}:
@@ -276,14 +268,6 @@ def components_in(parts: Iterable[object]) -> set[type[Component]]:
     """Return the classes of the components in parts of a configuration."""
     values = (value for _, value, _ in walk([*parts]))
     return {type(value) for value in values if isinstance(value, Component)}
-
-
-def _digest_of(path: Path) -> str:
-    """Return the hash of a file, or the path itself if it is not a file."""
-    if not is_file(path):
-        return str(path)
-    stat = path.stat()
-    return _digest(path.absolute(), stat.st_mtime_ns, stat.st_size)
 
 
 @cache

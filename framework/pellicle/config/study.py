@@ -6,15 +6,16 @@ import itertools
 import json
 import math
 from collections.abc import Iterable, Mapping
+from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Self
 
 import numpy as np
-from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from pellicle.components import Executor, FromRegistry
 from pellicle.components.output import refuse_shared_files
-from pellicle.errors import ConfigError, Problem, shown
+from pellicle.errors import ConfigError, Problem, all_problems, shown
 from pellicle.model.expression import CONSTANTS, FUNCTIONS, evaluate, names_in
 from pellicle.model.from_file import FromFile, read
 from pellicle.model.html import summary
@@ -99,7 +100,6 @@ class Study(FromFile):
             "the runs left would take more than 10 s"
         ),
     ] = None
-    _points: tuple[Point, ...] = PrivateAttr()
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: the varied parameters and the number of runs."""
@@ -114,32 +114,21 @@ class Study(FromFile):
         return summary(run.title or "Study", f"{len(self.points)} runs", heads, rows)
 
     @model_validator(mode="after")
-    def _expand(self) -> Self:
-        self._create_runs()
-        return self
-
-    def _create_runs(self) -> None:
+    def _create_runs(self) -> Self:
         self._check_axes()
-        # Workers may run in another current folder.
-        with paths_relative_to(None):
-            self._points = tuple(points_of(self.run, self.dimensions))
         self._check_derived()
         try:
             refuse_shared_files(self.points[0].run.outputs or (), of_study=True)
         except ConfigError as error:
             raise error.within("run") from None
+        return self
 
-    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """Return a copy with the fields of ``update``, and the runs that these describe."""
-        copy = super().model_copy(update=update, deep=deep)
-        if update:
-            copy._create_runs()
-        return copy
-
-    @property
+    @cached_property
     def points(self) -> tuple[Point, ...]:
         """The runs, with the last dimension varying fastest."""
-        return self._points
+        # Workers may run in another current folder.
+        with paths_relative_to(None):
+            return tuple(points_of(self.run, self.dimensions))
 
     @property
     def dimensions(self) -> dict[str, Axes]:
@@ -189,13 +178,7 @@ class Study(FromFile):
 
     @classmethod
     def from_mapping(cls, data: Mapping[str, Any]) -> Self:
-        """Return the study that a mapping of the form of a study file describes.
-
-        Raises
-        ------
-        ConfigError, PluginError
-            As for `from_toml`.
-        """
+        """Return the study that a mapping of the form of a study file describes."""
         study = data.get("study")
         if not isinstance(study, Mapping):
             raise ConfigError(
@@ -273,23 +256,19 @@ class Study(FromFile):
         columns = {*texts, *names, BEYOND_THEORY, "run", "step", "x", "y"}
         reserved = {*FUNCTIONS, *CONSTANTS, *columns}
         varying = self.varying if self.derived else set()
-        problems: list[Problem] = []
-        for name, text in self.derived.items():
-            try:
-                if differ := sorted(names_in(text) & varying):
-                    raise ConfigError(
-                        f"{shown(differ[0])} in {shown(text)} is not one number: runs differ in "
-                        f"it; name an axis, or make {differ[0]} one"
-                    )
-                if name in allowed | reserved:
-                    raise ConfigError(f"{shown(name)} has a meaning already; give another name")
-                if not name.isidentifier():
-                    raise ConfigError(
-                        f"{shown(name)} is not a name; give one of letters, digits and _"
-                    )
-                evaluate(text, dict.fromkeys(allowed - {*FIELDS}, np.float64(1.0)))
-            except ConfigError as error:
-                problems.extend(error.within(f"derived.{name}").problems)
-            allowed.add(name)
-        if problems:
-            raise ConfigError(problems)
+        with all_problems() as within:
+            for name, text in self.derived.items():
+                with within(f"derived.{name}"):
+                    if differ := sorted(names_in(text) & varying):
+                        raise ConfigError(
+                            f"{shown(differ[0])} in {shown(text)} is not one number: runs differ "
+                            f"in it; name an axis, or make {differ[0]} one"
+                        )
+                    if name in allowed | reserved:
+                        raise ConfigError(f"{shown(name)} has a meaning already; give another name")
+                    if not name.isidentifier():
+                        raise ConfigError(
+                            f"{shown(name)} is not a name; give one of letters, digits and _"
+                        )
+                    evaluate(text, dict.fromkeys(allowed - {*FIELDS}, np.float64(1.0)))
+                allowed.add(name)

@@ -10,15 +10,13 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from pellicle.components import Component
-from pellicle.components.base import words_of_type
 from pellicle.errors import ConfigError, PluginError
 from pellicle.loading import LoadSteps
 from pellicle.model.legs import KINDS, fields_of
 from pellicle.plugins import Registered, registry
 from pellicle.results.variables import words_of_name
-from pellicle.units import quantity_of
 
-from .loading import Loading, model_of
+from .loading import Loading, loading_model, prescribed_in
 
 
 def field_words(name: str, field: FieldInfo | None) -> str:
@@ -41,15 +39,13 @@ def words_at(configuration: Mapping[str, Any], model: type[BaseModel], key: str)
         if name == "type" and depth:
             break
         if name.isdecimal():
-            noun = _entry(noun, field, table, int(name))
-            if field is not None and _is_leg(field, table):
-                noun = f"leg {int(name) + 1}"
             entries = table if isinstance(table, list) else []
             table = entries[int(name)] if int(name) < len(entries) else None
+            is_leg = bool(fields_of_leg(table, field))
+            noun = f"leg {int(name) + 1}" if is_leg else _entry(noun, field, entries, int(name))
         else:
             owner = _with_owner(noun, owner) if depth > 1 else ""
-            leg = fields_of_leg(table, field) if field is not None and inner is None else {}
-            field = inner.model_fields.get(name) if inner else leg.get(name)
+            field = (inner.model_fields if inner else fields_of_leg(table, field)).get(name)
             noun = field_words(name, field)
             table = table.get(name) if isinstance(table, Mapping) else None
         is_table = isinstance(table, Mapping)
@@ -63,34 +59,24 @@ def _with_owner(noun: str, owner: str) -> str:
     return f"{noun} of {'' if numbered else 'the '}{owner}" if owner else noun
 
 
-def _entry(noun: str, field: FieldInfo | None, values: object, index: int) -> str:
+def _entry(noun: str, field: FieldInfo | None, entries: list[Any], index: int) -> str:
     """Return words for an entry of a list: "size along x" of a pair, "layer 2" of tables."""
-    if field is not None and index < 2 and _is_pair(field):
+    choices = (field.annotation, *get_args(field.annotation)) if field else ()
+    items = [get_args(choice) for choice in choices if get_origin(choice) is tuple]
+    if index < 2 and any(len(types) == 2 and ... not in types for types in items):
         return f"{noun} along {'xy'[index]}"
-    tables = isinstance(values, list) and any(isinstance(value, Mapping) for value in values)
+    tables = any(isinstance(entry, Mapping) for entry in entries)
     return f"{noun.removesuffix('s') if tables else noun} {index + 1}"
 
 
-def _is_leg(field: FieldInfo, values: object) -> bool:
-    steps = any(isinstance(annotation, LoadSteps) for annotation in field.metadata)
-    return steps and isinstance(values, list) and any(isinstance(v, Mapping) for v in values)
-
-
-def fields_of_leg(leg: object, info: FieldInfo) -> Mapping[str, FieldInfo]:
+def fields_of_leg(leg: object, info: FieldInfo | None) -> Mapping[str, FieldInfo]:
     """Return the fields of a leg of the load steps described by ``info``; none of another table."""
-    quantity = quantity_of(info)
-    if not isinstance(leg, Mapping) or quantity is None:
-        return {}
-    kind = next((kind for kind in KINDS if kind.key in leg), None)
-    return fields_of(kind, quantity.unit) if kind else {}
-
-
-def _is_pair(field: FieldInfo) -> bool:
-    choices = (field.annotation, *get_args(field.annotation))
-    return any(
-        get_origin(choice) is tuple and len(get_args(choice)) == 2 and ... not in get_args(choice)
-        for choice in choices
-    )
+    steps = next((m for m in info.metadata if isinstance(m, LoadSteps)), None) if info else None
+    if steps and isinstance(leg, Mapping):
+        for kind in KINDS:
+            if kind.key in leg:
+                return fields_of(kind, steps.quantity.unit)
+    return {}
 
 
 def registered(model: type[BaseModel] | None, type_: object) -> Registered | None:
@@ -111,7 +97,7 @@ def model_of_table(table: Mapping[str, Any], annotation: Any) -> type[BaseModel]
         return entry.component if entry else None
     if model is Loading:
         with suppress(ConfigError, PluginError):
-            return model_of(table)
+            return loading_model(prescribed_in(table))
     return model
 
 
@@ -120,9 +106,3 @@ def model_in(annotation: Any) -> type[BaseModel] | None:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
     return next(filter(None, map(model_in, get_args(annotation))), None)
-
-
-def type_words(model: type[BaseModel] | None, type_: str) -> str:
-    """Return the words of a component, which need not be installed."""
-    entry = registered(model, type_)
-    return words_of_type(entry.component, type_) if entry else words_of_name(type_)

@@ -31,13 +31,7 @@ class FromFile(Model):
 
     @classmethod
     def of(cls, configuration: Self | Mapping[str, Any] | str | Path) -> Self:
-        """Return the object itself, or the one that a mapping or the path of a TOML file describes.
-
-        Raises
-        ------
-        ConfigError, PluginError
-            As for `from_toml`.
-        """
+        """Return the object itself, or the one that a mapping or a TOML file describes."""
         if isinstance(configuration, Mapping):
             return cls.from_mapping(configuration)
         if isinstance(configuration, (str, Path)):
@@ -51,13 +45,7 @@ class FromFile(Model):
 
     @classmethod
     def from_mapping(cls, data: Mapping[str, Any]) -> Self:
-        """Return the object that a mapping in the form of its file describes.
-
-        Raises
-        ------
-        ConfigError, PluginError
-            As for `from_toml`.
-        """
+        """Return the object that a mapping in the form of its file describes."""
         return cls(**data)
 
     @classmethod
@@ -118,13 +106,7 @@ def read(path: str | Path, overrides: Iterable[str] = ()) -> dict[str, Any]:
 
 
 def overridden(data: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:
-    """Return a configuration after applying overrides such as ``"a.b=1"``.
-
-    Raises
-    ------
-    ConfigError
-        An override cannot be applied.
-    """
+    """Return a configuration after applying overrides such as ``"a.b=1"``."""
     for text in overrides:
         key, value = parse_override(text)
         try:

@@ -16,30 +16,23 @@ def summary(
     picture: bytes = b"",
     details: str = "",
 ) -> str:
-    """Return a title, a sentence and a table as HTML that loads nothing.
+    """Return a title, a sentence and a table, all escaped, as HTML that loads nothing.
 
-    Parameters
-    ----------
-    title, sentence, columns, rows
-        Texts, which are escaped.
-    picture
-        PNG file to show beside the table.
-    details
-        HTML that is folded away.
+    A ``picture``, a PNG file, stands beside the table; ``details``, HTML, are folded away.
     """
-    head = _row("th", columns)
     body = "".join(_row("td", row) for row in rows)
-    source = b64encode(picture).decode("ascii")
-    image = f"<img alt='{escape(title)}' src='data:image/png;base64,{source}'>"
     parts = [
-        f"<strong>{escape(title)}</strong><br>{escape(sentence)}",
+        f"<div><strong>{escape(title)}</strong><br>{escape(sentence)}",
         "<div style='display:flex;flex-wrap:wrap;gap:1em;align-items:flex-start'>",
-        f"<table><thead>{head}</thead><tbody>{body}</tbody></table>",
-        image if picture else "",
-        "</div>",
-        f"<details><summary>all variables</summary>{details}</details>" if details else "",
+        f"<table><thead>{_row('th', columns)}</thead><tbody>{body}</tbody></table>",
     ]
-    return f"<div>{''.join(parts)}</div>"
+    if picture:
+        source = b64encode(picture).decode("ascii")
+        parts.append(f"<img alt='{escape(title)}' src='data:image/png;base64,{source}'>")
+    parts.append("</div>")
+    if details:
+        parts.append(f"<details><summary>all variables</summary>{details}</details>")
+    return f"{''.join(parts)}</div>"
 
 
 def _row(tag: str, cells: Sequence[str]) -> str:

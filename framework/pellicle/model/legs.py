@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, NamedTuple
 from pydantic import Field, PrivateAttr
 from pydantic.fields import FieldInfo
 
-from pellicle.errors import ConfigError, Problem, shown
+from pellicle.errors import ConfigError, all_problems, shown
 from pellicle.units import Quantity
 
 from .base import Model
@@ -116,14 +116,10 @@ def fields_of(kind: type[Leg], unit: str) -> dict[str, FieldInfo]:
 def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
     """Return the legs of a path whose values have the unit and range of ``quantity``."""
     legs: list[Leg] = []
-    problems: list[Problem] = []
-    for index, entry in enumerate(entries):
-        try:
-            legs.append(_leg(entry, quantity))
-        except ConfigError as error:
-            problems.extend(error.within(str(index)).problems)
-    if problems:
-        raise ConfigError(problems)
+    with all_problems() as within:
+        for index, entry in enumerate(entries):
+            with within(str(index)):
+                legs.append(_leg(entry, quantity))
     if isinstance(legs[0], Hold):
         raise ConfigError(
             'holds before any value is reached; begin with { to, time, num }, whose time = "0 s" '
@@ -132,18 +128,15 @@ def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
         )
     if (steps := number_of_steps([leg.model_dump() for leg in legs])) > _MOST:
         raise ConfigError(f"has {shown(steps)} load steps; give legs of {_MOST} at most")
-    lowest = [math.inf] * len(legs)
-    for sample in sampled(legs):
-        lowest[sample.leg] = min(lowest[sample.leg], sample.value)
-    for index, value in enumerate(lowest):
-        try:
-            quantity(value)
-        except ValueError:
-            raise ConfigError(
-                f"goes down to {value:g} {quantity.unit}; it has to stay "
-                f"{' and '.join(quantity.bounds)} {quantity.unit}",
-                str(index),
-            ) from None
+    lowest = min(sampled(legs))
+    try:
+        quantity(lowest.value)
+    except ValueError:
+        raise ConfigError(
+            f"goes down to {lowest.value:g} {quantity.unit}; it has to stay "
+            f"{' and '.join(quantity.bounds)} {quantity.unit}",
+            str(lowest.leg),
+        ) from None
     return tuple(legs)
 
 
@@ -158,22 +151,15 @@ def _leg(entry: object, quantity: Quantity) -> Leg:
         keys = " and ".join(kind.key for kind in kinds)
         has = f"mixes {keys}" if kinds else f"has {', '.join(map(str, entry)) or 'no key'}"
         raise ConfigError(f"{has}; give {_FORMS}")
-    (kind,) = kinds
-    data, problems = dict(entry), []
-    for name, allowed in (("to", quantity), ("amplitude", Quantity(quantity.unit, above=0))):
-        if name in data:
-            try:
-                data[name] = allowed(data[name])
-            except ValueError as error:
-                # A valid number in its place, so that the other fields are checked too.
-                data[name] = 0.0
-                problems.append(Problem(name, str(error)))
-    try:
-        leg = kind(**data)
-    except ConfigError as error:
-        problems.extend(error.problems)
-    if problems:
-        raise ConfigError(problems)
+    with all_problems() as within:
+        # A valid number in its place, so that the other fields are checked too.
+        data = {**entry, **dict.fromkeys(entry.keys() & {"to", "amplitude"}, 0.0)}
+        for name, allowed in (("to", quantity), ("amplitude", Quantity(quantity.unit, above=0))):
+            if name in entry:
+                with within(name):
+                    data[name] = allowed(entry[name])
+        with within(""):
+            leg = kinds[0](**data)
     leg._unit = quantity.unit
     return leg
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from numbers import Integral
 from typing import Any
 
-from pellicle.errors import ConfigError, Problem, shown
+from pellicle.errors import ConfigError, all_problems, shown
 from pellicle.units import Quantity, split
 
 Values = tuple[Any, ...]
@@ -22,16 +22,12 @@ def expand(table: object) -> dict[str, Values]:
     if not isinstance(table, Mapping):
         raise ConfigError(f'{shown(table)} is not a table; give one: "kernel.tension" = […]')
     axes: dict[str, Values] = {}
-    problems: list[Problem] = []
-    for key, values in _flat(table, ""):
-        try:
-            if key in axes:
-                raise ConfigError("is given twice; leave one out")
-            axes[key] = _values(values)
-        except ConfigError as error:
-            problems.extend(error.within(key).problems)
-    if problems:
-        raise ConfigError(problems)
+    with all_problems() as within:
+        for key, values in _flat(table, ""):
+            with within(key):
+                if key in axes:
+                    raise ConfigError("is given twice; leave one out")
+                axes[key] = _values(values)
     return axes
 
 
@@ -80,7 +76,7 @@ def ranged(
     if spacing not in SPACINGS:
         raise ConfigError(f'{shown(spacing)} is not allowed; give "linear" or "log"', "spacing")
     (start, unit), (stop, stop_unit) = (_end(table, end) for end in ("start", "stop"))
-    if (stop_unit or unit) != (unit or stop_unit) or bool(unit) != bool(stop_unit):
+    if unit != stop_unit:
         if not unit or not stop_unit:
             raise ConfigError("give start and stop both with a unit, or both without")
         try:
@@ -89,14 +85,13 @@ def ranged(
             raise ConfigError(str(error), "stop") from None
     if start == stop:
         raise ConfigError("starts where it stops; give two ends, or a list of one value")
-    log = spacing == "log"
-    if log and (start == 0 or stop / start <= 0):
+    if spacing == "log" and (start == 0 or stop / start <= 0):
         raise ConfigError('spacing = "log" needs start and stop ≠ 0 of the same sign')
-    values: list[Any] = list(ramp(start, stop, int(num), log=log))
-    whole = all(isinstance(table[end], int) for end in ("start", "stop"))
-    if whole and all(value.is_integer() for value in values):
-        return tuple(map(int, values))
-    return tuple(f"{value:.15g} {unit}" for value in values) if unit else tuple(values)
+    values = ramp(start, stop, int(num), log=spacing == "log")
+    if unit:
+        return tuple(f"{value:.15g} {unit}" for value in values)
+    whole = isinstance(table["start"], int) and isinstance(table["stop"], int)
+    return tuple(map(int, values) if whole and all(v.is_integer() for v in values) else values)
 
 
 def _end(table: Mapping[str, Any], end: str) -> tuple[float, str]:
