@@ -463,10 +463,7 @@ def test_lengths_and_moduli_can_be_scaled(interaction: str, length: float, modul
 @pytest.mark.slow
 @pytest.mark.parametrize("first", range(0, 30, 6))
 def test_statuses_of_random_problems_are_honest(first: int) -> None:
-    """A step that says converged is a stationary point; most are where a dense descent ends.
-
-    tests/benchmarks/adhesion_random.py has 300 problems.
-    """
+    """A step that says converged is a stationary point; most are where a dense descent ends."""
     rows = [row for seed in range(first, first + 4) for row in verdicts(seed)]
     assert [row.description for row in rows if not row.honest] == []
     assert all(row.settled for row in rows)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,6 +11,7 @@ import numpy as np
 
 from pellicle.analysis import Leg, legs
 from pellicle.arrays import Array, Mask
+from pellicle.results.dimensions import parts
 from pellicle.results.path import has_interaction, has_times
 from pellicle.results.result import Result
 from pellicle.results.shape import is_periodic
@@ -162,13 +163,13 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     many = table.sizes[compared[0]] if compared else 1
     ordered = bool(compared) and is_ordered(table, compared[0])
     pulls, paths = has_interaction(table), list[list[Leg]]()
-    for number, part in enumerate(_parts(table, compared)):
+    for number, part in enumerate(parts(table, compared)):
         hue = colour(number, many, ordered=ordered)
         marker = MARKERS[number % len(MARKERS)]
         # Of many values only some are named: colours change evenly between them.
         named = compared and number % -(-many // _MOST_NAMED) == 0
         label = named_by.text(part[compared[0]].item()) if named and named_by else ""
-        for line in _parts(part, stacked):
+        for line in parts(part, stacked):
             x = line[against].values * x_axis.scale.factor
             y = line[variable].values * y_axis.scale.factor
             path, good = None, line["converged"].values
@@ -205,12 +206,6 @@ def _save(
     for suffix, fill in figures.items():
         files += save_figure(fill, directory / f"{name}-{suffix}", formats, style=style)
     return tuple(files)
-
-
-def _parts(table: xr.Dataset, dimensions: Sequence[str]) -> Iterator[xr.Dataset]:
-    """Yield the part of a table at each combination of indices along dimensions."""
-    for index in np.ndindex(*(table.sizes[d] for d in dimensions)):
-        yield table.isel(dict(zip(dimensions, index, strict=True)))
 
 
 def _curve(result: Result, axes: Axes, labels: Mapping[str, str | None], against: str) -> None:
