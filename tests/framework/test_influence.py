@@ -1,36 +1,27 @@
 """Influence coefficients against reference values, closed forms and exact integral identities."""
 
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from pellicle.numerics.influence import cell_coefficients
-from pellicle_plugins.kernels.struve import struve_minus_bessel, struve_minus_bessel_primitive
+from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
+from tests.physics.tables import reference_rows
 
 Array = NDArray[np.float64]
 Radial = Callable[[Array], Array]
 
-DATA = Path(__file__).resolve().parents[1] / "data" / "kernel_cells.csv"
+# s/D, i, j, K E*/D.
+REFERENCE = np.array([[*row.values()] for row in reference_rows("kernel_cells.csv")])
 LENGTHS = [0.0, 1e-6, 1e-3, 0.1, 1.0, 10.0, 1e3, 1e6]
 
 
 def membrane(s: float) -> tuple[Radial, Radial]:
     """G and its radial primitive for E* = 1; s = 0 is the half-space."""
-    if s == 0:
-        return (lambda r: 1 / (np.pi * r)), (lambda r: r / np.pi)
-    return (
-        lambda r: struve_minus_bessel(r / s) / (2 * s),
-        lambda r: s / 2 * struve_minus_bessel_primitive(r / s),
-    )
-
-
-def reference_rows() -> list[list[float]]:
-    """Rows s/D, i, j, K E*/D of the reference table."""
-    lines = [line for line in DATA.read_text().splitlines() if not line.startswith("#")]
-    return [[float(word) for word in line.split(",")] for line in lines[1:]]
+    kernel = TensedMembrane(reduced_modulus=1.0, tension=s / 2)
+    return kernel.greens_function, kernel.radial_primitive
 
 
 def love(x: Array, y: Array) -> Array:
@@ -38,10 +29,10 @@ def love(x: Array, y: Array) -> Array:
     return (x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))) / np.pi
 
 
-@pytest.mark.parametrize("s", sorted({row[0] for row in reference_rows()}))
+@pytest.mark.parametrize("s", np.unique(REFERENCE[:, 0]))
 def test_reference_values(s: float) -> None:
     """Every tabulated coefficient is met to 1e-11."""
-    rows = np.array([row for row in reference_rows() if row[0] == s])
+    rows = REFERENCE[REFERENCE[:, 0] == s]
     i, j = rows[:, 1].astype(int), rows[:, 2].astype(int)
     coefficients = cell_coefficients(*membrane(s), (1001, 58), (1.0, 1.0))
     np.testing.assert_allclose(coefficients[i, j], rows[:, 3], rtol=1e-11)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+from pathlib import Path
 from typing import Any
 
 import xarray as xr
@@ -17,6 +19,13 @@ ROUGH: Table = {
     "seed": 5,
 }
 """A rough punch for domains of 1 mm and cells of 30 µm."""
+
+
+def reference_rows(name: str) -> list[dict[str, float]]:
+    """Return the rows of a table of reference values in tests/data."""
+    text = (Path(__file__).parents[1] / "data" / name).read_text(encoding="utf-8")
+    lines = [line for line in text.splitlines() if not line.startswith("#")]
+    return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(lines)]
 
 
 def half_space(modulus: float = 1.0) -> Table:

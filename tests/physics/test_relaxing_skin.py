@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import re
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,9 +12,15 @@ import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.numerics.outside import PlaneOperator
 from pellicle.runs.relaxation import Relaxation
-from tests.physics.tables import coated, half_space, paraboloid, relaxing, tensed
+from tests.physics.tables import (
+    coated,
+    half_space,
+    paraboloid,
+    reference_rows,
+    relaxing,
+    tensed,
+)
 
-TABLE = Path(__file__).parents[1] / "data" / "visco_punch.csv"
 MODULUS, TENSION = 5.0, 0.5
 
 
@@ -60,9 +64,7 @@ def test_flat_punch_with_tension_after_a_step_of_the_depth() -> None:
     The error is of first order in the cells, as a line load acts on the rim. The cells of both
     grids cover the area of the punch to 0.4 %.
     """
-    lines = [line for line in TABLE.read_text(encoding="utf-8").splitlines() if line[0] != "#"]
-    rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(lines)]
-    rows = [row for row in rows if row["tau0_over_Einf_a"] == TENSION]
+    rows = [r for r in reference_rows("visco_punch.csv") if r["tau0_over_Einf_a"] == TENSION]
     expected = np.array([row["P_over_Einf_a_delta"] for row in rows])
     times = np.array([0.0, 0.03, 0.1, 0.2, 0.3, 0.6, 1.0, 1.7, 3.0, 5.0, 10.0])
     wanted = np.searchsorted(times, [row["t_over_T"] for row in rows])

@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-import csv
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 import pellicle as pl
-from tests.physics.tables import paraboloid, tensed
+from tests.physics.tables import paraboloid, reference_rows, tensed
 from tests.physics.tables import step as solved
 
-DATA = Path(__file__).parents[1] / "data"
 CONTACT_RADIUS = 0.1
 
 
-def _rows(name: str) -> list[dict[str, float]]:
-    lines = [line for line in (DATA / name).read_text().splitlines() if not line.startswith("#")]
-    return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(lines)]
-
-
-@pytest.mark.parametrize("row", _rows("paraboloid.csv"), ids=lambda row: f"s/a={row['s_over_a']}")
+@pytest.mark.parametrize(
+    "row", reference_rows("paraboloid.csv"), ids=lambda row: f"s/a={row['s_over_a']}"
+)
 def test_force_area_and_centre_pressure_agree_with_the_reference(
     row: dict[str, float], solver: str
 ) -> None:
@@ -44,7 +37,7 @@ def test_force_area_and_centre_pressure_agree_with_the_reference(
 @pytest.mark.parametrize("s_over_d", [0.0, 0.1, 10.0])
 def test_one_pressed_cell_gives_the_reference_influence_coefficients(s_over_d: float) -> None:
     """The operator applied to a single cell returns every reference coefficient to 1e-9."""
-    rows = [row for row in _rows("kernel_cells.csv") if row["s_over_D"] == s_over_d]
+    rows = [row for row in reference_rows("kernel_cells.csv") if row["s_over_D"] == s_over_d]
     points = 1 + max(int(max(row["i"], row["j"])) for row in rows)
     grid = pl.Grid(points=[points, 60], size=[points, 60.0])
     kernel = pl.kernel("tensed_membrane", reduced_modulus=1.0, tension=s_over_d / 2)

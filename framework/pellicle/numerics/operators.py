@@ -8,6 +8,7 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any, Self, TypeVar
 
 import numpy as np
@@ -145,7 +146,9 @@ class Operator:
         deflection = 0.0
         if self._spring_compliance:
             deflection = self.deflection(float(pressure.sum(dtype=np.float64)))
-        symbol = self._symbol[pressure.dtype]
+        symbol: NDArray[Any] = self._symbol.double
+        if pressure.dtype != np.float64:
+            symbol = self._symbol.single
         unit = self._symbol.unit * self._factor
 
         def finish(displacement: NDArray[Float], rows: slice) -> None:
@@ -172,15 +175,11 @@ class _Symbol:
         self.unit = _power_of_two(self.greatest) if self.greatest else 1.0
         values /= self.unit
         self.double = read_only(values)
-        self._single: NDArray[np.float32] | None = None
 
-    def __getitem__(self, precision: np.dtype[Any]) -> NDArray[Any]:
-        """Return the symbol in the precision of a field; single precision on demand."""
-        if precision == np.float64:
-            return self.double
-        if self._single is None:
-            self._single = read_only(self.double.astype(np.float32))
-        return self._single
+    @cached_property
+    def single(self) -> NDArray[np.float32]:
+        """The symbol in single precision."""
+        return read_only(self.double.astype(np.float32))
 
 
 class PeriodicOperator(Operator):
