@@ -85,16 +85,6 @@ def test_second_process_is_refused(text: str, name: str, tmp_path: Path) -> None
     assert not list(out.rglob("*.lock"))
 
 
-def test_library_run_is_refused(tmp_path: Path) -> None:
-    """A run from Python locks its files too, by the name of its file."""
-    (tmp_path / "work.toml").write_text(RUN, encoding="utf-8")
-    with (
-        locked(tmp_path / "out", "work"),
-        pytest.raises(pl.StorageError, match="work is locked by process"),
-    ):
-        pl.run(tmp_path / "work.toml", directory=tmp_path / "out", progress=False)
-
-
 def test_other_files_are_not_locked(tmp_path: Path) -> None:
     """Runs of another name in the same folder, and of the same name elsewhere, do not wait."""
     (tmp_path / "work.toml").write_text(RUN, encoding="utf-8")

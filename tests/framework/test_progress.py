@@ -12,14 +12,9 @@ import rich.console
 
 import pellicle as pl
 from pellicle.runs.progress import RunProgress
+from tests import small_run
 
-RUN = pl.Run(
-    title="bead",
-    grid={"points": 32, "size": 1.0},
-    kernel={"type": "tensed_membrane", "tension": 0.2, "reduced_modulus": 1.0},
-    indenter={"type": "paraboloid", "radius": 1.0},
-    loading={"depth": [0.02, 0.04, 0.06]},
-)
+RUN = pl.Run(**small_run.RUN | {"title": "bead"})
 
 
 def _iterate(progress: RunProgress) -> None:
@@ -47,16 +42,6 @@ def test_bar_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     shown = screen.getvalue()
     for words in ("step 2/2", "iteration 2", "residual 5.0e-01 × tolerance", "left"):
         assert words in shown
-
-
-def test_silent_on_a_terminal_when_not_enabled(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A bar that is not asked for is not even made."""
-
-    def fail() -> None:
-        raise AssertionError("made a bar")
-
-    monkeypatch.setattr("pellicle.runs.progress._bars", fail)
-    _iterate(RunProgress(2, False))
 
 
 @pytest.mark.parametrize("excess", [0.0, float("nan"), float("inf")])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import sys
 from dataclasses import dataclass
 
 import pytest
@@ -58,18 +57,6 @@ def screen(monkeypatch: pytest.MonkeyPatch) -> Screen:
     return screen
 
 
-def test_runs_done_failed_and_left(screen: Screen) -> None:
-    """The line of the study counts runs; those done before count as done."""
-    with BatchProgress(5, 1, enabled=True) as progress:
-        (line,) = screen.lines(progress)
-        assert line.startswith("runs")
-        assert "1 done, 0 failed, 4 left" in line
-        progress.finished(ONE, "converged", failed=False)
-        progress.finished(TWO, "failed: struck by lightning", failed=True)
-        (line,) = screen.lines(progress)
-        assert "2 done, 1 failed, 2 left" in line
-
-
 def test_one_line_for_each_run_at_work(screen: Screen) -> None:
     """A run has a line from its first word to its end: its name, step and iteration."""
     with BatchProgress(3, 0, enabled=True) as progress:
@@ -81,12 +68,15 @@ def test_one_line_for_each_run_at_work(screen: Screen) -> None:
         assert "step 1/4 iteration 3" in one
         assert two.strip().startswith("kernel.tension = 2 N/m ")
         assert "step 2/2 iteration 7" in two
+        # Runs at work count by their share.
+        assert progress._bars
+        assert progress._bars.tasks[0].completed == 0.25 / 4 + 1.5 / 2
         progress.report(ONE, ProgressMessage(3, 4, 9, 1.0, 4.0))
         _, one, _ = screen.lines(progress)
         assert "step 4/4" in one
-        progress.finished(ONE, "converged", failed=False)
+        progress.finished(ONE, "failed: struck by lightning", failed=True)
         study, two = screen.lines(progress)
-        assert "1 done, 0 failed, 2 left" in study
+        assert "0 done, 1 failed, 2 left" in study
         assert "2 N/m" in two
 
 
@@ -101,30 +91,6 @@ def test_narrow_terminal(screen: Screen) -> None:
     assert "…" in run
     assert "step 1/4 iteration 3" in run
     assert max(len(study), len(run)) <= 80
-
-
-def test_time_left(screen: Screen) -> None:
-    """It is that of the runs left at the pace so far; runs at work count by their share."""
-    with BatchProgress(5, 1, enabled=True) as progress:
-        progress.report(ONE, ProgressMessage(0, 2, 1, 1e3, 0.0))
-        (line, _) = screen.lines(progress)
-        assert "left -:--:--" in line
-        for at, done in ((0.0, 0.02), (100.0, 1.02)):
-            screen.now = at
-            progress.report(ONE, ProgressMessage(0, 2, 1, 1e3, done))
-        # Half a run in 100 s, so 200 s for each: of four, 0.51 are done.
-        line, own = screen.lines(progress)
-        assert f"left {_clock(200 * (4 - 0.51))}" in line
-        assert f"left {_clock(100 * (2 - 1.02))}" in own
-        screen.now = 200.0
-        progress.finished(ONE, "converged", failed=False)
-        (line,) = screen.lines(progress)
-        assert f"left {_clock(3 * 200 / 0.99)}" in line
-
-
-def _clock(seconds: float) -> str:
-    whole = -int(-seconds // 1)
-    return f"{whole // 3600}:{whole // 60 % 60:02d}:{whole % 60:02d}"
 
 
 def test_nothing_stays_on_the_terminal(screen: Screen) -> None:
@@ -149,18 +115,3 @@ def test_a_log_has_a_line_for_each_run(capfd: pytest.CaptureFixture[str]) -> Non
         "[5/7] kernel.tension = 1 N/m: converged",
         f"[6/7] {long.name}: failed: [bold]no[/bold]",
     ]
-
-
-def test_silent_when_not_enabled(screen: Screen) -> None:
-    """A bar that is not asked for writes nothing even on a terminal."""
-    with BatchProgress(2, 0, enabled=False) as progress:
-        progress.report(ONE, ProgressMessage(0, 1, 1, 1e3, 0.5))
-        progress.finished(ONE, "converged", failed=False)
-    assert screen.written() == ""
-
-
-def test_a_closed_log_ends_no_study(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without a standard error, as of a daemon, the lines are lost."""
-    monkeypatch.setattr(sys, "stderr", None)
-    with BatchProgress(1, 0, enabled=True) as progress:
-        progress.finished(ONE, "converged", failed=False)
