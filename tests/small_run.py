@@ -1,8 +1,10 @@
-"""A run of three steps that takes a few milliseconds, and what tests make of it."""
+"""A run of three steps that takes a few milliseconds."""
 
 from __future__ import annotations
 
 from typing import Any
+
+import pellicle as pl
 
 RUN: dict[str, Any] = {
     "grid": {"points": 20, "size": "0.4 mm"},
@@ -11,3 +13,8 @@ RUN: dict[str, Any] = {
     "loading": {"depth": ["5 um", "10 um", "15 um"]},
     "outputs": [],
 }
+
+
+def run_file(study: str = "", **changes: Any) -> str:
+    """Return the run, with changes, as the text of a TOML file, with the tables of a study."""
+    return f"{pl.Run(**RUN | changes).to_toml()}\n{study}"

@@ -20,27 +20,16 @@ import xarray as xr
 
 import pellicle as pl
 from pellicle.results import storage
+from tests.small_run import run_file
 
-FILE = """
-title = "12 runs of 3 steps"
-outputs = []
-[grid]
-points = 32
-size = "0.5 mm"
-[kernel]
-type = "tensed_membrane"
-reduced_modulus = "10 kPa"
-[indenter]
-type = "paraboloid"
-radius = "1 mm"
-[loading]
-depth = ["5 um", "10 um", "15 um"]
+STUDY = """
 [study]
 executor = { type = "processes", workers = 2 }
 [study.vary]
 kernel.tension = { start = "0.1 N/m", stop = "1 N/m", num = 4, spacing = "log" }
 indenter.radius = ["1 mm", "1.2 mm", "1.4 mm"]
 """
+FILE = run_file(STUDY, grid={"points": 32, "size": "0.5 mm"})
 KILLS = 2
 pytestmark = pytest.mark.slow
 

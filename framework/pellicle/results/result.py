@@ -82,7 +82,7 @@ class Result:
 
     def coarse(self) -> list[tuple[int, str]]:
         """Return number and status of each step whose cells are too coarse."""
-        return self._of({status for status in Status if status.is_coarse})
+        return self._of({Status.COARSE, Status.COARSE_ZONE})
 
     def steep(self) -> list[tuple[int, str]]:
         """Return number and status of each step with slopes beyond those of the theory."""
