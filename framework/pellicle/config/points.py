@@ -29,11 +29,6 @@ def points_of(table: Mapping[str, Any], dimensions: Mapping[str, Axes]) -> Itera
     """Yield the runs of a study, the last dimension varying fastest.
 
     ``table`` holds the fields that all runs share; ``dimensions`` is `Study.dimensions`.
-
-    Raises
-    ------
-    ConfigError
-        Runs are not valid; each problem is named once, under the axis that causes it.
     """
     problems: dict[Problem, list[str]] = {}
     names: dict[str, str] = {}

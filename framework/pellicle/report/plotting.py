@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -95,13 +95,7 @@ def save_figures(
     formats: Iterable[str],
     style: FigureStyle | None = None,
 ) -> tuple[Path, ...]:
-    """Write every figure as ``directory/name-figure.format`` and return the files.
-
-    Raises
-    ------
-    StorageError
-        A file cannot be written.
-    """
+    """Write every figure as ``directory/name-figure.format`` and return the files."""
     return _save(drawings(result), directory, name, formats, style)
 
 
@@ -129,11 +123,6 @@ def save_study_figures(
     """Write the figures of `study_drawings` as ``directory/name-figure.format``.
 
     Parameters are as for `save_figures`; ``table`` is that of `pellicle.run_study`.
-
-    Raises
-    ------
-    StorageError
-        A file cannot be written.
     """
     return _save(study_drawings(table), directory, name, formats, style)
 
@@ -159,7 +148,16 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     Where steps have times, it is drawn against the time; where each run has one step only, against
     the first axis of numbers instead.
     """
-    against, along, compared, stacked = _layout(table)
+    # The horizontal axis, and the dimension along which each line goes.
+    dimensions = [str(d) for d in table["status"].dims if d != "step"]
+    numbers = [d for d in dimensions if table[d].dtype.kind in "if" and table.sizes[d] > 1]
+    over_steps = table.sizes["step"] > 1 or not numbers
+    along = "step" if over_steps else numbers[0]
+    against = ("time" if has_times(table) else "depth") if over_steps else along
+    # Values of the first of the others have colours of their own; seeds are only repetitions.
+    rest = [d for d in dimensions if d != along]
+    compared = sorted(rest, key=lambda d: d.endswith("seed") or table.sizes[d] == 1)[:1]
+    stacked = [str(d) for d in table["status"].dims if d not in (along, *compared)]
     y_axis, x_axis = wording(table[variable]), wording(table[against])
     named_by = wording(table[compared[0]]) if compared else None
     many = table.sizes[compared[0]] if compared else 1
@@ -195,33 +193,6 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     if compared or axes.get_legend_handles_labels()[1]:
         # matplotlib takes long to find the best place among many curves.
         axes.legend(fontsize="small", loc="upper left" if many > _MOST_NAMED else "best")
-
-
-class _Layout(NamedTuple):
-    """What a figure of a study shows along which dimension of its table."""
-
-    against: str
-    """Variable of the horizontal axis."""
-    along: str
-    """Dimension along which each line goes."""
-    compared: list[str]
-    """Dimension whose values have colours of their own; empty if there is none."""
-    stacked: list[str]
-    """All others, whose values have lines of one colour."""
-
-
-def _layout(table: xr.Dataset) -> _Layout:
-    dimensions = [str(d) for d in table["status"].dims if d != "step"]
-    numbers = [d for d in dimensions if table[d].dtype.kind in "if" and table.sizes[d] > 1]
-    over_steps = table.sizes["step"] > 1 or not numbers
-    of_steps = "time" if has_times(table) else "depth"
-    against = of_steps if over_steps else numbers[0]
-    along = "step" if over_steps else against
-    # Seeds are repetitions, not values to compare.
-    rest = [d for d in dimensions if d != along]
-    compared = sorted(rest, key=lambda d: d.endswith("seed") or table.sizes[d] == 1)[:1]
-    stacked = [str(d) for d in table["status"].dims if d not in (along, *compared)]
-    return _Layout(against, along, compared, stacked)
 
 
 def _save(

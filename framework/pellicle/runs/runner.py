@@ -139,7 +139,7 @@ def execute(
     files: tuple[Path, ...] = ()
 
     def runs() -> Runs:
-        return Runs.of_run(read_only_dataset(result.dataset), run.to_json(as_given=True))
+        return Runs.of_run(read_only_dataset(result.dataset), run.to_json(portable=True))
 
     with scipy.fft.set_workers(threads or default_threads(run.grid)), bar, ExitStack() as stack:
         try:

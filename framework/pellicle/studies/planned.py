@@ -51,4 +51,4 @@ def _planned(study: Study) -> Runs:
         row = row.assign_coords(dict(zip(CELLS, sides, strict=True)))
         return row.assign_attrs(configuration=run.to_json())
 
-    return Runs(derive(table, study.derived, {}), last_step, study.to_json(as_given=True))
+    return Runs(derive(table, study.derived, {}), last_step, study.to_json(portable=True))

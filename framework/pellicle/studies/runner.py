@@ -221,7 +221,7 @@ def _execute(
         return verdict, verdict != "converged"
 
     def runs() -> Runs:
-        return Runs.of_study(read_only_dataset(whole), directory, study.to_json(as_given=True))
+        return Runs.of_study(read_only_dataset(whole), directory, study.to_json(portable=True))
 
     def written(write: Callable[[], tuple[Path, ...]]) -> tuple[Path, ...]:
         try:

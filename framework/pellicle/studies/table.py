@@ -32,7 +32,7 @@ class StudyTable:
         self._attributes = {
             "title": for_document(study.points[0].run.title),
             "configuration": study.to_json(),
-            FIRST_RUN: study.points[0].run.to_json(as_given=True),
+            FIRST_RUN: study.points[0].run.to_json(portable=True),
             VARYING: json.dumps(sorted(study.varying)),
             "axes": json.dumps({name: list(axes) for name, axes in study.dimensions.items()}),
             **now_with(point.run for point in study.points),
