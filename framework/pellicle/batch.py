@@ -13,6 +13,8 @@ from pellicle.runs.lock import locked as locked
 from pellicle.runs.progress import BatchProgress as BatchProgress
 from pellicle.runs.progress import status_line as status_line
 
+_END = object()
+
 
 def mapped(
     executor: Executor,
@@ -52,7 +54,11 @@ def mapped(
     if not isinstance(pairs, Iterator) or not hasattr(pairs, "close"):
         raise PluginError(f"{name}: map() returned {shown(pairs)}; it has to be written with yield")
     with closing(cast("Any", pairs)):
-        for pair in _items(executor, pairs):
+        while True:
+            with errors_attributed_to(executor):
+                pair = next(pairs, _END)
+            if pair is _END:
+                break
             if not isinstance(pair, tuple) or len(pair) != 2 or id(pair[0]) not in ids:
                 raise PluginError(
                     f"{name}: map() yields {shown(pair)}; it has to yield each of the tasks that "
@@ -75,14 +81,3 @@ def mapped(
             f"{name}: map() ended without {len(remaining)} of {len(tasks)} tasks, such as "
             f"{first.name}; it has to yield each task once"
         )
-
-
-def _items(executor: Executor, pairs: Iterator[Any]) -> Iterator[Any]:
-    """Yield the items of an executor; exceptions that it raises itself are attributed to it."""
-    while True:
-        with errors_attributed_to(executor):
-            try:
-                pair = next(pairs)
-            except StopIteration:
-                return
-        yield pair

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 from pathlib import Path
 from typing import Any
@@ -129,30 +128,10 @@ def test_the_shape_of_the_grid_is_kept_and_coarse_areas_are_not_made_coarser() -
     assert ny >= 64 * min(1, worst / 0.1)
 
 
-def test_a_step_without_contact_has_no_error() -> None:
-    """At depth 0 there is nothing to be wrong about."""
-    first, second = advise(run(loading={"depth": [0.0, DEPTH]}), 0.01).steps
-    assert math.isnan(first.force_error)
-    assert second.force_error > 0
-
-
 def test_a_grid_too_coarse_to_compare_is_refused() -> None:
     """The message says how many cells it takes."""
     with pytest.raises(ConfigError, match=r"grid\.points: .*at least 32"):
         advise(run(points=20), 0.01)
-
-
-def test_the_command_prints_advice(tmp_path: Path) -> None:
-    """Errors in per cent, memory and the suggested grid; or all of it as JSON in SI."""
-    path = tmp_path / "wide.toml"
-    path.write_text(run(grid={"points": 64, "size": 3e-4}).to_toml(), encoding="utf-8")
-    printed = CliRunner().invoke(app, ["check", str(path)])
-    assert printed.exit_code == 0, printed.output
-    assert "grid.size = [" in printed.output
-    assert "MB" in printed.output
-    data = json.loads(CliRunner().invoke(app, ["check", str(path), "--json"]).stdout)
-    assert [step["step"] for step in data["steps"]] == [1, 2]
-    assert data["size"][0] < 3e-4
 
 
 def test_a_study_is_checked_run_by_run(tmp_path: Path) -> None:
@@ -187,16 +166,6 @@ def test_a_run_of_a_study_that_cannot_be_checked_is_named(tmp_path: Path) -> Non
     assert done.exit_code == 2
     assert "leave nothing to compare with" in done.output
     assert "(run with number of cells 16)" in done.output
-
-
-def test_memory_is_that_of_the_run(tmp_path: Path) -> None:
-    """`check` and `run --dry-run` tell the same memory, also where an interaction acts."""
-    sticky = run(32, interaction={"type": "dugdale", "work_of_adhesion": 1e-4, "range": 1e-5})
-    path = tmp_path / "sticky.toml"
-    path.write_text(sticky.to_toml(), encoding="utf-8")
-    data = json.loads(CliRunner().invoke(app, ["check", str(path), "--json"]).stdout)
-    planned = json.loads(CliRunner().invoke(app, ["run", str(path), "--dry-run", "--json"]).stdout)
-    assert f"{data['memory'] / 1e6:.3g} MB" == planned["runs"][0]["memory"]
 
 
 @pytest.mark.parametrize("cells", [4, 8])

@@ -2,26 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 import xarray as xr
-from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli.app import app
 from pellicle.results import checksum, storage
-
-RUN = {
-    "grid": {"points": 16, "size": "0.4 mm", "boundary": "periodic"},
-    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "50 mN/m"},
-    "indenter": {"type": "paraboloid", "radius": "1 mm"},
-    "loading": {"mean_pressure": ["50 Pa", "60 Pa", "70 Pa"]},
-    "corrections": [{"type": "yastrebov"}],
-}
+from tests.small_run import RUN
 
 
 @pytest.fixture(scope="module")
@@ -116,31 +106,3 @@ def test_strange_records_are_refused(record: bytes, content: bytes, tmp_path: Pa
     path.write_bytes(content + record + b"%016x" % len(record) + b"pellicle")
     with pytest.raises(pl.StorageError, match="does not match its checksum"):
         pl.load(path)
-
-
-def test_other_readers_are_not_disturbed(content: bytes, tmp_path: Path) -> None:
-    """With the checksum behind it the file opens with h5py and with xarray."""
-    path = tmp_path / "r.h5"
-    path.write_bytes(content)
-    force = pl.load(path).dataset["force"].values
-    with h5py.File(path) as file:
-        np.testing.assert_array_equal(file["force"][:], force)
-    with xr.open_dataset(path, engine="h5netcdf") as opened:
-        np.testing.assert_array_equal(opened["force"].values, force)
-
-
-def test_steps_count_from_1_everywhere(tmp_path: Path) -> None:
-    """File, CSV, dataset, console and messages give a step the same number."""
-    file = tmp_path / "count.toml"
-    run = pl.Run(**RUN | {"outputs": [{"type": "csv"}]})
-    file.write_text(run.to_toml(), encoding="utf-8")
-    shown = CliRunner().invoke(app, ["run", str(file), "-o", str(tmp_path)])
-    assert [line.split()[0] for line in shown.stdout.splitlines()[1:4]] == ["1", "2", "3"]
-    assert pl.load(tmp_path / "count.h5").dataset["step"].values.tolist() == [1, 2, 3]
-    with h5py.File(tmp_path / "count.h5") as stored:
-        assert stored["step"][:].tolist() == [1, 2, 3]
-    rows = (tmp_path / "count.csv").read_text(encoding="utf-8").splitlines()
-    assert [row.split(",")[0] for row in rows] == ["step", "1", "2", "3"]
-    study = json.loads(run.to_json()) | {"study": {"vary": {"kernel.tension": [0.0, 0.1]}}}
-    table = pl.run_study(study, progress=False)
-    assert table["step"].values.tolist() == [1, 2, 3]

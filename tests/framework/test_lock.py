@@ -15,28 +15,9 @@ from typer.testing import CliRunner
 import pellicle as pl
 from pellicle.cli.app import app
 from pellicle.runs.lock import locked
+from tests.small_run import run_file
 
-RUN = """
-outputs = []
-[grid]
-points = 16
-size = "0.4 mm"
-[kernel]
-type = "half_space"
-reduced_modulus = "10 kPa"
-[indenter]
-type = "flat_punch"
-radius = "0.1 mm"
-[loading]
-depth = ["5 um", "10 um"]
-"""
-STUDY = (
-    RUN
-    + """
-[study.vary]
-kernel.reduced_modulus = ["10 kPa", "20 kPa"]
-"""
-)
+STUDY = run_file("[study.vary]\nkernel.reduced_modulus = ['10 kPa', '20 kPa']")
 
 
 @contextmanager
@@ -62,7 +43,7 @@ def another_process(folder: Path, name: str) -> Iterator[subprocess.Popen[bytes]
         holder.stdout.close()
 
 
-@pytest.mark.parametrize(("text", "name"), [(RUN, "work"), (STUDY, "study")])
+@pytest.mark.parametrize(("text", "name"), [(run_file(), "work"), (STUDY, "study")])
 def test_second_process_is_refused(text: str, name: str, tmp_path: Path) -> None:
     """A second run or study at the same files ends at once, and names the holder.
 
@@ -85,19 +66,9 @@ def test_second_process_is_refused(text: str, name: str, tmp_path: Path) -> None
     assert not list(out.rglob("*.lock"))
 
 
-def test_library_run_is_refused(tmp_path: Path) -> None:
-    """A run from Python locks its files too, by the name of its file."""
-    (tmp_path / "work.toml").write_text(RUN, encoding="utf-8")
-    with (
-        locked(tmp_path / "out", "work"),
-        pytest.raises(pl.StorageError, match="work is locked by process"),
-    ):
-        pl.run(tmp_path / "work.toml", directory=tmp_path / "out", progress=False)
-
-
 def test_other_files_are_not_locked(tmp_path: Path) -> None:
     """Runs of another name in the same folder, and of the same name elsewhere, do not wait."""
-    (tmp_path / "work.toml").write_text(RUN, encoding="utf-8")
+    (tmp_path / "work.toml").write_text(run_file(), encoding="utf-8")
     with locked(tmp_path / "out", "other"), locked(tmp_path / "elsewhere", "work"):
         result = pl.run(tmp_path / "work.toml", directory=tmp_path / "out", progress=False)
     assert result.converged
@@ -108,7 +79,7 @@ def test_nothing_is_locked_where_nothing_is_written(
 ) -> None:
     """A run without outputs leaves the folder alone."""
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "work.toml").write_text(RUN, "utf-8")
+    (tmp_path / "work.toml").write_text(run_file(), "utf-8")
     with locked(tmp_path, "work"):
         assert pl.run("work.toml", progress=False).converged
 

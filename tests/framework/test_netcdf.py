@@ -68,11 +68,3 @@ def test_reads_what_it_wrote(tmp_path: Path) -> None:
     with h5py.File(path) as file:
         xr.testing.assert_identical(netcdf.dataset(file), sample())
         xr.testing.assert_identical(netcdf.dataset(file, without=["x"]), sample().drop_dims("x"))
-
-
-def test_reads_what_others_wrote(tmp_path: Path) -> None:
-    """Files of xarray, whose layout differs in detail, are read alike."""
-    path = tmp_path / "sample.h5"
-    sample().to_netcdf(path, engine="h5netcdf", unlimited_dims=["step"])
-    with h5py.File(path) as file:
-        xr.testing.assert_identical(netcdf.dataset(file), sample())

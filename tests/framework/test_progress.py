@@ -5,21 +5,48 @@ from __future__ import annotations
 import io
 import signal
 import threading
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 import rich.console
+from rich.console import Console
 
 import pellicle as pl
-from pellicle.runs.progress import RunProgress
+from pellicle.runs.progress import BatchProgress, ProgressMessage, RunProgress
+from tests import small_run
 
-RUN = pl.Run(
-    title="bead",
-    grid={"points": 32, "size": 1.0},
-    kernel={"type": "tensed_membrane", "tension": 0.2, "reduced_modulus": 1.0},
-    indenter={"type": "paraboloid", "radius": 1.0},
-    loading={"depth": [0.02, 0.04, 0.06]},
-)
+RUN = pl.Run(**small_run.RUN | {"title": "bead"})
+
+
+@dataclass(frozen=True)
+class Job:
+    """A run of a study by its name."""
+
+    name: str
+    memory: int = 1
+
+
+ONE, TWO = Job("kernel.tension = 1 N/m"), Job("kernel.tension = 2 N/m")
+
+
+@pytest.fixture
+def screen(monkeypatch: pytest.MonkeyPatch) -> io.StringIO:
+    """Return what the terminal that the bars find is written, control codes included."""
+    screen = io.StringIO()
+    console = rich.console.Console(file=screen, force_terminal=True, width=200)
+    monkeypatch.setattr("rich.console.Console", lambda **_: console)
+    monkeypatch.setattr("pellicle.runs.progress._BETWEEN_UPDATES", 0.0)
+    return screen
+
+
+def lines(progress: BatchProgress, width: int = 200) -> list[str]:
+    """Return what a terminal shows of the bars."""
+    assert progress._bars
+    paper = Console(file=io.StringIO(), width=width)
+    with paper.capture() as capture:
+        paper.print(progress._bars.get_renderable())
+    return capture.get().splitlines()
 
 
 def _iterate(progress: RunProgress) -> None:
@@ -37,34 +64,69 @@ def test_silent_without_a_terminal(enabled: bool, capfd: pytest.CaptureFixture[s
     assert capfd.readouterr() == ("", "")
 
 
-def test_bar_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    """On a terminal the bar shows step, iteration, residual and time left."""
-    screen = io.StringIO()
-    console = rich.console.Console(file=screen, force_terminal=True, width=200)
-    monkeypatch.setattr("rich.console.Console", lambda **options: console)
-    monkeypatch.setattr("pellicle.runs.progress._BETWEEN_UPDATES", 0.0)
+def test_bar_on_a_terminal(screen: io.StringIO) -> None:
+    """It shows step, iteration, residual and time left, and goes when the run ends."""
     _iterate(RunProgress(2, True))
     shown = screen.getvalue()
     for words in ("step 2/2", "iteration 2", "residual 5.0e-01 × tolerance", "left"):
         assert words in shown
+    assert shown.splitlines()[-1].endswith("\x1b[2K")
 
 
-def test_silent_on_a_terminal_when_not_enabled(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A bar that is not asked for is not even made."""
+@pytest.mark.usefixtures("screen")
+def test_a_study_has_a_line_for_each_run_at_work() -> None:
+    """A run has a line from its first word to its end: its name, step and iteration."""
+    with BatchProgress(3, 0, enabled=True) as progress:
+        progress.report(ONE, ProgressMessage(0, 4, 3, 2e5, 0.25))
+        progress.report(TWO, ProgressMessage(1, 2, 7, 3.0, 1.5))
+        study, one, two = lines(progress)
+        assert "0 done, 0 failed, 3 left" in study
+        assert one.strip().startswith("kernel.tension = 1 N/m ")
+        assert "step 1/4 iteration 3" in one
+        assert "step 2/2 iteration 7" in two
+        # Runs at work count by their share.
+        assert progress._bars
+        assert progress._bars.tasks[0].completed == 0.25 / 4 + 1.5 / 2
+        progress.finished(ONE, "failed: struck by lightning", failed=True)
+        study, two = lines(progress)
+        assert "0 done, 1 failed, 2 left" in study
+        assert "2 N/m" in two
 
-    def fail() -> None:
-        raise AssertionError("made a bar")
 
-    monkeypatch.setattr("pellicle.runs.progress._bars", fail)
-    _iterate(RunProgress(2, False))
+@pytest.mark.usefixtures("screen")
+def test_narrow_terminal() -> None:
+    """Where there is no room for all it is the names that are cut, and nothing in them is lost."""
+    job = Job("loading.depth = [1e-6, 2e-6], kernel.tension = 1 N/m, indenter.radius = 1 mm")
+    with BatchProgress(1000, 100, enabled=True) as progress:
+        progress.report(job, ProgressMessage(0, 4, 3, 2e5, 0.25))
+        study, run = lines(progress, width=80)
+    assert "100 done, 0 failed, 900 left time left -:--:--" in " ".join(study.split())
+    assert run.startswith("  loading.depth = [")
+    assert "…" in run
+    assert "step 1/4 iteration 3" in run
+    assert max(len(study), len(run)) <= 80
 
 
+def test_a_log_has_a_line_for_each_run(capfd: pytest.CaptureFixture[str]) -> None:
+    """Without a terminal there are no control codes, and nothing before a run is done."""
+    long = Job(f"kernel.tension = {'1' * 200} [N/m]")
+    with BatchProgress(7, 4, enabled=True) as progress:
+        progress.report(ONE, ProgressMessage(0, 1, 1, 1e3, 0.5))
+        assert capfd.readouterr() == ("", "")
+        progress.finished(ONE, "converged", failed=False)
+        progress.finished(long, "failed: [bold]no[/bold]", failed=True)
+    out, err = capfd.readouterr()
+    assert out == ""
+    assert err.splitlines() == [
+        "[5/7] kernel.tension = 1 N/m: converged",
+        f"[6/7] {long.name}: failed: [bold]no[/bold]",
+    ]
+
+
+@pytest.mark.usefixtures("screen")
 @pytest.mark.parametrize("excess", [0.0, float("nan"), float("inf")])
-def test_odd_residuals(excess: float, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_odd_residuals(excess: float) -> None:
     """A residual of zero, NaN or infinity does not end the run."""
-    console = rich.console.Console(file=io.StringIO(), force_terminal=True)
-    monkeypatch.setattr("rich.console.Console", lambda **options: console)
-    monkeypatch.setattr("pellicle.runs.progress._BETWEEN_UPDATES", 0.0)
     progress = RunProgress(1, True)
     with progress:
         monitor = progress.step(0)

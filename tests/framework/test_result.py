@@ -52,14 +52,6 @@ def test_configuration_makes_the_run_again(result: pl.Result, tmp_path: Path) ->
     assert pl.Run(**loaded.configuration) == pl.Run(**CONFIGURATION)
 
 
-def test_provenance(result: pl.Result) -> None:
-    """The attributes say the title, the versions and the date."""
-    attributes = result.dataset.attrs
-    assert attributes["title"] == "τ₀"
-    assert f"pellicle {pl.__version__}" in attributes["versions"]
-    assert attributes["date"].startswith("20")
-
-
 def test_provenance_of_components_within_components(monkeypatch: pytest.MonkeyPatch) -> None:
     """The versions name the package of a kernel that another kernel holds."""
     own = registry()
@@ -84,20 +76,6 @@ def test_provenance_names_what_components_compute_with(monkeypatch: pytest.Monke
     assert versions == [f"{name} {version(name)}" for name in used]
 
 
-def test_converged(result: pl.Result) -> None:
-    """A result has converged only if every step has."""
-    assert result.converged
-    marked = result.dataset.assign(converged=("step", [True, False]))
-    assert not pl.Result(marked).converged
-
-
-def test_steps_join_in_order(result: pl.Result) -> None:
-    """Joining datasets of one step each gives the dataset of all."""
-    parts = [result.dataset.isel(step=[index]) for index in range(2)]
-    xr.testing.assert_identical(storage.joined(list(parts)), result.dataset)
-    xr.testing.assert_identical(storage.joined(parts[:1]), parts[0])
-
-
 def test_steps_are_joined_with_one_field_twice_at_a_time() -> None:
     """Joining uses up the list, and takes much less than another copy of all."""
     tracemalloc.start()
@@ -114,13 +92,6 @@ def test_steps_are_joined_with_one_field_twice_at_a_time() -> None:
         tracemalloc.stop()
     assert (steps, joined.sizes["step"]) == ([], 4)
     assert peak - before < 0.4 * whole
-
-
-def test_save_where_nothing_can_be_written(result: pl.Result, tmp_path: Path) -> None:
-    """Saving below a file is a StorageError that names the path."""
-    (tmp_path / "file").touch()
-    with pytest.raises(pl.StorageError, match=r"result\.h5: cannot be written"):
-        result.save(tmp_path / "file" / "result.h5")
 
 
 @pytest.mark.parametrize("lost", ["force", "pressure", "converged"])

@@ -11,7 +11,6 @@ import pytest
 import xarray as xr
 
 from pellicle.errors import StorageError
-from pellicle.files import check_writable
 from pellicle.results import netcdf, storage
 
 ATTRIBUTES = {"configuration": '{"a": "τ₀"}', "versions": "pellicle 0", "title": "τ₀"}
@@ -42,16 +41,6 @@ def path(tmp_path: Path) -> Path:
     return tmp_path / "folder" / "result.h5"
 
 
-def test_round_trip(path: Path) -> None:
-    """What is read is what was written: values, types, units and attributes."""
-    written = steps(0, 1, 2)
-    storage.write(written, path)
-    again = storage.read(path)
-    xr.testing.assert_identical(again, written)
-    for name in ("pressure", "contact", "converged", "iterations"):
-        assert again[name].dtype == written[name].dtype
-
-
 def test_append_equals_writing_at_once(path: Path) -> None:
     """Steps written one by one make the file of all steps."""
     storage.write(steps(0), path)
@@ -59,13 +48,6 @@ def test_append_equals_writing_at_once(path: Path) -> None:
     storage.append(steps(2, 3), path)
     joined = xr.concat([steps(0), steps(1), steps(2, 3)], "step", data_vars="all")
     xr.testing.assert_identical(storage.read(path), joined)
-
-
-def test_write_replaces(path: Path) -> None:
-    """Writing again leaves the new steps only."""
-    storage.write(steps(0, 1, 2), path)
-    storage.write(steps(5), path)
-    xr.testing.assert_identical(storage.read(path), steps(5))
 
 
 def test_readable_by_others(path: Path) -> None:
@@ -80,21 +62,6 @@ def test_readable_by_others(path: Path) -> None:
         assert file["status"].asstr()[1] == "a longer text: τ₀"
     with xr.open_dataset(path, engine="h5netcdf") as opened:
         assert dict(opened.sizes) == {"step": 3, "x": 5, "y": 4}
-
-
-def _fail_to_append(self: object, size: int, axis: int) -> None:
-    raise OSError(28, "No space left on device")
-
-
-def test_failed_append_leaves_the_file_whole(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A failure while appending leaves the file of before, and nothing beside it."""
-    storage.write(steps(0, 1), path)
-    before = path.read_bytes()
-    monkeypatch.setattr(h5py.Dataset, "resize", _fail_to_append)
-    with pytest.raises(StorageError, match=r"cannot be written \(No space left on device\)"):
-        storage.append(steps(2), path)
-    assert path.read_bytes() == before
-    assert list(path.parent.iterdir()) == [path]
 
 
 def test_failed_write_leaves_the_file_whole(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -119,24 +86,6 @@ def test_nothing_half_written_has_the_name(path: Path, monkeypatch: pytest.Monke
     storage.write(steps(0), path)
     assert seen == [False]
     assert path.exists()
-
-
-def test_check_writable(tmp_path: Path) -> None:
-    """A folder that can be written is made; one that cannot is named."""
-    check_writable(tmp_path / "a" / "b" / "c.h5")
-    assert list((tmp_path / "a" / "b").iterdir()) == []
-    (tmp_path / "file").touch()
-    with pytest.raises(StorageError, match=r"c\.h5: cannot be written .*choose another folder"):
-        check_writable(tmp_path / "file" / "c.h5")
-
-
-def test_attributes(path: Path) -> None:
-    """The attributes are read without the fields, and only from a result."""
-    storage.write(steps(0), path)
-    assert storage.attributes(path) == ATTRIBUTES
-    path.write_bytes(b"junk")
-    with pytest.raises(StorageError, match="not a readable result file"):
-        storage.attributes(path)
 
 
 def test_other_schema_version(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -169,15 +118,11 @@ def test_segments(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         assert storage.read(path)["step"].values.tolist() == list(range(index + 1))
         assert storage.scalars(path).sizes == {"step": index + 1}
     assert joins == [0, 1, 3, 7]
-    _, (array,) = storage.fields(path, ["pressure"], 18)
-    np.testing.assert_array_equal(array, steps(18)["pressure"].values[0])
     attributes, (pressure,) = storage.fields(path, ["pressure"], 18)
     assert (pressure == steps(18)["pressure"].values[0]).all()
     assert ATTRIBUTES.items() <= attributes.items()
     with pytest.raises(StorageError, match="not have that many steps"):
         storage.fields(path, ["pressure"], 99)
-    with pytest.raises(StorageError, match="not a readable result"):
-        storage.fields(path, ["nonsense"], 0)
     whole = xr.concat([steps(index) for index in range(20)], "step", data_vars="all")
     xr.testing.assert_identical(storage.read(path), whole)
     storage.close(path)
@@ -225,12 +170,6 @@ def test_steps_with_gaps_are_not_resumed(path: Path, numbers: tuple[int, ...]) -
     storage.write(steps(*numbers), path)
     with pytest.raises(StorageError, match=r"not 1, 2, …, so it cannot be resumed.*--overwrite"):
         storage.require_consecutive(storage.read(path), path)
-
-
-def test_steps_without_gaps_are_resumed(path: Path) -> None:
-    """What one process wrote goes on."""
-    storage.write(steps(1, 2, 3), path)
-    storage.require_consecutive(storage.read(path), path)
 
 
 def test_lack_of_memory_is_reported(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

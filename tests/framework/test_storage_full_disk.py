@@ -18,6 +18,8 @@ if sys.platform == "win32":
 
 import resource
 
+from tests.small_run import RUN
+
 
 @contextmanager
 def files_end_at(size: int) -> Iterator[None]:
@@ -33,16 +35,7 @@ def files_end_at(size: int) -> Iterator[None]:
 @pytest.fixture(scope="module")
 def steps() -> list[xr.Dataset]:
     """Return three steps of a result, each on its own."""
-    data = pl.run(
-        {
-            "grid": {"points": 16, "size": "0.4 mm"},
-            "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
-            "indenter": {"type": "paraboloid", "radius": "1 mm"},
-            "loading": {"depth": ["5 um", "10 um", "15 um"]},
-        },
-        progress=False,
-        threads=1,
-    ).dataset
+    data = pl.run(RUN, progress=False, threads=1).dataset
     return [data.isel(step=[index]) for index in range(3)]
 
 

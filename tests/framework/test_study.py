@@ -22,22 +22,16 @@ from pellicle import files, memory
 from pellicle.cli.app import app
 from pellicle.components import Monitor
 from pellicle.results import storage
-from pellicle.results.dimensions import with_paths
 from pellicle.studies import runner as study_module
 from pellicle.studies.summary import failures
 from pellicle.studies.table import StudyTable, write
 from pellicle_plugins.executors.processes import Processes
 from pellicle_plugins.executors.serial import Serial
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
+from tests import small_run
 
-RUN: dict[str, Any] = {
-    "title": "Study",
-    "grid": {"points": 16, "size": "0.4 mm"},
-    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "1 N/m"},
-    "indenter": {"type": "paraboloid", "radius": "1 mm"},
-    "loading": {"depth": ["5 um", "10 um", "15 um"]},
-    "outputs": [],
-}
+RUN = small_run.RUN | {"title": "Study"}
+
 # Whatever the cells are worth, the numbers are to be the same.
 pytestmark = pytest.mark.filterwarnings("ignore:.*too coarse for this contact")
 TENSION, RADIUS = "kernel.tension", "indenter.radius"
@@ -138,17 +132,6 @@ def test_a_parameter_is_selected_by_a_name_or_its_path(tmp_path: Path) -> None:
         assert stored["force"].dims == table["force"].dims
         assert stored.sel(kernel_tension=1.0).sizes == {"indenter_radius": 2, "step": 3}
     assert pl.Runs.of_study(table, tmp_path).table["force"].dims == (TENSION, RADIUS, "step")
-
-
-def test_a_table_of_an_earlier_version_is_shown(tmp_path: Path) -> None:
-    """Dimensions of files up to now had dots."""
-    carry_out(study({TENSION: [0.0, 1.0]}), tmp_path)
-    shown = CliRunner().invoke(app, ["show", str(tmp_path)]).stdout
-    path = tmp_path / "study.h5"
-    storage.write(with_paths(storage.table(path)), path)
-    with xr.open_dataset(path, engine="h5netcdf") as stored:
-        assert TENSION in stored.dims
-    assert CliRunner().invoke(app, ["show", str(tmp_path)]).stdout == shown
 
 
 def test_nothing_stays_without_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -333,36 +316,6 @@ def test_a_study_is_not_loaded_as_a_result(tmp_path: Path) -> None:
             pl.load(path)
 
 
-def test_interrupted_run_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A run on its own goes on too, to the same fields bit for bit; a finished one does nothing."""
-    outputs = [{"type": "csv"}]
-    run = pl.Run(**RUN | {"solver": Counting(), "outputs": outputs})
-    break_at(monkeypatch, 1.0, 1.5e-5)
-    with pytest.raises(ZeroDivisionError):
-        pl.run(run, directory=tmp_path, progress=False, threads=1)
-    assert len(Counting.solved) == 2
-    monkeypatch.setattr(Counting, "fails_at", staticmethod(lambda problem: None))
-    result = pl.run(run, directory=tmp_path, progress=False, threads=1)
-    assert len(Counting.solved) == 3
-    whole = pl.run(run, directory=tmp_path / "whole", progress=False, threads=1)
-    Counting.solved.clear()
-    again = pl.run(run, directory=tmp_path, progress=False, threads=1)
-    assert Counting.solved == []
-    for one in (
-        result,
-        again,
-        pl.load(next(tmp_path.glob("*.h5"))),
-    ):
-        xr.testing.assert_equal(
-            one.dataset.drop_vars("wall_time"), whole.dataset.drop_vars("wall_time")
-        )
-    rows = next(tmp_path.glob("*.csv")).read_text(encoding="utf-8").splitlines()
-    assert len(rows) == 1 + 3
-    assert [row.split(",")[0] for row in rows[1:]] == ["1", "2", "3"]
-    pl.run(run, directory=tmp_path, progress=False, threads=1, overwrite=True)
-    assert len(Counting.solved) == 3
-
-
 def test_title_and_outputs_make_no_other_run(tmp_path: Path) -> None:
     """What is drawn of a finished run may be changed afterwards."""
     run = RUN | {"solver": Counting(), "outputs": None}
@@ -522,25 +475,6 @@ def test_outputs_of_runs_and_of_the_study(tmp_path: Path) -> None:
     assert texts == {"study-listing.txt", "study-summary.txt"}
 
 
-def test_figures(tmp_path: Path) -> None:
-    """The standard outputs of a study draw it."""
-    carry_out(study({TENSION: [0.0, 1.0], "indenter.radius": [1e-3, 2e-3]}, outputs=None), tmp_path)
-    assert {path.name for path in tmp_path.glob("*.png")} == {
-        "study-force.png",
-        "study-contact_area.png",
-    }
-
-
-def test_configuration_of_a_run(tmp_path: Path) -> None:
-    """The configuration that a run's file records is the run's own."""
-    plan = study()
-    table = carry_out(plan, tmp_path)
-    path = tmp_path / "runs" / f"{table['run'].values[0, 0]}.h5"
-    assert json.loads(storage.attributes(path)["configuration"]) == json.loads(
-        plan.points[0].run.to_json()
-    )
-
-
 def test_studies_in_threads_leave_warnings_to_others(monkeypatch: pytest.MonkeyPatch) -> None:
     """What a process warns of after studies that ran at the same time is shown."""
     shown: list[str] = []
@@ -560,36 +494,26 @@ def test_studies_in_threads_leave_warnings_to_others(monkeypatch: pytest.MonkeyP
 TWELVE = {TENSION: np.linspace(0.0, 1.1, 12).tolist()}
 
 
+LONG, SHORT = [5.0] * 12, [0.05] * 12
+
+
 @pytest.mark.parametrize(
     ("here", "pace", "others"),
     [
-        (1, lambda run: 5.0, {}),
-        (12, lambda run: 0.05, {}),
-        (4, lambda run: 0.05 if run < 3 else 5.0, {}),
-        (10, lambda run: 6.0 if run == 9 else 0.01, {}),
-        (12, lambda run: 5.0, {"cores": 1}),
-        (12, lambda run: 5.0, {"threads": 2}),
-        (12, lambda run: 5.0, {"room": 3e8}),
-        (12, lambda run: 5.0, {"parent": object()}),
-        (12, lambda run: 5.0, {"executor": {"type": "serial"}}),
-        (0, lambda run: 0.05, {"executor": {"type": "processes"}}),
-    ],
-    ids=[
-        "long",
-        "short",
-        "slower",
-        "last",
-        "core",
-        "threads",
-        "room",
-        "child",
-        "serial",
-        "processes",
+        (1, LONG, {}),
+        (12, SHORT, {}),
+        (4, [*SHORT[:3], *LONG[3:]], {}),
+        (12, LONG, {"cores": 1}),
+        (12, LONG, {"threads": 2}),
+        (12, LONG, {"room": 3e8}),
+        (12, LONG, {"parent": object()}),
+        (12, LONG, {"executor": {"type": "serial"}}),
+        (0, SHORT, {"executor": {"type": "processes"}}),
     ],
 )
 def test_long_runs_go_to_processes(
     here: int,
-    pace: Callable[[int], float],
+    pace: list[float],
     others: dict[str, Any],
     monkeypatch: pytest.MonkeyPatch,
     capfd: pytest.CaptureFixture[str],
@@ -603,7 +527,7 @@ def test_long_runs_go_to_processes(
 
     def solve(task: study_module.RunTask, say: Any, threads: int | None) -> xr.Dataset:
         nonlocal clock
-        clock += pace(task.index[0])
+        clock += pace[task.index[0]]
         return solved.copy()
 
     solved = (
@@ -625,27 +549,3 @@ def test_long_runs_go_to_processes(
     assert len(shared) == 12 - here
     told = capfd.readouterr().err.count("go to processes")
     assert told == (len(shared) > 0 and "executor" not in others)
-
-
-@pytest.mark.slow
-def test_script_whose_runs_are_long(tmp_path: Path) -> None:
-    """A script without a guard of its main part is not run again, and finds the same numbers."""
-    script = f"""
-import pellicle as pl
-from pellicle.runs import runner as of_runs
-from pellicle.studies import runner
-runner._LONG, of_runs.available_cores = 0.0, lambda: 2
-print("once")
-print(pl.run_study(pl.Study(run={RUN!r}, vary={{"kernel.tension": [0.0, 0.5, 1.0]}}), "s")["force"]
-      .values.tolist())
-"""
-    (tmp_path / "script.py").write_text(script)
-    done = subprocess.run(
-        [sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True, check=True
-    )
-    once, forces = done.stdout.splitlines()
-    assert once == "once"
-    assert "the other 2 runs" in done.stderr
-    assert (
-        json.loads(forces) == carry_out(study({TENSION: [0.0, 0.5, 1.0]}))["force"].values.tolist()
-    )

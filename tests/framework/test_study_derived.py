@@ -12,27 +12,16 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli.app import app
+from tests.small_run import run_file
 
-FILE = """
-outputs = []
-[grid]
-points = 16
-size = "0.4 mm"
-[kernel]
-type = "tensed_membrane"
-reduced_modulus = "10 kPa"
-[indenter]
-type = "paraboloid"
-radius = "1 mm"
-[loading]
-depth = ["10 um", "15 um"]
+FILE = run_file("""
 [study.vary]
 kernel.tension = ["0.5 N/m", "1 N/m"]
 [study.derived]
 s = "2 * kernel.tension / kernel.reduced_modulus"
 pull = "force / (s * depth)"
 missed = "1 - converged - -converged * 2"
-"""
+""")
 
 
 def test_derived_columns(tmp_path: Path) -> None:

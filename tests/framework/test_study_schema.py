@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -10,14 +11,9 @@ import pytest
 from jsonschema import Draft202012Validator
 
 import pellicle as pl
+from tests.small_run import RUN
 
 STUDIES = Path(__file__).parents[2] / "docs/studies"
-RUN: dict[str, Any] = {
-    "grid": {"points": 16, "size": "0.4 mm"},
-    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "1 N/m"},
-    "indenter": {"type": "paraboloid", "radius": "1 mm"},
-    "loading": {"depth": "10 um"},
-}
 COATED: dict[str, Any] = {
     "type": "coated",
     "tension": 1.0,
@@ -35,7 +31,7 @@ def schema() -> Draft202012Validator:
 def without(path: str) -> dict[str, Any]:
     """Return the run without one of its entries."""
     *tables, last = path.split(".")
-    table = {key: dict(table) for key, table in RUN.items()}
+    table = deepcopy(RUN)
     del (table[tables[0]] if tables else table)[last]
     return table
 

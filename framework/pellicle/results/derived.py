@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping
+from operator import methodcaller
 from typing import TYPE_CHECKING, Any
 
 from pellicle.errors import ConfigError
@@ -18,10 +19,7 @@ if TYPE_CHECKING:
 CELLS = ["x", "y"]
 """Dimensions of a field."""
 REDUCTIONS: dict[str, Callable[[Any], Any]] = {
-    "mean": lambda field: field.mean(CELLS),
-    "sum": lambda field: field.sum(CELLS),
-    "min": lambda field: field.min(CELLS),
-    "max": lambda field: field.max(CELLS),
+    name: methodcaller(name, CELLS) for name in ("mean", "sum", "min", "max")
 }
 """Functions that reduce a field to one number for each step."""
 

@@ -27,16 +27,9 @@ _DIMENSION_ATTRIBUTES = {
 def serialised(
     dataset: xr.Dataset, *, grows: Collection[str] = (), packed: Collection[str] = ()
 ) -> io.BytesIO:
-    """Return ``dataset`` as a NetCDF-4 file in memory.
+    """Return a dataset of numbers, truth values and texts as a NetCDF-4 file in memory.
 
-    Parameters
-    ----------
-    dataset
-        Variables of numbers, truth values or texts.
-    grows
-        Dimensions along which the file can be extended.
-    packed
-        Variables that are compressed.
+    It can be extended along the dimensions ``grows``; the variables ``packed`` are compressed.
     """
     import h5py
     from xarray import conventions

@@ -20,7 +20,7 @@ from . import storage
 from .limits import beyond_theory
 from .path import label_of_step, oscillations_of, path_variables
 from .status import Status, statuses_of
-from .variables import COORDINATES, FIELDS, REQUIRED, VARIABLES, damage
+from .variables import COORDINATES, REQUIRED, VARIABLES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -82,7 +82,7 @@ class Result:
 
     def coarse(self) -> list[tuple[int, str]]:
         """Return number and status of each step whose cells are too coarse."""
-        return self._of({status for status in Status if status.is_coarse})
+        return self._of({Status.COARSE, Status.COARSE_ZONE})
 
     def steep(self) -> list[tuple[int, str]]:
         """Return number and status of each step with slopes beyond those of the theory."""
@@ -111,27 +111,29 @@ class Result:
         ]
 
     def _of(self, statuses: set[Status]) -> list[tuple[int, str]]:
-        return [
-            (number, message) for number, s, message in caveats_of(self.dataset) if s in statuses
-        ]
+        return [(number, text) for number, s, text in caveats_of(self.dataset) if s in statuses]
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: status, numbers of the steps, all variables folded away."""
-        columns = [name for name in _SHOWN if name in self.dataset]
-        values = {
-            name: [readable(float(v), VARIABLES[name].unit, 4) for v in self.dataset[name].values]
-            for name in columns
-        }
+        solved, planned, failed = len(self.dataset["step"]), self.planned_steps, self.failures()
+        outcome = f"{solved} of {planned} steps" if solved < planned else f"{planned} steps"
+        outcome += f", {len(failed)} did not converge" if failed else ", all converged"
+        columns = [
+            [readable(float(v), VARIABLES[name].unit, 4) for v in self.dataset[name].values]
+            for name in _SHOWN
+            if name in self.dataset
+        ]
+        statuses = [(str(number), status) for number, status in _statuses(self.dataset)]
         rows = [
-            [str(number), *(values[name][index] for name in columns), str(status)]
-            for index, (number, status) in enumerate(_statuses(self.dataset))
+            [number, *numbers, status]
+            for (number, status), *numbers in zip(statuses, *columns, strict=True)
         ]
         if len(rows) > _MOST:
             rows = [*rows[: _MOST - 1], ["…"] * len(rows[0]), rows[-1]]
         return summary(
             str(self.configuration.get("title") or "Result"),
-            _outcome(len(self.dataset["step"]), self.planned_steps, len(self.failures())),
-            ["step", *(name.replace("_", " ") for name in columns), "status"],
+            outcome,
+            ["step", *(n.replace("_", " ") for n in _SHOWN if n in self.dataset), "status"],
             rows,
             details=self.dataset._repr_html_(),
         )
@@ -199,12 +201,6 @@ class Result:
         storage.write(self.dataset, Path(path))
 
 
-def _outcome(solved: int, planned: int, failed: int) -> str:
-    """Return how many steps are solved, and how many of them did not converge."""
-    steps = f"{solved} of {planned} steps" if solved < planned else f"{planned} steps"
-    return f"{steps}, {failed} did not converge" if failed else f"{steps}, all converged"
-
-
 def _statuses(data: xr.Dataset) -> list[tuple[int, str]]:
     return list(zip(data["step"].values.tolist(), map(str, data["status"].values), strict=True))
 
@@ -243,28 +239,7 @@ def load(path: str | Path) -> Result:
         The file does not exist, is damaged, has another schema version, or is not a result.
     """
     dataset = storage.read(file_of_run(Path(path)))
-    if problem := _damage(dataset):
-        raise StorageError(f"{path}: {problem}, so it is damaged; run it again")
+    if missing := {*COORDINATES, *REQUIRED} - {*map(str, dataset.variables)}:
+        lost = ", ".join(sorted(missing))
+        raise StorageError(f"{path}: lacks {lost}, so it is damaged; run it again")
     return Result(dataset)
-
-
-def _damage(dataset: xr.Dataset) -> str:
-    """Return the reason why a dataset is not a result of any version; empty if it is one."""
-    variables = {name: dataset[name] for name in dataset.variables}
-    if problem := damage(variables, (*COORDINATES, *REQUIRED)):
-        return problem
-    for name in (*COORDINATES, *REQUIRED):
-        dims = COORDINATES if name in FIELDS else (name,) if name in COORDINATES else ("step",)
-        if dataset[name].dims != dims:
-            return f"has {name} over {', '.join(map(str, dataset[name].dims)) or 'nothing'}"
-    configuration = json.loads(dataset.attrs["configuration"])
-    try:
-        grid = Grid(**configuration["grid"])
-        is_table = isinstance(configuration["loading"], dict)
-    except (ConfigError, LookupError, TypeError):
-        is_table = False
-    if not is_table:
-        return "has a configuration without a grid or a loading"
-    if grid.shape != (dataset.sizes["x"], dataset.sizes["y"]):
-        return f"has fields of other shapes than its grid of {grid.shape}"
-    return ""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -51,8 +50,6 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
                 f"{path}: was changed after pellicle wrote it, its checksum is missing; restore it "
                 "from a copy, or run it again"
             )
-        if not isinstance(json.loads(attributes["configuration"]), dict):
-            raise ValueError("its configuration is not a table")
         if kind == "result" and "axes" in attributes:
             raise StorageError(
                 f"{path}: the table of a study, not a result; pellicle.run_study returns it, "

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _AXES: Final = {"semi_major_axis", "semi_minor_axis", "major_axis_angle"}
-_OF_ONE_PART: Final = {"contact_radius", *_AXES}
 _OF_A_PERIOD: Final = {"contact_fraction", "mean_pressure"}
 _ROUND: Final = 1e-9
 
@@ -37,14 +36,11 @@ def means_something(data: xr.Dataset, name: str) -> bool:
     A contact in several parts has neither radius nor ellipse, and a round one no axes besides its
     radius. On a free domain the area of the domain is arbitrary, and so is a share of it.
     """
-    if name in _OF_ONE_PART and not has_one_shape(data):
+    if name in {"contact_radius", *_AXES} and not has_one_shape(data):
         return False
+    if name in _AXES:
+        major, minor = data["semi_major_axis"].values, data["semi_minor_axis"].values
+        return bool(np.any(major - minor > _ROUND * major))
     if name in _OF_A_PERIOD or name.startswith(CORRECTED_FRACTION):
         return is_periodic(data)
-    return name not in _AXES or not _is_round(data)
-
-
-def _is_round(data: xr.Dataset) -> bool:
-    """Return whether the axes of the ellipse are equal up to round-off in all steps in contact."""
-    major, minor = data["semi_major_axis"].values, data["semi_minor_axis"].values
-    return not bool(np.any(major - minor > _ROUND * major))
+    return True

@@ -111,11 +111,6 @@ class Status(Enum):
         )
 
     @property
-    def is_coarse(self) -> bool:
-        """Whether the cells are too coarse for the contact, or for the zone around it."""
-        return self in (Status.COARSE, Status.COARSE_ZONE)
-
-    @property
     def verdict(self) -> str:
         """The status in one or two words, for tables."""
         if self.converged:

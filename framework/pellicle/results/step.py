@@ -27,14 +27,8 @@ def step_dataset(
 ) -> xr.Dataset:
     """Return load step ``number``, counted from 1, with dimensions (step: 1, x: nx, y: ny).
 
-    Parameters
-    ----------
-    grid, number, equilibrium
-        The grid, number and equilibrium of the step.
-    scalars
-        Further values, by the name of their variable.
-    variables
-        Variables for the names in ``scalars`` that are not in `VARIABLES`.
+    ``scalars`` are further values by the name of their variable; ``variables`` describes those that
+    are not in `VARIABLES`.
     """
     fields = {
         "pressure": equilibrium.pressure,

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
-from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
-
-from .status import Status
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -260,29 +258,3 @@ def header(name: str, variable: xr.DataArray) -> str:
     """Return the header of a variable's column in a file: its name and SI unit."""
     unit = variable.attrs.get("units", "1")
     return name if unit == "1" else f"{name} [{unit}]"
-
-
-_DTYPES: Mapping[Type, str] = {"number": "fiu", "count": "fiu", "truth": "b", "text": "UO"}
-
-
-def damage(
-    variables: Mapping[Any, xr.DataArray],
-    required: Collection[str],
-    codes: Collection[str] = Status.__members__,
-) -> str:
-    """Return which variable of a file is missing or has a wrong type; empty if none.
-
-    Variables that are not in `VARIABLES` have to be numeric, except ``run``, the name of a run's
-    file, and `BEYOND_THEORY`; ``codes`` are the allowed values of ``status_code``.
-    """
-    if missing := {*required} - {*map(str, variables)}:
-        return f"lacks {', '.join(sorted(missing))}"
-    for name, variable in variables.items():
-        declared = VARIABLES.get(str(name))
-        is_text = name in ("run", BEYOND_THEORY)
-        allowed = _DTYPES[declared.type] if declared else "UO" if is_text else "fiub"
-        if variable.dtype.kind not in allowed:
-            return f"has {name} of type {variable.dtype}"
-    if unknown := {*variables["status_code"].values.ravel()} - {*codes}:
-        return f"has the status_code {min(map(str, unknown))!r}"
-    return ""

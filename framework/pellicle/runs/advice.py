@@ -45,8 +45,6 @@ class _Rule(NamedTuple):
 
     order: float
     """Power of the cell size with which the error falls."""
-    own: float
-    """Factor on the largest difference of the step."""
     pooled: float = 0.0
     """Factor on the root mean square of the differences of all steps, at equal cells across."""
     least: float = 0.0
@@ -58,10 +56,10 @@ class _Rule(NamedTuple):
 # them. Smooth contacts: force 0.97 and 3.4, depth 1.0 and 4.6, area 1.0 and 4.1; in runs of one
 # step force 0.96 and 2.9, depth 1.0 and 2.3, area 0.96 and 3.1. Rough: force 1.0 and 5.1, depth
 # 1.0 and 18, area 1.0 and 2.5, of one step 0.93. Punches: force 1.0 and 3.4, area 0.75 and 3.1.
-_SMOOTH = _Rule(2.0, 1.0, 1.5, 0.3)
-_SMOOTH_DEPTH = _Rule(2.0, 1.0, 1.5, 0.2)
-_OTHER = _Rule(1.0, 1.0)
-_AREA = _Rule(1.0, 1.0, 1.5, 0.7)
+_SMOOTH = _Rule(2.0, 1.5, 0.3)
+_SMOOTH_DEPTH = _Rule(2.0, 1.5, 0.2)
+_OTHER = _Rule(1.0)
+_AREA = _Rule(1.0, 1.5, 0.7)
 
 
 class Expected(NamedTuple):
@@ -183,7 +181,7 @@ def _expected(
         pooled = math.sqrt(np.mean(differences**2)) if differences.size else 0.0
         least = rule.least * np.abs(values[-1]) / scale
         others = np.maximum(rule.pooled * pooled, least) / cells**rule.order
-        relative = np.maximum(rule.own * slopes.max(axis=0), others)
+        relative = np.maximum(slopes.max(axis=0), others)
         of_steps: list[float] = np.where(exact, 0.0 * scale, relative).tolist()
         return of_steps
 

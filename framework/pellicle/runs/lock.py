@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import socket
 from collections.abc import Iterator
@@ -30,22 +29,19 @@ def locked(folder: Path, name: str) -> Iterator[None]:
         try:
             lock.acquire(timeout=0)
         except filelock.Timeout:
+            holder = ""
+            # The other process may be writing its name at this moment.
+            with suppress(OSError, ValueError):
+                holder = sign.read_text(encoding="utf-8")
             raise StorageError(
-                f"{folder / name} is locked by {_holder(sign)}; wait until it has finished, or "
-                "choose another folder (-o DIR)"
+                f"{folder / name} is locked by {holder or 'another process'}; wait until it has "
+                "finished, or choose another folder (-o DIR)"
             ) from None
     try:
         with storage_errors(sign):
-            sign.write_text(
-                json.dumps(
-                    {
-                        "host": socket.gethostname(),
-                        "pid": os.getpid(),
-                        "since": datetime.now(UTC).isoformat(timespec="seconds"),
-                    }
-                ),
-                encoding="utf-8",
-            )
+            since = datetime.now(UTC).isoformat(timespec="seconds")
+            name_of_process = f"process {os.getpid()} on {socket.gethostname()}, since {since}"
+            sign.write_text(name_of_process, encoding="utf-8")
         yield
     finally:
         sign.unlink(missing_ok=True)
@@ -54,12 +50,3 @@ def locked(folder: Path, name: str) -> Iterator[None]:
         with suppress(PermissionError):
             Path(lock.lock_file).unlink(missing_ok=True)
         lock.release()
-
-
-def _holder(sign: Path) -> str:
-    try:
-        holder = json.loads(sign.read_text(encoding="utf-8"))
-        return f"process {holder['pid']} on {holder['host']}, since {holder['since']}"
-    # Another process may be writing it at this moment.
-    except (OSError, ValueError, LookupError, TypeError):
-        return "another process"

@@ -106,7 +106,18 @@ class RunProgress(_Progress):
 
     def step(self, index: int) -> Monitor:
         """Return the monitor of a load step, counted from 0."""
-        show = _monitor(index, self._steps, self._show)
+
+        def update(message: ProgressMessage) -> None:
+            assert self._bars
+            self._bars.update(
+                self._task,
+                completed=message.done,
+                description=f"step {message.step + 1}/{message.steps}",
+                message=f"iteration {message.iteration} "
+                f"residual {message.residual_ratio:.1e} × tolerance",
+            )
+
+        show = _monitor(index, self._steps, update)
 
         def monitor(iteration: int, residual_ratio: float) -> None:
             """Show or report an iteration."""
@@ -124,16 +135,6 @@ class RunProgress(_Progress):
                     raise
 
         return monitor
-
-    def _show(self, message: ProgressMessage) -> None:
-        if self._bars:
-            self._bars.update(
-                self._task,
-                completed=message.done,
-                description=f"step {message.step + 1}/{message.steps}",
-                message=f"iteration {message.iteration} "
-                f"residual {message.residual_ratio:.1e} × tolerance",
-            )
 
 
 class BatchProgress(_Progress):

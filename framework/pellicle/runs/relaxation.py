@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
-from typing import Final, Self
+from typing import Final
 
 import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.checks import errors_attributed_to
-from pellicle.components import Branch, HasRelaxation, HasTimeSpan, Kernel, Setting
+from pellicle.components import HasRelaxation, HasTimeSpan, Kernel, Setting
 from pellicle.components.calls import branches_of
 from pellicle.config.run import Run
 from pellicle.grid import Grid
@@ -177,31 +176,18 @@ class Relaxation:
     file and goes on with the same numbers.
     """
 
-    def __init__(
-        self,
-        branches: Sequence[Branch],
-        durations: Sequence[float],
-        grid: Grid,
-        skin: SkinOperators | None = None,
-    ) -> None:
+    def __init__(self, run: Run) -> None:
+        kernel, branches = run.kernel, branches_of(run.kernel)
+        assert isinstance(kernel, HasRelaxation)
         # The solid is undeformed before the first step.
-        self._steps = [TimeStep.of(branches, duration) for duration in durations]
-        self._memory = Memory.at_rest(branches, grid.shape)
+        self._steps = [TimeStep.of(branches, duration) for duration in run.loading.durations]
+        self._memory = Memory.at_rest(branches, run.grid.shape)
         # Integrals over the plane [N]: long waves do not bend the skin, so the solid carries all.
         self._integral = Memory.at_rest(branches, ())
-        self._cell_area = grid.cell_area
-        self._skin = skin
+        self._cell_area = run.grid.cell_area
+        has_skin = kernel.without_skin() != kernel
+        self._skin = SkinOperators(kernel, run.grid) if has_skin else None
         self._done = 0
-
-    @classmethod
-    def of(cls, run: Run) -> Self | None:
-        """Return the memory before the first step of a run; None if its solid is elastic."""
-        kernel, branches = run.kernel, branches_of(run.kernel)
-        if not branches:
-            return None
-        assert isinstance(kernel, HasRelaxation)
-        skin = SkinOperators(kernel, run.grid) if kernel.without_skin() != kernel else None
-        return cls(branches, run.loading.durations, run.grid, skin)
 
     @property
     def applications(self) -> int:

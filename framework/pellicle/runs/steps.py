@@ -41,7 +41,7 @@ def solve_steps(
 ) -> Generator[xr.Dataset, None, None]:
     """Solve the load steps missing from ``steps``; add and yield each as soon as it is solved."""
     origin = provenance(run)
-    solid = Relaxation.of(run)
+    solid = Relaxation(run) if branches_of(run.kernel) else None
     for index in range(len(steps), len(run.loading.values)):
         of_step, applications = replace(setting, state=steps.state, path=steps.path), 0
         if solid:

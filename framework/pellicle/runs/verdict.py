@@ -7,8 +7,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from pellicle.analysis.steepness import rim_slope, steepest
-from pellicle.arrays import Mask
-from pellicle.components import Interaction
 from pellicle.components.prescription import Search
 from pellicle.config.run import Run
 from pellicle.numerics.contact_stiffness import Stiffness
@@ -42,19 +40,9 @@ def judge(
 ) -> tuple[Status, str]:
     """Return the status of a step, from its measured residuals, and the message to the user.
 
-    The status is that of the most important caveat; the message has them all.
-
-    Parameters
-    ----------
-    index
-        Of the step, counted from 0.
-    stiffness
-        Contact stiffness of the step, if it was asked for.
-    lost
-        Energy [J] that the step lost because a part of the contact jumped, 0 if it is not known;
-        None without a jump.
-    largest_area
-        Largest contact area [m²] of this step and those before.
+    The status is that of the most important caveat; the message has them all. ``index`` counts from
+    0. ``lost`` is the energy [J] that the step lost because a part of the contact jumped, 0 if not
+    known, None without a jump. ``largest_area`` [m²] is that of this step and those before.
     """
     verdicts = [verdict] if (verdict := _failure(run, index, step, stiffness)) else []
     if not verdicts and step.search and (step.how != "met" or step.missed > _NEAR):
@@ -100,10 +88,12 @@ def _failure(
             return status, status.value.format(
                 measure=residual, tolerance=tolerance, remedy=step.stop.value
             )
-    if run.indenter.footprint == "unbounded" and _touches_edge(
-        run, equilibrium.contact | equilibrium.zone
-    ):
-        loading = run.loading
+    reach, loading = equilibrium.contact | equilibrium.zone, run.loading
+    # A period one cell wide has no border in that direction: the problem is plane there.
+    free = run.grid.boundary == "free"
+    across = [axis for axis in (0, 1) if reach.shape[axis] > 1 or free]
+    at_edge = any(np.take(reach, [0, -1], axis=axis).any() for axis in across)
+    if run.indenter.footprint == "unbounded" and at_edge:
         return Status.CONTACT_AT_EDGE, Status.CONTACT_AT_EDGE.value.format(
             size=" × ".join(readable(edge, "m", DIGITS) for edge in run.grid.size),
             prescribed=f"loading.{loading.prescribed} = "
@@ -119,9 +109,16 @@ def _caveats(
     if coarse := _coarse(run, equilibrium):
         yield coarse
     if run.interaction:
+        cells, fewest = equilibrium.zone_width / run.grid.cell_size, run.interaction.least_cells
         # A contact on too few cells has too few in its zone, too.
-        zone = None if coarse else _coarse_zone(run, run.interaction, equilibrium)
-        yield from filter(None, (zone, _steep(run, equilibrium)))
+        if cells < fewest and not coarse:
+            message = Status.COARSE_ZONE.value.format(cells=cells, least=fewest)
+            yield Status.COARSE_ZONE, message
+        slope = steepest(equilibrium.problem.heights, equilibrium.contact, run.grid)
+        if equilibrium.contact.any():
+            slope = max(slope, rim_slope(run.kernel.compliance, equilibrium))
+        if slope > _STEEPEST:
+            yield Status.STEEP, Status.STEEP.value.format(slope=slope, most=_STEEPEST)
     needed = least_domain(run, index, largest_area)
     if needed > min(run.grid.size):
         # Cells of another size may add a hundredth to the contact, and be refused in turn.
@@ -158,29 +155,6 @@ def _coarse(run: Run, equilibrium: Equilibrium) -> tuple[Status, str] | None:
     return None
 
 
-def _coarse_zone(
-    run: Run, interaction: Interaction, equilibrium: Equilibrium
-) -> tuple[Status, str] | None:
-    """Return the caveat of a zone on too few cells; None if it has enough."""
-    width = equilibrium.zone_width / run.grid.cell_size
-    if width < interaction.least_cells:
-        return Status.COARSE_ZONE, Status.COARSE_ZONE.value.format(
-            cells=width, least=interaction.least_cells
-        )
-    return None
-
-
-def _steep(run: Run, equilibrium: Equilibrium) -> tuple[Status, str] | None:
-    """Return the caveat of slopes beyond those of the theory; None if they are small."""
-    slope = max(
-        steepest(equilibrium.problem.heights, equilibrium.contact, run.grid),
-        rim_slope(run.kernel.compliance, equilibrium) if equilibrium.contact.any() else 0.0,
-    )
-    if slope > _STEEPEST:
-        return Status.STEEP, Status.STEEP.value.format(slope=slope, most=_STEEPEST)
-    return None
-
-
 def _not_met(step: Reached, search: Search) -> tuple[Status, str]:
     """Return the status of a search that ended away from its goal."""
     near, far = Status.NEAREST, Status.NOT_REACHED
@@ -206,13 +180,3 @@ def _not_met(step: Reached, search: Search) -> tuple[Status, str]:
         "not found": "no load that attains it was found",
     }[step.how]
     return far, far.value.format(**words, remedy=remedy)
-
-
-def _touches_edge(run: Run, contact: Mask) -> bool:
-    """Return whether a cell at the border is in contact.
-
-    A period one cell wide has no border in that direction: the problem is plane there.
-    """
-    free = run.grid.boundary == "free"
-    across = [axis for axis in (0, 1) if contact.shape[axis] > 1 or free]
-    return any(np.take(contact, [0, -1], axis=axis).any() for axis in across)

@@ -69,6 +69,13 @@ class RunTask:
         """Number of load steps of the whole run."""
         return len(self.run.loading.values)
 
+    def stored(self) -> tuple[xr.Dataset | None, str]:
+        """Return the numbers of the steps in its file, if any, and why it cannot be used, if so."""
+        try:
+            return self.journal.numbers(), ""
+        except StorageError as error:
+            return None, str(error)
+
 
 class StudyResult(NamedTuple):
     """The outcome of a study."""
@@ -317,21 +324,14 @@ def _recorded_warnings() -> Iterator[list[warnings.WarningMessage]]:
 def plan(runs: Sequence[RunTask]) -> Iterator[tuple[RunTask, int, str]]:
     """Yield each run, the number of its finished steps, and why its file cannot be used, if so."""
     for task in runs:
-        try:
-            numbers = task.journal.numbers()
-        except StorageError as error:
-            yield task, 0, str(error)
-        else:
-            yield task, 0 if numbers is None else numbers.sizes["step"], ""
+        numbers, problem = task.stored()
+        yield task, 0 if numbers is None else numbers.sizes["step"], problem
 
 
 def _collect(task: RunTask, rows: table.StudyTable) -> int:
     """Copy the steps in the file of a run into the table; return their number."""
-    try:
-        numbers = task.journal.numbers()
-    except StorageError:
-        # The run itself will fail with this error, whose message names the remedy.
-        return 0
+    # A run whose file cannot be used will fail with a message that names the remedy.
+    numbers, _ = task.stored()
     if numbers is None:
         return 0
     rows.put(task.index, numbers)
@@ -345,8 +345,6 @@ def read(path: Path) -> tuple[xr.Dataset, Path]:
     """
     whole = path / "study.h5" if is_folder(path) else path
     dataset = storage.table(whole)
-    if problem := table.damage(dataset):
-        raise StorageError(f"{whole}: {problem}, so it is damaged; run the study again")
     rows = with_paths(dataset)
     if Status.NOT_RUN.name not in rows["status_code"].values:
         return rows, whole.parent

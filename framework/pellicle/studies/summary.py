@@ -5,10 +5,9 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from pellicle.errors import first_of
@@ -18,6 +17,9 @@ from pellicle.results.status import Status, statuses_of
 from pellicle.results.variables import BEYOND_THEORY, names_of
 from pellicle.results.wording import Wording, wording
 from pellicle.units.conversion import factor_to_si, split
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _FAILURES = {
     "failed": "failed",

@@ -20,7 +20,6 @@ from pellicle.results.dimensions import with_python_names
 from pellicle.results.path import with_path
 from pellicle.results.status import Status
 from pellicle.results.variables import BEYOND_THEORY, VARIABLES, header
-from pellicle.results.variables import damage as damage_of
 
 _TEXTS = "status_code", "status"
 
@@ -112,21 +111,6 @@ def _whole(values: np.ndarray[Any, np.dtype[Any]], name: str) -> np.ndarray[Any,
     """Return a copy of values, as integers if they are counts and none is missing."""
     counts = name in VARIABLES and VARIABLES[name].type == "count"
     return values.astype(int) if counts and np.isfinite(values).all() else values.copy()
-
-
-def damage(table: xr.Dataset) -> str:
-    """Return the reason why a dataset is not the table of a study; empty if it is one."""
-    numbers = any(variable.dtype.kind in "fiu" for variable in table.data_vars.values())
-    required = (*_TEXTS, "run", *(["converged"] if numbers else []))
-    if problem := damage_of(table.data_vars, required, ("", *Status.__members__)):
-        return problem
-    names = "configuration", "axes", FIRST_RUN
-    try:
-        study, axes, run = (json.loads(table.attrs[name]) for name in names)
-        is_complete = all(isinstance(part, dict) for part in (study["study"], axes, run))
-    except (LookupError, TypeError, ValueError):
-        is_complete = False
-    return "" if is_complete else "has no configuration of its study"
 
 
 def write(table: xr.Dataset, directory: Path) -> tuple[Path, Path]:
