@@ -111,7 +111,7 @@ def cost_applications(case: str, tension: float, points: int) -> int:
     problem, tolerance, _ = cost.problem(case, points, tension)
     before = problem.operator.applications
     pl.solver("active_set", tolerance=tolerance).solve(problem, None, lambda *_: None)
-    return problem.operator.applications - before  # type: ignore[no-any-return]
+    return problem.operator.applications - before
 
 
 def kernel_applications(case: str, kernel: str, points: int) -> int:

@@ -14,6 +14,8 @@ import numpy as np
 import pytest
 from click.testing import Result
 from fit_checks import CONTROLS, RIVALS, Kind, outcomes
+from fit_rivals import MODULUS_ as MODULUS
+from fit_rivals import RADIUS
 from numpy.typing import NDArray
 
 import pellicle as pl
@@ -30,9 +32,9 @@ from pellicle_fit.statistics.rivals import TENSED
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from pellicle_plugins.indenters.sphere import Sphere
+from tests.plugins.fit.conftest import ends_of, holds
 
 Array = NDArray[np.float64]
-RADIUS, MODULUS = fit_checks.RADIUS, fit_checks.MODULUS
 MARKED = {name: kind for name, kind in RIVALS.items() if kind.leaves_mark}
 
 
@@ -140,15 +142,7 @@ def test_offset_that_puts_contact_too_deep_is_suggested() -> None:
     with pytest.raises(pl.ConfigError, match=r"ends at .* baseline 'offset'"):
         pl.fit(depth, measured, **options)
     modulus = pl.fit(depth, measured, baseline="offset", **options).reduced_modulus
-    assert modulus.low is not None
-    assert modulus.high is not None
-    assert modulus.low < MODULUS < modulus.high
-
-
-def _widths(result: pl.Fit) -> float:
-    assert result.reduced_modulus.low is not None
-    assert result.reduced_modulus.high is not None
-    return result.reduced_modulus.high - result.reduced_modulus.low
+    assert holds(modulus, MODULUS)
 
 
 def test_noise_of_residuals_is_not_told_as_that_before_contact() -> None:
@@ -179,9 +173,9 @@ def test_correlated_noise_widens_and_white_noise_does_not() -> None:
         independent, correlated = fit(position, force), fit(position, clean + slow)
         slow_noise += "slow_noise" in codes(correlated)
         assert correlated.failed_checks
-        assert _widths(correlated) > 2 * _widths(independent)
-        low, high = correlated.reduced_modulus.low, correlated.reduced_modulus.high
-        covered += bool(low is not None and high is not None and low < MODULUS < high)
+        narrow, wide = (np.ptp(ends_of(f.reduced_modulus)) for f in (independent, correlated))
+        assert wide > 2 * narrow
+        covered += holds(correlated.reduced_modulus, MODULUS)
     assert covered >= 7
     assert slow_noise >= 7
 
@@ -248,12 +242,10 @@ def test_tie_names_its_look_alikes_and_what_would_tell() -> None:
     pairs = {"tension+power_law", "tension+adhesion"}
     assert alternatives == {"tension", "power_law", *pairs}
     assert result.range_of_models().startswith("over 4 models that the data cannot tell apart")
-    over, own = result.rivals.modulus, result.reduced_modulus
-    assert over is not None
-    assert None not in (over.low, own.low, own.high, over.high)
+    (low, high), own = ends_of(result.rivals.modulus), ends_of(result.reduced_modulus)
     # Both intervals are searched, to a share of 1e-4.
-    assert (over.low or 0.0) <= (own.low or 0.0) * (1 + 1e-4)
-    assert (over.high or 0.0) >= (own.high or 0.0) * (1 - 1e-4)
+    assert low <= own[0] * (1 + 1e-4)
+    assert high >= own[1] * (1 - 1e-4)
 
 
 @pytest.mark.parametrize(
@@ -298,9 +290,7 @@ def test_range_of_tied_models_is_the_union_of_their_intervals() -> None:
     assert len(own) == len(tied) > 1
     lows, highs = zip(*((estimate.low, estimate.high) for estimate in own), strict=True)
     assert max(lows) > 1.2 * min(lows)
-    assert short.modulus is not None
-    assert short.modulus.low == pytest.approx(min(lows), rel=1e-3)
-    assert short.modulus.high == pytest.approx(max(highs), rel=1e-3)
+    assert ends_of(short.modulus) == pytest.approx((min(lows), max(highs)), rel=1e-3)
 
 
 @pytest.mark.slow
