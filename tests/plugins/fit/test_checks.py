@@ -19,16 +19,10 @@ from fit_rivals import RADIUS
 from numpy.typing import NDArray
 
 import pellicle as pl
-from pellicle.runs.progress import status_line
 from pellicle.units import Quantity
-from pellicle_fit.comparison import Comparison, RivalFit, Verdict
 from pellicle_fit.models.force_model import tension_model
-from pellicle_fit.one_curve import fit_problem
-from pellicle_fit.problem import FitProblem, problems
-from pellicle_fit.report.page import save_report
 from pellicle_fit.statistics.likelihood import Likelihood
-from pellicle_fit.statistics.noise import FailedCheck, resolution
-from pellicle_fit.statistics.rivals import TENSED
+from pellicle_fit.statistics.noise import resolution
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from pellicle_plugins.indenters.sphere import Sphere
@@ -248,36 +242,6 @@ def test_tie_names_its_look_alikes_and_what_would_tell() -> None:
     assert high >= own[1] * (1 - 1e-4)
 
 
-@pytest.mark.parametrize(
-    ("verdict", "failed", "kind"),
-    [
-        ("needed", (), "good"),
-        ("other", (), "good"),
-        ("undecided", (), "bad"),
-        ("other", (FailedCheck("pattern", ""),), "bad"),
-    ],
-)
-def test_the_page_tells_the_verdict_by_its_margin(
-    verdict: Verdict,
-    failed: tuple[FailedCheck, ...],
-    kind: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """The colour is that of the comparison, whatever checks the elastic model fails."""
-    fits = (RivalFit(TENSED, 0.0, 0.0, 0.0, {}, {}),)
-    comparison = Comparison(fits, verdict, "so it is", "", failed, margin=4.5)
-    monkeypatch.setattr(
-        "pellicle_fit.one_curve.compare", lambda *chi_squared, **options: comparison
-    )
-    monkeypatch.setattr("pellicle_fit.report.page.panels", lambda fit: [])
-    is_marked = kind == "good"
-    curve = measured(RIVALS["softening by 15 %"]) if is_marked else white(5, length=0.3 * RADIUS)
-    page = save_report(fit(*curve), tmp_path / "page.html", "").read_text(encoding="utf-8")
-    assert re.findall(r'<div class="notice (\w+)">\s*<p>So it is', page) == [kind]
-    assert "below 4.5, ΔAIC is a tie" in page
-
-
 @pytest.mark.slow
 def test_range_of_tied_models_is_the_union_of_their_intervals() -> None:
     """It is sought only where a model reaches beyond the others, with the same ends."""
@@ -368,42 +332,22 @@ def test_slope_of_the_baseline_cannot_reproduce_any_curve() -> None:
 
 
 @pytest.mark.usefixtures("no_rivals")
-def test_far_positions_under_a_cantilever() -> None:
-    """Positions that are rounded, a kilometre away, are fitted all the same."""
-    position, force = white(1)
-    near = fit(position, force, spring_constant=0.05)
-    far = fit(position + 1e3, force, spring_constant=0.05)
-    assert far.reduced_modulus.value == pytest.approx(near.reduced_modulus.value, rel=1e-3)
-
-
-@pytest.mark.usefixtures("no_rivals")
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (lambda z, f: (z, f * 1e-290), "force: reaches"),
-        (lambda z, f: (z * 1e306, f), "position: reaches"),
         (lambda z, f: (z, f + 0j), "force: holds complex numbers"),
         (lambda z, f: (z + 0j, f), "position: holds complex numbers"),
         (lambda z, f: (z, f * np.nan), "at least 8"),
     ],
 )
-def test_absurd_values_are_refused(
+def test_values_that_are_no_forces_are_refused(
     change: Callable[[Array, Array], tuple[Array, Array]], words: str
 ) -> None:
-    """Complex numbers, and values that no unit explains, are refused in words."""
+    """Complex numbers and NaN are refused in words."""
     with pytest.raises(pl.ConfigError, match=words):
         fit(*change(*white(1)))
 
 
-@pytest.mark.usefixtures("no_rivals")
-@pytest.mark.parametrize("stiffness", [1e-300, 1e300])
-def test_absurd_spring_constants_are_refused(stiffness: float) -> None:
-    """A cantilever whose bending is nothing, or all, of the position is refused."""
-    with pytest.raises(pl.ConfigError, match="spring_constant"):
-        fit(*white(1), spring_constant=stiffness)
-
-
-@pytest.mark.usefixtures("no_rivals")
 @pytest.mark.usefixtures("no_rivals")
 @pytest.mark.parametrize(
     ("factor", "words"),
@@ -436,19 +380,6 @@ def test_no_interval_is_narrower_than_its_bound() -> None:
                 continue
             reach = max(estimate.high - estimate.value, estimate.value - low)
             assert reach >= estimate.bound
-
-
-def test_fit_reports_what_it_is_at() -> None:
-    """What a terminal shows names the parameter whose interval is sought."""
-    config = pl.FitConfig.merged(indenter="paraboloid", radius=RADIUS)
-    position, force = white(1, points=100)
-    (problem,) = problems(config, config.sources({"a": (position, force)}))
-    assert isinstance(problem, FitProblem)
-    words: list[str] = []
-    fit_problem(problem, words.append)
-    assert {"interval of tension", "interval of reduced_modulus"} <= set(words)
-    with status_line("fitting", enabled=True) as report:
-        report("shows nothing without a terminal")
 
 
 @pytest.mark.slow

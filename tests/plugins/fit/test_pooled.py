@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import Result
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import pellicle as pl
@@ -21,7 +20,6 @@ from pellicle_fit.models import simulation
 from pellicle_fit.models.force_model import tension_model
 from pellicle_fit.models.interpolated import SimulatedCurve
 from pellicle_fit.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates
-from pellicle_fit.report.figures import curves as draw_curves
 from pellicle_fit.report.page import save_report
 from pellicle_fit.statistics.likelihood import Likelihood
 from pellicle_fit.statistics.pooled_likelihood import Pool
@@ -273,14 +271,6 @@ def test_simulated_curves_widen(measured: dict[str, tuple[Array, Array]]) -> Non
     low, high = ends[1][MODULUS]
     assert low is not None
     assert high == -low == pytest.approx(np.log(1.01), rel=0.05)
-
-
-def test_curves_are_told_apart_without_colour(fit: pl.PooledFit) -> None:
-    """The models of a pool's curves differ in their dashes, not in their colours alone."""
-    axes = Figure().add_subplot()
-    draw_curves(fit, axes)
-    styles = [line.get_linestyle() for line in axes.lines if line.get_linestyle() != "None"]
-    assert len(styles) == len(set(styles)) == len(RADII)
 
 
 @pytest.mark.slow
