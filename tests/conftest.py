@@ -24,27 +24,17 @@ if TYPE_CHECKING:
 LONGEST = (
     "tests/docs/test_blocks.py",
     "tests/physics/test_adhesion.py",
-    "tests/plugins/fit/test_checks.py",
-    "tests/plugins/fit/test_rivals.py",
-    "tests/physics/frozen/test_fits.py",
-    "tests/framework/sentences/test_sentences.py",
     "tests/contracts/test_kit.py",
-    "tests/framework/test_memory.py",
-    "tests/docs/test_studies.py",
-    "tests/plugins/solvers/test_active_set.py",
     "tests/framework/test_study.py",
-    "tests/packaging/test_plugin_packages.py",
-    "tests/plugins/fit/test_record.py",
-    "tests/framework/test_terminal.py",
-    "tests/docs/test_build.py",
+    "tests/plugins/fit/test_rivals.py",
+    "tests/framework/sentences/test_sentences.py",
+    "tests/framework/test_memory.py",
+    "tests/plugins/solvers/test_active_set.py",
+    "tests/packaging/test_strangers.py",
     "tests/docs/test_benchmarks.py",
-    "tests/physics/test_adhesive_curve.py",
-    "tests/plugins/fit/test_statistics.py",
-    "tests/plugins/fit/test_layers.py",
-    "tests/plugins/fit/test_force_maps.py",
     "tests/framework/test_study_killed.py",
 )
-"""Files of more than ten seconds, longest first."""
+"""The longest files, of the slow tests too; longest first."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -69,7 +69,13 @@ def test_a_table_describes_itself(name: str) -> None:
     assert np.all((data["error"] >= 0) & (data["error"] <= 1e-6))
 
 
-@pytest.mark.parametrize("name", sorted(set(TABLES) - {"relaxing_punch"}))
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.slow] * (name == "adhesive_paraboloid"))
+        for name in sorted(set(TABLES) - {"relaxing_punch"})
+    ],
+)
 def test_the_script_makes_the_table(name: str) -> None:
     """Rows made anew are those of the file within their stated error; a minute for the other."""
     stored = np.array(list(columns(name).values())).T

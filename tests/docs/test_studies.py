@@ -175,6 +175,7 @@ def test_fig8_the_fraction_falls_with_tension(rough: Path) -> None:
         assert (column(curve, "runs") == 2).all()
 
 
+@pytest.mark.slow
 def test_fig9_a_fraction_needs_more_force_with_tension(rough: Path) -> None:
     """The mean pressure in contact, force over area, grows with the tension at every depth."""
     path = rough / "study-force.csv"
@@ -185,6 +186,7 @@ def test_fig9_a_fraction_needs_more_force_with_tension(rough: Path) -> None:
     assert (np.diff(pressures, axis=0) > 0).all()
 
 
+@pytest.mark.slow
 def test_fig9_solves_nothing_in_the_folder_of_fig8(rough: Path) -> None:
     """Both studies have the same runs: there is one file for each of eight."""
     assert len(list((rough / "runs").glob("*.h5"))) == 8

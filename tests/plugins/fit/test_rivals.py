@@ -155,7 +155,7 @@ def test_derivatives(model: ForceModel, values: Values, stiffness: float | None)
         assert np.linalg.norm(inner) <= 0.02 * np.linalg.norm(difference)
 
 
-@pytest.mark.parametrize("tension", [0.0, 1e-3, 2e-2])
+@pytest.mark.parametrize("tension", [0.0, 1e-3, pytest.param(2e-2, marks=pytest.mark.slow)])
 def test_adhesive_branch_is_that_of_the_integral_equation(tension: float) -> None:
     """Forces from master curves agree with superposition on solutions of the integral equation."""
     work, stiffness = 2e-4, 0.02
@@ -220,6 +220,7 @@ def test_both_passes_show_a_tension() -> None:
         assert cause in unweighed
 
 
+@pytest.mark.slow
 def test_both_passes_show_drift() -> None:
     """A force that grows with time over both passes is drift, with its rate, and no tension."""
     solid = sample("no tension", 5)
