@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import gc
-import json
 import multiprocessing
 import os
 import shutil
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from importlib.metadata import entry_points
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,27 +24,17 @@ if TYPE_CHECKING:
 LONGEST = (
     "tests/docs/test_blocks.py",
     "tests/physics/test_adhesion.py",
-    "tests/plugins/fit/test_checks.py",
-    "tests/plugins/fit/test_rivals.py",
-    "tests/physics/frozen/test_fits.py",
-    "tests/framework/sentences/test_sentences.py",
     "tests/contracts/test_kit.py",
-    "tests/framework/test_memory.py",
-    "tests/docs/test_studies.py",
-    "tests/plugins/solvers/test_active_set.py",
     "tests/framework/test_study.py",
-    "tests/packaging/test_plugin_packages.py",
-    "tests/plugins/fit/test_record.py",
-    "tests/framework/test_terminal.py",
-    "tests/docs/test_build.py",
+    "tests/plugins/fit/test_rivals.py",
+    "tests/framework/sentences/test_sentences.py",
+    "tests/framework/test_memory.py",
+    "tests/plugins/solvers/test_active_set.py",
+    "tests/packaging/test_strangers.py",
     "tests/docs/test_benchmarks.py",
-    "tests/physics/test_adhesive_curve.py",
-    "tests/plugins/fit/test_statistics.py",
-    "tests/plugins/fit/test_layers.py",
-    "tests/plugins/fit/test_force_maps.py",
     "tests/framework/test_study_killed.py",
 )
-"""Files of more than ten seconds, longest first."""
+"""The longest files, of the slow tests too; longest first."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -103,14 +90,6 @@ def end(process: subprocess.Popen[bytes]) -> None:
         process.wait()
 
 
-def written_address(file: Path) -> str:
-    """Return the address in the file of a dask scheduler; empty as long as it is not whole."""
-    try:
-        return str(json.loads(file.read_text())["address"])
-    except (OSError, ValueError):
-        return ""
-
-
 @pytest.fixture(scope="session")
 def start_dask(tmp_path_factory: pytest.TempPathFactory) -> StartDask:
     """Return a function that starts a dask scheduler and workers of one thread on 127.0.0.1.
@@ -140,26 +119,21 @@ def start_dask(tmp_path_factory: pytest.TempPathFactory) -> StartDask:
             "stdout": subprocess.DEVNULL,
             "stderr": subprocess.DEVNULL,
         }
-        loopback = ["--host", "127.0.0.1", "--no-dashboard"]
+        loopback = ["--host", "127.0.0.1", "--no-dashboard", "--scheduler-file", str(file)]
         scheduler = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--port", "0"]
         worker = [sys.executable, "-m", "distributed.cli.dask_worker", "--nthreads", "1"]
+        local = ["--local-directory", str(folder), "--nworkers", str(workers)]
+        commands = [[*scheduler, *loopback]]
+        commands += [[*worker, *loopback, *local, *options]] if workers else []
         with ExitStack() as processes:
-
-            def run(*command: str) -> None:
-                process = subprocess.Popen(command, **common)
-                processes.callback(end, process)
-
-            run(*scheduler, *loopback, "--scheduler-file", str(file))
-            latest = time.monotonic() + 60
-            while not (address := written_address(file)):
-                assert time.monotonic() < latest
-                time.sleep(0.02)
-            assert address.startswith("tcp://127.0.0.1:")
-            if workers:
-                local = ["--local-directory", str(folder), "--nworkers", str(workers)]
-                run(*worker, *loopback, *local, *options, address)
-                with distributed.Client(address, set_as_default=False) as client:
+            for command in commands:
+                processes.callback(end, subprocess.Popen(command, **common))
+            # A client, and a worker, wait for the file to be there and whole.
+            with distributed.Client(scheduler_file=str(file), set_as_default=False) as client:
+                if workers:
                     client.wait_for_workers(workers, timeout=60)
+                address = client.scheduler.address
+            assert address.startswith("tcp://127.0.0.1:")
             yield address
 
     return start
@@ -190,16 +164,9 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chrome]:
     options = ChromeOptions()
     options.binary_location = chromium
     for switch in (
-        "headless",
-        "no-sandbox",
-        "disable-gpu",
-        "disable-quic",
-        "no-first-run",
-        "disable-background-networking",
-        "disable-component-update",
-        "disable-sync",
-        "window-size=1280,900",
-        f"user-data-dir={tmp_path_factory.mktemp('chromium')}",
+        *("headless", "no-sandbox", "disable-gpu", "disable-quic", "no-first-run"),
+        *("disable-background-networking", "disable-component-update", "disable-sync"),
+        *("window-size=1280,900", f"user-data-dir={tmp_path_factory.mktemp('chromium')}"),
     ):
         options.add_argument(f"--{switch}")
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})

@@ -40,6 +40,8 @@ def explore(
             "needs bokeh, which is not installed; install it by: pip install 'pellicle[explore]'",
             "explore",
         )
+    from bokeh.document import Document
+
     import pellicle as pl
     from pellicle_explore.measured import read
     from pellicle_explore.page import Explorer
@@ -55,7 +57,10 @@ def explore(
         if browser:
             webbrowser.open(address)
 
+    def fill(document: Document) -> None:
+        Explorer(run, measured, document)
+
     try:
-        asyncio.run(serve(lambda document: Explorer(run, measured, document), port, tell))
+        asyncio.run(serve(fill, port, tell))
     except KeyboardInterrupt:
         echo("ended")

@@ -23,7 +23,7 @@ from pellicle.errors import ConfigError
 ADDRESS: Final = "127.0.0.1"
 
 
-async def serve(fill: Callable[[Document], object], port: int, tell: Callable[[str], None]) -> None:
+async def serve(fill: Callable[[Document], None], port: int, tell: Callable[[str], None]) -> None:
     """Serve a page to this machine until the task is cancelled; ``tell`` is given its address.
 
     Everything is below an address with a token, without which the answer is 404.

@@ -37,8 +37,8 @@ def _shape(type_: str, radius: float) -> HasForceCurve:
 
 
 def _with_noise(force: NDArray[np.float64], random: np.random.Generator) -> NDArray[np.float64]:
-    noise: NDArray[np.float64] = random.standard_normal(force.size)
-    return force + _NOISE * force.max() * noise
+    noise = random.standard_normal(force.size)
+    return np.asarray(force + _NOISE * force.max() * noise)
 
 
 def one_curve(type_: str, curves: int) -> None:

@@ -7,10 +7,9 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from inspect import getfile
 from pathlib import Path
-from types import FunctionType
 from typing import Any
 
 _THREADS = "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
@@ -28,7 +27,7 @@ def print_row(*cells: object) -> None:
 
 
 def in_process(
-    work: FunctionType, *arguments: Any, threads: int = 1, timeout: float | None = None
+    work: Callable[..., Any], *arguments: Any, threads: int = 1, timeout: float | None = None
 ) -> tuple[Any, str]:
     """Return what a function of a script returns in a process of its own, and what that logs.
 

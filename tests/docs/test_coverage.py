@@ -34,7 +34,14 @@ def _section(page: str, heading: str) -> str:
     return re.split(rf"^#{{1,{len(title[1])}}} ", text, maxsplit=1, flags=re.MULTILINE)[0]
 
 
-@pytest.mark.parametrize("page", sorted(DOCS.glob("*.md")), ids=lambda page: page.name)
+@pytest.mark.parametrize(
+    "page",
+    [
+        # The page of validation has closed theories to compute.
+        pytest.param(page, id=page.name, marks=[pytest.mark.slow] * (page.stem == "validation"))
+        for page in sorted(DOCS.glob("*.md"))
+    ],
+)
 def test_generated_parts_are_those_of_the_package(page: Path) -> None:
     """Tables of fields, variables, statuses and cases say what the installed package says."""
     text = page.read_text(encoding="utf-8")

@@ -52,7 +52,7 @@ def start() -> pl.Run:
 
 
 @contextmanager
-def serving(fill: Callable[[Document], object]) -> Iterator[str]:
+def serving(fill: Callable[[Document], None]) -> Iterator[str]:
     """Serve a page in another thread; yield its address."""
     started: queue.Queue[tuple[str, Callable[[], object]]] = queue.Queue()
 
@@ -529,7 +529,11 @@ def test_a_port_that_is_taken_is_said(address: str) -> None:
 def explorer(start: pl.Run, curve: Path) -> Iterator[str]:
     """Return the address of a running explorer."""
     laid_over = measured.read(curve)
-    with serving(lambda target: Explorer(start, laid_over, target)) as running:
+
+    def fill(document: Document) -> None:
+        Explorer(start, laid_over, document)
+
+    with serving(fill) as running:
         yield running
 
 

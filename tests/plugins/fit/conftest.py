@@ -1,4 +1,4 @@
-"""What tests of fits share: the command."""
+"""What tests of fits share: the command, fits without rivals, and the ends of intervals."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner, Result
 
+import pellicle as pl
 from pellicle.cli.app import app
 from tests.shared_fits import share_fits
 
@@ -47,3 +48,17 @@ def no_rivals(monkeypatch: pytest.MonkeyPatch) -> None:
 def shared_fits(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let fits of a test have the result of an earlier one of an equal problem."""
     share_fits(monkeypatch)
+
+
+def ends_of(estimate: pl.Estimate | None) -> tuple[float, float]:
+    """Return both ends of an interval that is closed."""
+    assert estimate is not None
+    assert estimate.low is not None
+    assert estimate.high is not None
+    return estimate.low, estimate.high
+
+
+def holds(estimate: pl.Estimate | None, truth: float) -> bool:
+    """Return whether an interval, which is closed, holds the truth."""
+    low, high = ends_of(estimate)
+    return low <= truth <= high

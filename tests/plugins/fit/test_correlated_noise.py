@@ -7,11 +7,7 @@ import pytest
 from fit_rivals import pink_noise
 
 import pellicle as pl
-from pellicle_fit.parameters import Coordinates
-from pellicle_fit.statistics import checks
-from pellicle_fit.statistics.likelihood import Likelihood
 from pellicle_fit.statistics.long_memory import differenced, exponent_of
-from pellicle_fit.statistics.noise import FailedCheck, NoiseEstimate
 
 
 def test_differences_of_order_one_and_their_composition() -> None:
@@ -68,31 +64,3 @@ def test_a_bent_baseline_is_not_the_noise_of_the_contact() -> None:
     )
     assert fit.reduced_modulus.value == pytest.approx(modulus, rel=0.1)
     assert "misfit" in {check.code for check in fit.failed_checks}
-
-
-@pytest.mark.parametrize("code", ["misfit", "pattern"])
-def test_differences_that_the_model_does_not_describe_are_left(
-    code: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A contact of irregular steps vanishes among differences: a modulus was 1e-14 Pa."""
-    judged = checks.judged
-
-    def judged_with_failure(
-        likelihood: Likelihood, parameters: Coordinates
-    ) -> tuple[NoiseEstimate, str]:
-        estimate, source = judged(likelihood, parameters)
-        if likelihood.memory:
-            estimate = estimate._replace(failed=(FailedCheck(code, ""), *estimate.failed))
-        return estimate, source
-
-    depth = np.linspace(-0.4e-6, 0.4e-6, 600)
-    force = 1e-9 * np.maximum(depth / 0.4e-6, 0) ** 1.5
-    force += 1e-11 * pink_noise(np.random.default_rng(1), 600)
-
-    def noise_from() -> str:
-        fit = pl.fit(depth, force, indenter="paraboloid", radius=5e-6, baseline="offset")
-        return fit.noise_from
-
-    assert "f^-" in noise_from()
-    monkeypatch.setattr(checks, "judged", judged_with_failure)
-    assert "f^-" not in noise_from()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,16 +11,15 @@ from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle_fit.curves.columns import Calibration
-from pellicle_fit.curves.curve import Curve, Note
+from pellicle_fit.curves.curve import Curve
 from pellicle_fit.curves.readers import read
 from pellicle_fit.models.force_model import tension_model
 from pellicle_fit.parameters import CONTACT_POINT, OFFSET, SLOPE, TENSION, Coordinates
 from pellicle_fit.parameters import MODULUS as REDUCED_MODULUS
-from pellicle_fit.report.figures import save_figure
 from pellicle_fit.statistics.likelihood import Likelihood
 from pellicle_plugins.indenters.paraboloid import Paraboloid
-from tests.pictures import drawn_width
 from tests.plugins.fit import instruments
+from tests.plugins.fit.conftest import holds
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
 
@@ -90,28 +88,7 @@ def test_approach_of_an_unlabelled_file_is_fitted(
     # The turn is found exactly, because the base of the cantilever has no noise.
     assert fit.points == 300
     for estimate, truth in ((fit.reduced_modulus, MODULUS), (fit.tension, MODULUS * LENGTH / 2)):
-        assert estimate.low is not None
-        assert estimate.high is not None
-        assert estimate.low < truth < estimate.high
-
-
-def test_time_that_does_not_serve(tmp_path: Path, recording: instruments.Recording) -> None:
-    """A time that stands still is left out with a note, as from a table; one that grows is kept."""
-    path = tmp_path / "chiaro.txt"
-    instruments.chiaro(path, recording)
-    kept = only(path)
-    assert kept.time is not None
-    assert not kept.messages
-    header, _, table = path.read_text(encoding="ISO-8859-1").partition("Time (s)")
-    names, *rows = table.splitlines()
-    rows = ["0\t" + row.partition("\t")[2] for row in rows]
-    path.write_text("\n".join([f"{header}Time (s){names}", *rows]) + "\n", encoding="ISO-8859-1")
-    curve = only(path)
-    assert curve.time is None
-    assert "time" not in curve.origin.columns
-    (note,) = curve.messages
-    assert isinstance(note, Note)
-    assert "column time falls, stands still" in note
+        assert holds(estimate, truth)
 
 
 @pytest.mark.parametrize("name", instruments.MAPS)
@@ -272,21 +249,6 @@ def test_fitted_curve_of_both_passes_reaches_the_deepest_point(points: int) -> N
     assert position[[0, -1]] == pytest.approx(POSITION[0])
     assert position.max() == pytest.approx(POSITION[-1])
     assert (np.diff(position) >= 0).sum() == pytest.approx(points / 2, abs=2)
-
-
-def test_fits_of_cantilevers_are_drawn(tmp_path: Path) -> None:
-    """Figures of one curve and of a pool know positions that hold the deflection."""
-    options: dict[str, Any] = {
-        "indenter": BEAD,
-        "spring_constant": SPRING,
-        "baseline": "slope",
-        "fix": {"tension": TRUTH[TENSION]},
-    }
-    one = save_figure(pl.fit(*SEEN, **options), tmp_path / "one.png")
-    pool = save_figure(pl.fit_pooled({"a": SEEN, "b": SEEN}, **options), tmp_path / "pool.png")
-    for figure, columns in ((one, (0.0, 1.0)), (pool, (0.0, 0.5))):
-        for rows in ((0.0, 0.68), (0.75, 1.0)):
-            assert drawn_width(figure, columns, rows) > 0.6
 
 
 def test_bad_calibration() -> None:

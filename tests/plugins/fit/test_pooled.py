@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import Result
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import pellicle as pl
@@ -21,13 +20,13 @@ from pellicle_fit.models import simulation
 from pellicle_fit.models.force_model import tension_model
 from pellicle_fit.models.interpolated import SimulatedCurve
 from pellicle_fit.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates
-from pellicle_fit.report.figures import curves as draw_curves
 from pellicle_fit.report.page import save_report
 from pellicle_fit.statistics.likelihood import Likelihood
 from pellicle_fit.statistics.pooled_likelihood import Pool
 from pellicle_fit.statistics.profile import widen
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from tests.pictures import drawn_width
+from tests.plugins.fit.conftest import ends_of, holds
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
 
@@ -95,18 +94,14 @@ def test_errors_reach_the_pooled_bound_and_intervals_shrink_to_it() -> None:
             (MODULUS, pooled_fit.reduced_modulus, TRUE_MODULUS),
             (TENSION, pooled_fit.tension, TRUE_TENSION),
         ):
-            assert estimate.low is not None
-            assert estimate.high is not None
+            low, high = ends_of(estimate)
             deviation = bound[which] * (TRUE_MODULUS if which == MODULUS else 1)
             errors.append((estimate.value - true) / deviation)
-            covered.append(estimate.low < true < estimate.high)
-            widths.append((estimate.high - estimate.low) / 2 / deviation)
+            covered.append(low < true < high)
+            widths.append((high - low) / 2 / deviation)
             gains.append(min(sample[which] for sample in alone) / bound[which])
         for own, (_, _, point, _) in zip(pooled_fit.curves, samples, strict=True):
-            estimate = own.contact_point
-            assert estimate.low is not None
-            assert estimate.high is not None
-            touched.append(estimate.low < point < estimate.high)
+            touched.append(holds(own.contact_point, point))
     # Three standard deviations of the rms of 20 normal numbers, half of them independent.
     assert 0.4 < np.sqrt(np.mean(np.square(errors))) < 1.6
     assert sum(covered) >= 16
@@ -159,13 +154,6 @@ def test_slopes_and_bound_are_those_of_all_points(fit: pl.PooledFit) -> None:
     assert [deviations[p] for p in pool.parameters] == pytest.approx(bound, rel=1e-6)
 
 
-def ends_of(estimate: pl.Estimate) -> tuple[float, float]:
-    """Return both ends of an interval that is closed."""
-    assert estimate.low is not None
-    assert estimate.high is not None
-    return estimate.low, estimate.high
-
-
 def test_ends_are_where_the_profile_has_risen(fit: pl.PooledFit) -> None:
     """At each end the least χ² is up by the stated rise, and no start finds less."""
     random = np.random.default_rng(3)
@@ -198,10 +186,8 @@ def test_contact_points_are_sought_if_asked(measured: dict[str, tuple[Array, Arr
     with_points = pl.fit_pooled(measured, contact_points=True, **common)
     for curve in with_points.curves:
         point = curve.contact_point
-        assert point.low is not None
-        assert point.high is not None
         # √rise standard deviations, where the noise is known from as few points as here.
-        width = (point.high - point.low) / 2 / point.bound
+        width = np.ptp(ends_of(point)) / 2 / point.bound
         assert width == pytest.approx(np.sqrt(with_points.rise), rel=0.05)
 
 
@@ -242,8 +228,7 @@ def test_hertz_and_baseline(measured: dict[str, tuple[Array, Array]]) -> None:
     position, force = measured["40 um"]
     drift = 1e-9 + 1e-4 * (position - position[0])
     fit = pooled({**measured, "40 um": (position, force + drift)}, baseline="slope")
-    assert fit.reduced_modulus.low is not None
-    assert fit.reduced_modulus.low < TRUE_MODULUS < (fit.reduced_modulus.high or 0)
+    assert holds(fit.reduced_modulus, TRUE_MODULUS)
     small, large = fit.curves
     assert abs(small.slope) < 0.3 * large.slope
     fixed = pooled(measured, fix={"tension": "5 mN/m"})
@@ -286,14 +271,6 @@ def test_simulated_curves_widen(measured: dict[str, tuple[Array, Array]]) -> Non
     low, high = ends[1][MODULUS]
     assert low is not None
     assert high == -low == pytest.approx(np.log(1.01), rel=0.05)
-
-
-def test_curves_are_told_apart_without_colour(fit: pl.PooledFit) -> None:
-    """The models of a pool's curves differ in their dashes, not in their colours alone."""
-    axes = Figure().add_subplot()
-    draw_curves(fit, axes)
-    styles = [line.get_linestyle() for line in axes.lines if line.get_linestyle() != "None"]
-    assert len(styles) == len(set(styles)) == len(RADII)
 
 
 @pytest.mark.slow

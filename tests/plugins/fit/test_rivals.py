@@ -42,6 +42,7 @@ from pellicle_plugins.analytic.adhesion import Adhesion
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from pellicle_plugins.indenters.sphere import Sphere
+from tests.plugins.fit.conftest import ends_of, holds
 
 Array = NDArray[np.float64]
 BEAD = Paraboloid(radius=RADIUS)
@@ -50,6 +51,22 @@ DATA = Path(__file__).parents[2] / "data"
 DEPTH = 0.08 * RADIUS
 ROWS = path("both")
 HISTORY = History.of(ROWS.depth * DEPTH, ROWS.time)
+
+
+def ranking(aic: dict[str, float]) -> list[RivalFit]:
+    """Return fits of rivals, by code, that differ in Akaike's criterion alone."""
+    known = {rival.code: rival for rival in (NONE, TENSED)}
+    for code in aic.keys() - known.keys():
+        words, shape = code.replace("+", " and "), code in ("sphere", "cone")
+        known[code] = Rival(
+            code,
+            words,
+            "tension" in code,
+            TENSED.build,
+            of_shape=shape,
+            has_size=code != "cone",
+        )
+    return [RivalFit(known[code], lead, lead, lead, {}, {}) for code, lead in aic.items()]
 
 
 def sample(name: str, seed: int = 1) -> Sample:
@@ -138,7 +155,7 @@ def test_derivatives(model: ForceModel, values: Values, stiffness: float | None)
         assert np.linalg.norm(inner) <= 0.02 * np.linalg.norm(difference)
 
 
-@pytest.mark.parametrize("tension", [0.0, 1e-3, 2e-2])
+@pytest.mark.parametrize("tension", [0.0, 1e-3, pytest.param(2e-2, marks=pytest.mark.slow)])
 def test_adhesive_branch_is_that_of_the_integral_equation(tension: float) -> None:
     """Forces from master curves agree with superposition on solutions of the integral equation."""
     work, stiffness = 2e-4, 0.02
@@ -203,6 +220,7 @@ def test_both_passes_show_a_tension() -> None:
         assert cause in unweighed
 
 
+@pytest.mark.slow
 def test_both_passes_show_drift() -> None:
     """A force that grows with time over both passes is drift, with its rate, and no tension."""
     solid = sample("no tension", 5)
@@ -213,9 +231,7 @@ def test_both_passes_show_drift() -> None:
     assert chosen is not None
     assert chosen.rival.code == "drift"
     rate = chosen.estimates["drift"]
-    assert rate.low is not None
-    assert rate.high is not None
-    assert rate.low < 0.03 * top < rate.high
+    assert holds(rate, 0.03 * top)
 
 
 @pytest.mark.slow
@@ -232,9 +248,7 @@ def test_two_speeds_show_relaxation() -> None:
     assert chosen.rival.code == "power_law"
     # Elastic curves of two speeds would not agree, but those that relax do.
     exponent = chosen.estimates["relaxation_exponent"]
-    assert exponent.low is not None
-    assert exponent.high is not None
-    assert exponent.high - exponent.low < 6 * exponent.bound
+    assert np.ptp(ends_of(exponent)) < 6 * exponent.bound
     assert "do not agree" not in pool.comparison
     # Two such solids, one half as stiff again, do not agree whatever describes them.
     stiffer = thin[0]._replace(force=1.5 * thin[0].force)
@@ -319,10 +333,7 @@ def test_one_speed_does_not_tell_a_tension_from_relaxation_beside_it() -> None:
     tension = truth[TENSION]
     assert (fit.tension.low or 0.0) > 1.5 * tension
     for estimate, value in ((fit.rivals.tension, tension), (fit.rivals.modulus, 2e3)):
-        assert estimate is not None
-        assert estimate.low is not None
-        assert estimate.high is not None
-        assert estimate.low < value < estimate.high
+        assert holds(estimate, value)
     assert "at one speed a relaxation exponent up to 0.3" in fit.comparison
     assert "and the tension" in sentence_of_fit(fit)
 
@@ -413,11 +424,9 @@ def test_intervals_hold_the_value_where_the_elastic_model_fails() -> None:
     assert chosen is not None
     assert chosen.rival.code == "power_law"
     for estimate in chosen.estimates.values():
-        assert estimate.low is not None
-        assert estimate.high is not None
-        assert estimate.low < estimate.value < estimate.high
+        assert holds(estimate, estimate.value)
         # About two standard errors either way; these intervals were half as wide.
-        assert estimate.high - estimate.low == pytest.approx(4 * estimate.bound, rel=0.2)
+        assert np.ptp(ends_of(estimate)) == pytest.approx(4 * estimate.bound, rel=0.2)
 
 
 def test_balance_of_a_cantilever_derives_the_force_once(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -529,25 +538,7 @@ def test_models_whose_moduli_count(
     verdict: Verdict, ranked: dict[str, float], alternatives: set[str]
 ) -> None:
     """The modulus is told over the models that are tied, not over those that hold another."""
-    fits = [
-        RivalFit(
-            Rival(
-                code,
-                code,
-                "tension" in code,
-                TENSED.build,
-                of_shape=code in ("sphere", "cone"),
-                has_size=code != "cone",
-            ),
-            0.0,
-            aic,
-            aic,
-            {},
-            {},
-        )
-        for code, aic in ({"none": 100.0} | ranked).items()
-    ]
-    comparison = Comparison(tuple(fits), verdict, "", "", ())
+    comparison = Comparison(tuple(ranking({"none": 100.0} | ranked)), verdict, "", "", ())
     assert {fit.rival.code for fit in comparison.alternatives} == alternatives
 
 
@@ -555,11 +546,8 @@ def test_models_whose_moduli_count(
 def test_relaxation_beside_a_tension_counts_at_one_speed(aic: float, counts: bool) -> None:
     """Though curves of one speed need it no more than any other pair."""
     ranked = {"tension": 0.0, "tension+power_law": aic, "power_law": 40.0, "none": 100.0}
-    fits = [
-        RivalFit(Rival(code, code, "tension" in code, TENSED.build), 0.0, lead, lead, {}, {})
-        for code, lead in ranked.items()
-    ]
-    comparison = Comparison(tuple(fits), "needed", "", "", (), unseen=("tension+power_law",))
+    fits = tuple(ranking(ranked))
+    comparison = Comparison(fits, "needed", "", "", (), unseen=("tension+power_law",))
     codes = {fit.rival.code for fit in comparison.alternatives}
     assert codes == {"tension"} | ({"tension+power_law"} if counts else set())
 
@@ -602,12 +590,7 @@ def test_an_effect_beside_tension_has_to_beat_tension_alone(
 ) -> None:
     """Of tied explanations with tension the one with fewer parameters counts."""
     ranked = {"tension+adhesion": 0.0, "tension": gain, "adhesion": 40.0, "none": 3000.0}
-    rivals = {
-        code: Rival(code, code.replace("+", " and "), "tension" in code, TENSED.build)
-        for code in ranked
-    } | {rival.code: rival for rival in (NONE, TENSED)}
-    fits = [RivalFit(rivals[code], 0.0, aic, aic, {}, {}) for code, aic in ranked.items()]
-    comparison = judge(Pool.of([]), fits, [], 3.84)
+    comparison = judge(Pool.of([]), ranking(ranked), [], 3.84)
     assert comparison.verdict == "needed"
     assert (comparison.chosen and comparison.chosen.rival.code) == chosen
     assert ("beside it there is adhesion" in comparison.sentence) == (chosen is not None)
@@ -619,12 +602,9 @@ def test_a_tension_is_not_needed_within_the_threshold_of_intervals(
 ) -> None:
     """Noise from few rows widens intervals, and one of a tension that is needed leaves 0 out."""
     ranked = {"tension": 0.0, "power_law": 4.2, "none": 300.0}
-    known = {rival.code: rival for rival in (NONE, TENSED)}
-    known["power_law"] = Rival("power_law", "power-law relaxation", False, TENSED.build)
-    fits = [RivalFit(known[code], aic, aic, aic, {}, {}) for code, aic in ranked.items()]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("pellicle_fit.verdict.advised", lambda *explanations: "")
-        comparison = judge(Pool.of([]), fits, [], threshold)
+        comparison = judge(Pool.of([]), ranking(ranked), [], threshold)
     assert comparison.verdict == verdict
     assert len(comparison.tied) == (1 if verdict == "needed" else 2)
 
@@ -632,18 +612,7 @@ def test_a_tension_is_not_needed_within_the_threshold_of_intervals(
 def test_a_difference_is_told_from_the_explanation_that_it_is_to() -> None:
     """The best explanation with tension may be a pair, whose ΔAIC is not that of tension alone."""
     ranked = {"adhesion": 0.0, "tension+drag": 50.0, "tension": 90.0, "none": 95.0}
-    fits = [
-        RivalFit(
-            Rival(code, code.replace("+", " and "), "tension" in code, TENSED.build),
-            0.0,
-            aic,
-            aic,
-            {},
-            {},
-        )
-        for code, aic in ranked.items()
-    ]
-    sentence = judge(Pool.of([]), fits, [], 3.84).sentence
+    sentence = judge(Pool.of([]), ranking(ranked), [], 3.84).sentence
     assert "better than tension and drag (ΔAIC = 50)" in sentence
 
 
