@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import pellicle as pl
+from tests.plugins.outputs.shared import bead
 
 SIZE = 1e-3
 ROUGH = {
@@ -37,15 +38,10 @@ def _make(table: dict[str, Any]) -> pl.Indenter:
 
 
 def _solve(indenter: dict[str, Any], points: int, **loading: object) -> pl.Result:
-    return pl.run(
-        {
-            "grid": {"points": points, "size": SIZE},
-            "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "1 N/m"},
-            "indenter": indenter,
-            "loading": loading,
-        },
-        progress=False,
-    )
+    kernel = {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "1 N/m"}
+    size = {"points": points, "size": SIZE}
+    run = bead(grid=size, kernel=kernel, indenter=indenter, loading=loading)
+    return pl.run(run, progress=False)
 
 
 def test_run_of_sphere_and_zero_roughness_is_that_of_the_sphere() -> None:
@@ -158,12 +154,8 @@ def test_scaled_paraboloid() -> None:
 
 
 def _run(indenter: dict[str, Any]) -> pl.Run:
-    return pl.Run(
-        grid={"points": 24, "size": SIZE},
-        kernel={"type": "half_space", "reduced_modulus": 1e4},
-        indenter=indenter,
-        loading={"depth": "1 um"},
-    )
+    grid = {"points": 24, "size": SIZE}
+    return pl.Run(**bead(grid=grid, indenter=indenter, loading={"depth": "1 um"}))
 
 
 @pytest.mark.parametrize(
