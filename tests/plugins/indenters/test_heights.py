@@ -235,7 +235,8 @@ def test_ends_with_the_domain() -> None:
     """Contact may reach the edge of the domain, where the heights end too."""
     grid = {"points": [8, 6], "size": ["8 um", "6 um"]}
     flat = pl.indenter("heights", values=np.zeros((8, 6)), unit=1)
-    run = bead(grid=grid, indenter=flat, loading={"depth": "1 nm"})
+    kernel = {"type": "half_space", "reduced_modulus": "10 kPa"}
+    run = bead(grid=grid, kernel=kernel, indenter=flat, loading={"depth": "1 nm"})
     result = pl.run(run, progress=False)
     assert result.dataset["contact"].values.all()
     assert result.converged
