@@ -58,13 +58,13 @@ class Spectrum(TableFigure):
         for number, (name, spectra) in enumerate(curves):
             hue = colour(number, len(curves), ordered=ordered)
             for surface, spectrum in spectra.items():
-                style: dict[str, Any] = {"color": hue, "linewidth": 1.2}
+                shared: dict[str, Any] = {"color": hue, "linewidth": 1.2}
                 if surface == "displacement":
-                    style["label"] = name.words or None
-                    style |= sparse_marker(number) if len(curves) > 1 else {}
+                    shared["label"] = name.words or None
+                    shared |= sparse_marker(number) if len(curves) > 1 else {}
                 visible = spectrum.density > _ROUND_OFF * highest
                 x, y = spectrum.wavenumber[visible], spectrum.density[visible]
-                axes.plot(x, y, _STYLES[surface], **style)
+                axes.plot(x, y, _STYLES[surface], **shared)
         hue = "0.4" if len(curves) > 1 else "C0"
         for surface, style in _STYLES.items():
             axes.plot([], [], style, color=hue, linewidth=1.2, label=surface)
