@@ -80,10 +80,15 @@ def radius_curves(indenter: HasAbelTransform, length: float, xi: Array) -> Radiu
     (force, depth, stiffness), slopes, curvatures = values
     radius = radius_at(indenter, xi)
     return RadiusCurves(
-        *(radius, 1 - radius / indenter.contact_radius_limit),
-        *(np.exp(force), slopes[0]),
-        *(np.exp(depth), slopes[1]),
-        *(np.exp(stiffness), slopes[2], curvatures[2]),
+        radius=radius,
+        radius_slope=1 - radius / indenter.contact_radius_limit,
+        force=np.exp(force),
+        force_slope=slopes[0],
+        depth=np.exp(depth),
+        depth_slope=slopes[1],
+        stiffness=np.exp(stiffness),
+        stiffness_slope=slopes[2],
+        stiffness_curvature=curvatures[2],
     )
 
 
