@@ -68,7 +68,7 @@ def test_row_with_words_is_refused(tmp_path: Path, row: str) -> None:
 
 
 @pytest.mark.parametrize("floats", ["raise", "warn"])
-@pytest.mark.parametrize(("scale", "unit"), [(1e30, 1e90), (1e-30, 1e-90), (1e300, 1e90)])
+@pytest.mark.parametrize(("scale", "unit"), [(1e30, 1e90), (1e-30, 1e-90)])
 def test_heights_beyond_numbers(
     scale: float, unit: float, floats: Literal["raise", "warn"]
 ) -> None:
