@@ -12,7 +12,7 @@ falls with q as (qh)² e^{−2qh}.  Gauss points in q are enough for it, and the
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -124,19 +124,10 @@ def _split(panel: Panel, longest: float) -> list[Panel]:
     count = int(np.ceil(panel.length / longest))
     if count == 1:
         return [panel]
-    nodes = gauss(panel.nodes.psi.size)[0]
     length = panel.length / count
-    parts = []
-    for index in range(count):
-        start = panel.start.moved(np.asarray(index * length))
-        offset = length * (nodes + 1) / 2
-        parts.append(
-            replace(
-                panel,
-                start=start,
-                end=start.moved(np.asarray(length)),
-                length=length,
-                nodes=Points(start.psi + offset, start.eta - offset),
-            )
-        )
-    return parts
+    offset = length * (gauss(panel.nodes.psi.size)[0] + 1) / 2
+    starts = [panel.start.moved(np.asarray(index * length)) for index in range(count)]
+    return [
+        Panel(start, start.moved(np.asarray(length)), length, start.moved(offset))
+        for start in starts
+    ]

@@ -92,12 +92,12 @@ def graded(order: int, edge: float, centre: float) -> list[Panel]:
     panels = []
     for low, high in half(centre):
         psi = low + (high - low) * (nodes + 1) / 2
-        ends = [Points(np.asarray(x), np.asarray(np.pi / 2 - x)) for x in (low, high)]
-        panels.append(Panel(ends[0], ends[1], high - low, Points(psi, np.pi / 2 - psi)))
+        start, end = (Points(np.asarray(x), np.asarray(np.pi / 2 - x)) for x in (low, high))
+        panels.append(Panel(start, end, high - low, Points(psi, np.pi / 2 - psi)))
     for low, high in reversed(half(edge)):
         eta = high - (high - low) * (nodes + 1) / 2
-        ends = [Points(np.asarray(np.pi / 2 - x), np.asarray(x)) for x in (high, low)]
-        panels.append(Panel(ends[0], ends[1], high - low, Points(np.pi / 2 - eta, eta)))
+        start, end = (Points(np.asarray(np.pi / 2 - x), np.asarray(x)) for x in (high, low))
+        panels.append(Panel(start, end, high - low, Points(np.pi / 2 - eta, eta)))
     return panels
 
 

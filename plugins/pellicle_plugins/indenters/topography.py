@@ -119,12 +119,10 @@ class Topography(FromHeights):
         )
         if slope > _STEEP:
             reasons.append(f"has an rms slope of {slope:.3g}")
+        remedy = "export it again with the units of its sides and of its heights"
+        if self.unit is not None or self.size is not None:
+            remedy = "correct unit or size"
         if reasons:
-            remedy = (
-                "export it again with the units of its sides and of its heights"
-                if self.unit is None and self.size is None
-                else "correct unit or size"
-            )
             warnings.warn(
                 f"{self.path} {' and '.join(reasons)}: a unit may be wrong; if so, {remedy}",
                 stacklevel=2,

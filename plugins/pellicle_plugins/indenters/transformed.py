@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import cos, sin
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -26,18 +26,17 @@ class Transformed(Indenter):
         ),
     ]
 
+    moves: ClassVar[bool] = True
+    """Whether it shifts or turns the part, which must then be defined beyond the domain."""
+
     @property
     def footprint(self) -> Footprint:
         """The footprint of the part."""
         return self.part.footprint
 
-
-class RigidMotion(Transformed):
-    """An indenter that shifts or turns one other, which must be defined beyond the domain."""
-
     @model_validator(mode="after")
     def _unbounded(self) -> Self:
-        if self.part.footprint == "domain":
+        if self.moves and self.part.footprint == "domain":
             raise ConfigError(
                 "ends where the domain does and would leave a part of it empty; move the other "
                 "parts of a sum instead, or the heights before they are read",
@@ -46,7 +45,7 @@ class RigidMotion(Transformed):
         return self
 
 
-class Shifted(RigidMotion):
+class Shifted(Transformed):
     """Another indenter moved sideways, off the centre of the domain."""
 
     type: Literal["shifted"] = "shifted"
@@ -62,7 +61,7 @@ class Shifted(RigidMotion):
         return profile_of(self.part, x - self.x, y - self.y, "part")
 
 
-class Rotated(RigidMotion):
+class Rotated(Transformed):
     """Another indenter rotated about the vertical through the centre of the domain."""
 
     type: Literal["rotated"] = "rotated"
@@ -82,6 +81,7 @@ class Scaled(Transformed):
     """Another indenter with its heights multiplied by a factor."""
 
     type: Literal["scaled"] = "scaled"
+    moves: ClassVar[bool] = False
     factor: Annotated[
         float,
         Quantity("1", at_least=0),

@@ -193,23 +193,15 @@ def _status(
         if slope > _STEEP:
             steep.append(f"{mark} {slope:.2f}")
     low, high = curve.contact_radius[[0, -1]]
-    problems = []
-    if missing:
-        problems.append(
-            f"{', '.join(missing)}: not at a contact radius from {low:.3g} to {high:.3g} m, those "
-            "of the path"
-        )
-    if coarse:
-        problems.append(
-            f"contact radius in cells: {', '.join(coarse)}; from {_CELLS} on force and radius are "
-            "good to 2 %, so use more points"
-        )
-    if steep:
-        problems.append(
-            f"slope of the indenter at the rim: {', '.join(steep)}; the theory is for small "
-            f"slopes, below about {_STEEP}"
-        )
-    return "; ".join(problems) or "computed"
+    range_ = f"not at a contact radius from {low:.3g} to {high:.3g} m, those of the path"
+    remedy = f"from {_CELLS} on force and radius are good to 2 %, so use more points"
+    theory = f"the theory is for small slopes, below about {_STEEP}"
+    problems = {
+        f"{', '.join(missing)}: {range_}": missing,
+        f"contact radius in cells: {', '.join(coarse)}; {remedy}": coarse,
+        f"slope of the indenter at the rim: {', '.join(steep)}; {theory}": steep,
+    }
+    return "; ".join(text for text, marks in problems.items() if marks) or "computed"
 
 
 def _refuse(run: xr.Dataset) -> None:

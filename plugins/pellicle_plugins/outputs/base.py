@@ -8,9 +8,10 @@ import re
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 from pydantic import Field
 
 from pellicle.components import Output, Runs
@@ -20,20 +21,21 @@ from pellicle.errors import ConfigError, StorageError
 from pellicle.files import storage_errors
 from pellicle.model.expression import evaluate, formula
 from pellicle.model.messages import nearest
-from pellicle.report.fields import without_round_off
+from pellicle.report.fields import extent, without_round_off
 from pellicle.report.saving import SIZE, save_figure
 from pellicle.report.style import FigureStyle, is_ordered
 from pellicle.results.derived import FIRST_RUN, names
 from pellicle.results.result import Result
 from pellicle.results.variables import words_of_name
 from pellicle.results.wording import wording
-from pellicle.units import DIGITS, readable
+from pellicle.units import DIGITS, axis_unit, readable
 from pellicle_plugins.analytic.reference import require_solution
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.image import AxesImage
 
 _PLACEHOLDER = re.compile(r"\{([^{}:]+)(?::(\.\d+[fg]))?\}")
 
@@ -256,6 +258,18 @@ def set_scales(axes: Axes, log: Sequence[str], *, signed: bool = False) -> None:
         elif low < 0 and getattr(axes.dataLim, f"{direction}0") >= 0:
             getattr(axes, f"set_{direction}lim")(**{"left" if direction == "x" else "bottom": 0.0})
     axes.grid(alpha=0.3)
+
+
+def show_field(
+    axes: Axes, step: xr.Dataset, values: ArrayLike, **colours: Any
+) -> tuple[AxesImage, float]:
+    """Draw values along y, then x, at the cells of a step; return also the factor of its edges."""
+    length, unit = axis_unit(np.append(step["x"].values, step["y"].values), "m")
+    edges = extent(step["x"].values * length, step["y"].values * length)
+    axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
+    # The stage "rgba" converts every cell to four colour values first.
+    shared: dict[str, Any] = {"origin": "lower", "interpolation_stage": "data"}
+    return axes.imshow(values, extent=edges, **shared, **colours), length
 
 
 def add_legend(axes: Axes) -> None:

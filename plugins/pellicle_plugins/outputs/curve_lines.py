@@ -11,38 +11,21 @@ import numpy as np
 from pellicle.analysis import Leg, extrapolate
 from pellicle.arrays import Array
 from pellicle.report.legs import RETRACTION, draw_legs
-from pellicle.report.style import LINES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-@dataclass(frozen=True)
-class LineStyle:
-    """Colour, line and markers of one curve."""
-
-    colour: Any
-    number: int | None
-    """Index of the line style; None for a plain thin line."""
-    marker: str
-    scattered: bool = False
-    """Whether only markers are drawn, beside the line of a reference."""
-    retracts: bool = False
-    """Whether it is the retraction of a path, with short dashes and filled markers."""
-
-    def keywords(self) -> dict[str, Any]:
-        """Return keywords of ``Axes.plot``."""
-        if self.number is None:
-            return {"color": self.colour, "linewidth": 1.0, "zorder": 1}
-        line = RETRACTION if self.retracts else LINES[self.number % len(LINES)]
-        return {
-            "color": self.colour,
-            "marker": self.marker,
-            "linestyle": "none" if self.scattered else line,
-            "markersize": 4,
-            "markerfacecolor": self.colour if self.retracts else "white",
-            "linewidth": 1.2,
-        }
+def line_style(colour: Any, line: Any, marker: str) -> dict[str, Any]:
+    """Return keywords of ``Axes.plot`` of a curve; retractions have filled markers."""
+    return {
+        "color": colour,
+        "marker": marker,
+        "linestyle": line,
+        "markersize": 4,
+        "markerfacecolor": colour if line is RETRACTION else "white",
+        "linewidth": 1.2,
+    }
 
 
 @dataclass(frozen=True)
@@ -75,8 +58,11 @@ class Line:
     """Points, as drawn and as written in columns ``curve`` and ``series``."""
 
     points: CurvePoints
-    style: LineStyle
+    style: dict[str, Any]
+    """Keywords of ``Axes.plot``."""
     legend: str
+    number: int | None = None
+    """Index of y; None where neither steps that failed nor ranges are marked."""
     curve: str = ""
     series: str = ""
     path: Sequence[Leg] = ()
@@ -86,19 +72,19 @@ class Line:
         """Draw the points times the factors of the axes; on ``log`` axes without arrows."""
         points, style = self.points, self.style
         x, y = points.x * factor_x, points.y * factor_y
-        drawn = style.keywords() | {"label": self.legend or None}
+        drawn = style | {"label": self.legend or None}
         if self.path:
             draw_legs(axes, self.path, x, y, arrows=not log, **drawn)
         else:
             axes.plot(x, y, **drawn)
-        if style.number is None:
+        if self.number is None:
             return
         bad = points.good < 1
         axes.plot(x[bad], y[bad], "x", color="red", markersize=9, label="_not converged")
         # The range of the first series only: several bands cannot be told apart.
-        if style.number == 0 and (points.runs > 1).any():
+        if self.number == 0 and (points.runs > 1).any():
             low, high = points.low * factor_y, points.high * factor_y
-            axes.fill_between(x, low, high, color=style.colour, alpha=0.2, linewidth=0)
+            axes.fill_between(x, low, high, color=style["color"], alpha=0.2, linewidth=0)
 
     def rows(self) -> Iterator[dict[str, object]]:
         """Yield the numbers drawn."""
@@ -121,14 +107,14 @@ class Line:
 class Limit:
     """The limit of a curve for x → 0."""
 
-    def __init__(self, points: CurvePoints, style: LineStyle, curve: str, series: str) -> None:
-        self._points, self._style = points, style
+    def __init__(self, points: CurvePoints, colour: Any, curve: str, series: str) -> None:
+        self._points, self._colour = points, colour
         self._fit = extrapolate(points.x, points.y)
         self._head = {"curve": curve, "series": series}
 
     def draw(self, axes: Axes, factor_x: float, factor_y: float, _log: bool) -> None:
         """Draw the fitted curve down to x = 0, and the limit with its error."""
-        fit, colour = self._fit, self._style.colour
+        fit, colour = self._fit, self._colour
         x = np.linspace(0, float(self._points.x.max()), 200)
         y = np.append(fit.limit, fit(x[1:]))
         axes.plot(x * factor_x, y * factor_y, color=colour, linewidth=0.8, zorder=1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
@@ -14,8 +14,8 @@ from pellicle.components import Runs
 from pellicle.errors import ConfigError
 from pellicle.model.base import Model
 from pellicle.model.expression import names_in
-from pellicle.report.legs import MOST_LEGS
-from pellicle.report.style import MARKERS, colour, is_log_spaced
+from pellicle.report.legs import MOST_LEGS, RETRACTION
+from pellicle.report.style import LINES, MARKERS, colour, is_log_spaced
 from pellicle.results.path import has_interaction, has_path, has_times
 from pellicle.results.variables import FIELDS, WALL_PRESSURE
 from pellicle.results.wording import wording
@@ -35,7 +35,7 @@ from .base import (
     scaled,
     set_scales,
 )
-from .curve_lines import NO_POINTS, CurvePoints, Limit, Line, LineStyle
+from .curve_lines import NO_POINTS, CurvePoints, Limit, Line, line_style
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -45,7 +45,7 @@ _GRIDS = 3
 """Fewest grids from which a limit follows."""
 _LETTERS = 50
 """Letters of a line of the label of an axis."""
-_EXACT = LineStyle("black", None, "")
+_EXACT = {"color": "black", "linewidth": 1.0, "zorder": 1}
 """Style of a reference."""
 
 
@@ -228,7 +228,7 @@ class Curves(XYFigure):
                     legend = named
                 points, path = self._points(part, _at(x, point), _at(y, point))
                 directions |= {leg.direction for leg in path}
-                yield Line(points, style, legend, name.key, series, path)
+                yield Line(points, style, legend, number, name.key, series, path)
                 if self.extrapolate:
                     if (count := np.unique(_at(x, point)).size) < _GRIDS:
                         raise ConfigError(
@@ -238,22 +238,23 @@ class Curves(XYFigure):
                         )
                     # An interrupted study may lack some of them.
                     if np.unique(points.x).size >= _GRIDS:
-                        yield Limit(points, style, name.key, f"{series}, extrapolated")
+                        yield Limit(points, style["color"], name.key, f"{series}, extrapolated")
                 if reference:
                     points, _ = self._points(part, *(_at(axis, point) for axis in of_reference))
-                    yield Line(points.ordered(), _EXACT, "", name.key, f"{series}, semi-analytic")
+                    curve, of = name.key, f"{series}, semi-analytic"
+                    yield Line(points.ordered(), _EXACT, "", curve=curve, series=of)
             if self.by and len(ys) > 1:
                 marker = MARKERS[number % len(MARKERS)] if reference else ""
-                style = LineStyle("0.4", number, marker, scattered=reference is not None)
-                yield Line(NO_POINTS, style, named)
+                line = "none" if reference else LINES[number % len(LINES)]
+                yield Line(NO_POINTS, line_style("0.4", line, marker), named)
         if reference:
             yield Line(NO_POINTS, _EXACT, "semi-analytic")
         if len(directions) > 1:
             shared = "0.4" if max(many, len(ys)) > 1 else "C0"
-            yield Line(NO_POINTS, LineStyle(shared, 0, MARKERS[0]), "approach")
-            yield Line(NO_POINTS, LineStyle(shared, 0, MARKERS[0], retracts=True), "retraction")
+            yield Line(NO_POINTS, line_style(shared, LINES[0], MARKERS[0]), "approach")
+            yield Line(NO_POINTS, line_style(shared, RETRACTION, MARKERS[0]), "retraction")
 
-    def _style(self, runs: Runs, number: int, index: int) -> LineStyle:
+    def _style(self, runs: Runs, number: int, index: int) -> dict[str, Any]:
         """Return the style of a curve: y of this number, and value of `by` of this index.
 
         Colours and markers distinguish the values of `by`, line styles those of y. Beside a
@@ -264,8 +265,8 @@ class Curves(XYFigure):
         else:
             hue = colour(index, runs.table.sizes[self.by], ordered=self.is_ordered(runs))
             mark = number if self.reference and len(self.y) > 1 else index
-        marker = MARKERS[mark % len(MARKERS)]
-        return LineStyle(hue, number, marker, scattered=self.reference is not None)
+        line = "none" if self.reference else LINES[number % len(LINES)]
+        return line_style(hue, line, MARKERS[mark % len(MARKERS)])
 
     def _points(
         self, table: xr.Dataset, x: xr.DataArray, y: xr.DataArray

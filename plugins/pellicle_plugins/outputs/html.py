@@ -251,9 +251,8 @@ def _share_in_words(number: int, count: int, noun: str) -> str:
 
 
 def _setup(configuration: dict[str, Any], varied: tuple[str, ...] = ()) -> Picture:
-    return Picture(
-        setup_drawing(configuration, varied), "Set-up, not to scale.", description(configuration)
-    )
+    drawing = setup_drawing(configuration, varied)
+    return Picture(drawing, "Set-up, not to scale.", description(configuration))
 
 
 def _status(result: Result) -> Notice:
@@ -262,13 +261,9 @@ def _status(result: Result) -> Notice:
     sentences = []
     if done < total:
         sentences.append(f"The run ended early: {done} of {total} load steps are finished.")
-    if failed:
-        sentences.append(
-            f"{len(failed)} of {done} load steps did not converge: do not rely on them."
-        )
-    else:
-        steps = "The load step" if done == 1 else f"All {done} load steps"
-        sentences.append(f"{steps} converged.")
+    count = "The load step" if done == 1 else f"All {done} load steps"
+    bad = f"{len(failed)} of {done} load steps did not converge: do not rely on them."
+    sentences.append(bad if failed else f"{count} converged.")
     if coarse := result.coarse():
         sentences.append(f"In {len(coarse)} of {done} the cells are too coarse for the contact.")
     details = [f"Step {step}: {message}" for step, message in (*failed, *coarse)]
@@ -286,11 +281,8 @@ def _status(result: Result) -> Notice:
 
 def _reproduce(configuration: dict[str, Any], stem: Path) -> Iterator[Code]:
     name, folder = f"{stem.name}.toml", stem.parent.resolve().name or stem.name
-    units = (
-        "with the units that were given; numbers without one are"
-        if "study" in configuration
-        else ""
-    )
+    given = "with the units that were given; numbers without one are"
+    units = given if "study" in configuration else ""
     yield Code(tomli_w.dumps(configuration), f"The whole configuration, {units} in SI.", name)
     yield Code(
         f"pellicle run {shlex.quote(name)} -o {shlex.quote(folder)}",

@@ -141,25 +141,19 @@ def run_table(table: xr.Dataset, runs: list[xr.Dataset], mapped: list[int]) -> T
     """
     axes = [str(name) for name in table.coords if name != "step"]
     names = [n for n in names_of_numbers(table) if not _is_effort(n) and _is_shown(table, n)]
-    varied = [_column(table[name]) for name in axes]
-    numbers = [_column(table[name]) for name in names]
+    heads = {name: _column(table[name]) for name in (*axes, *names)}
     rows: list[list[str | Cell]] = []
     for index, (row, file) in enumerate(zip(runs, short_files(table), strict=True)):
         done, total, word = progress_of(row)
-        point = [
-            shown.number(row[name].item()) for name, (_, shown) in zip(axes, varied, strict=True)
-        ]
-        last = [
-            shown.number(row[name].values[done - 1].item()) if done else ""
-            for name, (_, shown) in zip(names, numbers, strict=True)
-        ]
+        point = [heads[n][1].number(row[n].item()) for n in axes]
+        last = [heads[n][1].number(row[n].values[done - 1].item()) if done else "" for n in names]
         run = Cell(str(index + 1), frame=mapped.index(index) if index in mapped else None)
         rows.append([run, *point, f"{done}/{total}", *last, _verdict(word), file])
     columns = [
         Column("run", meaning="number of the run, the last axis varying fastest"),
-        *(column for column, _ in varied),
+        *(heads[name][0] for name in axes),
         Column("steps", meaning="finished load steps, of those planned"),
-        *(column for column, _ in numbers),
+        *(heads[name][0] for name in names),
         Column("status", words=True),
         Column("file", meaning="beginning of the name of its file in the folder runs", words=True),
     ]

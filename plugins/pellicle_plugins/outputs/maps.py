@@ -12,14 +12,13 @@ from pydantic import Field
 
 from pellicle.components import Runs
 from pellicle.model.expression import names_in
-from pellicle.report.fields import diverging, extent, outline_contact
+from pellicle.report.fields import diverging, outline_contact
 from pellicle.report.style import NO_CONTACT, add_colour_bar
 from pellicle.results.derived import as_array
 from pellicle.results.path import has_interaction
 from pellicle.results.variables import WALL_PRESSURE, words_of_name
-from pellicle.units import axis_unit
 
-from .base import Label, TableFigure, scaled
+from .base import Label, TableFigure, scaled, show_field
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -90,23 +89,14 @@ class Maps(TableFigure):
         pulls = any(has_interaction(run) for _, run, _ in panels) and not is_bool
         colours = self._colours(fields, factor, pulls=pulls)
         for axes, (title, run, field) in zip(all_axes, panels, strict=False):
-            length, unit = axis_unit(np.append(run["x"].values, run["y"].values), "m")
             values_shown = field.transpose("y", "x").values * factor
             if blank:
                 values_shown = np.ma.masked_where(values_shown == 0, values_shown)
                 axes.set_facecolor(NO_CONTACT)
-            image = axes.imshow(
-                values_shown,
-                origin="lower",
-                extent=extent(run["x"].values * length, run["y"].values * length),
-                **colours,
-                interpolation="nearest" if is_bool else None,
-                # The stage "rgba" converts every cell to four colour values first.
-                interpolation_stage="data",
-            )
+            nearest = "nearest" if is_bool else None
+            image, length = show_field(axes, run, values_shown, interpolation=nearest, **colours)
             if pulls:
                 outline_contact(run, axes, length)
-            axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
             axes.set_title(title.words, fontsize="medium")
             axes.label_outer()
         if is_bool:

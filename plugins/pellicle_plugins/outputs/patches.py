@@ -11,12 +11,11 @@ from pydantic import Field
 
 from pellicle import analysis
 from pellicle.components import Runs
-from pellicle.report.fields import extent
 from pellicle.report.style import MARKERS, NO_CONTACT, colour
 from pellicle.results.result import Result
 from pellicle.units import axis_unit
 
-from .base import Label, TableFigure, add_legend, write_csv
+from .base import Label, TableFigure, add_legend, show_field, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -89,17 +88,9 @@ class Patches(TableFigure):
 
 def _map(axes: Axes, name: Label, step: xr.Dataset, patches: analysis.Patches) -> None:
     """Draw the patches in 20 colours, used in turn."""
-    length, unit = axis_unit(np.append(step["x"].values, step["y"].values), "m")
-    axes.imshow(
-        np.ma.masked_equal(patches.labels.T, 0) % 20,
-        origin="lower",
-        extent=extent(step["x"].values * length, step["y"].values * length),
-        cmap="tab20",
-        interpolation="nearest",
-        interpolation_stage="data",
-    )
+    shown = np.ma.masked_equal(patches.labels.T, 0) % 20
+    show_field(axes, step, shown, cmap="tab20", interpolation="nearest")
     axes.set_facecolor(NO_CONTACT)
-    axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
     axes.set_title(f"{name.words}\n{patches.count} patches".lstrip(), fontsize="medium")
 
 

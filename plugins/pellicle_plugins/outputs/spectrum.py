@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -56,17 +56,15 @@ class Spectrum(TableFigure):
             default=0.0,
         )
         for number, (name, spectra) in enumerate(curves):
+            hue = colour(number, len(curves), ordered=ordered)
             for surface, spectrum in spectra.items():
+                shared: dict[str, Any] = {"color": hue, "linewidth": 1.2}
+                if surface == "displacement":
+                    shared["label"] = name.words or None
+                    shared |= sparse_marker(number) if len(curves) > 1 else {}
                 visible = spectrum.density > _ROUND_OFF * highest
-                named = {"label": name.words or None} if surface == "displacement" else {}
-                axes.plot(
-                    spectrum.wavenumber[visible],
-                    spectrum.density[visible],
-                    _STYLES[surface],
-                    color=colour(number, len(curves), ordered=ordered),
-                    linewidth=1.2,
-                    **(named | sparse_marker(number) if named and len(curves) > 1 else named),
-                )
+                x, y = spectrum.wavenumber[visible], spectrum.density[visible]
+                axes.plot(x, y, _STYLES[surface], **shared)
         hue = "0.4" if len(curves) > 1 else "C0"
         for surface, style in _STYLES.items():
             axes.plot([], [], style, color=hue, linewidth=1.2, label=surface)

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle_plugins.analytic import layer_curves
-from pellicle_plugins.analytic.layer_curves import LENGTHS, PROFILES, odd_chebyshev
 from pellicle_plugins.analytic.layer_equation import half_space, moments
 from tests.layered_contact import layered_contact, tensed_layer_contact
 
@@ -153,21 +152,6 @@ def test_the_limit_is_in_the_table() -> None:
     assert thick.layer_depth_limit(0.1, 0.5) == pytest.approx(exact, rel=1e-4)
     # Here the indenter would reach the base first.
     assert wide.layer_depth_limit(0.1, 0.5) == 0.1
-
-
-def test_the_file_holds_what_its_script_solves() -> None:
-    """A column of the shipped table is the equation at its node."""
-    index = 11
-    equation = half_space("smooth", float(LENGTHS[index]))
-    profiles = odd_chebyshev(equation.nodes.t)
-    assert profiles.shape[1] == PROFILES
-    thickness, radius = 1.0, 1e4
-    solved = moments(equation, profiles[:, :1], 1.0, 0.5)
-    indenter = pl.indenter("paraboloid", radius=radius)
-    assert isinstance(indenter, pl.HasLayerForceCurve)
-    depth = solved.depth * 2 / radius
-    curve = indenter.layer_force_curve(depth, float(LENGTHS[index]), thickness, 0.5)
-    assert curve.force[0] == pytest.approx(float(solved.force[0]) * 2 / radius, rel=1e-5)
 
 
 def test_it_is_what_the_solver_finds() -> None:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import json
+import tomllib
 from math import pi
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import pellicle as pl
+from tests.plugins.outputs.shared import bead
 
 SIZE = 1e-3
 ROUGH = {
@@ -37,15 +38,10 @@ def _make(table: dict[str, Any]) -> pl.Indenter:
 
 
 def _solve(indenter: dict[str, Any], points: int, **loading: object) -> pl.Result:
-    return pl.run(
-        {
-            "grid": {"points": points, "size": SIZE},
-            "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "1 N/m"},
-            "indenter": indenter,
-            "loading": loading,
-        },
-        progress=False,
-    )
+    kernel = {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "1 N/m"}
+    size = {"points": points, "size": SIZE}
+    run = bead(grid=size, kernel=kernel, indenter=indenter, loading=loading)
+    return pl.run(run, progress=False)
 
 
 def test_run_of_sphere_and_zero_roughness_is_that_of_the_sphere() -> None:
@@ -158,12 +154,8 @@ def test_scaled_paraboloid() -> None:
 
 
 def _run(indenter: dict[str, Any]) -> pl.Run:
-    return pl.Run(
-        grid={"points": 24, "size": SIZE},
-        kernel={"type": "half_space", "reduced_modulus": 1e4},
-        indenter=indenter,
-        loading={"depth": "1 um"},
-    )
+    grid = {"points": 24, "size": SIZE}
+    return pl.Run(**bead(grid=grid, indenter=indenter, loading={"depth": "1 um"}))
 
 
 @pytest.mark.parametrize(
@@ -171,20 +163,13 @@ def _run(indenter: dict[str, Any]) -> pl.Run:
     [
         ({"type": "sum", "parts": []}, "indenter.parts", "1 or more"),
         (
-            {"type": "sum", "parts": [{"type": "sphere", "radius": -1}]},
-            "indenter.parts.0.radius",
-            "> 0 m",
-        ),
-        (
             {"type": "sum", "parts": [QUADRIC, {"type": "scaled", "factor": -1, "part": ROUGH}]},
             "indenter.parts.1.factor",
             "≥ 0",
         ),
         ({"type": "sum", "parts": [{"type": "shpere"}]}, "indenter.parts.0.type", "'sphere'"),
         ({"type": "rotated", "angle": 1, "part": ROUGH}, "indenter.part", "ends where the domain"),
-        ({"type": "shifted", "x": 1e-4, "part": ROUGH}, "indenter.part", "ends where the domain"),
         ({"type": "rotated", "angle": "30 m", "part": QUADRIC}, "indenter.angle", "rad"),
-        ({"type": "shifted", "x": "nan m", "part": QUADRIC}, "indenter.x", "not finite"),
     ],
 )
 def test_bad_fields_are_named(indenter: dict[str, Any], field: str, message: str) -> None:
@@ -212,48 +197,32 @@ def test_parts_that_do_not_meet_are_refused() -> None:
         pl.run(_run({"type": "sum", "parts": parts}), progress=False)
 
 
-def test_nested_file_is_recorded_in_si(tmp_path: Path) -> None:
-    """Parts of parts take units in a file, and the result records them, defaults included."""
-    path = tmp_path / "nested.toml"
-    path.write_text("""
-        [grid]
-        points = 24
-        size = "1 mm"
-        [kernel]
-        type = "half_space"
-        reduced_modulus = "10 kPa"
-        [indenter]
-        type = "sum"
-        [[indenter.parts]]
-        type = "rotated"
-        angle = "30 degree"
-        part = { type = "quadric", radius_x = "1 mm", radius_y = "4 mm" }
-        [[indenter.parts]]
-        type = "scaled"
-        factor = 0.5
-        [indenter.parts.part]
-        type = "self_affine"
-        rms_height = "400 nm"
-        hurst = 0.7
-        cutoff_wavelength = "0.2 mm"
-        [loading]
-        depth = "5 um"
-        """)
-    result = pl.run(path, progress=False)
-    assert result.converged
-    turned, scaled = json.loads(result.dataset.attrs["configuration"])["indenter"]["parts"]
+NESTED = """
+[indenter]
+type = "sum"
+[[indenter.parts]]
+type = "rotated"
+angle = "30 degree"
+part = { type = "quadric", radius_x = "1 mm", radius_y = "4 mm" }
+[[indenter.parts]]
+type = "scaled"
+factor = 0.5
+[indenter.parts.part]
+type = "self_affine"
+rms_height = "400 nm"
+hurst = 0.7
+cutoff_wavelength = "0.2 mm"
+"""
+
+
+def test_nested_parts_of_a_file() -> None:
+    """They take units, are recorded in SI, defaults included, and are the same after TOML, JSON."""
+    run = pl.Run(**bead(**tomllib.loads(NESTED)))
+    turned, scaled = json.loads(run.to_json())["indenter"]["parts"]
     assert turned["angle"] == pytest.approx(pi / 6)
     assert turned["part"] == {"type": "quadric", "radius_x": 1e-3, "radius_y": 4e-3}
     assert scaled["part"]["rms_height"] == 4e-7
     assert scaled["part"]["seed"] == 0
-
-
-def test_file_round_trip() -> None:
-    """A run with nested parts is the same after TOML and JSON."""
-    import tomllib
-
-    turned = {"type": "rotated", "angle": "30 degree", "part": QUADRIC}
-    run = _run({"type": "sum", "parts": [turned, {"type": "scaled", "factor": 0.5, "part": ROUGH}]})
     assert pl.Run.from_json(run.to_json()) == run
     assert pl.Run(**tomllib.loads(run.to_toml())) == run
     assert hash(pl.Run.from_json(run.to_json()).indenter) == hash(run.indenter)

@@ -18,12 +18,11 @@ import pellicle as pl
 from pellicle.cli.app import app
 from pellicle.plotting import profile, without_round_off
 from tests.pictures import pixels
-from tests.plugins.outputs.shared import rows
+from tests.plugins.outputs.shared import bead, rows
 
-RUN: dict[str, Any] = {
-    "grid": {"points": 16, "size": "1 mm", "boundary": "periodic"},
-    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "10 mN/m"},
-    "indenter": {
+RUN = bead(
+    grid={"points": 16, "size": "1 mm", "boundary": "periodic"},
+    indenter={
         "type": "self_affine",
         "rms_height": "1 um",
         "hurst": 0.8,
@@ -31,8 +30,8 @@ RUN: dict[str, Any] = {
         "roll_off_wavelength": "0.5 mm",
         "seed": 3,
     },
-    "loading": {"mean_pressure": ["40 Pa", "10 kPa"]},
-}
+    loading={"mean_pressure": ["40 Pa", "10 kPa"]},
+)
 CONTROL = "a\x00b\x1b[1mc\x07\x9f\ufffe --> d"
 
 

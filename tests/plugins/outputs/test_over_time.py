@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import xml.etree.ElementTree as Xml
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -15,25 +14,24 @@ import pellicle as pl
 from pellicle.plotting import drawings, study_curves
 from pellicle.results.path import label_of_step
 from pellicle_plugins.outputs import html_curves
+from tests.plugins.outputs.shared import bead
 
-RUN: dict[str, Any] = {
-    "title": "bead",
-    "grid": {"points": 16, "size": "0.45 mm", "boundary": "free"},
-    "kernel": {
+LEGS = [
+    {"to": "20 um", "time": "1 s", "num": 4},
+    {"to": "18 um", "time": "0 s", "num": 1},
+    {"to": "0 um", "time": "1 s", "num": 4},
+]
+RUN = bead(
+    title="bead",
+    grid={"points": 16, "size": "0.45 mm"},
+    kernel={
         "type": "viscoelastic",
         "solid": {"type": "half_space", "reduced_modulus": "10 kPa"},
         "relaxation": [{"fraction": 0.8, "time": "0.5 s"}],
     },
-    "indenter": {"type": "paraboloid", "radius": "1 mm"},
-    "loading": {
-        "depth": [
-            {"to": "20 um", "time": "1 s", "num": 4},
-            {"to": "18 um", "time": "0 s", "num": 1},
-            {"to": "0 um", "time": "1 s", "num": 4},
-        ]
-    },
-    "outputs": [{"type": "html"}, {"type": "vtk"}],
-}
+    loading={"depth": LEGS},
+    outputs=[{"type": "html"}, {"type": "vtk"}],
+)
 
 
 @pytest.fixture(scope="module")
