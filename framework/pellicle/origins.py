@@ -13,7 +13,6 @@ from importlib.metadata import Distribution, EntryPoint
 from typing import TypeVar
 
 from .errors import PluginError
-from .foreign_code import diverted_output, noted_interrupts
 
 GROUP = "pellicle"
 DISABLE = "PELLICLE_DISABLE_PLUGINS"
@@ -76,20 +75,13 @@ def claimed_by(origins: Iterable[Origin]) -> str:
 def isolated(entry: EntryPoint, load: Callable[[], Loaded]) -> Loaded | Broken:
     """Return what a function that runs code of the plugin of an entry point returns, or the error.
 
-    A plugin may fail in any way, even by sys.exit() or KeyboardInterrupt; only a Ctrl-C of the user
-    ends the command.
+    A plugin may fail in any way, even by sys.exit(); only a Ctrl-C of the user ends the command.
     """
-    loaded: Loaded | Broken
-    with noted_interrupts() as interrupt:
-        try:
-            with diverted_output():
-                loaded = load()
-        except BaseException as error:
-            kind = "" if isinstance(error, PluginError) else f"{type(error).__name__}: "
-            loaded = Broken(Origin.of(entry), f"{kind}{error}".removesuffix(": "))
-    if interrupt.is_set():
-        raise KeyboardInterrupt
-    return loaded
+    try:
+        return load()
+    except (Exception, SystemExit) as error:
+        kind = "" if isinstance(error, PluginError) else f"{type(error).__name__}: "
+        return Broken(Origin.of(entry), f"{kind}{error}".removesuffix(": "))
 
 
 @cache
