@@ -73,22 +73,6 @@ def retraction_cases(length: float) -> dict[str, tuple[float, float, float, floa
     }
 
 
-def cantilever_path(points: int, stiffness: float, share: float = 0.005) -> tuple[float, float]:
-    """Return the base position at which a cantilever jumps off, and that of the closed theory.
-
-    The base is retracted in steps of ``share`` of the distance from the first touch.
-    """
-    end = theory(0.0).instability(stiffness)
-    last = float(end.depth + end.force / stiffness)
-    steps = last * np.arange(0.94, 1.0601, share)
-    path = [0.1, 1.0, 0.5 * last, 0.8 * last, *steps]
-    dataset = solved(
-        points, 0.0, path, size=4.0, quantity="base_displacement", spring_constant=stiffness
-    )
-    touches = np.flatnonzero(dataset["contact_area"].values > 0)
-    return path[int(touches[-1])], last
-
-
 def wavy(
     points: int, values: Sequence[float], height: float, work: float, **options: Any
 ) -> xr.Dataset:

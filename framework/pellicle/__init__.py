@@ -10,11 +10,4 @@ import lazy_loader
 
 # The public names are in __init__.pyi, which type checkers and lazy_loader read. Numpy, scipy and
 # pydantic take a second to import, so a name imports its own module only.
-_public, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
-
-
-def __getattr__(name: str) -> object:
-    if name == "Place":
-        # Raises an error that tells the author of an older plugin what to write instead.
-        from .components import Place  # noqa: F401
-    return _public(name)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -21,7 +21,7 @@ import typer
 
 from .errors import ConfigError, PellicleError, PluginError
 from .hookspecs import manager_of
-from .origins import COMMAND, DISABLE, GROUP, REMEDY, Broken, Origin, claimed_by, isolated
+from .origins import COMMAND, DISABLE, GROUP, REMEDY, Broken, Origin, claimed_by, in_order, isolated
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -52,10 +52,9 @@ class Command:
 def commands() -> Mapping[str, Sequence[EntryPoint]]:
     """Return who claims each command: pellicle itself first, nobody who is switched off."""
     claims: dict[str, list[EntryPoint]] = {}
-    disable = os.environ.get(DISABLE, "")
-    for entry in sorted({*entry_points(group=GROUP)}, key=lambda entry: (entry.name, entry.value)):
+    for entry, is_off in in_order(entry_points(group=GROUP), os.environ.get(DISABLE, "")):
         name = entry.name.removeprefix(COMMAND)
-        if name != entry.name and not (disable and Origin.of(entry).is_disabled(disable)):
+        if name != entry.name and not is_off:
             claims.setdefault(name, []).append(entry)
     for entries in claims.values():
         if len(entries) > 1:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 
@@ -10,6 +10,11 @@ def shown(value: object) -> str:
     """Return ``value`` as text for a message, at most 60 characters long."""
     text = repr(value)
     return text if len(text) <= 60 else f"{text[:57]}…"
+
+
+def first_of(texts: Sequence[str]) -> str:
+    """Return the first text and the number of others, such as "step 3 and 2 more"."""
+    return f"{texts[0]} and {len(texts) - 1} more" if len(texts) > 1 else texts[0]
 
 
 class PellicleError(Exception):

@@ -7,7 +7,7 @@ import json
 import os
 import re
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from .errors import StorageError
@@ -24,21 +24,17 @@ _MARKS = {
 _NOT_IN_DOCUMENTS = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 
 
+# In a closed folder they return False, where the methods of `Path` raise before Python 3.14.
+is_file, is_folder = os.path.isfile, os.path.isdir
+
+
 def for_document(text: str) -> str:
     """Return a text with U+FFFD in place of characters that documents may not contain."""
     return _NOT_IN_DOCUMENTS.sub("\ufffd", text)
 
 
 def read_text(path: Path) -> str:
-    """Read a text in UTF-8, in UTF-16 or UTF-32 with a byte order mark, or in code page 1252.
-
-    Raises
-    ------
-    OSError
-        The file cannot be read.
-    ValueError
-        The file is not text.
-    """
+    """Read a text in UTF-8, in UTF-16 or UTF-32 with a byte order mark, or in code page 1252."""
     content = path.read_bytes()
     encoding = next((_MARKS[mark] for mark in _MARKS if content.startswith(mark)), None)
     try:
@@ -53,34 +49,10 @@ def read_text(path: Path) -> str:
     return text
 
 
-def is_file(path: Path) -> bool:
-    """Return whether a path is a file; not so if it cannot be asked, as in a closed folder.
-
-    The method of `Path` raises then, before Python 3.14.
-    """
-    try:
-        return path.is_file()
-    except OSError:
-        return False
-
-
-def is_folder(path: Path) -> bool:
-    """Return whether a path is a folder; see `is_file`."""
-    try:
-        return path.is_dir()
-    except OSError:
-        return False
-
-
 def check_writable(path: Path) -> None:
     """Check before computing that a file can be written at ``path``.
 
     Partial files of dead processes in its folder are removed.
-
-    Raises
-    ------
-    StorageError
-        No file can be written there.
     """
     import tempfile
 
@@ -136,6 +108,10 @@ def _alive(pid: int) -> bool:
         return False
     except PermissionError:
         pass
+    # A worker of a killed process is dead but has its number until the first process of the
+    # system, which in a container may never do so, asks for its exit code.
+    with suppress(OSError):
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     return True
 
 

@@ -111,17 +111,9 @@ def _lines(path: Path) -> list[str]:
         return []
 
 
-def require(
-    grid: Grid, steps: int, solver: object = None, history: float = 0.0, *, sticks: bool = False
-) -> None:
-    """Refuse a run that needs more memory than is available.
-
-    Raises
-    ------
-    ConfigError
-        The estimate exceeds the available memory.
-    """
-    needed, limit = estimate(grid, steps, solver, history, sticks=sticks), available()
+def require(needed: float, grid: Grid, steps: int) -> None:
+    """Refuse a run that needs more memory [bytes] than is available."""
+    limit = available()
     if limit is not None and needed > limit:
         nx, ny = grid.points
         raise ConfigError(

@@ -1,4 +1,4 @@
-"""Where plugins come from, and how each is loaded on its own, whatever its code does.
+"""Where plugins come from, and how each is loaded on its own.
 
 It imports nothing heavy: help texts are printed from command modules alone.
 """
@@ -6,7 +6,10 @@ It imports nothing heavy: help texts are printed from command modules alone.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+import sys
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import redirect_stdout
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import Distribution, EntryPoint
@@ -22,6 +25,9 @@ REMEDY = f"uninstall one, or name its distribution in {DISABLE}"
 """What to do where several plugins claim one name."""
 _OWN = "pellicle"
 Loaded = TypeVar("Loaded")
+# Standard output is the process's: of two threads that redirect it at once the second would restore
+# what the first has redirected.
+_loading = threading.RLock()
 
 
 @dataclass(frozen=True)
@@ -72,13 +78,21 @@ def claimed_by(origins: Iterable[Origin]) -> str:
     return f"claimed by {' and by '.join(map(str, origins))}"
 
 
+def in_order(entries: Iterable[EntryPoint], disable: str) -> Iterator[tuple[EntryPoint, bool]]:
+    """Yield each entry point once, by name, and whether the value of `DISABLE` switches it off."""
+    for entry in sorted(set(entries), key=lambda entry: (entry.name, entry.value)):
+        yield entry, bool(disable) and Origin.of(entry).is_disabled(disable)
+
+
 def isolated(entry: EntryPoint, load: Callable[[], Loaded]) -> Loaded | Broken:
     """Return what a function that runs code of the plugin of an entry point returns, or the error.
 
-    A plugin may fail in any way, even by sys.exit(); only a Ctrl-C of the user ends the command.
+    Parsers of arguments and checks of licences call sys.exit(). What the plugin prints goes to
+    standard error: commands print JSON to standard output.
     """
     try:
-        return load()
+        with _loading, redirect_stdout(sys.stderr):
+            return load()
     except (Exception, SystemExit) as error:
         kind = "" if isinstance(error, PluginError) else f"{type(error).__name__}: "
         return Broken(Origin.of(entry), f"{kind}{error}".removesuffix(": "))

@@ -13,7 +13,6 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cache, partial
 from importlib.metadata import EntryPoint, entry_points
-from types import SimpleNamespace
 from typing import Any, Literal, TypeVar, get_args, get_origin
 
 from . import hookspecs
@@ -21,7 +20,7 @@ from .components import FAMILIES, Component, Prescription, Suite
 from .errors import ConfigError, PellicleError, PluginError, shown
 from .loading import OPTIONS
 from .model.messages import nearest
-from .origins import COMMAND, REMEDY, claimed_by, isolated
+from .origins import COMMAND, REMEDY, claimed_by, in_order, isolated
 from .origins import DISABLE as DISABLE
 from .origins import GROUP as GROUP
 from .origins import Broken as Broken
@@ -59,16 +58,7 @@ class Registry:
     disabled: tuple[Origin, ...] = ()
 
     def find(self, family: str, type_: object) -> type[Component]:
-        """Return the class of a component.
-
-        Raises
-        ------
-        ConfigError
-            The type is unknown.
-        PluginError
-            The plugin of the type is broken or disabled, two plugins claim the type, or no plugin
-            brings the family.
-        """
+        """Return the class of a component, or raise an error that says why there is none."""
         types = self.components.get(family, {})
         if isinstance(type_, str) and type_ in types:
             return types[type_].component
@@ -104,11 +94,6 @@ class Registry:
         """Return the component of ``base``'s family that ``value`` describes.
 
         ``value`` is a table with ``type`` and the component's fields, or the component itself.
-
-        Raises
-        ------
-        ConfigError, PluginError
-            As for `find`, the component is not of that class, or a field is not allowed.
         """
         if isinstance(value, base):
             return value
@@ -161,14 +146,13 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
     suites: list[Suite] = []
     broken: list[Broken] = []
     disabled: list[Origin] = []
-    for entry in sorted(set(entries), key=lambda entry: (entry.name, entry.value)):
-        origin = Origin.of(entry)
-        if origin.is_disabled(disable):
-            disabled.append(origin)
+    for entry, is_off in in_order(entries, disable):
+        if is_off:
+            disabled.append(Origin.of(entry))
             continue
         if entry.name.startswith(COMMAND):
             continue
-        registration = isolated(entry, partial(_call_hooks, entry, origin, families))
+        registration = isolated(entry, partial(_call_hooks, entry, families))
         if isinstance(registration, Broken):
             broken.append(registration)
             continue
@@ -180,102 +164,67 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
             if not any(owner.component is registered.component for owner in owners):
                 owners.append(registered)
     registered_by_family: dict[str, dict[str, Registered]] = {f: {} for f in families}
+    clashes: dict[tuple[str, str], tuple[Origin, ...]] = {}
     for (family, type_), owners in claims.items():
         if len(owners) == 1:
             registered_by_family[family][type_] = owners[0]
+        else:
+            clashes[family, type_] = tuple(owner.origin for owner in owners)
     return Registry(
-        components=registered_by_family,
-        families=families,
-        suites=tuple(suites),
-        broken=tuple(broken),
-        clashes={
-            name: tuple(owner.origin for owner in owners)
-            for name, owners in claims.items()
-            if len(owners) > 1
-        },
-        disabled=tuple(disabled),
+        registered_by_family, families, tuple(suites), tuple(broken), clashes, tuple(disabled)
     )
-
-
-def _plugin_of(loaded: object) -> object:
-    """Return what has hooks: the module of an entry point, or what registers the class of one."""
-    if not isinstance(loaded, type):
-        return loaded
-    return SimpleNamespace(
-        register_components=hookspecs.hookimpl(lambda register: register(loaded))
-    )
-
-
-def _add_families(components: Iterable[Registered], families: dict[str, type[Component]]) -> None:
-    """Add the families of components.
-
-    Raises
-    ------
-    PluginError
-        Another base class has the name of a family already; nothing is added.
-    """
-    known = dict(families)
-    for registered in components:
-        base = family_of(registered.component)
-        if (first := known.setdefault(base.family, base)) is not base:
-            raise PluginError(
-                f"{_full_name(base)} and {_full_name(first)} both declare the family "
-                f"{base.family!r}; derive from the latter, or give another name"
-            )
-    families.update(known)
-
-
-def _full_name(component: type[Component]) -> str:
-    return f"{component.__module__}.{component.__qualname__}"
 
 
 def _call_hooks(
-    entry: EntryPoint, origin: Origin, families: dict[str, type[Component]]
+    entry: EntryPoint, families: dict[str, type[Component]]
 ) -> tuple[list[Registered], list[Suite]]:
-    """Return the components and suites that one plugin registers, and add its families.
-
-    Raises
-    ------
-    PluginError
-        The plugin, or one of its components, breaks a rule.
-    """
-    plugin = _plugin_of(entry.load())
-    manager = hookspecs.manager_of(plugin)
-    hooks = ["register_components", "register_validations", "register_commands"]
-    implemented = [caller.name for caller in manager.get_hookcallers(plugin) or ()]
-    if not implemented:
-        raise PluginError(
-            f"implements no hook; decorate with @pellicle.hookimpl one of {', '.join(hooks)}, or "
-            'name a class in the entry point: "module:Class"'
-        )
-    for name in implemented:
-        if name not in hooks:
-            raise PluginError(f"implements the unknown hook {name!r}; {nearest(name, hooks)}")
+    """Return the components and suites that one plugin registers, and add its families."""
     components: list[Registered] = []
     suites: list[Suite] = []
 
     def register(component: type[Component]) -> None:
-        components.append(Registered(component, checked_type(component), origin))
+        components.append(Registered(component, checked_type(component), Origin.of(entry)))
 
     def register_suite(suite: Suite) -> None:
         if not callable(suite):
             raise PluginError(f"{suite!r} is not a function that yields cases")
         suites.append(suite)
 
-    manager.hook.register_components(register=register)
-    manager.hook.register_validations(register=register_suite)
-    _add_families(components, families)
+    plugin = entry.load()
+    if isinstance(plugin, type):
+        register(plugin)
+    else:
+        manager = hookspecs.manager_of(plugin)
+        hooks = ["register_components", "register_validations", "register_commands"]
+        implemented = [caller.name for caller in manager.get_hookcallers(plugin) or ()]
+        if not implemented:
+            raise PluginError(
+                f"implements no hook; decorate with @pellicle.hookimpl one of {', '.join(hooks)}, "
+                'or name a class in the entry point: "module:Class"'
+            )
+        for name in implemented:
+            if name not in hooks:
+                raise PluginError(f"implements the unknown hook {name!r}; {nearest(name, hooks)}")
+        manager.hook.register_components(register=register)
+        manager.hook.register_validations(register=register_suite)
+    bases = dict(families)
+    for registered in components:
+        base = family_of(registered.component)
+        if (first := bases.setdefault(base.family, base)) is not base:
+            raise PluginError(
+                f"{_full_name(base)} and {_full_name(first)} both declare the family "
+                f"{base.family!r}; derive from the latter, or give another name"
+            )
+    families.update(bases)
     return components, suites
 
 
-def family_of(component: type[Component]) -> type[Component]:
-    """Return the base class of a component that declares its family.
+def _full_name(component: type[Component]) -> str:
+    return f"{component.__module__}.{component.__qualname__}"
 
-    Raises
-    ------
-    PluginError
-        None of the base classes does, or not one alone.
-    """
+
+def family_of(component: type[Component]) -> type[Component]:
+    """Return the one base class of a component that declares its family."""
     mro = component.__mro__
     declaring = [c for c in mro if issubclass(c, Component) and "family" in vars(c)]
     if not declaring:
@@ -291,13 +240,7 @@ def family_of(component: type[Component]) -> type[Component]:
 
 
 def checked_type(component: Any) -> str:
-    """Return the type of a component class.
-
-    Raises
-    ------
-    PluginError
-        The class breaks a rule for components.
-    """
+    """Return the type of a component class; raise PluginError if it breaks a rule for all."""
     if not (isinstance(component, type) and issubclass(component, Component)):
         raise PluginError(f"{component!r} is not a subclass of pellicle.components.Component")
     name, base = component.__name__, family_of(component)

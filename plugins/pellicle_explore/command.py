@@ -56,6 +56,6 @@ def explore(
             webbrowser.open(address)
 
     try:
-        asyncio.run(serve(lambda document: Explorer(run, measured, document).show(), port, tell))
+        asyncio.run(serve(lambda document: Explorer(run, measured, document), port, tell))
     except KeyboardInterrupt:
         echo("ended")

@@ -72,8 +72,7 @@ def changed(
 ) -> tuple[dict[str, Any], float]:
     """Return a configuration with a new value of a control, given as text, and the value in SI.
 
-    All load steps change in proportion to their largest. A ValueError says why the text is not an
-    allowed value, or why the run is not possible with it.
+    All load steps change in proportion to their largest. A ValueError says why the text is refused.
     """
     try:
         value: Any = float(text)
@@ -94,10 +93,7 @@ def changed(
 
 
 def sticking(configuration: Mapping[str, Any], interaction: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a configuration with a contact that sticks, and is pulled off after it is loaded.
-
-    The depths go back to half the largest one above the surface.
-    """
+    """Return a configuration with a contact that sticks, and is pulled off to half the depth."""
     depths = configuration["loading"]["depth"]
     back = [*reversed(depths[:-1]), 0.0, -depths[-1] / 4, -depths[-1] / 2]
     loaded = replaced(configuration, "loading.depth", [*depths, *back])

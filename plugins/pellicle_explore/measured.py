@@ -12,22 +12,8 @@ from pellicle.errors import ConfigError
 
 
 def read(path: Path) -> pl.Curve:
-    """Return the only force curve of a file, without the rows that lack a number.
-
-    Raises
-    ------
-    ConfigError, StorageError
-        It does not hold one curve, or no application that reads curves is installed.
-    """
-    try:
-        read_curves = pl.read_curves
-    except AttributeError:
-        raise ConfigError(
-            "needs an application that reads force curves, and none is installed; leave it out, "
-            "or install pellicle with its fits",
-            "--curve",
-        ) from None
-    curve, *others = read_curves(path, segment="approach").values()
+    """Return the only force curve of a file, without the rows that lack a number."""
+    curve, *others = pl.read_curves(path, segment="approach").values()
     if others:
         raise ConfigError(f"holds {1 + len(others)} curves; give a file with one", "--curve")
     rows = np.isfinite(curve.position) & np.isfinite(curve.force)

@@ -24,10 +24,9 @@ from .solving import Frame, Solving
 
 
 class Explorer:
-    """The content of one visitor's page and the run behind it."""
+    """The content of one visitor's page, and the run behind it, which is solved as it is."""
 
     def __init__(self, run: pl.Run, measured: pl.Curve | None, target: Document) -> None:
-        self._target = target
         self._configuration: Mapping[str, Any] = configuration_of(run)
         self._interaction: Mapping[str, Any] | None = None
         self._frame: Frame | None = None
@@ -35,24 +34,21 @@ class Explorer:
         self._plots = Plots(measured)
         self._rows: dict[str, ControlRow] = {}
         self._panel = column(sizing_mode="stretch_width")
-        self._others = self._other_controls(run, is_measured=measured is not None)
         self._result = Div(sizing_mode="stretch_width")
         self._message = Div(render_as_text=True, sizing_mode="stretch_width")
         self._remarks = Div(render_as_text=True, sizing_mode="stretch_width")
         self._file = PreText(sizing_mode="stretch_width")
-
-    def show(self) -> None:
-        """Put the content on the page, and solve the run as it is."""
-        self._target.title = "pellicle explore"
+        target.title = "pellicle explore"
         # Bokeh takes text for a template too, which its types do not.
         template: Any = Path(__file__).with_name("page.html").read_text("utf-8")
-        self._target.template = template
+        target.template = template
         self._list_controls()
+        others = self._other_controls(run, is_measured=measured is not None)
         parts = {
             "result": self._result,
             "message": self._message,
             "remarks": self._remarks,
-            "controls": column(self._panel, *self._others, sizing_mode="stretch_width"),
+            "controls": column(self._panel, *others, sizing_mode="stretch_width"),
             "profile": self._plots.profile,
             "pressure": self._plots.pressure,
             "force": self._plots.force,
@@ -61,7 +57,7 @@ class Explorer:
         # Each part is a root, so that a new text does not lay out the plots again.
         for name, part in parts.items():
             part.name = name
-            self._target.add_root(part)
+            target.add_root(part)
         self._solving.request(self._configuration)
 
     def _other_controls(self, run: pl.Run, *, is_measured: bool) -> list[Any]:

@@ -17,11 +17,7 @@ _DIGITS: Final = 4
 
 
 class ControlRow:
-    """A field, a slider, and room for why a text in the field is refused.
-
-    ``change`` is called with the control and the text of each new value; it returns the value in
-    SI, or raises a ValueError that says what is allowed.
-    """
+    """A field, a slider, and room for why ``change`` refuses a text of the field."""
 
     def __init__(self, control: Control, change: Callable[[Control, str], float]) -> None:
         self._control, self._change = control, change

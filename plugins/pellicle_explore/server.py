@@ -23,17 +23,10 @@ from pellicle.errors import ConfigError
 ADDRESS: Final = "127.0.0.1"
 
 
-async def serve(fill: Callable[[Document], None], port: int, tell: Callable[[str], None]) -> None:
-    """Serve a page to this machine until the task is cancelled.
+async def serve(fill: Callable[[Document], object], port: int, tell: Callable[[str], None]) -> None:
+    """Serve a page to this machine until the task is cancelled; ``tell`` is given its address.
 
-    ``fill`` adds the content to the document of a visitor, and ``tell`` is called with the address,
-    below which everything is: it has a token, without which the answer is 404. ``port`` 0 is any
-    free one.
-
-    Raises
-    ------
-    ConfigError
-        The port is taken, or not allowed.
+    Everything is below an address with a token, without which the answer is 404.
     """
     try:
         listener = socket.create_server((ADDRESS, port))

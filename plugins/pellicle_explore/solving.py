@@ -64,11 +64,7 @@ def solved(
 
 
 class Solving:
-    """Solves the newest of the runs that are requested, until the page is closed.
-
-    ``show`` is called in the thread of the document ``target`` with the configuration of a run and
-    its frame, or the exception that it raised.
-    """
+    """Solves the newest of the runs that are requested, and shows it, until the page is closed."""
 
     def __init__(
         self, target: Document, show: Callable[[Mapping[str, Any], Frame | Exception], None]

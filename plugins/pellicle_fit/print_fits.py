@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from pellicle.cli import NOT_CONVERGED, echo, print_columns, print_json
+from pellicle.errors import first_of
 from pellicle.files import is_file
 
 if TYPE_CHECKING:
@@ -166,8 +167,8 @@ def _print_failures(rows: list[dict[str, Any]]) -> None:
     for row in rows:
         if reason := str(row["status"]).partition(": ")[2]:
             reasons.setdefault(reason, []).append(str(row["curve"]))
-    for reason, (first, *others) in reasons.items():
-        echo(f"{first}{f' and {len(others)} more' if others else ''}: {reason}", err=True)
+    for reason, curves in reasons.items():
+        echo(f"{first_of(curves)}: {reason}", err=True)
 
 
 def _failed_checks(row: Mapping[str, Any]) -> str:

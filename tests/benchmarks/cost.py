@@ -22,28 +22,30 @@ smooth  free, paraboloid of radius 2.236, depth 0.1118 (domain 2 a_H), to 1e-8
 from __future__ import annotations
 
 import argparse
-import json
-import os
 import resource
-import subprocess
-import sys
 import time
 from collections import Counter
 from collections.abc import Callable
 from itertools import product
+from statistics import median
 from typing import Any
 
-THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+import numpy as np
+import scipy.fft
+from tables import in_process, print_head, print_row
+
+import pellicle as pl
+from pellicle.numerics import operators
+from pellicle.operators import make_operator
+from pellicle.problem import Problem
+from pellicle.problem import measure as measure_pressure
+from pellicle_plugins.solvers import circulant_stiffness
 
 
-def problem(case: str, points: int, tension: float, cutoff: float | None = None):  # type: ignore[no-untyped-def]
+def problem(
+    case: str, points: int, tension: float, cutoff: float | None = None
+) -> tuple[Problem, float, float]:
     """Return the problem of a case, its tolerance, and the seconds that its operator took."""
-    import numpy as np
-
-    import pellicle as pl
-    from pellicle.operators import make_operator
-    from pellicle.problem import Problem
-
     grid = pl.Grid(points=points, size=1.0, boundary="periodic" if case == "rough" else "free")
     kernel = pl.kernel("tensed_membrane", reduced_modulus=1.0, tension=tension / 2)
     rough = {"rms_height": 0.01, "cutoff_wavelength": cutoff or 16 / points, "seed": 1}
@@ -65,53 +67,54 @@ def problem(case: str, points: int, tension: float, cutoff: float | None = None)
 
 
 def measure(
-    case: str, points: int, tension: float, solver: str, threads: int, cutoff: float | None
+    case: str, tension: float, points: int, solver: str, threads: int, cutoff: float | None
 ) -> dict[str, object]:
     """Return the costs of one solve in this process."""
-    import numpy as np
-    import scipy.fft
+    clock = time.process_time if threads == 1 else time.perf_counter
 
-    import pellicle as pl
-    from pellicle.numerics import operators
-    from pellicle.problem import measure as measure_pressure
-    from pellicle_plugins.solvers import circulant_stiffness
+    def seconds(work: Callable[[], object], repeats: int = 5) -> float:
+        times = []
+        for _ in range(repeats):
+            started = clock()
+            work()
+            times.append(clock() - started)
+        return median(times)
 
     with scipy.fft.set_workers(threads):
-        # What is imported on the way is not the solve's.
+        # What is loaded on the way is not the solve's.
         small, loose, _ = problem(case, 32, tension)
         pl.solver(solver, tolerance=loose).solve(small, None, lambda *_: None)
-        before = _peak()
+        before = peak()
         given, tolerance, setup = problem(case, points, tension, cutoff)
         operator = given.operator
         operator(np.ones(given.grid.shape))
-        one = _median(lambda: operator(np.ones(given.grid.shape)), threads)
+        one = seconds(lambda: operator(np.ones(given.grid.shape)))
         transforms: Counter[tuple[tuple[int, ...], str]] = Counter()
         for module in (operators, circulant_stiffness):
             _count(module, transforms)
         used = operator.applications
-        clock = time.process_time if threads == 1 else time.perf_counter
         started = clock()
         solution = pl.solver(solver, tolerance=tolerance).solve(given, None, lambda *_: None)
-        seconds = clock() - started
+        whole = clock() - started
         used = operator.applications - used
-        peak = _peak() - before
+        highest = peak() - before
         double, own = (
             sum(
-                number * _median(_bare_pair(shape, dtype if in_own else "float64"), threads)
+                number * seconds(_bare_pair(shape, dtype if in_own else "float64"))
                 for (shape, dtype), number in list(transforms.items())
             )
             for in_own in (False, True)
         )
     state = measure_pressure(given, solution.pressure)
     return {
-        "solved": solution.stop.name == "DONE" and state.residual_contact <= tolerance,
+        "solved": solution.stop.name == "DONE" and bool(state.residual_contact <= tolerance),
         "iterations": solution.iterations,
         "applications": used,
-        "seconds": seconds,
-        "ratio": seconds / double,
-        "own": seconds / own,
+        "seconds": whole,
+        "ratio": whole / double,
+        "own": whole / own,
         "setup": setup / one,
-        "peak": peak / (8 * np.prod(operator.padded)),
+        "peak": highest / (8 * float(np.prod(operator.padded))),
         "contact": float(state.contact.mean()),
     }
 
@@ -128,83 +131,50 @@ def _count(module: Any, counts: Counter[tuple[tuple[int, ...], str]]) -> None:
 
 
 def _bare_pair(shape: tuple[int, ...], dtype: str) -> Callable[[], object]:
-    import numpy as np
-    import scipy.fft
-
     # A free operator's pair is counted whole, though half of its rows are zeros and skipped.
-    field = np.random.default_rng(0).normal(size=shape).astype("float64")
-    field = field.astype(dtype)
+    field = np.random.default_rng(0).normal(size=shape).astype(dtype)
     return lambda: scipy.fft.irfft2(scipy.fft.rfft2(field), s=shape)
 
 
-def _median(work: Callable[[], object], threads: int, repeats: int = 5) -> float:
-    clock = time.process_time if threads == 1 else time.perf_counter
-    times = []
-    for _ in range(repeats):
-        started = clock()
-        work()
-        times.append(clock() - started)
-    return sorted(times)[len(times) // 2]
-
-
-def _peak() -> float:
+def peak() -> float:
+    """Return the largest memory that this process has had [byte]."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024.0
+
+
+def case_options(
+    description: str | None, points: list[int], tension: list[float]
+) -> argparse.ArgumentParser:
+    """Return a parser of the cases, grids and tensions of a table."""
+    parser = argparse.ArgumentParser(description=(description or "").partition("\n")[0])
+    parser.add_argument("--cases", nargs="+", default=["rough", "punch"])
+    parser.add_argument("--points", type=int, nargs="+", default=points)
+    parser.add_argument("--tension", type=float, nargs="+", default=tension)
+    return parser
 
 
 def main() -> None:
     """Measure every case in a process of its own and print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--cases", nargs="+", default=["rough", "punch", "smooth"])
-    parser.add_argument("--points", type=int, nargs="+", default=[256, 512, 1024])
-    parser.add_argument("--tension", type=float, nargs="+", default=[0.0, 0.02, 1.0])
+    parser = case_options(__doc__, [256, 512, 1024], [0.0, 0.02, 1.0])
+    parser.set_defaults(cases=["rough", "punch", "smooth"])
     parser.add_argument("--solvers", nargs="+", default=["active_set"])
     parser.add_argument("--cutoff", type=float, help="shortest wavelength over L, on every grid")
     parser.add_argument("--threads", type=int, nargs="+", default=[1])
-    parser.add_argument("--one", action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args()
-    rows = product(options.cases, options.tension, options.points, options.solvers, options.threads)
-    if options.one:
-        case, tension, points, solver, threads = next(rows)
-        print(json.dumps(measure(case, points, tension, solver, threads, options.cutoff)))
-        return
-    print(
-        "| case | s/L | N | solver | threads | contact | iterations | applications | seconds "
-        "| solve ÷ pairs | in own precision | set-up ÷ application | peak arrays |"
+    print_head(
+        *("case", "s/L", "N", "solver", "threads", "contact", "iterations", "applications"),
+        *("seconds", "solve ÷ pairs", "in own precision", "set-up ÷ application", "peak arrays"),
     )
-    print("|" + " --- |" * 13)
-    for case, tension, points, solver, threads in rows:
-        row = _in_process(case, tension, points, solver, threads, options.cutoff)
-        mark = "" if row["solved"] else " not solved"
-        print(
-            f"| {case} | {tension:g} | {points} | {solver}{mark} | {threads} "
-            f"| {row['contact']:.3f} | {row['iterations']} | {row['applications']} "
-            f"| {row['seconds']:.2f} | {row['ratio']:.2f} | {row['own']:.2f} | {row['setup']:.1f} "
-            f"| {row['peak']:.1f} |",
-            flush=True,
+    for case, tension, points, solver, threads in product(
+        options.cases, options.tension, options.points, options.solvers, options.threads
+    ):
+        given = case, tension, points, solver, threads, options.cutoff
+        row, _ = in_process(measure, *given, threads=threads)
+        print_row(
+            *(case, f"{tension:g}", points, solver if row["solved"] else f"{solver} not solved"),
+            *(threads, f"{row['contact']:.3f}", row["iterations"], row["applications"]),
+            *(f"{row['seconds']:.2f}", f"{row['ratio']:.2f}", f"{row['own']:.2f}"),
+            *(f"{row['setup']:.1f}", f"{row['peak']:.1f}"),
         )
-
-
-def _in_process(
-    case: str, tension: float, points: int, solver: str, threads: int, cutoff: float | None
-) -> dict[str, Any]:
-    arguments = {
-        "--cases": case,
-        "--tension": tension,
-        "--points": points,
-        "--solvers": solver,
-        "--threads": threads,
-    }
-    if cutoff:
-        arguments["--cutoff"] = cutoff
-    words = [str(word) for pair in arguments.items() for word in pair]
-    done = subprocess.run(
-        [sys.executable, __file__, "--one", *words],
-        env=os.environ | dict.fromkeys(THREAD_VARIABLES, str(threads)),
-        stdout=subprocess.PIPE,
-        text=True,
-        check=True,
-    )
-    return json.loads(done.stdout)  # type: ignore[no-any-return]
 
 
 if __name__ == "__main__":

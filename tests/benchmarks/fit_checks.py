@@ -6,30 +6,21 @@ A claim is *silent* if no check of the curve fails.  Run it:
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from fit_rivals import pink_noise
-from numpy.typing import NDArray
+from fit_rivals import BEFORE, DEPTH, NOISE, POINTS, RADIUS, Array, pink_noise, shape
+from fit_rivals import MODULUS_ as MODULUS
+from tables import curves_of_kinds, print_head, print_row
 
 import pellicle as pl
-from pellicle.components import HasForceCurve
 
-Array = NDArray[np.float64]
-RADIUS, MODULUS = 5e-6, 2e3
-POINTS, BEFORE = 1000, 0.3
-"""Rows, and range before contact over that in it."""
-NOISE = 0.003, 0.01
-"""Least and greatest noise, over the largest force."""
-_DEPTH, _DEEP = 0.08, 0.3
-"""Largest depth over R, of all curves and of those too deep for a paraboloid."""
+_DEEP = 0.3
+"""Largest depth over R of curves too deep for a paraboloid."""
 _SHARE, _DIP = 0.15, 0.01
 """By how much a solid softens or relaxes; adhesion, over the largest force."""
-_DEFAULT = 50, 7
 
 
 @dataclass(frozen=True)
@@ -40,7 +31,7 @@ class Kind:
     """Force without noise over Hertz at the largest depth, of depths over the largest."""
     leaves_mark: bool = True
     """Whether the curve itself shows that the model is wrong."""
-    depth: float = _DEPTH
+    depth: float = DEPTH
     """Largest depth over R."""
     baseline: str = "none"
     colour: Callable[[np.random.Generator], Array] | None = None
@@ -88,16 +79,9 @@ def _adhesion(depth: Array, _: np.random.Generator) -> Array:
     return np.where(depth > 0, np.interp(shifted, pressed[pushes:], force[pushes:]), 0.0)
 
 
-@cache
-def _shape(type_: str) -> HasForceCurve:
-    indenter = pl.indenter(type_, radius=RADIUS)
-    assert isinstance(indenter, HasForceCurve)
-    return indenter
-
-
 def _ball(depth: Array, _: np.random.Generator) -> Array:
-    largest = _shape("paraboloid").force_curve(np.array([_DEEP * RADIUS]), 0.0).force[0]
-    return np.asarray(_shape("sphere").force_curve(depth * _DEEP * RADIUS, 0.0).force / largest)
+    largest = shape("paraboloid").force_curve(np.array([_DEEP * RADIUS]), 0.0).force[0]
+    return np.asarray(shape("sphere").force_curve(depth * _DEEP * RADIUS, 0.0).force / largest)
 
 
 def _deflection(depth: Array, _: np.random.Generator) -> Array:
@@ -117,7 +101,7 @@ def _clean(depth: Array, _: np.random.Generator) -> Array:
 
 def _tensed(depth: Array, random: np.random.Generator) -> Array:
     length = np.exp(random.uniform(np.log(0.03), np.log(1.0))) * RADIUS
-    curve = _shape("paraboloid").force_curve(depth * _DEPTH * RADIUS, length).force
+    curve = shape("paraboloid").force_curve(depth * DEPTH * RADIUS, length).force
     force: Array = curve / curve[-1]
     return force
 
@@ -180,13 +164,12 @@ def outcomes(kind: Kind, curves: int, seed: int) -> Iterator[Outcome]:
 
 def main() -> None:
     """Print a row of a table for each kind."""
-    given = [int(text) for text in sys.argv[1:]]
-    curves, seed = [*given, *_DEFAULT[len(given) :]]
-    print(f"{curves} curves each | claimed | silent | flagged | checks that fail")
-    print("--- | --- | --- | --- | ---")
-    for name, kind in (RIVALS | CONTROLS).items():
-        results = list(outcomes(kind, curves, seed))
-        claimed, silent, flagged = (
+    kinds = RIVALS | CONTROLS
+    curves, seed, names = curves_of_kinds(__doc__, list(kinds), 50, 7)
+    print_head(f"{curves} curves each", "claimed", "silent", "flagged", "checks that fail")
+    for name in names:
+        results = list(outcomes(kinds[name], curves, seed))
+        shares = (
             100 * sum(values) / curves
             for values in (
                 [outcome.claims for outcome in results],
@@ -195,10 +178,7 @@ def main() -> None:
             )
         )
         codes = sorted({code for outcome in results for code in outcome.failed})
-        print(
-            f"{name} | {claimed:.0f} % | {silent:.0f} % | {flagged:.0f} % | {', '.join(codes)}",
-            flush=True,
-        )
+        print_row(name, *(f"{share:.0f} %" for share in shares), ", ".join(codes))
 
 
 if __name__ == "__main__":

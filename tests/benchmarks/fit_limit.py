@@ -15,9 +15,10 @@ from typing import Any, NamedTuple
 
 import fit_rivals
 import numpy as np
-from fit_rivals import DEPTH, MARGINS, MODULUS_, RADIUS, Array, path
+from fit_rivals import DEPTH, MODULUS_, RADIUS, Array, path
 from matplotlib.figure import Figure
 from scipy.special import ndtr, ndtri
+from tables import print_head, print_row
 
 from pellicle.plotting import save_figure
 from pellicle_fit.models.force_model import tension_model
@@ -36,6 +37,8 @@ from pellicle_fit.statistics.rivals import MARGIN, rivals
 NOISES = 0.003, 0.0055, 0.01
 ERRORS = 3.0, 5.0, 5.0 * np.sqrt(2), 9.0
 """Tensions, in standard errors of all rows.  The third is 5 of one approach."""
+MARGINS = 3.0, 4.0, 5.0, 6.0
+"""Differences of AIC at which claims are counted."""
 CONTACT = 1e-6
 FALSE = 0.03
 """Share of false claims that is allowed."""
@@ -78,14 +81,14 @@ def case(
     """Return the separation of a tension from its rivals, and Δχ² with noise."""
     ratio = errors / 5 * fit_rivals.five_errors(protocol, noise)
     rows = path("both" if protocol == "both" else "approach")
-    force = fit_rivals._tensed_at(ratio).force(rows) * MODULUS_ * fit_rivals._scale(DEPTH)
+    force = fit_rivals.tensed_at(ratio).force(rows) * MODULUS_ * fit_rivals.hertz_scale(DEPTH)
     deviation = noise * float(force.max())
     # Two speeds of an elastic solid are two equal curves.
     repeated = np.sqrt(2) if protocol == "speeds" else 1.0
     curve = Likelihood(
         rows.depth * DEPTH * RADIUS + CONTACT,
         force,
-        tension_model(fit_rivals._shape("paraboloid")),
+        tension_model(fit_rivals.shape("paraboloid")),
         deviation / repeated,
         (CONTACT_POINT, MODULUS, TENSION),
         time=rows.time + 1.0,
@@ -169,19 +172,15 @@ def main() -> None:
         for noise in NOISES
         for errors in (ERRORS if noise == NOISES[1] else (5.0,))
     ]
-    print(
-        "curves | noise | standard errors | nearest | w [J/m²] | pull-off/noise | Δχ² | most | "
-        + " | ".join(f"needed (false) at {margin:g}" for margin in MARGINS)
+    print_head(
+        *("curves", "noise", "standard errors", "nearest", "w [J/m²]", "pull-off/noise", "Δχ²"),
+        *("most", *(f"needed (false) at {margin:g}" for margin in MARGINS)),
     )
-    print("--- | " * (7 + len(MARGINS)) + "---")
     for c in cases:
-        print(
-            f"{c.protocol} | {100 * c.noise:.2g} % | {c.errors:.2g} | {c.rival} | {c.work:.2g} | "
-            f"{c.pull_off:.2g} | {c.separation:.1f} | {100 * c.most:.0f} % | "
-            + " | ".join(
-                f"{100 * c.needed(margin):.0f} % ({100 * c.false(margin):.1f} %)"
-                for margin in MARGINS
-            )
+        print_row(
+            *(c.protocol, f"{100 * c.noise:.2g} %", f"{c.errors:.2g}", c.rival, f"{c.work:.2g}"),
+            *(f"{c.pull_off:.2g}", f"{c.separation:.1f}", f"{100 * c.most:.0f} %"),
+            *(f"{100 * c.needed(m):.0f} % ({100 * c.false(m):.1f} %)" for m in MARGINS),
         )
     if options.figure is not None:
         stem, ending = options.figure.with_suffix(""), options.figure.suffix[1:]

@@ -3,8 +3,7 @@
 Retractions that adhere come from the closed theory, at 60 to 2000 points, and are fitted by the
 search of the comparison of rivals.  Power-law curves come from the model that is fitted, so that
 they test search, verdict and intervals; those at two speeds are pooled.  Run it:
-``python tests/benchmarks/fit_pairs.py [curves [seed [names of kinds]]]``; with ``--keep FILE``
-each score is appended to a file, and those that it has are not repeated.
+``python tests/benchmarks/fit_pairs.py [curves [seed [names of kinds]]]``.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from typing import Any
 import fit_rivals
 import numpy as np
 from fit_rivals import DEPTH, MODULUS_, NOISE, RADIUS, Sample, Truth, path
-from kept_outcomes import outcomes_of
+from tables import curves_of_kinds, print_head, print_row
 
 from pellicle_fit.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
 from pellicle_fit.models.force_model import ClosedFormModel
@@ -64,7 +63,7 @@ def retraction(random: np.random.Generator) -> tuple[Likelihood, Likelihood, Coo
     points = int(np.exp(random.uniform(np.log(60), np.log(2000))))
     ratio = float(np.exp(random.uniform(np.log(0.03), np.log(1.0))))
     tension = ratio * RADIUS * MODULUS_ / 2
-    top = MODULUS_ * fit_rivals._scale(DEPTH)
+    top = MODULUS_ * fit_rivals.hertz_scale(DEPTH)
     work = random.uniform(0.02, 0.1) * top / (1.5 * np.pi * RADIUS)
     theory = Adhesion(BEAD, MODULUS_, tension, work)
     end = theory.instability(np.inf)
@@ -203,27 +202,27 @@ def _rows_of(curve: Likelihood) -> fit_rivals.Curve:
 
 def main() -> None:
     """Print a row of a table for each kind and parameter."""
-    _, results = outcomes_of(__doc__, KINDS, 200, score_of)
-    print("kind | parameter | curves | rms error over the bound | interval holds")
-    print("--- | --- | --- | --- | ---")
-    for name, values in results.items():
+    curves, seed, kinds = curves_of_kinds(__doc__, KINDS, 200, 7)
+    print_head("kind", "parameter", "curves", "rms error over the bound", "interval holds")
+    for name in kinds:
+        values = [score_of(name, number, seed) for number in range(curves)]
         for verdict, count in Counter(v["verdict"] for v in values if "verdict" in v).items():
-            print(f"{name} | {verdict} | {len(values)} | | {count}")
+            print_row(name, verdict, len(values), "", count)
         if name == "one speed":
             claimed = [value["tension"] for value in values if value["verdict"] == "needed"]
             for parameter, flags in (
                 ("modulus over tied models", [value["modulus"] for value in values]),
                 ("tension over tied models", claimed),
             ):
-                print(f"{name} | {parameter} | {len(flags)} | | {sum(flags)} held")
+                print_row(name, parameter, len(flags), "", f"{sum(flags)} held")
             continue
         for parameter in dict.fromkeys(
             key for value in values for key in value if key not in ("points", "verdict")
         ):
-            scores = [value[parameter] for value in values if parameter in value]
-            errors, held = zip(*scores, strict=True)
+            errors, held = zip(*(v[parameter] for v in values if parameter in v), strict=True)
             rms = float(np.sqrt(np.mean(np.square(errors))))
-            print(f"{name} | {parameter} | {len(scores)} | {rms:.3f} | {100 * np.mean(held):.1f} %")
+            share = f"{100 * np.mean(held):.1f} %"
+            print_row(name, parameter, len(errors), f"{rms:.3f}", share)
 
 
 if __name__ == "__main__":

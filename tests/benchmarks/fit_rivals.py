@@ -4,7 +4,6 @@ A curve is its approach alone if its kind does not say otherwise; where the answ
 tell, the measurement that it names is added.  Forces come from closed forms: the power law by an
 incomplete beta function, adhesion and the layer by the integral equation.
 Run it: ``python tests/benchmarks/fit_rivals.py [curves of each kind [seed [names of kinds]]]``.
-With ``--keep FILE`` each outcome is appended to a file, and those that it has are not repeated.
 """
 
 from __future__ import annotations
@@ -18,9 +17,9 @@ from time import process_time
 from typing import Any, NamedTuple
 
 import numpy as np
-from kept_outcomes import outcomes_of
 from numpy.typing import NDArray
 from scipy.special import beta, betainc
+from tables import curves_of_kinds, print_head, print_row
 
 import pellicle as pl
 from pellicle.components import HasForceCurve, HasLayerForceCurve
@@ -31,7 +30,6 @@ from pellicle_fit.models.force_model import tension_model
 from pellicle_fit.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from pellicle_fit.pooled import pool_sources
 from pellicle_fit.statistics.likelihood import Likelihood
-from pellicle_fit.verdict import decision
 from pellicle_plugins.analytic.adhesion import Adhesion
 
 Array = NDArray[np.float64]
@@ -44,8 +42,6 @@ NOISE = 0.003, 0.01
 """Least and greatest noise, over the largest force."""
 DEPTH = 0.08
 """Largest depth over R."""
-MARGINS = 3.0, 4.0, 5.0, 6.0
-"""Differences of AIC at which claims are counted."""
 
 
 class Path(NamedTuple):
@@ -116,23 +112,26 @@ def _clean(random: np.random.Generator) -> Truth:
     return Truth(_hertz, ("none",))
 
 
-def _tensed_at(ratio: float) -> Truth:
+def tensed_at(ratio: float) -> Truth:
+    """Return a solid under the tension at which s/R is a ratio."""
+
     def force(path: Path) -> Array:
-        shape = _shape("paraboloid", path.radius)
-        curve = shape.force_curve(path.depth * DEPTH * RADIUS, ratio * RADIUS)
-        return curve.force / _scale(DEPTH)
+        curve = shape("paraboloid", path.radius).force_curve(
+            path.depth * DEPTH * RADIUS, ratio * RADIUS
+        )
+        return curve.force / hertz_scale(DEPTH)
 
     return Truth(force, ("tension",), tension=ratio)
 
 
 def _tensed(random: np.random.Generator) -> Truth:
-    return _tensed_at(float(np.exp(random.uniform(np.log(0.03), np.log(1.0)))))
+    return tensed_at(float(np.exp(random.uniform(np.log(0.03), np.log(1.0)))))
 
 
 def _five_errors(protocol: str) -> Callable[[np.random.Generator], Truth]:
     def truth(random: np.random.Generator) -> Truth:
         noise = random.uniform(*NOISE)
-        return _tensed_at(five_errors(protocol, noise))._replace(noise=noise)
+        return tensed_at(five_errors(protocol, noise))._replace(noise=noise)
 
     return truth
 
@@ -145,14 +144,14 @@ def five_errors(protocol: str, noise: float) -> float:
     gain = np.sqrt(2) if protocol == "speeds" else 1.0
     for _ in range(20):
         ratio = float(np.sqrt(low * high))
-        truth = _tensed_at(ratio)
+        truth = tensed_at(ratio)
         depth = rows.depth * DEPTH * RADIUS
-        scale = MODULUS_ * _scale(DEPTH)
+        scale = MODULUS_ * hertz_scale(DEPTH)
         tension = ratio * RADIUS * MODULUS_ / 2
         curve = Likelihood(
             depth,
             truth.force(rows) * scale,
-            tension_model(_shape("paraboloid")),
+            tension_model(shape("paraboloid")),
             noise * scale * float(truth.force(rows).max()),
             (CONTACT_POINT, MODULUS, TENSION),
             segment="both" if protocol == "both" else "approach",
@@ -169,7 +168,7 @@ def five_errors(protocol: str, noise: float) -> float:
     return ratio
 
 
-def _scale(depth: float) -> float:
+def hertz_scale(depth: float) -> float:
     """Return the force over E* of Hertz at a depth over R [m²]."""
     return 4 / 3 * float(np.sqrt(RADIUS) * (depth * RADIUS) ** 1.5)
 
@@ -250,10 +249,10 @@ def _layer(random: np.random.Generator) -> Truth:
     thickness = random.uniform(3.0, 10.0) * float(np.sqrt(DEPTH)) * RADIUS
 
     def force(path: Path) -> Array:
-        shape = _shape("paraboloid", path.radius)
-        assert isinstance(shape, HasLayerForceCurve)
+        body = shape("paraboloid", path.radius)
+        assert isinstance(body, HasLayerForceCurve)
         depth = path.depth * DEPTH * RADIUS
-        return shape.layer_force_curve(depth, 0.0, thickness, 0.5).force / _scale(DEPTH)
+        return body.layer_force_curve(depth, 0.0, thickness, 0.5).force / hertz_scale(DEPTH)
 
     return Truth(force, ("thickness",))
 
@@ -262,8 +261,8 @@ def _ball(random: np.random.Generator) -> Truth:
     deepest = random.uniform(0.2, 0.8)
 
     def force(path: Path) -> Array:
-        curve = _shape("sphere", path.radius).force_curve(path.depth * deepest * RADIUS, 0.0)
-        return curve.force / _scale(deepest)
+        curve = shape("sphere", path.radius).force_curve(path.depth * deepest * RADIUS, 0.0)
+        return curve.force / hertz_scale(deepest)
 
     return Truth(force, ("sphere",), depth=deepest)
 
@@ -276,12 +275,12 @@ def _adhesion(tensed: bool) -> Callable[[np.random.Generator], Truth]:
     def truth(random: np.random.Generator) -> Truth:
         share = random.uniform(0.02, 0.1)
         ratio = float(np.exp(random.uniform(np.log(0.03), np.log(1.0)))) if tensed else 0.0
-        top = MODULUS_ * _scale(DEPTH)
+        top = MODULUS_ * hertz_scale(DEPTH)
         tension = ratio * RADIUS * MODULUS_ / 2
         work = share * top / (1.5 * np.pi * RADIUS)
 
         def force(path: Path) -> Array:
-            indenter: Any = _shape("paraboloid", path.radius)
+            indenter: Any = shape("paraboloid", path.radius)
             theory = Adhesion(indenter, MODULUS_, tension, work)
             end = theory.instability(np.inf)
             branch = theory.equilibrium(np.geomspace(float(end.contact_radius), RADIUS, 3000))
@@ -295,7 +294,7 @@ def _adhesion(tensed: bool) -> Callable[[np.random.Generator], Truth]:
 
 
 @cache
-def _shape(type_: str, radius: float = 1.0) -> HasForceCurve:
+def shape(type_: str, radius: float = 1.0) -> HasForceCurve:
     """Return a shape of a radius over the first."""
     indenter = pl.indenter(type_, radius=radius * RADIUS)
     assert isinstance(indenter, HasForceCurve)
@@ -371,7 +370,7 @@ class Sample:
             else self.random.standard_normal(size)
         )
         deepest = self.truth.depth * RADIUS
-        scale = MODULUS_ * _scale(self.truth.depth)
+        scale = MODULUS_ * hertz_scale(self.truth.depth)
         return Curve(
             rows.depth * deepest + 1e-6,
             scale * (force + self.noise * top * noise),
@@ -394,24 +393,6 @@ def fitted(sample: Sample, curve: Curve, segment: str = "approach", **options: A
     )
 
 
-class Answer(NamedTuple):
-    """What a fit makes of the rivals: enough to judge them anew at another margin."""
-
-    verdict: str
-    aic: dict[str, float]
-    """Akaike's criterion of each rival over the least, by its name."""
-    failed: tuple[str, ...]
-    """Checks that the best rival fails."""
-    correlated: bool
-    """Whether the noise of a curve is correlated."""
-
-    def claims(self, margin: float) -> bool:
-        """Return whether a tension is needed at a margin of AIC."""
-        if not self.aic:
-            return False
-        return decision(self.aic, doubted=bool(self.failed), margin=margin).verdict == "needed"
-
-
 class Outcome(NamedTuple):
     """What the fit of a curve says, and that with the measurement that it names."""
 
@@ -428,8 +409,6 @@ class Outcome(NamedTuple):
     decided: bool
     """Whether the interval is that of one model, not of several that are tied."""
     seconds: float
-    answers: tuple[Answer, ...]
-    """Of the first fit, and of that with the measurement."""
 
     def settled(self, needed: bool) -> bool:
         """Return whether the verdict with the measurement is the right one."""
@@ -470,27 +449,12 @@ def outcome(sample: Sample, protocol: str = "approach", *, follow: bool = True) 
     tied = tuple(tie.rival.code for tie in rivals.tied) if rivals is not None else ("none",)
     covers = holds(modulus_of(fit))
     named = rivals.advice if rivals is not None else ""
-    second, answers = "", [answer_of(fit)]
+    second = ""
     if follow and verdict == "undecided" and named and (more := followed(sample, curves, named)):
-        answers.append(answer_of(more))
-        second = answers[1].verdict
+        second = verdict_of(more)
     right = verdict == "not shown" or any(code in tied for code in sample.truth.codes)
     decided = rivals is None or rivals.modulus is None
-    return Outcome(verdict, named, tied, second, right, covers, decided, seconds, tuple(answers))
-
-
-def answer_of(fit: pl.Fit | pl.PooledFit) -> Answer:
-    """Return what a fit makes of the rivals."""
-    rivals = fit.rivals
-    if rivals is None:
-        return Answer("not shown", {}, (), "slow_noise" in {c.code for c in fit.failed_checks})
-    failed = rivals.failed_checks
-    return Answer(
-        rivals.verdict,
-        {rival.rival.code: rival.aic for rival in rivals.fits},
-        tuple(check.code for check in failed if check.of_model),
-        "slow_noise" in {check.code for check in failed},
-    )
+    return Outcome(verdict, named, tied, second, right, covers, decided, seconds)
 
 
 def modulus_of(fit: pl.Fit | pl.PooledFit) -> pl.Estimate:
@@ -551,8 +515,8 @@ def pooled(sample: Sample, curves: Sequence[Curve], **options: Any) -> pl.Pooled
     return pool_sources(config, sources, progress=False)
 
 
-def row(name: str, results: Sequence[Outcome]) -> str:
-    """Return the row of a kind."""
+def print_outcomes(name: str, results: Sequence[Outcome]) -> None:
+    """Print the row of a kind."""
     needed = "tension" in KINDS[name](np.random.default_rng(0)).codes[0]
     columns = [
         Counter(result.verdict for result in results),
@@ -571,24 +535,18 @@ def row(name: str, results: Sequence[Outcome]) -> str:
     cells += [f"{share:.0f} %" for share in shares]
     cells += [f"{sum(decided)} of {len(decided)}"]
     cells += [f"{sum(r.covers for r in results if not r.decided)} of {len(results) - len(decided)}"]
-    answers = [Answer(*result.answers[0]) for result in results]
-    cells += [" ".join(str(sum(a.claims(margin) for a in answers)) for margin in MARGINS)]
-    cells += [f"{np.median([result.seconds for result in results]):.2f}"]
-    return f"{name} | {' | '.join(cells)}"
+    print_row(name, *cells, f"{np.median([result.seconds for result in results]):.2f}")
 
 
 def main() -> None:
     """Print a row of a table for each kind."""
-    curves, results = outcomes_of(
-        __doc__, list(KINDS), 20, lambda *curve: outcome_of(*curve)._asdict()
+    curves, seed, kinds = curves_of_kinds(__doc__, list(KINDS), 20, 7)
+    print_head(
+        *(f"{curves} curves each", "first answer", "with the measurement named", "named", "false"),
+        *("settled", "right", "E* of one model holds", "E* over tied models holds", "CPU s"),
     )
-    heads = ["first answer", "with the measurement named", "named", "false", "settled", "right"]
-    heads += ["E* of one model holds", "E* over tied models holds"]
-    heads += [f"needed at a margin of {', '.join(f'{margin:g}' for margin in MARGINS)}", "CPU s"]
-    print(f"{curves} curves each | {' | '.join(heads)}")
-    print("--- | " * len(heads) + "---")
-    for name, values in results.items():
-        print(row(name, [Outcome(**value) for value in values]), flush=True)
+    for name in kinds:
+        print_outcomes(name, list(outcomes(name, curves, seed)))
 
 
 if __name__ == "__main__":

@@ -8,7 +8,6 @@ first may be called needed.  Run it:
 
 from __future__ import annotations
 
-import sys
 import warnings
 from collections import Counter
 from collections.abc import Callable
@@ -16,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from tables import curves_of_kinds
 
 import pellicle as pl
 
@@ -141,11 +141,8 @@ def fitted(curve: Curve, **options: Any) -> pl.Fit:
 
 def main() -> None:
     """Print the verdicts on the curves of each kind."""
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 12
-    seed = int(sys.argv[2]) if len(sys.argv) > 2 else 1
-    for name in KINDS:
-        if len(sys.argv) > 3 and name not in sys.argv[3:]:
-            continue
+    count, seed, kinds = curves_of_kinds(__doc__, list(KINDS), 12, 1)
+    for name in kinds:
         verdicts: Counter[str] = Counter()
         for index in range(count):
             fit = fitted(curve_of(name, seed, index))

@@ -12,7 +12,10 @@ from __future__ import annotations
 
 import argparse
 import warnings
+from itertools import product
 from typing import Any
+
+from tables import print_head, print_row
 
 import pellicle as pl
 
@@ -121,17 +124,18 @@ def main() -> None:
     parser.add_argument("--points", type=int, nargs="+", default=[64, 128, 256, 512])
     options = parser.parse_args()
     warnings.simplefilter("ignore", pl.ConvergenceWarning)
-    heads = [f"{case}, N = {points}" for case in options.cases for points in options.points]
-    print(f"| kernel | {' | '.join(heads)} |")
-    print("|" + " --- |" * (len(heads) + 1))
+    columns = list(product(options.cases, options.points))
+    print_head("kernel", *(f"{case}, N = {points}" for case, points in columns))
     for name, kernel in KERNELS.items():
-        steps = [solve(case, kernel, points) for case in options.cases for points in options.points]
-        cells = [
-            str(step["operator_applications"].item())
-            + ("" if step["converged"] else " not converged")
-            for step in steps
-        ]
-        print(f"| {name} | {' | '.join(cells)} |", flush=True)
+        steps = [solve(case, kernel, points) for case, points in columns]
+        print_row(
+            name,
+            *(
+                f"{step['operator_applications'].item()}"
+                f"{'' if step['converged'] else ' not converged'}"
+                for step in steps
+            ),
+        )
 
 
 if __name__ == "__main__":

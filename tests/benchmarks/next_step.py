@@ -11,7 +11,6 @@ that of the cold solves, first step included, as processor time of one thread, i
 
 from __future__ import annotations
 
-import argparse
 import time
 from dataclasses import replace
 from itertools import product
@@ -19,6 +18,7 @@ from itertools import product
 import cost
 import numpy as np
 import scipy.fft
+from tables import print_head, print_row
 
 import pellicle as pl
 from pellicle.numerics.initial_guess import with_force
@@ -61,15 +61,14 @@ def with_known_contact(problem: Problem, tolerance: float, start: Array, answer:
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--cases", nargs="+", default=["rough", "punch", "smooth"])
-    parser.add_argument("--points", type=int, nargs="+", default=[512])
-    parser.add_argument("--tension", type=float, nargs="+", default=[0.0, 0.02, 1.0])
+    parser = cost.case_options(__doc__, [512], [0.0, 0.02, 1.0])
+    parser.set_defaults(cases=["rough", "punch", "smooth"])
     parser.add_argument("--steps", type=float, nargs="+", default=[0.02])
     parser.add_argument("--number", type=int, default=30)
     options = parser.parse_args()
-    print("| case | s/L | N | step | cold | one state | two states | contact known | time |")
-    print("|" + " --- |" * 9)
+    print_head(
+        *("case", "s/L", "N", "step", "cold", "one state", "two states", "contact known", "time")
+    )
     for case, tension, points, step in product(
         options.cases, options.tension, options.points, options.steps
     ):
@@ -89,13 +88,11 @@ def main() -> None:
                     known += with_known_contact(problem, tolerance, last.pressure, pressure)
                 equilibrium = measure(problem, pressure)
                 path = [*path[-1:], PathPoint(equilibrium.state, equilibrium.gap)]
-        mean = " | ".join(f"{value / options.number:.1f}" for value in sums)
-        known_mean = known / max(1, options.number - 1)
-        ratio = times[2] / times[0]
-        print(
-            f"| {case} | {tension:g} | {points} | {step:.0%} | {mean} | {known_mean:.1f} "
-            f"| {ratio:.2f} |",
-            flush=True,
+        print_row(
+            *(case, f"{tension:g}", points, f"{step:.0%}"),
+            *(f"{value / options.number:.1f}" for value in sums),
+            f"{known / max(1, options.number - 1):.1f}",
+            f"{times[2] / times[0]:.2f}",
         )
 
 

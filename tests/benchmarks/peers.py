@@ -21,11 +21,8 @@ and without threads; a tamaas built against a SIMD FFTW is faster.
 from __future__ import annotations
 
 import argparse
-import json
-import os
 import re
 import subprocess
-import sys
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
@@ -35,13 +32,19 @@ from importlib.util import find_spec
 from itertools import product
 from typing import Any
 
-THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+import numpy as np
+import scipy.fft
+from tables import in_process, print_head, print_row
+
+import pellicle as pl
+from pellicle.operators import make_operator
+from pellicle.problem import Problem
+from pellicle.problem import measure as judge
+
 RMS_HEIGHT = 0.01  # in L; the edge L and the reduced modulus E* are 1
 LOAD = 0.1  # mean pressure over E* × rms slope
 WARM_UP = 64  # N of the problem solved before the clock runs
 RESIDUALS = ("complementarity", "contact", "penetration")
-ROW = "{:27}{:>12} {:9}{:>5}{:>6}{:>8}{:>11}{:>13}{:>9}{:>16}{:>9}{:>12}{:>7}"
-HEADER = ("code", "version", "boundary", "N", "s/L", "threads", "iterations", "applications")
 FOOTER = """
 complementarity: Σ p|gap| / (Σ p × height range in contact); contact: max |gap| in contact and
 penetration: max −gap outside, over the same range; all by a fresh application of pellicle's
@@ -66,13 +69,6 @@ class Case:
     @cached_property
     def problem(self) -> Any:
         """What pellicle solves, and what every pressure is measured against."""
-        import numpy as np
-        import scipy.fft
-
-        import pellicle as pl
-        from pellicle.operators import make_operator
-        from pellicle.problem import Problem
-
         grid = pl.Grid(points=self.points, size=1.0, boundary=self.boundary)
         spectrum = {"hurst": 0.8, "cutoff_wavelength": self.cutoff / self.points}
         indenter = pl.indenter("self_affine", rms_height=RMS_HEIGHT, seed=1, **spectrum)
@@ -104,11 +100,6 @@ class Code:
 
 def pellicle(solver: str, case: Case, tolerance: float) -> Answer:
     """Solve with a solver of pellicle."""
-    import pellicle as pl
-    from pellicle.operators import make_operator
-
-    if solver not in pl.registry().components["solver"]:
-        raise UnsolvedError("not registered")
     operator = make_operator(case.problem.operator.kernel, case.problem.grid)
     method = pl.solver(solver, tolerance=tolerance)
     outcome = method.solve(replace(case.problem, operator=operator), None, lambda *progress: None)
@@ -117,7 +108,6 @@ def pellicle(solver: str, case: Case, tolerance: float) -> Answer:
 
 def tamaas(case: Case, tolerance: float) -> Answer:
     """Solve with PolonskyKeerRey."""
-    import numpy as np
     import tamaas as tm
 
     tm.initialize(case.threads)
@@ -189,12 +179,17 @@ def code_of(name: str) -> Code:
     return PEERS.get(name) or Code("pellicle", solve, 8e-6, "pellicle", True)
 
 
-def measure(code: Code, case: Case, repeats: int, target: float) -> dict[str, Any]:
+def measure(name: str, given: dict[str, Any], repeats: int, target: float) -> dict[str, Any]:
+    """Return what one code takes and reaches in this process, or why there is nothing."""
+    code, case = code_of(name), Case(**given)
+    try:
+        return measured(code, case, repeats, target)
+    except UnsolvedError as error:
+        return {"note": str(error)}
+
+
+def measured(code: Code, case: Case, repeats: int, target: float) -> dict[str, Any]:
     """Return seconds, iterations and residuals of one code in this process."""
-    import scipy.fft
-
-    from pellicle.problem import measure as judge
-
     seconds: list[float] = []
     tolerance = code.tolerance
     with scipy.fft.set_workers(case.threads):
@@ -226,35 +221,31 @@ def row(name: str, case: Case, options: argparse.Namespace) -> dict[str, Any]:
         return {"note": f"not installed: {code.before}python -m pip install {code.requirement}"}
     if case.threads > 1 and not code.has_threads:
         return {"note": "has no threads: see one"}
-    command = [sys.executable, __file__, "--one", name, json.dumps(asdict(case))]
-    command += [f"--repeats={options.repeats}", f"--target={options.target}"]
-    environment = os.environ | dict.fromkeys(THREAD_VARIABLES, str(case.threads))
-    how = {"env": environment, "capture_output": True, "text": True, "timeout": options.limit}
+    given = name, asdict(case), options.repeats, options.target
+    outcome: dict[str, Any]
     try:
-        done = subprocess.run(command, **how)
+        outcome, log = in_process(measure, *given, threads=case.threads, timeout=options.limit)
     except subprocess.TimeoutExpired:
         return {"note": f"not done after {options.limit:g} s"}
-    if done.returncode:
-        return {"note": f"failed: {(done.stderr.strip() or str(done.returncode)).splitlines()[-1]}"}
-    outcome: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
-    if logged := re.findall(r"^ *(\d+)(?: +\S+e[-+]\d+){2}$", done.stderr, re.MULTILINE):
+    except RuntimeError as error:
+        return {"note": f"failed: {str(error).strip().splitlines()[-1]}"}
+    if logged := re.findall(r"^ *(\d+)(?: +\S+e[-+]\d+){2}$", log, re.MULTILINE):
         outcome["iterations"] = int(logged[-1])  # only the log of tamaas says them
     return outcome
 
 
-def line(name: str, case: Case, outcome: dict[str, Any], reference: float | None) -> str:
-    """Return a row of the table; its ratio is that to ``reference`` [s]."""
+def print_outcome(name: str, case: Case, outcome: dict[str, Any], reference: float | None) -> None:
+    """Print a row of the table; its ratio is that to ``reference`` [s]."""
     start = (name, outcome.get("version", ""), case.boundary, case.points, case.skin_length)
     if "note" in outcome:
-        return f"{ROW.format(*start, case.threads, *[''] * 7).rstrip()}  {outcome['note']}"
-    counts = (
-        outcome["iterations"] or "–",
-        outcome["applications"] or "–",
+        print_row(*start, case.threads, *[""] * 6, outcome["note"])
+        return
+    print_row(
+        *(*start, case.threads, outcome["iterations"] or "–", outcome["applications"] or "–"),
         f"{outcome['seconds']:.2f}",
+        *(f"{outcome[name]:.1e}" for name in RESIDUALS),
+        f"{outcome['seconds'] / reference:.2f}" if reference else "–",
     )
-    ratio = f"{outcome['seconds'] / reference:.2f}" if reference else "–"
-    residuals = (f"{outcome[name]:.1e}" for name in RESIDUALS)
-    return ROW.format(*start, case.threads, *counts, *residuals, ratio)
 
 
 def command_line() -> argparse.Namespace:
@@ -271,22 +262,16 @@ def command_line() -> argparse.Namespace:
     add("--repeats", type=int, default=3, help="solves per row; their median counts")
     add("--target", type=float, default=1e-6, help="complementarity residual to reach")
     add("--limit", type=float, default=1800.0, help="seconds after which a row is given up")
-    add("--one", nargs=2, help=argparse.SUPPRESS)
     return parser.parse_args()
 
 
 def main() -> None:
     """Measure every case in a process of its own and print the table."""
     options = command_line()
-    if options.one:
-        name, case = options.one[0], Case(**json.loads(options.one[1]))
-        try:
-            outcome = measure(code_of(name), case, options.repeats, options.target)
-        except UnsolvedError as error:
-            outcome = {"note": str(error)}
-        print(json.dumps(outcome))
-        return
-    print(ROW.format(*HEADER, "seconds", *RESIDUALS, "ratio"))
+    print_head(
+        *("code", "version", "boundary", "N", "s/L", "threads", "iterations", "applications"),
+        *("seconds", *RESIDUALS, "ratio"),
+    )
     surfaces = [("periodic", *choice) for choice in product(options.points, options.skin_length)]
     surfaces += [("free", points, 0.0) for points in options.free]
     names = [*(f"pellicle {solver}" for solver in options.solvers), *options.peers]
@@ -297,7 +282,7 @@ def main() -> None:
             outcome = row(name, case, options)
             if name.startswith("pellicle "):
                 reference = reference or outcome.get("seconds")
-            print(line(name, case, outcome, reference), flush=True)
+            print_outcome(name, case, outcome, reference)
     print(FOOTER)
 
 

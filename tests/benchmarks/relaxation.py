@@ -24,6 +24,7 @@ from typing import Any
 
 import numpy as np
 from scipy.special import beta
+from tables import print_head, print_row
 
 import pellicle as pl
 
@@ -74,14 +75,12 @@ def triangle(exponent: float, points: int, number: int, power: float) -> tuple[f
 
 def print_triangles(grids: list[tuple[int, int]], powers: list[float]) -> None:
     """Print the table of Lee & Radok and of Ting."""
-    print("| α | N | n | p | force, largest | force, own | lost | applications per step |")
-    print("|" + " --- |" * 8)
+    print_head("α", "N", "n", "p", "force, largest", "force, own", "lost", "applications per step")
     for exponent, power, (points, number) in product((0.1, 0.2, 0.3), powers, grids):
         largest, own, lost, applications = triangle(exponent, points, number, power)
-        print(
-            f"| {exponent} | {points} | {number} | {power:g} | {largest:.1e} | {own:.2%} "
-            f"| {lost:+.1e} | {applications:.1f} |",
-            flush=True,
+        print_row(
+            *(exponent, points, number, f"{power:g}", f"{largest:.1e}", f"{own:.2%}"),
+            *(f"{lost:+.1e}", f"{applications:.1f}"),
         )
 
 
@@ -105,31 +104,30 @@ def print_punch() -> None:
     rows = [row for row in csv.DictReader(lines) if float(row["tau0_over_Einf_a"]) == 0.5]
     wanted = np.searchsorted(TIMES, [float(row["t_over_T"]) for row in rows])
     expected = np.array([float(row["P_over_Einf_a_delta"]) for row in rows])
-    print("\n| cells along 8 a | " + " | ".join(f"t = {TIMES[n]:g}" for n in wanted) + " |")
-    print("|" + " --- |" * (1 + len(rows)))
+    print()
+    print_head("cells along 8 a", *(f"t = {TIMES[n]:g}" for n in wanted))
     forces = {str(points): punch(points)[wanted] for points in (62, 112)}
     forces["extrapolated"] = (112 * forces["112"] - 62 * forces["62"]) / (112 - 62)
     for name, force in forces.items():
-        print(f"| {name} | " + " | ".join(f"{e:+.2%}" for e in force / expected - 1) + " |")
+        print_row(name, *(f"{error:+.2%}" for error in force / expected - 1))
 
 
 def print_domains() -> None:
     """Print how far the force at the last times depends on the domain, in cells of a/5."""
-    print("\n| τ₀/(E∞ a) | domain over a | over 2τ₀/E∞ | t = 1 | t = 3 | t = 10 |")
-    print("|" + " --- |" * 6)
+    print()
+    print_head("τ₀/(E∞ a)", "domain over a", "over 2τ₀/E∞", "t = 1", "t = 3", "t = 10")
     late = np.searchsorted(TIMES, [1.0, 3.0, 10.0])
     for tension in (0.125, 0.5, 4 / 3):
         far = punch(160, 32.0, tension)[late]
         for size in (16, 8, 4):
             errors = punch(5 * size, float(size), tension)[late] / far - 1
-            row = " | ".join(f"{e:+.2%}" for e in errors)
-            print(f"| {tension:.3g} | {size} | {size / 2 / tension:.3g} | {row} |", flush=True)
+            shown = (f"{error:+.2%}" for error in errors)
+            print_row(f"{tension:.3g}", size, f"{size / 2 / tension:.3g}", *shown)
 
 
 def print_cost(points: int, steps: int) -> None:
     """Print applications and processor time per equal step, over those of an elastic solid."""
-    print("| skin | solid | applications per step | of these for the memory | seconds |")
-    print("|" + " --- |" * 5)
+    print_head("skin", "solid", "applications per step", "of these for the memory", "seconds")
     depths, times = np.linspace(0, 2e-5, steps + 1)[1:], np.linspace(0, 10, steps)
     relaxing = {"type": "viscoelastic", "solid": half_space(), "relaxation": DECADES}
     for tension in (0.0, 0.02):
@@ -146,10 +144,8 @@ def print_cost(points: int, steps: int) -> None:
             seconds = time.process_time() - started
             used = data["operator_applications"].values.mean()
             memory = 2 * (steps - 1) / steps if tension and name != "elastic" else 0
-            print(
-                f"| {tension:g} N/m | {name} | {used:.1f} | {memory:.1f} | {seconds:.1f} |",
-                flush=True,
-            )
+            shown = (f"{value:.1f}" for value in (used, memory, seconds))
+            print_row(f"{tension:g} N/m", name, *shown)
 
 
 def main() -> None:

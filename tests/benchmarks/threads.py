@@ -12,7 +12,6 @@ The cases are those of cost.py. Run it on an idle machine: the times are those o
 
 from __future__ import annotations
 
-import argparse
 import time
 from collections.abc import Callable
 from itertools import product
@@ -21,6 +20,7 @@ from statistics import median
 import cost
 import numpy as np
 import scipy.fft
+from tables import print_head, print_row
 
 import pellicle as pl
 
@@ -45,8 +45,8 @@ def bare_pair(shape: tuple[int, int], precision: str) -> Callable[[], object]:
     return transform
 
 
-def row(case: str, points: int, tension: float, threads: int, repeats: int) -> str:
-    """Return the row of a case."""
+def row(case: str, points: int, tension: float, threads: int, repeats: int) -> None:
+    """Print the row of a case."""
     problem, tolerance, _ = cost.problem(case, points, tension)
     solver = pl.solver("active_set", tolerance=tolerance)
     pressures = []
@@ -67,31 +67,27 @@ def row(case: str, points: int, tension: float, threads: int, repeats: int) -> s
     one, several = (median(measured) for measured in times[0])
     gains = [median(both[0]) / median(both[1]) for both in times]
     same = all(np.array_equal(pressure, pressures[0]) for pressure in pressures)
-    return (
-        f"| {case} | {tension:g} | {points} | {threads} | {one:.3f} | {several:.3f} "
-        f"| {gains[0]:.2f} | {gains[1]:.2f} | {gains[2]:.2f} "
-        f"| {gains[0] / max(gains[1:]):.2f} | {'same' if same else 'DIFFERENT'} |"
+    print_row(
+        *(case, f"{tension:g}", points, threads, f"{one:.3f}", f"{several:.3f}"),
+        *(f"{gain:.2f}" for gain in (*gains, gains[0] / max(gains[1:]))),
+        "same" if same else "DIFFERENT",
     )
 
 
 def main() -> None:
     """Measure every case and print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--cases", nargs="+", default=["rough", "punch"])
-    parser.add_argument("--points", type=int, nargs="+", default=[256, 512, 1024])
-    parser.add_argument("--tension", type=float, nargs="+", default=[0.0, 0.02])
+    parser = cost.case_options(__doc__, [256, 512, 1024], [0.0, 0.02])
     parser.add_argument("--threads", type=int, nargs="+", default=[2])
     parser.add_argument("--repeats", type=int, default=5)
     options = parser.parse_args()
-    print(
-        "| case | s/L | N | threads | one [s] | several [s] | one ÷ several | pair, single "
-        "| pair, double | gain ÷ pair's | bits |"
+    print_head(
+        *("case", "s/L", "N", "threads", "one [s]", "several [s]", "one ÷ several"),
+        *("pair, single", "pair, double", "gain ÷ pair's", "bits"),
     )
-    print("|" + " --- |" * 11)
     for case, tension, points, threads in product(
         options.cases, options.tension, options.points, options.threads
     ):
-        print(row(case, points, tension, threads, options.repeats), flush=True)
+        row(case, points, tension, threads, options.repeats)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@ turn in one process, and prints the time of the solve with scipy.fft over that w
 
 from __future__ import annotations
 
-import argparse
 import time
 from collections.abc import Callable, Iterator
 from contextlib import nullcontext
@@ -18,6 +17,7 @@ from typing import Any
 
 import cost
 import scipy.fft
+from tables import print_head, print_row
 
 import pellicle as pl
 
@@ -79,34 +79,30 @@ def installed() -> Iterator[tuple[str, Any]]:
             print(f"{name} is not installed")
 
 
-def seconds(case: str, points: int, tension: float, backend: Any) -> tuple[float, int]:
-    """Return the processor time of one solve and the operator applications that it took."""
+def solving(case: str, points: int, tension: float, backend: Any) -> float:
+    """Return the processor time of one solve [s]."""
     given, tolerance, _ = cost.problem(case, points, tension)
     chosen = scipy.fft.set_backend(backend, only=False) if backend else nullcontext()
     with scipy.fft.set_workers(1), chosen:
         started = time.process_time()
         pl.solver("active_set", tolerance=tolerance).solve(given, None, lambda *_: None)
-        return time.process_time() - started, given.operator.applications
+        return time.process_time() - started
 
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--cases", nargs="+", default=["rough", "punch"])
-    parser.add_argument("--points", type=int, nargs="+", default=[512, 1024])
-    parser.add_argument("--tension", type=float, nargs="+", default=[0.0, 0.02])
+    parser = cost.case_options(__doc__, [512, 1024], [0.0, 0.02])
     parser.add_argument("--repeats", type=int, default=5)
     options = parser.parse_args()
     libraries = list(installed())
-    print("| case | s/L | N | " + " | ".join(name for name, _ in libraries) + " |")
-    print("|" + " --- |" * (3 + len(libraries)))
+    print_head("case", "s/L", "N", *(name for name, _ in libraries))
     for case, tension, points in product(options.cases, options.tension, options.points):
         best = dict.fromkeys((name for name, _ in libraries), float("inf"))
         for _ in range(options.repeats):
             for name, backend in libraries:
-                best[name] = min(best[name], seconds(case, points, tension, backend)[0])
-        times = " | ".join(f"{best['scipy'] / best[name]:.2f}" for name, _ in libraries)
-        print(f"| {case} | {tension:g} | {points} | {times} |", flush=True)
+                best[name] = min(best[name], solving(case, points, tension, backend))
+        ratios = (f"{best['scipy'] / seconds:.2f}" for seconds in best.values())
+        print_row(case, f"{tension:g}", points, *ratios)
 
 
 if __name__ == "__main__":

@@ -282,15 +282,11 @@ noise: 116 pN, from 240 points; pellicle 0.1.0
 @pytest.mark.parametrize(
     ("old", "new", "like"),
     [
-        ("", "", True),
         ("10.25", "10.31", True),
         ("10.25", "11.25", False),
-        ("10.25", "", False),
         ("           7", "          12", True),
         ("42cf6372", "0a1b2c3d", True),
-        ("0.1.0", "1.12.0", True),
         ("240 points", "241 points", False),
-        ("[1/2] tension 1 N/m", "[1/2] tension 3 N/m", False),
         ("converged\nstep", "NOT CONVERGED\nstep", False),
         ("µm", "nm", False),
         ("noise", "wrote a.h5\nnoise", False),
@@ -299,13 +295,6 @@ noise: 116 pN, from 240 points; pellicle 0.1.0
 def test_outputs_are_compared(old: str, new: str, like: bool) -> None:
     """Another machine prints other digits; another answer is another output."""
     assert is_like(TABLE, TABLE.replace(old, new, 1)) is like
-
-
-def test_order_of_ended_runs_is_not_compared() -> None:
-    """Two workers end in either order."""
-    first, second, *rest = TABLE.splitlines()
-    swapped = [second.replace("[2", "[1"), first.replace("[1", "[2"), *rest]
-    assert is_like(TABLE, "\n".join(swapped))
 
 
 @pytest.mark.slow

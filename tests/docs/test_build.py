@@ -16,6 +16,8 @@ from tests.docs.blocks import DOCS
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def html(tmp_path_factory: pytest.TempPathFactory) -> Path:
@@ -35,7 +37,6 @@ def html(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "html"
 
 
-@pytest.mark.slow
 def test_sphinx_builds_without_a_warning(html: Path) -> None:
     """Sphinx makes every page, with the reference."""
     for page in DOCS.glob("*.md"):

@@ -26,7 +26,8 @@ SLOW = {
     "bonded_layer": 3,
 }
 """Tables of which only the first rows are made anew."""
-MODULUS, RADIUS = 1e4, 1e-3
+MODULUS, RADIUS, A = 1e4, 1e-3, 1e-4
+PARABOLOID = {"type": "paraboloid", "radius": RADIUS}
 
 
 def read(path: Path) -> dict[str, Array]:
@@ -167,53 +168,39 @@ def test_the_operator_has_the_cells() -> None:
         np.testing.assert_allclose(computed, data["K_E_over_D"][here], rtol=1e-9)
 
 
+def force(kernel: dict[str, Any], indenter: dict[str, Any], depth: float, points: int) -> float:
+    """Return the force at a depth where the contact has a radius A, on a domain of 2.5 A."""
+    grid = {"points": points, "size": 2.5 * A, "boundary": "free"}
+    data = solved(grid=grid, kernel=kernel, indenter=indenter, loading={"depth": depth})
+    return float(data["force"][0])
+
+
 @pytest.mark.parametrize("ratio", [0.1, 1.0, 10.0])
 def test_the_solver_presses_a_paraboloid(ratio: float) -> None:
     """At the depth of a radius of contact, the force is that of the table within 0.3 %."""
-    a, entry = 1e-4, row("tensed_paraboloid", s_over_a=ratio)
-    data = solved(
-        grid={"points": 64, "size": 2.5 * a, "boundary": "free"},
-        kernel=tensed(ratio, a),
-        indenter={"type": "paraboloid", "radius": RADIUS},
-        loading={"depth": entry["depth_over_Hertz"] * a**2 / RADIUS},
-    )
-    expected = entry["F_over_Hertz"] * 4 * MODULUS * a**3 / (3 * RADIUS)
-    assert float(data["force"][0]) == pytest.approx(expected, rel=3e-3)
+    entry = row("tensed_paraboloid", s_over_a=ratio)
+    depth = entry["depth_over_Hertz"] * A**2 / RADIUS
+    expected = entry["F_over_Hertz"] * 4 * MODULUS * A**3 / (3 * RADIUS)
+    assert force(tensed(ratio, A), PARABOLOID, depth, 64) == pytest.approx(expected, rel=3e-3)
 
 
 @pytest.mark.parametrize("ratio", [0.1, 1.0, 10.0])
 def test_the_solver_presses_a_cone(ratio: float) -> None:
     """The same for a cone, within 0.6 %: its tip is one cell wide."""
-    a, entry = 1e-4, row("tensed_cone", s_over_a=ratio)
-    flank = 0.05
-    data = solved(
-        grid={"points": 64, "size": 2.5 * a, "boundary": "free"},
-        kernel=tensed(ratio, a),
-        indenter={"type": "cone", "half_angle": float(np.arctan(1 / flank))},
-        loading={"depth": entry["depth_over_Sneddon"] * np.pi * a * flank / 2},
-    )
-    expected = entry["F_over_Sneddon"] * np.pi * MODULUS * a**2 * flank / 2
-    assert float(data["force"][0]) == pytest.approx(expected, rel=6e-3)
+    entry, flank = row("tensed_cone", s_over_a=ratio), 0.05
+    cone = {"type": "cone", "half_angle": float(np.arctan(1 / flank))}
+    depth = entry["depth_over_Sneddon"] * np.pi * A * flank / 2
+    expected = entry["F_over_Sneddon"] * np.pi * MODULUS * A**2 * flank / 2
+    assert force(tensed(ratio, A), cone, depth, 64) == pytest.approx(expected, rel=6e-3)
 
 
 @pytest.mark.parametrize("ratio", [0.1, 1.0, 10.0])
 def test_the_solver_presses_a_punch(ratio: float) -> None:
     """The stiffness of a flat punch is that of the table, from two grids to 0.5 %."""
-    a, entry = 1e-4, row("tensed_punch", s_over_a=ratio)
-    coarse, fine = (
-        float(
-            solved(
-                grid={"points": points, "size": 2.5 * a, "boundary": "free"},
-                kernel=tensed(ratio, a),
-                indenter={"type": "flat_punch", "radius": a},
-                loading={"depth": a / 100},
-            )["force"][0]
-        )
-        for points in (50, 100)
-    )
-    assert (2 * fine - coarse) / (MODULUS * a**2 / 100) == pytest.approx(
-        entry["stiffness"], rel=5e-3
-    )
+    punch, expected = {"type": "flat_punch", "radius": A}, row("tensed_punch", s_over_a=ratio)
+    coarse, fine = (force(tensed(ratio, A), punch, A / 100, points) for points in (50, 100))
+    stiffness = (2 * fine - coarse) / (MODULUS * A**2 / 100)
+    assert stiffness == pytest.approx(expected["stiffness"], rel=5e-3)
 
 
 @pytest.mark.parametrize(("ratio", "nu", "confinement"), [(0.0, 0.5, 1.0), (1.0, 0.3, 0.5)])
@@ -221,22 +208,17 @@ def test_the_solver_presses_a_paraboloid_into_a_layer(
     ratio: float, nu: float, confinement: float
 ) -> None:
     """At the depth of a radius of contact, the force is that of the table within 0.6 %."""
-    a = 1e-4
     entry = row("bonded_layer", s_over_a=ratio, nu=nu, a_over_h=confinement)
     layer = {
         "type": "bonded_layer",
         "reduced_modulus": MODULUS,
         "poissons_ratio": nu,
-        "thickness": a / confinement,
+        "thickness": A / confinement,
     }
-    data = solved(
-        grid={"points": 80, "size": 2.5 * a, "boundary": "free"},
-        kernel={"type": "coated", "substrate": layer, "tension": ratio * a * MODULUS / 2},
-        indenter={"type": "paraboloid", "radius": RADIUS},
-        loading={"depth": entry["depth_over_Hertz"] * a**2 / RADIUS},
-    )
-    expected = entry["F_over_Hertz"] * 4 * MODULUS * a**3 / (3 * RADIUS)
-    assert float(data["force"][0]) == pytest.approx(expected, rel=6e-3)
+    kernel = {"type": "coated", "substrate": layer, "tension": ratio * A * MODULUS / 2}
+    depth = entry["depth_over_Hertz"] * A**2 / RADIUS
+    expected = entry["F_over_Hertz"] * 4 * MODULUS * A**3 / (3 * RADIUS)
+    assert force(kernel, PARABOLOID, depth, 80) == pytest.approx(expected, rel=6e-3)
 
 
 def test_a_wave_on_a_layer_has_the_compliance() -> None:
@@ -267,7 +249,7 @@ def test_a_sticking_paraboloid_sinks_in_without_load() -> None:
     data = solved(
         grid={"points": 64, "size": 5 * length, "boundary": "free"},
         kernel=tensed(1.0, length),
-        indenter={"type": "paraboloid", "radius": RADIUS},
+        indenter=PARABOLOID,
         interaction={"type": "jkr", "work_of_adhesion": work},
         loading={"depth": [0.0, entry["depth_no_load"] * length**2 / RADIUS]},
     )
@@ -280,24 +262,20 @@ def test_a_power_law_solid_is_pressed_and_let_go() -> None:
     depth, steps, t_max = 1e-5, 20, 1.0
     times = np.linspace(0.0, 2 * t_max, 2 * steps + 1)[1:]
     depths = depth * np.minimum(times, 2 * t_max - times)[:-1] / t_max
-    result = pl.run(
-        {
-            "grid": {"points": 48, "size": 2.6 * np.sqrt(RADIUS * depth), "boundary": "free"},
-            "kernel": {
-                "type": "viscoelastic",
-                "solid": {"type": "half_space", "reduced_modulus": MODULUS},
-                "power_law": {"exponent": 0.2, "time": "1 s"},
-            },
-            "indenter": {"type": "paraboloid", "radius": RADIUS},
-            "loading": {"depth": [0.0, *depths], "time": [0.0, *times[:-1]]},
+    data = solved(
+        grid={"points": 48, "size": 2.6 * np.sqrt(RADIUS * depth), "boundary": "free"},
+        kernel={
+            "type": "viscoelastic",
+            "solid": {"type": "half_space", "reduced_modulus": MODULUS},
+            "power_law": {"exponent": 0.2, "time": "1 s"},
         },
-        progress=False,
-        threads=1,
+        indenter=PARABOLOID,
+        loading={"depth": [0.0, *depths], "time": [0.0, *times[:-1]]},
     )
-    force, time = (result.dataset[name].values for name in ("force", "time"))
+    forces, time = (data[name].values for name in ("force", "time"))
     expected = entry["F"] * 4 / 3 * np.sqrt(RADIUS) * MODULUS * (depth / t_max) ** 1.5
-    assert force[steps] == pytest.approx(expected * t_max**1.3, rel=0.02)
-    last = time[np.flatnonzero(force > 0)[-1]]
+    assert forces[steps] == pytest.approx(expected * t_max**1.3, rel=0.02)
+    last = time[np.flatnonzero(forces > 0)[-1]]
     assert last <= entry["t_end"] * t_max * 1.02
     assert last + t_max / steps >= entry["t_end"] * t_max * 0.98
 
@@ -343,7 +321,7 @@ def test_the_page_on_loading_says_how_much_too_large_a_counted_area_is() -> None
                     "reduced_modulus": MODULUS,
                     "tension": s_over_a * radius * MODULUS / 2,
                 },
-                indenter={"type": "paraboloid", "radius": RADIUS},
+                indenter=PARABOLOID,
                 loading={"depth": depth},
             )
             area = float(data["contact_area"][0])

@@ -18,7 +18,6 @@ from pellicle_plugins.analytic.adhesion import Adhesion
 from pellicle_plugins.analytic.axisymmetric import indent
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from tests.docs.blocks import ROOT
-from tests.pictures import drawn_width, pixels
 
 STUDIES = ROOT / "docs/studies"
 RADIUS, MODULUS, DEPTH = 1e-3, 10e3, 50e-6
@@ -143,7 +142,6 @@ def test_fig7_is_the_surface(tmp_path: Path) -> None:
     heights = (step["displacement"] - step["depth"] - step["gap"]).values
     assert heights.std() == pytest.approx(10e-6)
     assert heights.max() == pytest.approx(0.0, abs=0.01e-6)
-    assert drawn_width(tmp_path / "fig7-maps.png") > 0.5
 
 
 @pytest.fixture(scope="module")
@@ -175,9 +173,6 @@ def test_fig8_the_fraction_falls_with_tension(rough: Path) -> None:
         assert (low <= mean).all()
         assert (mean <= high).all()
         assert (column(curve, "runs") == 2).all()
-    # Contact is black on white.
-    black = pixels(rough / "study-maps.png").max(axis=-1) < 0.1
-    assert 0.2 < black.mean() < 0.8
 
 
 def test_fig9_a_fraction_needs_more_force_with_tension(rough: Path) -> None:

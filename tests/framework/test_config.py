@@ -5,16 +5,20 @@ from __future__ import annotations
 import json
 import pickle
 import tomllib
+from functools import cache
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from jsonschema import Draft202012Validator
+from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli.app import app
 from pellicle.components import AreaCorrection, Output
+from pellicle.model import get
 from pellicle.plugins import registry
 
 BASE: dict[str, Any] = {
@@ -23,65 +27,34 @@ BASE: dict[str, Any] = {
     "indenter": {"type": "paraboloid", "radius": "1 mm"},
     "loading": {"depth": "10 um"},
 }
-VARIANTS: dict[str, dict[str, Any]] = {
-    "as little as possible": {},
-    "title": {"title": 'quotes " and \\ and\nlines, \x7f, τ₀ and 🎈'},
-    "rectangle": {"grid": {"points": [16, 24], "size": ["1 mm", 0.0015]}},
-    "periodic": {
-        "grid": {"points": 16, "size": "1 mm", "boundary": "periodic"},
+VARIANTS: list[dict[str, Any]] = [
+    {"title": 'quotes " and \\ and\nlines, \x7f, τ₀ and 🎈'},
+    {
+        "grid": {"points": [16, 24], "size": ["1 mm", 0.0015], "boundary": "periodic"},
         "loading": {"mean_pressure": ["1 Pa", "0.1 kPa"]},
     },
-    "force": {"loading": {"force": "1 uN"}},
-    "ramp": {"loading": {"depth": {"start": 0, "stop": "0.1 mm", "num": 7}}},
-    "E and ν": {"kernel": {"type": "half_space", "youngs_modulus": "9 kPa", "poissons_ratio": 0.3}},
-    "tension": {
-        "kernel": {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": "50 mN/m"}
+    {"kernel": {"type": "half_space", "youngs_modulus": "9 kPa", "poissons_ratio": 0.3}},
+    {"loading": {"depth": {"start": 0, "stop": "0.1 mm", "num": 7}}, "outputs": []},
+    {
+        "solver": {"type": "conjugate_gradient", "tolerance": 1e-6, "max_iterations": 7},
+        "corrections": [{"type": "yastrebov"}],
+        "outputs": [{"type": "csv"}, {"type": "figures", "formats": ["svg"]}],
     },
-    "tension, E and ν": {
-        "kernel": {
-            "type": "tensed_membrane",
-            "youngs_modulus": 9e3,
-            "poissons_ratio": 0.5,
-            "tension": 0,
-        }
-    },
-    "quadric": {"indenter": {"type": "quadric", "radius_x": "1 mm", "radius_y": "3 mm"}},
-    "sphere": {"indenter": {"type": "sphere", "radius": "1 mm"}},
-    "cone": {"indenter": {"type": "cone", "half_angle": "70 degree"}},
-    "flat punch": {"indenter": {"type": "flat_punch", "radius": "0.1 mm"}},
-    "self-affine": {
-        "indenter": {
-            "type": "self_affine",
-            "rms_height": "1 um",
-            "hurst": 0.8,
-            "cutoff_wavelength": "0.3 mm",
-            "seed": 3,
-        }
-    },
-    "solver": {"solver": {"type": "conjugate_gradient", "tolerance": 1e-6, "max_iterations": 7}},
-    "corrections": {"corrections": [{"type": "yastrebov"}]},
-    "no outputs": {"outputs": []},
-    "outputs": {"outputs": [{"type": "csv"}, {"type": "figures", "formats": ["svg"]}]},
-}
+]
+"""Fields of runs that go through every form of a run; the kit asks this of each component."""
 
 
-@pytest.fixture(params=list(VARIANTS.values()), ids=list(VARIANTS))
-def run(request: pytest.FixtureRequest) -> pl.Run:
-    """Return runs with every kind of component."""
-    return pl.Run(**(BASE | request.param))
+@cache
+def validator() -> Draft202012Validator:
+    """Return the validator of the JSON schema of a run file."""
+    return Draft202012Validator(pl.schema())
 
 
 @pytest.fixture
-def with_heights(tmp_path: Path) -> Path:
-    """Return a TOML file that names a file of heights beside it."""
-    np.save(tmp_path / "rough.npy", np.random.default_rng(1).random((16, 16)))
-    path = tmp_path / "rough.toml"
-    path.write_text(
-        '[grid]\npoints = 16\nsize = 1e-3\n[kernel]\ntype = "half_space"\nreduced_modulus = 1e4\n'
-        '[indenter]\ntype = "heights"\npath = "rough.npy"\nunit = "1 um"\n'
-        '[loading]\ndepth = "1 um"\n',
-        encoding="utf-8",
-    )
+def file(tmp_path: Path) -> Path:
+    """Return the file of a run with a correction."""
+    path = tmp_path / "run.toml"
+    path.write_text(pl.Run(**BASE, corrections=[{"type": "yastrebov"}]).to_toml(), "utf-8-sig")
     return path
 
 
@@ -103,36 +76,16 @@ def test_depths_of_numpy() -> None:
         pl.Loading(depth=np.array(1e-6))
 
 
-def test_json_round_trip(run: pl.Run) -> None:
-    """A run written as JSON is read back equal."""
-    assert pl.Run.from_json(run.to_json()) == run
-
-
-def test_toml_round_trip(run: pl.Run, tmp_path: Path) -> None:
-    """A run written as TOML is read back equal."""
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_round_trips(variant: dict[str, Any], tmp_path: Path) -> None:
+    """TOML, JSON and a pickle are read back equal, and the schema accepts them."""
+    run = pl.Run(**(BASE | variant))
     path = tmp_path / "run.toml"
     path.write_text(run.to_toml(), encoding="utf-8")
     assert pl.Run.from_toml(path) == run
-
-
-def test_pickle_round_trip(run: pl.Run) -> None:
-    """A run travels to another process unchanged."""
-    assert pickle.loads(pickle.dumps(run)) == run
-
-
-def test_schema_accepts(run: pl.Run) -> None:
-    """What a run writes of itself is valid by the JSON schema."""
-    Draft202012Validator(pl.schema()).validate(json.loads(run.to_json()))
-
-
-def test_heights_round_trip(with_heights: Path, tmp_path: Path) -> None:
-    """A file of heights is found from the TOML file's folder, and from anywhere afterwards."""
-    run = pl.Run.from_toml(with_heights)
     assert pl.Run.from_json(run.to_json()) == run
-    elsewhere = tmp_path / "elsewhere"
-    elsewhere.mkdir()
-    (elsewhere / "copy.toml").write_text(run.to_toml(), encoding="utf-8")
-    assert pl.Run.from_toml(elsewhere / "copy.toml") == run
+    assert pickle.loads(pickle.dumps(run)) == run
+    validator().validate(json.loads(run.to_json()))
 
 
 def test_outputs_absent_or_empty() -> None:
@@ -175,9 +128,7 @@ def test_component_of_another_family() -> None:
     ("given", "expected"),
     [
         ("1 um", [1e-6]),
-        (0, [0.0]),
         ([1, "2 m"], [1.0, 2.0]),
-        ((1, 2), [1.0, 2.0]),
         (np.array([1.0, 2.0]), [1.0, 2.0]),
         ({"start": 0, "stop": "1 m", "num": 5}, [0.0, 0.25, 0.5, 0.75, 1.0]),
         ({"start": 1, "stop": 0, "num": 2}, [1.0, 0.0]),
@@ -210,11 +161,9 @@ def test_what_is_prescribed(name: str, given: str, value: float) -> None:
     run = pl.Run(**(BASE | {"grid": grid, "loading": {name: [given], "stiffness": True}}))
     assert (run.loading.prescribed, run.loading.values) == (name, (value,))
     assert pl.Run.from_json(run.to_json()) == run
-    Draft202012Validator(pl.schema()).validate(json.loads(run.to_json()))
+    validator().validate(json.loads(run.to_json()))
     ramp = {"start": given, "stop": 1.0, "num": 3, "back": True, "spacing": "linear"}
-    Draft202012Validator(pl.schema()).validate(
-        json.loads(run.to_json()) | {"loading": {name: ramp}}
-    )
+    validator().validate(json.loads(run.to_json()) | {"loading": {name: ramp}})
 
 
 def test_ramp_ends_exactly() -> None:
@@ -225,41 +174,25 @@ def test_ramp_ends_exactly() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "path", "value"),
+    ("changes", "path", "value"),
     [
-        ("grid.points=8", ["grid", "points"], [8, 8]),
-        ("grid.points = [8, 9]", ["grid", "points"], [8, 9]),
-        ("kernel.reduced_modulus=5 kPa", ["kernel", "reduced_modulus"], 5e3),
-        ('kernel.reduced_modulus="5 kPa"', ["kernel", "reduced_modulus"], 5e3),
-        ("title=a = b", ["title"], "a = b"),
-        ("corrections.0.type=yastrebov", ["corrections", 0, "type"], "yastrebov"),
-        ("solver.tolerance=1e-5", ["solver", "tolerance"], 1e-5),
-        ("outputs=[]", ["outputs"], []),
+        (["grid.points=8"], "grid.points", [8, 8]),
+        (["grid.points = [8, 9]"], "grid.points", [8, 9]),
+        (["kernel.reduced_modulus=5 kPa"], "kernel.reduced_modulus", 5e3),
+        (['kernel.reduced_modulus="5 kPa"'], "kernel.reduced_modulus", 5e3),
+        (["title=a = b"], "title", "a = b"),
+        (["corrections.0.type=yastrebov"], "corrections.0.type", "yastrebov"),
+        (["solver.tolerance=1e-5"], "solver.tolerance", 1e-5),
+        (["outputs=[]"], "outputs", []),
+        (["loading={}", "loading.force=1 N", "loading.force=2 N"], "loading.force", [2.0]),
     ],
 )
-def test_override(tmp_path: Path, change: str, path: list[Any], value: object) -> None:
-    """``--set`` replaces a value, deep inside, in a list, or where there was none."""
-    file = tmp_path / "run.toml"
-    file.write_text(pl.Run(**BASE, corrections=[{"type": "yastrebov"}]).to_toml(), encoding="utf-8")
-    at = json.loads(pl.Run.from_toml(file, [change]).to_json())
-    for name in path:
-        at = at[name]
-    assert at == value
+def test_override(file: Path, changes: list[str], path: str, value: object) -> None:
+    """``--set`` replaces a value, deep inside, in a list, or where there was none, in order.
 
-
-def test_overrides_apply_in_order(tmp_path: Path) -> None:
-    """A later override sees an earlier one."""
-    file = tmp_path / "run.toml"
-    file.write_text(pl.Run(**BASE).to_toml(), encoding="utf-8")
-    run = pl.Run.from_toml(file, ["loading={}", "loading.force=1 N", "loading.force=2 N"])
-    assert run.loading.values == (2.0,)
-
-
-def test_byte_order_mark(tmp_path: Path) -> None:
-    """The mark that some editors put in front of a text is no error."""
-    file = tmp_path / "run.toml"
-    file.write_text(pl.Run(**BASE).to_toml(), encoding="utf-8-sig")
-    assert pl.Run.from_toml(file) == pl.Run(**BASE)
+    The mark that some editors put in front of a text is no error.
+    """
+    assert get(json.loads(pl.Run.from_toml(file, changes).to_json()), path) == value
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", "1", "null"])
@@ -269,18 +202,15 @@ def test_not_json(text: str) -> None:
         pl.Run.from_json(text)
 
 
-def _starter() -> dict[str, Any]:
-    from importlib.resources import files
-
-    return tomllib.loads(
-        files("pellicle").joinpath("examples/indent/indent.toml").read_text(encoding="utf-8")
-    )
+STARTER: dict[str, Any] = tomllib.loads(
+    files("pellicle").joinpath("examples/indent/indent.toml").read_text(encoding="utf-8")
+)
 
 
 def test_schema_is_one() -> None:
     """The JSON schema is itself valid and accepts the starter file."""
     Draft202012Validator.check_schema(pl.schema())
-    Draft202012Validator(pl.schema()).validate(_starter())
+    validator().validate(STARTER)
 
 
 def test_schema_allows_components_within_components() -> None:
@@ -288,7 +218,7 @@ def test_schema_allows_components_within_components() -> None:
     inner: dict[str, Any] = {"type": "half_space", "reduced_modulus": "1 kPa"}
     for _ in range(2):
         inner = {"type": "coated", "tension": "1 mN/m", "substrate": inner}
-    Draft202012Validator(pl.schema()).validate(_starter() | {"kernel": inner})
+    validator().validate(STARTER | {"kernel": inner})
 
 
 @pytest.mark.parametrize(
@@ -307,7 +237,7 @@ def test_schema_allows_components_within_components() -> None:
 )
 def test_schema_rejects(change: dict[str, Any]) -> None:
     """The JSON schema, too, refuses unknown types, keys and values."""
-    assert not Draft202012Validator(pl.schema()).is_valid(_starter() | change)
+    assert not validator().is_valid(STARTER | change)
 
 
 @pytest.mark.parametrize(
@@ -315,9 +245,7 @@ def test_schema_rejects(change: dict[str, Any]) -> None:
     [
         lambda: pl.Grid(points=-1, size=1),
         lambda: pl.kernel("nope"),
-        lambda: pl.kernel("half_space"),
         lambda: pl.indenter("sphere", radius=-1),
-        lambda: pl.solver("conjugate_gradient", tolerance=2),
         lambda: pl.Run(),  # type: ignore[call-arg]
         lambda: pl.Loading(),
     ],
@@ -330,17 +258,7 @@ def test_library_raises_config_error(make: Any) -> None:
     assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
 
 
-def test_modulus_is_a_number_either_way() -> None:
-    """A kernel by E and ν has the same reduced modulus as one by E*."""
-    by_two = pl.kernel("half_space", youngs_modulus="7.5 kPa", poissons_ratio=0.5)
-    by_one = pl.kernel("half_space", reduced_modulus="10 kPa")
-    q = np.array([1.0, 1e3])
-    assert by_two.compliance(q) == pytest.approx(by_one.compliance(q), rel=1e-14)
-
-
 def test_schema_command_is_the_library_s() -> None:
     """``pellicle schema`` prints what `schema` returns."""
-    from typer.testing import CliRunner
-
     result = CliRunner().invoke(app, ["schema"])
     assert json.loads(result.stdout) == json.loads(json.dumps(pl.schema()))

@@ -63,18 +63,13 @@ def test_undefined_values_are_not_a_number() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("kernel.tensoin * 2", r"'kernel.tensoin' in .*did you mean 'kernel.tension'\? Known:"),
-        ("sqr(depth)", r"'sqr' in .* is not a function; did you mean 'sqrt'\? Known:"),
-        ("depth +", "'depth \\+' is not arithmetic; write it with"),
         ("", "'' is not arithmetic"),
         ("depth if depth else 1", "is not arithmetic"),
         ("__import__('os')", "'__import__' in .* is not a function|not allowed"),
         ("'text'", "'text'.* is not allowed"),
         ("[depth]", r"'\[depth\]' in .* is not allowed"),
-        ("depth < 2", "'depth < 2' in .* is not allowed"),
         ("(depth).real", r"^'\(depth\)\.real' in .* is not allowed"),
         ("depth // 2", "'depth // 2' in .* is not allowed"),
-        ("sqrt(depth, 2)", r"'sqrt\(depth, 2\)' in .* is not allowed"),
         ("(kernel.tension := 2)", "not allowed"),
         ("2j", "'2j' in .* is not allowed"),
         ("True", "'True' in"),

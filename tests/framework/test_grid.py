@@ -56,10 +56,3 @@ def test_bad_points(points: object) -> None:
     """Points are one or two whole numbers above 0."""
     with pytest.raises(pl.ConfigError, match=r"^points"):
         pl.Grid(points=points, size=1)
-
-
-@pytest.mark.parametrize("size", [1e-200, 1e200, [1e-3, 1e200]])
-def test_size_beyond_numbers(size: object) -> None:
-    """A domain whose area over- or underflows is refused."""
-    with pytest.raises(pl.ConfigError, match=r"^size(\.1)?: .*check the unit"):
-        pl.Grid(points=8, size=size)

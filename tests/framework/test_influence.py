@@ -91,13 +91,6 @@ def test_symmetric_short_cut_equals_full_evaluation(shape: tuple[int, int]) -> N
     np.testing.assert_allclose(short, full, rtol=2e-13)
 
 
-def test_square_cells_are_mirror_symmetric() -> None:
-    """Exchanging the offsets changes nothing on square cells."""
-    coefficients = cell_coefficients(*membrane(5.0), (300, 280), (1.0, 1.0))
-    square = coefficients[:280]
-    np.testing.assert_allclose(square, square.T, rtol=2e-13)
-
-
 def test_swapping_the_sides_transposes() -> None:
     """Exchanging the sides and the numbers of cells transposes the coefficients."""
     wide = cell_coefficients(*membrane(0.7), (75, 130), (2.5, 1.0))

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import tomllib
 from pathlib import Path
-from typing import Any
 
-import jsonschema
 import numpy as np
 import pytest
 from typer.testing import CliRunner
@@ -37,7 +34,6 @@ depth = ["5 um", "0 um", "-2 um"]
 type = "active_set"
 tolerance = 1e-6
 """
-WORK = "interaction.work_of_adhesion"
 ADDED = {"wall_pressure", "zone_area", "zone_width", "energy", "residual_traction"}
 
 
@@ -89,31 +85,6 @@ def test_adds_variables(file: Path) -> None:
     assert hard.dataset["force"][0] > with_law.dataset["force"][0]
 
 
-def test_work_of_adhesion_on_the_command_line(file: Path) -> None:
-    """``--set`` changes it, in any unit of energy per area or force per length."""
-    out = file.parent / "out"
-    command = ["run", str(file), "-o", str(out), "--quiet", "--set"]
-    done = CliRunner().invoke(app, [*command, f'{WORK}="40 mN/m"'])
-    assert done.exit_code == 0, done.output
-    (result,) = out.glob("*.h5")
-    assert pl.load(result).configuration["interaction"]["work_of_adhesion"] == pytest.approx(0.04)
-    done = CliRunner().invoke(app, [*command, f'{WORK}="5 mJ"'])
-    assert done.exit_code == 2
-    assert f"{WORK}: '5 mJ' is an energy; give" in done.output
-
-
-def test_study_varies_the_work_of_adhesion() -> None:
-    """The pull at one depth grows with it."""
-    run: dict[str, Any] = pl.Run.from_mapping(tomllib.loads(FILE)).model_dump(
-        mode="json", exclude_none=True
-    )
-    run |= {"loading": {"depth": "0 um"}, "outputs": []}
-    table = pl.run_study(pl.Study(run=run, vary={WORK: ["40 mJ/m^2", "60 mJ/m^2"]}), progress=False)
-    assert table["converged"].all()
-    assert np.diff(table["force"].values.ravel()).item() < 0
-    np.testing.assert_allclose(table[WORK], [0.04, 0.06])
-
-
 @pytest.mark.parametrize("quiet", [[], ["--quiet"]])
 @pytest.mark.filterwarnings("default:.*beyond the theory")
 def test_study_with_steep_slopes(tmp_path: Path, quiet: list[str]) -> None:
@@ -127,22 +98,3 @@ def test_study_with_steep_slopes(tmp_path: Path, quiet: list[str]) -> None:
         done = CliRunner().invoke(app, command)
         assert done.exit_code == 0, done.output
         assert done.output.count("of 2 runs, in 1 slopes in contact are beyond the theory") == 1
-
-
-def test_two_tables(file: Path) -> None:
-    """A second table is refused in words."""
-    for extra in ('[interaction]\ntype = "jkr"\n', '[[interaction]]\ntype = "jkr"\n'):
-        file.write_text(FILE + extra, encoding="utf-8")
-        with pytest.raises(
-            pl.ConfigError, match=r"not valid TOML: (\[interaction\] is there|A key is given twice)"
-        ):
-            pl.Run.from_toml(file)
-
-
-def test_schema_of_a_run_file() -> None:
-    """An editor accepts the table and marks what is wrong in it."""
-    validator = jsonschema.Draft202012Validator(pl.schema())
-    run = json.loads(pl.Run.from_mapping(tomllib.loads(FILE)).model_dump_json(exclude_none=True))
-    assert validator.is_valid(run)
-    for wrong in ({"type": "jkr"}, {"type": "nonsense"}, {**run["interaction"], "range": 1e-6}):
-        assert not validator.is_valid(run | {"interaction": wrong})

@@ -122,17 +122,3 @@ def test_limit(limit: int) -> None:
     stop = Stop.DONE if limit == 5 else Stop.ITERATION_LIMIT
     solution, _ = solve(solver)
     assert (solution.stop, solution.iterations) == (stop, limit)
-
-
-@pytest.mark.parametrize(
-    ("name", "replacement"),
-    [
-        ("punch_pressure", r"response\(problem, state, monitor\)"),
-        ("patience", r"terminate\(problem, state\)"),
-        ("merits", r"terminate\(problem, state\)"),
-    ],
-)
-def test_a_method_of_the_contract_before_is_refused(name: str, replacement: str) -> None:
-    """Nothing calls it any more, so the class cannot be made; the message names the new method."""
-    with pytest.raises(pl.PluginError, match=rf"Outdated.{name}\(\) .*; write {replacement}"):
-        type("Outdated", (pl.Solver,), {name: lambda self, *arguments: None})

@@ -15,6 +15,7 @@ import pellicle as pl
 from pellicle.analysis import Oscillation, oscillations
 from pellicle.cli.app import app
 from pellicle.results.variables import names_of
+from tests.physics.tables import coated, half_space, heights, relaxing
 
 K = 3.0 + 0.4j
 AMPLITUDE, FREQUENCY = 2e-6, 5.0
@@ -121,12 +122,9 @@ def expected(frequency: float) -> complex:
 
 def run(**changes: Any) -> dict[str, Any]:
     """Return the run of a flat punch that oscillates, with changes."""
-    solid = {"type": "half_space", "reduced_modulus": MODULUS}
-    relaxation = [{"fraction": SHARE, "time": TIME}]
     return {
-        "title": "shaken",
         "grid": {"points": 8, "size": "0.5 mm", "boundary": "free"},
-        "kernel": {"type": "viscoelastic", "solid": solid, "relaxation": relaxation},
+        "kernel": relaxing(half_space(MODULUS), SHARE, TIME),
         "indenter": {"type": "flat_punch", "radius": "0.2 mm"},
         "loading": {"depth": LEGS},
         "solver": {"type": "active_set", "tolerance": 1e-10},
@@ -179,15 +177,15 @@ def test_full_contact_obeys_correspondence(tension: float) -> None:
     layer = pl.kernel(
         "bonded_layer", reduced_modulus=MODULUS, poissons_ratio=0.3, thickness="0.3 mm"
     )
-    law: Any = {"type": "viscoelastic", "solid": layer, "relaxation": run()["kernel"]["relaxation"]}
-    kernel = {"type": "coated", "tension": tension, "substrate": law} if tension else law
     frequency = 3.0
     about = {**LEGS[2], "frequency": frequency, "amplitude": "0.1 um", "cycles": 2}
-    loading = {"depth": [{**LEGS[0], "to": "20 um"}, LEGS[1], about]}
-    indenter = {"type": "heights", "values": wave, "unit": 1.0}
-    result = pl.run(
-        run(grid=grid, kernel=kernel, indenter=indenter, loading=loading), progress=False
+    full = run(
+        grid=grid,
+        kernel=coated(run()["kernel"] | {"solid": layer}, tension),
+        indenter=heights(wave),
+        loading={"depth": [{**LEGS[0], "to": "20 um"}, LEGS[1], about]},
     )
+    result = pl.run(full, progress=False)
     assert result.converged
     assert bool(result.dataset["contact"].all())
     stiffness = grid.area / layer.mean_compliance() * expected(frequency)  # type: ignore[attr-defined]

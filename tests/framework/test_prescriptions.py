@@ -4,89 +4,51 @@ from __future__ import annotations
 
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
 import pytest
 from pydantic import Field
 
 import pellicle as pl
+from pellicle import plugins
 from pellicle.plugins import checked_type
+from pellicle.runs import steps
 from pellicle.units import Quantity
+from tests.framework.broken.catalogue import Broken, Taken, make
+from tests.framework.broken.prescriptions import PRESCRIPTIONS
 
 BASE: dict[str, Any] = {
     "grid": {"points": 24, "size": "0.4 mm"},
     "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "0.1 N/m"},
     "indenter": {"type": "paraboloid", "radius": "1 mm"},
 }
-Value = Annotated[float, Quantity("1"), Field(description="a number")]
+STAYS = Taken("registration looks at the class")
+NUMBER = (Annotated[float, Quantity("1"), Field(description="a number")], 1.0)
 
 
-class Twice(pl.Prescription):
-    """Half of the depth."""
-
-    type: Literal["twice"] = "twice"
-    unit: ClassVar[str] = "m"
-
-    def target(self, setting: Any, value: float) -> Any:
-        """Return twice the value."""
-        return pl.Depth(2 * value)
-
-
-class NoUnit(pl.Prescription):
-    """Has no unit."""
-
-    type: Literal["no_unit"] = "no_unit"
-
-    def target(self, setting: Any, value: float) -> Any:
-        """Return the value."""
-        return pl.Depth(value)
-
-
-class OddUnit(Twice):
-    """Has a unit that nobody knows."""
-
-    unit: ClassVar[str] = "bananas"
-
-
-class Option(Twice):
-    """Is called as an option of the loading is."""
-
-    type: Literal["stiffness"] = "stiffness"  # type: ignore[assignment]
-
-
-class OptionField(Twice):
-    """Has a field of the name of an option."""
-
-    stiffness: Value = 1.0
-
-
-class OwnName(Twice):
-    """Has a field of its own name."""
-
-    twice: Value = 1.0
+def lie(fault: str, words: str, **members: Any) -> Any:
+    """Return a prescription that cannot be registered, and what is said of it."""
+    return pytest.param(Broken(fault, STAYS, **members), words, id=fault)
 
 
 @pytest.mark.parametrize(
-    ("lie", "words"),
+    ("broken", "words"),
     [
-        (NoUnit, "lacks the class variable unit"),
-        (OddUnit, "'bananas', which is not a known unit"),
-        (Option, "'stiffness' is an option of"),
-        (OptionField, "'stiffness' is an option of"),
-        (OwnName, "field with the name of its type"),
+        lie("no unit", "lacks the class variable unit", unit=()),
+        lie("odd unit", "'bananas', which is not a known unit", unit="bananas"),
+        lie("option", "is an option of", fields={"type": (Literal["stiffness"], "stiffness")}),
+        lie("field of an option", "'stiffness' is an option of", fields={"stiffness": NUMBER}),
+        lie("own name", "field with the name of its type", fields={"broken": NUMBER}),
     ],
 )
-def test_not_registered(lie: Any, words: str) -> None:
+def test_not_registered(broken: Broken, words: str) -> None:
     """What a table of the loading cannot hold is refused when it is registered."""
-    assert checked_type(Twice) == "twice"
     with pytest.raises(pl.PluginError, match=words):
-        checked_type(lie)
+        checked_type(type(make(PRESCRIPTIONS, broken)))
 
 
 def test_broken_prescription_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     """A key whose plugin cannot be loaded is not called unknown."""
-    from pellicle import plugins
-
     entry = EntryPoint("prescription.volume", "no.such.module", "pellicle")
     loaded = plugins.load([entry, *entry_points(group="pellicle")])
     monkeypatch.setattr("pellicle.config.loading.registry", lambda: loaded)
@@ -106,8 +68,6 @@ def test_resumes_in_the_middle(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, loading: dict[str, Any]
 ) -> None:
     """A run that was interrupted goes on at its next step, from the state of the one before."""
-    from pellicle.runs import steps
-
     run = pl.Run(**BASE, loading=loading, outputs=[], title="path")
     whole = pl.run(run, directory=tmp_path / "whole", progress=False).dataset
     solve, calls = steps.solve_step, []

@@ -279,48 +279,6 @@ def test_corrections_that_vary() -> None:
     assert np.isnan(fraction[0]).all()
 
 
-def test_fields_are_read_where_they_are_used(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Fields of all runs are there, equal those of each run, and cost nothing until looked at."""
-    break_at(monkeypatch, 0.5, 1e-5)
-    plan = study()
-    with pytest.warns(pl.ConvergenceWarning):
-        table = carry_out(plan, tmp_path, fields=True)
-    read: list[int] = []
-    plain = storage.fields
-
-    def counted(*where: Any) -> Any:
-        read.append(where[2])
-        return plain(*where)
-
-    monkeypatch.setattr(storage, "fields", counted)
-    assert table["pressure"].shape == (2, 2, 3, 16, 16)
-    assert table["pressure"].attrs["units"] == "Pa"
-    assert read == []
-    name = table["run"].values[0, 1]
-    assert plain(tmp_path / "runs" / f"{name}.h5", ["contact"], 0)[1][0].dtype == bool
-    alone = pl.load(tmp_path / "runs" / f"{name}.h5").dataset
-    for field in ("pressure", "displacement", "gap", "contact"):
-        part = table[field][0, 1].isel(x=slice(None, None, -3), y=[5, 2, 9])
-        wanted = alone[field].isel(x=slice(None, None, -3), y=[5, 2, 9])
-        assert (part.values == wanted.values).all()
-    read.clear()
-    assert np.isnan(table["pressure"][1, 0, 1:].values).all()
-    assert not table["contact"][1, 0, 1:].values.any()
-    assert read == []
-    table["pressure"][:, 0, 0].max().item()
-    assert read == [0, 0]
-
-
-def test_fields_that_cannot_be() -> None:
-    """Fields want a folder, and one grid."""
-    with pytest.raises(pl.ConfigError, match="give a directory"):
-        carry_out(study(), fields=True)
-    with pytest.raises(pl.ConfigError, match="different grids"):
-        carry_out(study({"grid.points": [8, 16]}), Path("x"), fields=True)
-
-
 # In mid-run, between two runs, and before the last step of all.
 @pytest.mark.slow
 @pytest.mark.parametrize("after", [2, 6, 11])
@@ -503,21 +461,22 @@ def test_foreign_table(tmp_path: Path) -> None:
 
 def test_left_overs_of_the_dead_are_swept(tmp_path: Path) -> None:
     """Half-written files of processes that are no more go; those of the living stay."""
-    dead = subprocess.run(
-        [sys.executable, "-c", "import os; print(os.getpid())"], capture_output=True
-    )
+    # Nobody has asked for its exit code yet, as with the worker of a process that was killed.
+    dead = subprocess.Popen([sys.executable, "-c", ""])
+    os.waitid(os.P_PID, dead.pid, os.WEXITED | os.WNOWAIT)
     host = files._host()
     runs = tmp_path / "runs"
     runs.mkdir()
-    gone = runs / f".a.h5.{host}.{int(dead.stdout)}.part"
+    gone = runs / f".a.h5.{host}.{dead.pid}.part"
     kept = [
         runs / f".a.h5.{host}.{os.getppid()}.part",
-        runs / f".a.h5.elsewhere.{int(dead.stdout)}.part",
+        runs / f".a.h5.elsewhere.{dead.pid}.part",
         runs / ".mine.part",
     ]
     for path in (gone, *kept):
         path.touch()
     carry_out(study(), tmp_path)
+    dead.wait()
     assert not gone.exists()
     assert all(path.exists() for path in kept)
 

@@ -10,12 +10,10 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
-import tomli_w
 from hypothesis import given
 from hypothesis import strategies as st
 
 import pellicle as pl
-from pellicle import memory
 from pellicle.config.study import Study
 from pellicle.model import replaced
 from pellicle.results.derived import names
@@ -35,20 +33,6 @@ TENSION = "kernel.tension"
 def study(vary: object = None, **others: Any) -> Study:
     """Return a study of the run above."""
     return Study(run=RUN, vary={} if vary is None else vary, **others)
-
-
-def values(key: str, given: object, **others: Any) -> list[Any]:
-    """Return the values of a single axis as the coordinate has them."""
-    dimension, coordinate = study({key: given}, **others).coordinates()[key]
-    assert dimension == key
-    return coordinate.values.tolist()
-
-
-def refused(vary: object = None, **others: Any) -> str:
-    """Return what is said of a study that cannot be."""
-    with pytest.raises(pl.ConfigError) as caught:
-        study(vary, **others)
-    return str(caught.value)
 
 
 def test_copy_with_other_axes_has_their_runs() -> None:
@@ -91,12 +75,10 @@ def test_zip() -> None:
             {"start": "10 mN/m", "stop": "1 N/m", "num": 3, "spacing": "log"},
             [0.01, 0.1, 1],
         ),
-        (TENSION, {"start": 0.5, "stop": 2, "num": 4}, [0.5, 1, 1.5, 2]),
         (TENSION, ["10 mN/m", 0.5], [0.01, 0.5]),
         (TENSION, np.array([0.25, 0.5]), [0.25, 0.5]),
         ("grid.points", {"start": 16, "stop": 64, "num": 3, "spacing": "log"}, [16, 32, 64]),
         ("grid.points", [16, [32, 16]], ["16", "[32, 16]"]),
-        ("kernel.type", ["tensed_membrane"], ["tensed_membrane"]),
         ("loading.depth", ["5 um", "10 um"], [5e-6, 1e-5]),
         ("loading.depth", [["5 um"], ["5 um", "10 um"]], ['["5 um"]', '["5 um", "10 um"]']),
         ("loading.depth.0", ["1 um", "2 um"], [1e-6, 2e-6]),
@@ -112,52 +94,32 @@ def test_zip() -> None:
 )
 def test_values(key: str, given: Any, expected: list[Any]) -> None:
     """Lists and ranges of any parameter become SI numbers, or texts that tell them apart."""
-    # Entries of lists can be varied where the run has a list.
-    assert values(key, given) == (
-        expected if isinstance(expected[0], str) else pytest.approx(expected, rel=1e-15)
-    )
-
-
-def test_whole_numbers_stay_whole() -> None:
-    """Seeds of a range are whole numbers, as their field wants them."""
-    rough = {
-        "type": "self_affine",
-        "rms_height": "1 um",
-        "hurst": 0.7,
-        "cutoff_wavelength": "0.2 mm",
-    }
-    plan = Study(
-        run=RUN | {"indenter": rough},
-        vary={"indenter.seed": {"start": 0, "stop": 19, "num": 20}},
-    )
-    seeds = plan.coordinates()["indenter.seed"][1].values
-    assert seeds.tolist() == list(range(20))
-    assert seeds.dtype.kind == "i"
+    dimension, coordinate = study({key: given}).coordinates()[key]
+    assert dimension == key
+    texts = isinstance(expected[0], str)
+    assert coordinate.values.tolist() == (expected if texts else pytest.approx(expected, rel=1e-15))
+    # Whole numbers, such as seeds, stay whole.
+    assert coordinate.values.dtype.kind == ("O" if texts else np.array(expected).dtype.kind)
 
 
 def test_units() -> None:
-    """Coordinates know the unit of their field, also inside tuples and of load steps."""
-    plan = study({TENSION: [1, 2], "grid.size": [1e-3, 2e-3], "loading.depth": [1e-6, 2e-6]})
+    """Coordinates have the unit of their field as results have it, in tuples and load steps too."""
+    run = RUN | {"loading": {"contact_area": 1e-9}}
+    areas = ["1e-3 mm**2", 2e-9]
+    plan = Study(
+        run=run, vary={TENSION: [1, 2], "grid.size": [1e-3, 2e-3], "loading.contact_area": areas}
+    )
     units = {key: axis.attributes.get("units") for key, (_, axis) in plan.coordinates().items()}
-    assert units == {TENSION: "N/m", "grid.size": "m", "loading.depth": "m"}
+    assert units == {TENSION: "N/m", "grid.size": "m", "loading.contact_area": "m2"}
 
 
-def test_areas_along_an_axis() -> None:
-    """The areas of an axis have the unit that those of a result have."""
-    plan = study({"loading": [{"contact_radius": 1e-5}]})
-    assert plan.points[0].run.loading.prescribed == "contact_radius"
-    loading = RUN | {"loading": {"contact_area": 1e-9}}
-    plan = Study(run=loading, vary={"loading.contact_area": ["1e-3 mm**2", 2e-9]})
-    ((_, coordinate),) = plan.coordinates().values()
-    assert coordinate.values.tolist() == [1e-9, 2e-9]
-    assert coordinate.attributes["units"] == "m2"
-
-
-@pytest.mark.parametrize("name", ["force", "status", "run", "step", "x", "gap", "pi", "sqrt"])
+@pytest.mark.parametrize("name", ["force", "status", "run", "x", "gap", "pi", "sqrt", "a/b", "1st"])
 def test_derived_replaces_no_column(name: str) -> None:
-    """A derived column that would stand in place of another one is refused before any run."""
-    with pytest.raises(pl.ConfigError, match=rf"derived\.{name}: '{name}' has a meaning already"):
-        Study(run=RUN, vary={TENSION: [0, 1]}, derived={name: "2 * depth"})
+    """A derived column in place of another one, or without a name, is refused before any run."""
+    with pytest.raises(
+        pl.ConfigError, match=rf"derived\.{name}: '{name}' (has a mean|is not a na)"
+    ):
+        study({TENSION: [0, 1]}, derived={name: "2 * depth"})
 
 
 @pytest.mark.parametrize(
@@ -181,20 +143,11 @@ def test_derived_takes_no_number_of_the_first_run_for_all(
     assert known["kernel.reduced_modulus" if "kernel" not in vary else "grid.size.0"] > 0
 
 
-@pytest.mark.parametrize("name", ["", ".", "/", "a/b", "a b", "1st", "a.b"])
-def test_derived_has_a_name(name: str) -> None:
-    """A name that no expression can use, or no file, is refused before any run."""
-    with pytest.raises(pl.ConfigError, match="is not a name; give one of letters"):
-        Study(run=RUN, vary={TENSION: [0, 1]}, derived={name: "2 * depth"})
-
-
 def test_derived_names_what_the_loading_brings() -> None:
-    """An expression may name the stiffness where it is asked for, and only there."""
+    """An expression may name the stiffness where it is asked for."""
     derived = {"reduced": "stiffness / contact_radius"}
     table = RUN | {"loading": {"contact_radius": 1e-5, "stiffness": True}}
     assert Study(run=table, vary={TENSION: [0, 1]}, derived=derived).derived == derived
-    with pytest.raises(pl.ConfigError, match=r"derived\.reduced: .*stiffness"):
-        Study(run=RUN, vary={TENSION: [0, 1]}, derived=derived)
 
 
 def test_axes_without_quotes(tmp_path: Path) -> None:
@@ -241,121 +194,6 @@ def test_round_trips() -> None:
         assert other.derived == plan.derived
         assert other.executor == plan.executor
     jsonschema.validate(json.loads(plan.to_json()), pl.schema())
-
-
-def test_relative_paths(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Files that a study names lie beside it, from wherever it is read, written or carried out."""
-    for name, factor in (("a", 1.0), ("b", 2.0)):
-        heights = np.add.outer(np.arange(16.0), np.arange(16.0)) * factor
-        np.save(tmp_path / f"{name}.npy", heights, allow_pickle=False)
-    indenter = {"type": "heights", "path": "a.npy", "unit": "1 um"}
-    data = RUN | {"indenter": indenter, "study": {"vary": {"indenter.path": ["a.npy", "b.npy"]}}}
-    (tmp_path / "s.toml").write_text(tomli_w.dumps(data), encoding="utf-8")
-    plan = Study.from_toml(tmp_path / "s.toml")
-    monkeypatch.chdir("/")
-    again = Study.from_json(plan.to_json())
-    assert [point.run for point in again.points] == [point.run for point in plan.points]
-    assert plan.points[0].run.identity != plan.points[1].run.identity
-
-
-@pytest.mark.parametrize(
-    ("vary", "words"),
-    [
-        ({}, "vary: varies nothing"),
-        ({TENSION: []}, f"vary.{TENSION}: is empty; give at least one value"),
-        ({TENSION: 3}, f"vary.{TENSION}: 3 is not allowed; give a list of values"),
-        ({TENSION: [-1, 1]}, f"vary.{TENSION}: -1 is not allowed; give a value ≥ 0 N/m"),
-        ({TENSION: ["1 m"]}, f"vary.{TENSION}: '1 m' is a length; give"),
-        (
-            {"kernel.tensoin": [7]},
-            "vary.kernel.tensoin: 7: is not a field here; did you mean 'tension'?",
-        ),
-        (
-            {"kernle.tension": [7]},
-            "vary.kernle.tension: 7: is not a field here; did you mean 'kernel'?",
-        ),
-        ({"kernel.type": ["nope"]}, "vary.kernel.type: 'nope' is not a kernel"),
-        ({TENSION: [1, 1.0]}, "are the same run; leave one out"),
-        ({TENSION: [0.01, "10 mN/m"]}, "(kernel.tension = 0.01) and (kernel.tension = 10 mN/m)"),
-        ({"title": ["a", "b"]}, "are the same run"),
-        (
-            {"kernel": [RUN["kernel"]], TENSION: [1]},
-            f"vary.{TENSION}: would override the axis kernel",
-        ),
-        ({"grid.points.0": [8]}, "vary.grid.points.0: 8: grid.points = 16 is not a table"),
-        ({"corrections.3.type": ["a"]}, "corrections has no entry 3; give one of its 1"),
-        ({TENSION: {"start": 1, "stop": 2}}, "a range that has start, stop is not allowed"),
-        ({TENSION: {"start": 1, "stop": 1, "num": 2}}, "starts where it stops"),
-        ({TENSION: {"start": 1, "stop": 2, "num": 1}}, f"vary.{TENSION}.num: 1 is not allowed"),
-        (
-            {TENSION: {"start": 0, "stop": 2, "num": 2, "spacing": "log"}},
-            "needs start and stop ≠ 0",
-        ),
-        ({TENSION: {"start": 1, "stop": 2, "num": 2, "spacing": "cubic"}}, '"linear" or "log"'),
-        ({TENSION: {"start": "1 N/m", "stop": 2, "num": 2}}, "both with a unit, or both without"),
-        ({TENSION: {"start": "1 N/m", "stop": "1 m", "num": 2}}, "is a length; give"),
-        (
-            {TENSION: {"start": "x", "stop": 2, "num": 2}},
-            "'x' is not allowed; give a finite number",
-        ),
-        ({TENSION: {"start": 0, "stop": float("inf"), "num": 2}}, "give a finite number"),
-        ([1], "vary: [1] is not a table"),
-    ],
-)
-def test_bad_axes(vary: object, words: str) -> None:
-    """What is wrong with an axis is said with its name, the value and what is allowed."""
-    assert words in refused(vary)
-
-
-def test_bad_zip() -> None:
-    """Zipped axes of unequal lengths are named with their lengths; an axis is there once."""
-    unequal = [{TENSION: [0, 1], "indenter.radius": [1e-3]}]
-    assert "zip.0: kernel.tension has 2, indenter.radius has 1" in refused(zip=unequal)
-    twice = refused({TENSION: [0, 1]}, zip=[{TENSION: [2, 3], "indenter.radius": [1e-3, 2e-3]}])
-    assert "would override the axis kernel.tension" in twice
-
-
-def test_all_problems_at_once() -> None:
-    """Every bad value of every axis is named, each once, though many runs have it."""
-    message = refused({TENSION: [-1, 1, -2], "indenter.radius": [0, 1e-3], "grid.points": [16, 0]})
-    for value in (
-        "-1",
-        "-2",
-        "0 is not allowed; give a whole number",
-        "0 is not allowed; give a value > 0 m",
-    ):
-        assert message.count(value) == 1
-    assert len(message.splitlines()) == 4
-
-
-def test_problem_of_a_combination() -> None:
-    """What is wrong with some runs only is said with one of these."""
-    plan = RUN | {"loading": {"mean_pressure": 10}}
-    with pytest.raises(
-        pl.ConfigError, match=r"run\.loading\.mean_pressure: .*grid\.boundary = free"
-    ):
-        Study(run=plan, vary={"grid.boundary": ["periodic", "free"]})
-
-
-def test_too_many_runs(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A product that cannot even be listed is refused with its number and its memory."""
-    monkeypatch.setattr(memory, "available", lambda: 1e9)
-    many = {"start": 1.0, "stop": 2.0, "num": 1000}
-    message = refused({TENSION: many, "indenter.radius": many, "kernel.reduced_modulus": many})
-    assert "1000000000 runs needs about 4e+04 GB" in message
-
-
-def test_problems_of_a_file(tmp_path: Path) -> None:
-    """In a file the axes are in the table study, and what they share is at the top."""
-    text = pl.Run(**RUN).to_toml() + "[study.vary]\nkernel.tension = [-1]\ngrid.point = [1]"
-    (tmp_path / "a.toml").write_text(text, encoding="utf-8")
-    with pytest.raises(pl.ConfigError) as caught:
-        Study.from_toml(tmp_path / "a.toml", ["kernel.tensoin=1", "study.executer=1"])
-    assert "study.executer: is not a field here; did you mean 'executor'?" in str(caught.value)
-    with pytest.raises(pl.ConfigError) as caught:
-        Study.from_toml(tmp_path / "a.toml", ["kernel.tensoin=1"])
-    fields = {problem.field for problem in caught.value.problems}
-    assert fields == {"kernel.tensoin", "study.vary.kernel.tension", "study.vary.grid.point"}
 
 
 def test_a_study_is_no_run_and_a_run_no_study(tmp_path: Path) -> None:

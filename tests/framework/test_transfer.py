@@ -55,17 +55,6 @@ def test_prolong_then_restrict_changes_nothing(
     np.testing.assert_allclose(restrict(finer, coarse), pressure, rtol=1e-14)
 
 
-@pytest.mark.parametrize(
-    ("fine", "coarse"), [((8, 6), (4, 3)), ((9, 10), (3, 2)), ((5, 4), (5, 1))]
-)
-def test_means_are_kept_where_sizes_divide(fine: tuple[int, int], coarse: tuple[int, int]) -> None:
-    """The mean height, and the force of a pressure, are the same on both grids."""
-    heights = field(fine)
-    assert restrict(heights, coarse).mean() == pytest.approx(heights.mean(), rel=1e-14)
-    pressure = field(coarse)
-    assert prolong(pressure, fine).mean() == pytest.approx(pressure.mean(), rel=1e-14)
-
-
 def test_same_shape_is_the_same_field() -> None:
     """On a grid of as many cells nothing changes, −inf included."""
     heights = field((5, 4))

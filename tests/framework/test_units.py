@@ -14,35 +14,26 @@ from pellicle.units import Quantity
 
 UREG: pint.UnitRegistry[float] = pint.UnitRegistry()
 TENSION = Quantity("N/m", at_least=0)
-RATIO = Quantity("1", above=-1, at_most=0.5)
 
 
 @pytest.mark.parametrize(
     ("unit", "given", "expected"),
     [
         ("m", 0.01, 0.01),
-        ("m", 3, 3.0),
         ("m", Fraction(1, 4), 0.25),
-        ("m", np.float32(0.5), 0.5),
         ("m", np.int64(7), 7.0),
         ("m", "10 um", 1e-5),
         ("m", "10 µm", 1e-5),
-        ("m", "10um", 1e-5),
         ("m", "  1.5e-3   mm ", 1.5e-6),
-        ("m", "+.5 m", 0.5),
+        ("m", "+.5m", 0.5),
         ("m", "5. nm", 5e-9),
         ("m", "1e-99999999999999999999 m", 0.0),
-        ("Pa", "10 kPa", 1e4),
         ("Pa", "1 N/mm**2", 1e6),
-        ("Pa", "1 N/mm^2", 1e6),
-        ("N/m", "50 mN/m", 0.05),
         ("N/m", "50 mJ/m^2", 0.05),
         ("N/m", "50 dyn/cm", 0.05),
         ("N/m", UREG.Quantity(10, "mN/m"), 0.01),
-        ("N/m", UREG.Quantity(np.float64(10), "mN/m"), 0.01),
         ("N/m", UREG.Quantity(np.int32(10), "mN/m"), 0.01),
-        ("N", "2 uN", 2e-6),
-        ("1", 0.3, 0.3),
+        ("N/m", "0 N/m", 0.0),
         ("1", "0.3", 0.3),
         ("1", UREG.Quantity(0.25, ""), 0.25),
         # Whatever measures an angle is one.
@@ -71,27 +62,26 @@ def test_value_in_si(unit: str, given: object, expected: float) -> None:
     assert value == pytest.approx(expected, rel=1e-14)
 
 
-@pytest.mark.parametrize("given", [0, 0.0, "0 N/m", -0.0])
-def test_closed_bound_is_allowed(given: object) -> None:
-    """``at_least`` and ``at_most`` include the bound itself."""
-    assert TENSION(given) == 0
-    assert RATIO(0.5) == 0.5
+def test_bounds() -> None:
+    """``at_least`` and ``at_most`` include the bound itself, ``above`` and ``below`` do not."""
+    ratio = Quantity("1", above=-1, at_most=0.5)
+    assert (TENSION(-0.0), ratio(0.5), ratio("-0.99")) == (0, 0.5, -0.99)
+    for given in (-1, "-1", 0.500001):
+        with pytest.raises(ValueError, match="a plain number > -1 and ≤ 0"):
+            ratio(given)
+    with pytest.raises(ValueError, match="is not allowed; give a plain number < 2"):
+        Quantity("1", below=2)(2)
 
 
-BOUNDS = "is not allowed; give a plain number > -1 and ≤ 0.5"
 FINITE = "is not finite; give a value ≥ 0 N/m"
 EXAMPLE = "'50 mN/m'"
 UNKNOWN = "has an unknown unit"
 
 
 REFUSED: list[tuple[Quantity, str, object]] = [
-    *((RATIO, BOUNDS, given) for given in (-1, -1.5, "-1", 0.500001)),
-    (RATIO, "'0.3 Pa' has a unit; give a plain number", "0.3 Pa"),
-    *((TENSION, FINITE, given) for given in (math.nan, math.inf, -math.inf, "nan", "inf")),
-    *((TENSION, FINITE, given) for given in ("-Infinity", "nan N/m", "-INF mN/m", 10**400)),
-    *((TENSION, FINITE, given) for given in ("1e999 N/m", "1e99999999999999999999 N/m")),
-    *((TENSION, EXAMPLE, given) for given in (None, True, [1.0], set[int](), b"1 N/m", 1j)),
-    *((TENSION, EXAMPLE, given) for given in ("", "N/m", "1,5 N/m")),
+    *((TENSION, FINITE, given) for given in ("nan", "-Infinity", "-INF mN/m", "1e999 N/m")),
+    (TENSION, FINITE, "1e99999999999999999999 N/m"),
+    *((TENSION, EXAMPLE, given) for given in (None, set[int](), b"1 N/m", 1j, "1,5 N/m")),
     # What does not parse is refused in our words, not in pint's, and nothing of it is ignored.
     *((TENSION, UNKNOWN, f"1 {unit}") for unit in ("foo", "N/", "N/m)", "2 N/m", "N + m")),
     *((TENSION, UNKNOWN, f"1 {unit}") for unit in ("N/0", "__import__('os')", "N/m\0")),
@@ -111,11 +101,6 @@ def test_numbers_without_squares(given: object) -> None:
         TENSION(given)
 
 
-def test_exponent_below_decimals() -> None:
-    """A negative power of ten beyond any number is 0."""
-    assert TENSION("1e-99999999999999999999 N/m") == 0
-
-
 @pytest.mark.parametrize(("quantity", "message", "given"), REFUSED)
 def test_refused(quantity: Quantity, message: str, given: object) -> None:
     """What is no value of the quantity is refused with what is."""
@@ -126,14 +111,8 @@ def test_refused(quantity: Quantity, message: str, given: object) -> None:
 @pytest.mark.parametrize(
     ("unit", "noun"),
     [
-        ("m", "a length"),
-        ("Pa", "a pressure"),
-        ("mN", "a force"),
-        ("s", "a time"),
         ("degC", "a temperature"),
-        ("kg", "a mass"),
         ("N*m", "an energy"),
-        ("m/s", "a speed"),
         ("%", "a pure number"),
         ("degree", "an angle"),
         ("count", "a value in count"),
@@ -146,7 +125,7 @@ def test_other_dimension(unit: str, noun: str) -> None:
         TENSION(f"1 {unit}")
 
 
-@pytest.mark.parametrize("unit", ["%", "percent", "dB", "Np", "octave", "count", "sr", "m/m", "um"])
+@pytest.mark.parametrize("unit", ["%", "dB", "count", "sr", "m/m"])
 def test_no_angle(unit: str) -> None:
     """What has no dimension is not for that an angle: a slope of 5 % is not 0.05 rad."""
     with pytest.raises(ValueError, match=r"is an? .*; give .*'70 degree'"):

@@ -21,8 +21,12 @@ from tests.adhesive_paths import (
     wave_pressure,
     wavy,
 )
+from tests.physics.tables import heights, paraboloid, tensed
 from tests.random_adhesion import SAME, random_run, verdicts
 
+LINEAR = {"type": "linear", "work_of_adhesion": 1.0, "strength": 2.0}
+DUGDALE = {"type": "dugdale", "work_of_adhesion": 1.0, "strength": 1.0}
+LAWS = JKR, LINEAR, DUGDALE, {"type": "exponential", "work_of_adhesion": 1.0, "range": 0.4}
 # The units E* = R = w = 1 have slopes beyond the theory, and random problems have few cells.
 pytestmark = pytest.mark.filterwarnings("ignore::pellicle.errors.ConvergenceWarning")
 
@@ -65,7 +69,7 @@ def test_errors_beside_the_cases_of_the_benchmark(
     [
         (JKR, 0.0, 0.002),
         (JKR, 1.0, 0.002),
-        ({"type": "dugdale", "work_of_adhesion": 1.0, "strength": 1.0}, 0.1, 0.005),
+        (DUGDALE, 0.1, 0.005),
     ],
 )
 def test_approach_and_retraction_are_one_curve(
@@ -103,7 +107,7 @@ def test_a_jump_of_one_asperity_is_named() -> None:
     path = solved(
         40, 0.0, [*down, *np.arange(0.04, -0.071, -0.01)], size=4.0,
         interaction={"type": "jkr", "work_of_adhesion": 0.0025, "estimate_error": False},
-        indenter={"type": "heights", "values": np.maximum(*bumps).tolist(), "unit": 1.0},
+        indenter=heights(np.maximum(*bumps)),
     )  # fmt: skip
     patches = path["patches"].values
     jumps = np.flatnonzero(path["jumped"].values)
@@ -154,76 +158,61 @@ def test_a_step_across_the_lowest_force_does_not_jump() -> None:
 @pytest.mark.parametrize("law", ["jkr", "dugdale"])
 @pytest.mark.parametrize(
     ("prescribed", "values"),
-    [("depth", ["1 um", "2 um"]), ("force", ["100 nN", "200 nN"])],
+    [("depth", [1e-6, 2e-6]), ("force", [1e-7, 2e-7])],
 )
-def test_a_step_that_is_held_does_not_jump(law: str, prescribed: str, values: list[str]) -> None:
+def test_a_step_that_is_held_does_not_jump(law: str, prescribed: str, values: list[float]) -> None:
     """The error that the tolerance leaves in the energy does not count as lost in a jump."""
     reach = {"range": "1 um"} if law == "dugdale" else {"estimate_error": False}
-    path = pl.run(
-        {
-            "grid": {"points": 32, "size": "80 um"},
-            "kernel": {
-                "type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "10 mN/m"
-            },
-            "indenter": {"type": "paraboloid", "radius": "0.1 mm"},
-            "interaction": {"type": law, "work_of_adhesion": "1 mJ/m^2", **reach},
-            "loading": {prescribed: [*values, values[1], values[1], *values[::-1], values[0]]},
-        },
-        progress=False,
-    ).dataset  # fmt: skip
+    path = solved(
+        32, 0.0, [*values, values[1], values[1], *values[::-1], values[0]], size=80e-6,
+        quantity=prescribed,
+        kernel=tensed(1e4, 0.01),
+        indenter=paraboloid(1e-4),
+        interaction={"type": law, "work_of_adhesion": 1e-3, **reach},
+    )  # fmt: skip
     assert path["converged"].values.all()
     assert path["jumped"].values.tolist() == [True, *[False] * 6]
     assert not path["jump_energy"].values[1:].any()
 
 
 def _flat(
-    points: int, size: float, kernel: dict[str, object], work: float, loading: dict[str, object]
+    points: int,
+    size: float,
+    kernel: dict[str, Any],
+    work: float,
+    values: list[float],
+    quantity: str = "depth",
 ) -> xr.Dataset:
     """Return the path of a flat indenter that touches with all cells at once."""
-    heights = np.zeros((points, points)).tolist()
-    interaction = {"type": "jkr", "work_of_adhesion": work, "estimate_error": False}
-    return pl.run(
-        {
-            "grid": {"points": points, "size": size},
-            "kernel": kernel,
-            "indenter": {"type": "heights", "values": heights, "unit": 1.0},
-            "interaction": interaction,
-            "loading": loading,
-        },
-        progress=False,
-    ).dataset
+    law = {"type": "jkr", "work_of_adhesion": work, "estimate_error": False}
+    flat = heights(np.zeros((points, points)))
+    return solved(
+        points, 0.0, values, size=size, kernel=kernel, indenter=flat, interaction=law,
+        quantity=quantity,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(
     ("points", "size", "kernel", "work", "depths"),
     [
         (1, 8e-5, {"type": "half_space", "reduced_modulus": 1e4}, 1e-3, [1e-6, 2e-6, 0.0, -1e-6]),
-        (
-            2, 1.0, {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": 0.3}, 0.01,
-            [0.02, 0.05, 0.02, 0.0, -0.01],
-        ),
+        (2, 1.0, tensed(1.0, 0.3), 0.01, [0.02, 0.05, 0.02, 0.0, -0.01]),
     ],
-)  # fmt: skip
+)
 def test_steps_of_one_inner_solve_are_closed(
     points: int, size: float, kernel: dict[str, object], work: float, depths: list[float]
 ) -> None:
     """Not in single precision only, in which an inner solve adds to the displacement."""
-    path = _flat(points, size, kernel, work, {"depth": depths})
+    path = _flat(points, size, kernel, work, depths)
     assert path["converged"].values.all(), path["status"].values
     assert path["contact"].values.all()
 
 
 @pytest.mark.parametrize("points", [1, 8])
-@pytest.mark.parametrize(
-    "kernel",
-    [
-        {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": 0.3},
-        {"type": "winkler", "foundation": 1.0},
-    ],
-)
+@pytest.mark.parametrize("kernel", [tensed(1.0, 0.3), {"type": "winkler", "foundation": 1.0}])
 def test_no_force_is_met_to_rounding(points: int, kernel: dict[str, object]) -> None:
     """Wall pressure and attraction of a flat cancel under no force, cell by cell."""
-    path = _flat(points, 1.0, kernel, 0.01, {"force": [0.01, 0.05, 0.0, 0.02]})
+    path = _flat(points, 1.0, kernel, 0.01, [0.01, 0.05, 0.0, 0.02], "force")
     assert path["converged"].values.all(), path["status"].values
     assert path["contact"].values.all()
 
@@ -231,18 +220,13 @@ def test_no_force_is_met_to_rounding(points: int, kernel: dict[str, object]) -> 
 def test_full_contact_that_is_rigid_does_not_jump() -> None:
     """Any force leaves it as it is; round-off of its energy is no jump."""
     x = np.cos(2 * pi * (np.arange(22) + 0.5) / 22)
-    heights = 0.001 * (x[:, None] + x)
     layer = {"thickness": 0.04, "reduced_modulus": 1.0, "poissons_ratio": 0.5}
-    path = pl.run(
-        {
-            "grid": {"points": 22, "size": 1.0, "boundary": "periodic"},
-            "kernel": {"type": "bonded_layer", **layer},
-            "indenter": {"type": "heights", "values": heights.tolist(), "unit": 1.0},
-            "interaction": {"type": "jkr", "work_of_adhesion": 0.1, "estimate_error": False},
-            "loading": {"force": [0.1, 10.0, 0.2, 3.0, 0.1]},
-        },
-        progress=False,
-    ).dataset
+    path = solved(
+        22, 0.0, [0.1, 10.0, 0.2, 3.0, 0.1], size=1.0, boundary="periodic", quantity="force",
+        kernel={"type": "bonded_layer", **layer},
+        indenter=heights(0.001 * (x[:, None] + x)),
+        interaction={"type": "jkr", "work_of_adhesion": 0.1, "estimate_error": False},
+    )  # fmt: skip
     assert path["contact"].values.all()
     assert not path["jumped"].values[1:].any()
 
@@ -317,15 +301,7 @@ def test_a_hard_sphere_pulls_off_a_hard_solid_at_bradleys_force(law: dict[str, A
     assert float(path["force"].values.min()) == pytest.approx(-2 * pi, rel=0.01)
 
 
-@pytest.mark.parametrize(
-    ("interaction", "length"),
-    [
-        (JKR, 0.0),
-        ({"type": "linear", "work_of_adhesion": 1.0, "strength": 2.0}, 1.0),
-        ({"type": "dugdale", "work_of_adhesion": 1.0, "strength": 1.0}, 0.0),
-        ({"type": "exponential", "work_of_adhesion": 1.0, "range": 0.5}, 1.0),
-    ],
-)
+@pytest.mark.parametrize(("interaction", "length"), [*zip(LAWS, (0.0, 1.0) * 2, strict=True)])
 def test_force_is_the_slope_of_the_energy(interaction: dict[str, Any], length: float) -> None:
     """F = +dU/dδ by central differences to 1e-3."""
     path = solved(64, length, [0.05, 0.01, 0.0, -0.01], interaction=interaction, size=7.0)
@@ -333,15 +309,7 @@ def test_force_is_the_slope_of_the_energy(interaction: dict[str, Any], length: f
     assert (energy[1] - energy[3]) / 0.02 == pytest.approx(force[2], rel=1e-3)
 
 
-@pytest.mark.parametrize(
-    ("interaction", "length"),
-    [
-        (JKR, 1.0),
-        ({"type": "linear", "work_of_adhesion": 1.0, "strength": 2.0}, 0.0),
-        ({"type": "dugdale", "work_of_adhesion": 1.0, "strength": 1.0}, 1.0),
-        ({"type": "exponential", "work_of_adhesion": 1.0, "range": 0.4}, 0.0),
-    ],
-)
+@pytest.mark.parametrize(("interaction", "length"), [*zip(LAWS, (1.0, 0.0) * 2, strict=True)])
 def test_stiffness_is_the_slope_of_the_path(interaction: dict[str, Any], length: float) -> None:
     """dF/dδ with contact fixed and zone following is that of neighbouring steps, to 1e-3."""
     depths = [0.5, 0.3001, 0.3, 0.2999]
@@ -388,14 +356,14 @@ def test_prescribed_radii_are_those_of_the_closed_theory() -> None:
 
 def test_prescribed_volume_of_the_gap_where_it_sticks() -> None:
     """A search in depth meets the volume."""
-    heights, volumes = rough_heights(), [5e-3]
+    rough, volumes = rough_heights(), [5e-3]
     path = solved(
-        list(heights.shape),
+        rough.shape,
         0.0,
         volumes,
-        size=[side / 40 for side in heights.shape],
+        size=[side / 40 for side in rough.shape],
         boundary="periodic",
-        indenter={"type": "heights", "values": heights.tolist(), "unit": 1.0},
+        indenter=heights(rough),
         interaction={"type": "linear", "work_of_adhesion": 3e-4, "range": 0.01},
         quantity="gap_volume",
     )
@@ -421,12 +389,12 @@ def rough_heights(seed: int = 5) -> np.ndarray[Any, np.dtype[np.float64]]:
     spectrum = np.zeros((40, 32), complex)
     spectrum[:4, :4] = draw.normal(size=(4, 4)) + 1j * draw.normal(size=(4, 4))
     spectrum[0, 0] = 0.0
-    heights = np.fft.ifft2(spectrum).real
-    return 0.05 * heights / np.ptp(heights)
+    rough = np.fft.ifft2(spectrum).real
+    return 0.05 * rough / np.ptp(rough)
 
 
 def rough_step(
-    heights: np.ndarray[Any, np.dtype[np.float64]],
+    rough: np.ndarray[Any, np.dtype[np.float64]],
     boundary: str = "free",
     length: float = 1.0,
     modulus: float = 1.0,
@@ -437,15 +405,14 @@ def rough_step(
     law: dict[str, Any] = {"type": interaction, "work_of_adhesion": 3e-4 * length * modulus}
     if interaction != "jkr":
         law["range"] = 0.01 * length
-    kernel = {"type": "tensed_membrane", "reduced_modulus": modulus}
     return solved(
-        list(heights.shape),
+        rough.shape,
         0.0,
         list(length * depth),
-        size=[side / 40 * length for side in heights.shape],
+        size=[side / 40 * length for side in rough.shape],
         boundary=boundary,
-        kernel={**kernel, "tension": 0.05 * modulus * length},
-        indenter={"type": "heights", "values": (heights * length).tolist(), "unit": 1.0},
+        kernel=tensed(modulus, 0.05 * modulus * length),
+        indenter=heights(rough * length),
         interaction=law,
     ).isel(step=-1)
 
@@ -453,21 +420,21 @@ def rough_step(
 @pytest.mark.parametrize("interaction", ["jkr", "exponential"])
 def test_turned_and_mirrored_problems_have_turned_and_mirrored_tractions(interaction: str) -> None:
     """A mirror image, and a quarter turn."""
-    heights = rough_heights()
-    expected = rough_step(heights, interaction=interaction)["pressure"].values
+    rough = rough_heights()
+    expected = rough_step(rough, interaction=interaction)["pressure"].values
     assert expected.min() < 0 < expected.max()
-    mirrored = rough_step(heights[::-1], interaction=interaction)["pressure"].values[::-1]
-    turned = np.rot90(rough_step(np.rot90(heights), interaction=interaction)["pressure"], -1)
+    mirrored = rough_step(rough[::-1], interaction=interaction)["pressure"].values[::-1]
+    turned = np.rot90(rough_step(np.rot90(rough), interaction=interaction)["pressure"], -1)
     for field in (mirrored, turned):
         np.testing.assert_allclose(field, expected, atol=1e-5 * expected.max())
 
 
 def test_a_periodic_problem_can_be_shifted() -> None:
     """Heights moved across the boundary move the tractions, and the zone, with them."""
-    heights = rough_heights()
-    expected = rough_step(heights, "periodic")["pressure"].values
+    rough = rough_heights()
+    expected = rough_step(rough, "periodic")["pressure"].values
     assert expected.min() < 0 < expected.max()
-    shifted = rough_step(np.roll(heights, (23, 17), (0, 1)), "periodic")["pressure"].values
+    shifted = rough_step(np.roll(rough, (23, 17), (0, 1)), "periodic")["pressure"].values
     np.testing.assert_allclose(
         np.roll(shifted, (-23, -17), (0, 1)), expected, atol=1e-5 * expected.max()
     )
@@ -479,10 +446,10 @@ def test_a_periodic_problem_can_be_shifted() -> None:
 )
 def test_lengths_and_moduli_can_be_scaled(interaction: str, length: float, modulus: float) -> None:
     """Tractions scale with the modulus if w scales with modulus times length."""
-    heights = rough_heights()
-    expected = rough_step(heights, interaction=interaction)
+    rough = rough_heights()
+    expected = rough_step(rough, interaction=interaction)
     assert expected["pressure"].min() < 0 < expected["wall_pressure"].max()
-    scaled = rough_step(heights, "free", length, modulus, interaction)
+    scaled = rough_step(rough, "free", length, modulus, interaction)
     highest = float(expected["pressure"].max())
     np.testing.assert_allclose(
         scaled["pressure"].values / modulus, expected["pressure"].values, atol=1e-5 * highest
@@ -496,10 +463,7 @@ def test_lengths_and_moduli_can_be_scaled(interaction: str, length: float, modul
 @pytest.mark.slow
 @pytest.mark.parametrize("first", range(0, 30, 6))
 def test_statuses_of_random_problems_are_honest(first: int) -> None:
-    """A step that says converged is a stationary point; most are where a dense descent ends.
-
-    tests/benchmarks/adhesion_random.py has 300 problems.
-    """
+    """A step that says converged is a stationary point; most are where a dense descent ends."""
     rows = [row for seed in range(first, first + 4) for row in verdicts(seed)]
     assert [row.description for row in rows if not row.honest] == []
     assert all(row.settled for row in rows)

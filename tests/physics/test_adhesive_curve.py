@@ -15,6 +15,7 @@ from pellicle_plugins.analytic.axisymmetric import indent
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from tests.layered_contact import LayeredContact, layered_contact
+from tests.physics.tables import steps, tensed
 
 # The equations are linear, so that lengths and loads may be convenient numbers.
 pytestmark = pytest.mark.filterwarnings("ignore:.*are those of the equations")
@@ -34,20 +35,14 @@ def solved_curve(
     work: float = 1.0,
 ) -> AdhesiveCurve:
     """Return the adhesive curve of a path that is solved between two depths."""
-    result = pl.run(
-        {
-            "grid": {"points": points, "size": size},
-            "kernel": kernel,
-            "indenter": indenter,
-            "loading": {
-                "depth": {"start": depths[0], "stop": depths[1], "num": STEPS},
-                "stiffness": True,
-            },
-        },
-        progress=False,
+    path = {"start": depths[0], "stop": depths[1], "num": STEPS}
+    solved = steps(
+        grid={"points": points, "size": size},
+        kernel=kernel,
+        indenter=indenter,
+        loading={"depth": path, "stiffness": True},
     )
-    assert result.converged
-    return curve_of(result.dataset, work)
+    return curve_of(solved, work)
 
 
 def force_at(curve: AdhesiveCurve, depth: float) -> float:
@@ -67,7 +62,7 @@ def test_under_tension_it_is_the_closed_theory(length: float, size: float) -> No
     depths = tuple(
         indent(PARABOLOID, 1.0, length / 2, contact_radius=a).depth for a in (lowest, highest)
     )
-    kernel = {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": length / 2}
+    kernel = tensed(1.0, length / 2)
     curve = solved_curve(kernel, PARABOLOID, (depths[0], depths[1]), size, 128)
     for contact in (theory.equilibrium(1.5), theory.at_force(0.0)):
         assert abs(force_at(curve, float(contact.depth)) - contact.force) < 0.01 * FORCE
@@ -122,7 +117,6 @@ def test_on_a_cone_it_is_the_closed_theory() -> None:
     pull_off = theory.instability()
     a = float(pull_off.contact_radius)
     low, high = (indent(cone, 1.0, 0.25, contact_radius=a * share).depth for share in (0.4, 1.6))
-    kernel = {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": 0.25}
-    curve = solved_curve(kernel, cone, (low, high), 4 * a, 128, 0.1)
+    curve = solved_curve(tensed(1.0, 0.25), cone, (low, high), 4 * a, 128, 0.1)
     assert curve.instability().force == pytest.approx(pull_off.force, rel=0.01)
     assert curve.instability().contact_radius == pytest.approx(a, rel=0.01)

@@ -76,6 +76,17 @@ def test_jumps_where_the_last_state_does() -> None:
     np.testing.assert_allclose(two["force"], one["force"], atol=1e-4 * FORCE)
 
 
+def retraction_to(depth: float, interaction: dict[str, Any]) -> pl.Run:
+    """Return a step of a paraboloid that sticks."""
+    return pl.Run(
+        grid={"points": 64, "size": 5.0},
+        kernel=half_space(0.0),
+        indenter=PARABOLOID,
+        interaction=interaction,
+        loading={"depth": [depth]},
+    )
+
+
 @cache
 def case() -> Case:
     """Return two steps of a retraction, and the next."""
@@ -109,13 +120,7 @@ class Case:
     """Two steps of a path at depths below 0, of which the first may be replaced by another."""
 
     def __init__(self, first: float, last: float, following: float) -> None:
-        self.run = pl.Run(
-            grid={"points": 64, "size": 5.0},
-            kernel=half_space(0.0),
-            indenter=PARABOLOID,
-            interaction=JKR,
-            loading={"depth": [following]},
-        )
+        self.run = retraction_to(following, JKR)
         self.solver = ActiveSet(tolerance=1e-8)
         self.setting = compose(self.run)
         self.problem = self.setting.problem(Depth(following))
@@ -191,14 +196,8 @@ def test_nothing_is_extrapolated_across_a_jump_or_by_a_law_of_its_own_range() ->
     )
     far = start_of(near.problem, last.state, (first._replace(state=moved), last))
     assert not isinstance(far, Start)
-    long_ranged = pl.Run(
-        grid={"points": 64, "size": 5.0},
-        kernel=half_space(0.0),
-        indenter=PARABOLOID,
-        interaction={"type": "dugdale", "work_of_adhesion": 1.0, "strength": 1.0},
-        loading={"depth": [-1.1]},
-    )
-    problem = compose(long_ranged).problem(Depth(-1.1))
+    dugdale = {"type": "dugdale", "work_of_adhesion": 1.0, "strength": 1.0}
+    problem = compose(retraction_to(-1.1, dugdale)).problem(Depth(-1.1))
     assert not isinstance(start_of(problem, last.state, near.points), Start)
 
 

@@ -10,9 +10,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-import pellicle as pl
 from pellicle_plugins.analytic.axisymmetric import indent
 from pellicle_plugins.indenters.paraboloid import Paraboloid
+from tests.physics.tables import paraboloid, tensed
+from tests.physics.tables import step as solved
 
 POINTS = np.array([16, 32, 64, 128])
 A = 0.1
@@ -28,15 +29,15 @@ def test_force_is_second_order_and_area_first(s_over_a: float, solver: str) -> N
     for points in POINTS:
         squares = np.zeros(3)
         for size in np.linspace(0.25, 0.30, 8):
-            run = pl.Run(
+            step = solved(
+                solver,
+                1e-7,
                 grid={"points": points, "size": size},
-                kernel={"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": tension},
-                indenter={"type": "paraboloid", "radius": 1.0},
+                kernel=tensed(1.0, tension),
+                indenter=paraboloid(),
                 loading={"depth": true.depth},
-                solver={"type": solver, "tolerance": 1e-7},
                 corrections=[{"type": "yastrebov"}],
             )
-            step = pl.run(run, progress=False).dataset.isel(step=0)
             squares += [
                 (float(step["force"]) / true.force - 1) ** 2,
                 (float(step["contact_area"]) / (np.pi * A**2) - 1) ** 2,

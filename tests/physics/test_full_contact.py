@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import pellicle as pl
+from tests.physics.tables import heights, tensed
+from tests.physics.tables import step as solved
 
 
 @pytest.mark.parametrize("tension", [0.0, 0.05, 3.0])
@@ -22,15 +24,14 @@ def test_the_pressure_amplitude_of_a_sine_is_exact(
     wave = np.cos(qx * x + qy * y)
     q = np.hypot(qx, qy)
     expected = modulus / 2 * (q + 2 * tension / modulus * q**2) * amplitude
-    run = pl.Run(
+    step = solved(
+        solver,
+        1e-12,
         grid=grid,
-        kernel={"type": "tensed_membrane", "reduced_modulus": modulus, "tension": tension},
-        indenter={"type": "heights", "values": amplitude * wave, "unit": 1.0},
+        kernel=tensed(modulus, tension),
+        indenter=heights(amplitude * wave),
         loading={"mean_pressure": 1.5 * expected},
-        solver={"type": solver, "tolerance": 1e-12},
     )
-    step = pl.run(run, progress=False).dataset.isel(step=0)
-    assert step["converged"]
     assert float(step["contact_fraction"]) == 1.0
     assert 2 * np.mean(step["pressure"].values * wave) == pytest.approx(expected, rel=1e-10)
     assert float(step["mean_pressure"]) == pytest.approx(1.5 * expected, rel=1e-12)

@@ -9,21 +9,29 @@ import pytest
 import xarray as xr
 
 import pellicle as pl
+from tests.physics.tables import heights, step, steps, tensed
 
 TOLERANCE = 1e-9
 
 
 def _step(run: dict[str, Any], solver: str) -> xr.Dataset:
-    chosen = {"type": solver, "tolerance": TOLERANCE}
-    return pl.run(pl.Run(**run, solver=chosen), progress=False).dataset.isel(step=0)
+    return step(solver, TOLERANCE, **run)
 
 
-def _quadric(radius_x: float, radius_y: float, boundary: str = "free") -> dict[str, Any]:
+def _quadric(
+    radius_x: float,
+    radius_y: float,
+    boundary: str = "free",
+    length: float = 1.0,
+    modulus: float = 1.0,
+) -> dict[str, Any]:
+    """Return the run of a quadric, with lengths and moduli in given units."""
+    radii = {"radius_x": radius_x * length, "radius_y": radius_y * length}
     return {
-        "grid": {"points": 48, "size": 0.4, "boundary": boundary},
-        "kernel": {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": 0.02},
-        "indenter": {"type": "quadric", "radius_x": radius_x, "radius_y": radius_y},
-        "loading": {"force": 2e-4},
+        "grid": {"points": 48, "size": 0.4 * length, "boundary": boundary},
+        "kernel": tensed(modulus, 0.02 * modulus * length),
+        "indenter": {"type": "quadric", **radii},
+        "loading": {"force": 2e-4 * modulus * length**2},
     }
 
 
@@ -45,40 +53,21 @@ def test_mirror_images_have_mirrored_pressures(solver: str) -> None:
     grid = {"points": [40, 32], "size": [1.0, 0.8]}
     fine = pl.Grid(**grid)
     rough = pl.indenter("self_affine", rms_height=0.01, hurst=0.8, cutoff_wavelength=0.1, seed=3)
-    heights = rough.profile(*fine.coordinates())
+    profile = rough.profile(*fine.coordinates())
     pressures = []
     for turn in (np.s_[:, :], np.s_[::-1, :], np.s_[:, ::-1]):
-        step = _step(
-            {
-                "grid": grid,
-                "kernel": {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": 0.01},
-                "indenter": {"type": "heights", "values": heights[turn], "unit": 1.0},
-                "loading": {"depth": 0.02},
-            },
-            solver,
-        )
-        pressures.append(step["pressure"].values[turn])
-    for mirrored in pressures[1:]:
-        np.testing.assert_allclose(mirrored, pressures[0], atol=1e-6 * pressures[0].max())
+        tables = {"grid": grid, "kernel": tensed(1.0, 0.01), "loading": {"depth": 0.02}}
+        mirrored = _step({**tables, "indenter": heights(profile[turn])}, solver)
+        pressures.append(mirrored["pressure"].values[turn])
+    for pressure in pressures[1:]:
+        np.testing.assert_allclose(pressure, pressures[0], atol=1e-6 * pressures[0].max())
 
 
 def test_lengths_and_moduli_can_be_scaled(solver: str) -> None:
     """Lengths × 1e-6 and moduli × 1e4 leave the dimensionless result to the solver tolerance."""
     length, modulus = 1e-6, 1e4
     one = _step(_quadric(1.0, 2.0), solver)
-    scaled = _step(
-        {
-            "grid": {"points": 48, "size": 0.4 * length},
-            "kernel": {
-                "type": "tensed_membrane",
-                "reduced_modulus": modulus,
-                "tension": 0.02 * modulus * length,
-            },
-            "indenter": {"type": "quadric", "radius_x": length, "radius_y": 2 * length},
-            "loading": {"force": 2e-4 * modulus * length**2},
-        },
-        solver,
-    )
+    scaled = _step(_quadric(1.0, 2.0, length=length, modulus=modulus), solver)
     assert float(scaled["depth"]) / length == pytest.approx(float(one["depth"]), rel=1e-8)
     assert float(scaled["contact_area"]) / length**2 == pytest.approx(float(one["contact_area"]))
     np.testing.assert_allclose(
@@ -120,7 +109,7 @@ def test_a_wide_periodic_cell_comes_near_the_free_boundary() -> None:
         run = _quadric(1.0, 1.0, boundary)
         run["grid"] = {"points": 32 * width, "size": 0.4 * width, "boundary": boundary}
         run["loading"] = {"force": [2e-4, 2.4e-4]}
-        depth = pl.run(pl.Run(**run), progress=False).dataset["depth"].values
+        depth = steps(**run)["depth"].values
         stiffness[boundary, width] = 4e-5 / (depth[1] - depth[0])
     free = stiffness["free", 1]
     near, far = stiffness["periodic", 1] / free - 1, stiffness["periodic", 4] / free - 1

@@ -10,22 +10,20 @@ import pytest
 
 import pellicle as pl
 from tests.physics.punch_on_layers import punch_factor
+from tests.physics.tables import heights, paraboloid, step
 from tests.plugins.kernels.elastic_stack import HalfSpace, Layer, stack_compliance
 
 YOUNGS, LENGTH = 1e4, 1e-3
-GEL = Layer(YOUNGS, 0.5, LENGTH / 2)
+GEL, STIFFER = Layer(YOUNGS, 0.5, LENGTH / 2), Layer(10 * YOUNGS, 0.3, LENGTH / 2)
 STACKS: dict[str, tuple[list[Layer], HalfSpace | None]] = {
     "gel on a stiffer layer on a rigid base": ([GEL, Layer(20 * YOUNGS, 0.3, LENGTH / 2)], None),
     "gel on a stiffer layer on a half-space": (
         [GEL, Layer(20 * YOUNGS, 0.3, LENGTH / 2)],
         HalfSpace(3 * YOUNGS, 0.3),
     ),
-    "stiffer layer on a gel on a rigid base": (
-        [Layer(10 * YOUNGS, 0.3, LENGTH / 2), GEL],
-        None,
-    ),
+    "stiffer layer on a gel on a rigid base": ([STIFFER, GEL], None),
     "stiffer layer on a soft one on a rigid base": (
-        [Layer(10 * YOUNGS, 0.3, LENGTH / 2), Layer(YOUNGS, 0.45, LENGTH / 2)],
+        [STIFFER, Layer(YOUNGS, 0.45, LENGTH / 2)],
         None,
     ),
 }
@@ -38,13 +36,6 @@ def kernel(layers: Sequence[Layer], substrate: HalfSpace | None = None) -> dict[
         "layers": [layer._asdict() for layer in layers],
         "substrate": "rigid" if substrate is None else substrate._asdict(),
     }
-
-
-def solve(**tables: Any) -> Any:
-    """Return the only step of a run, which has to converge."""
-    step = pl.run(pl.Run(**tables), progress=False).dataset.isel(step=0)
-    assert step["converged"]
-    return step
 
 
 @pytest.mark.parametrize(
@@ -78,15 +69,15 @@ def test_flat_punch_on_two_layers(name: str) -> None:
     power = 1 + np.log(wider / expected) / np.log(1.01)
     factors = []
     for points in (64, 128):
-        step = solve(
+        pressed = step(
             grid={"points": points, "size": 2.3 * LENGTH},
             kernel=kernel(layers, substrate),
             indenter={"type": "flat_punch", "radius": LENGTH},
             loading={"depth": depth},
         )
-        radius = np.sqrt(float(step["contact_area"]) / np.pi)
+        radius = float(pressed["contact_radius"])
         assert radius == pytest.approx(LENGTH, rel=0.01)
-        force = float(step["force"]) * (LENGTH / radius) ** power
+        force = float(pressed["force"]) * (LENGTH / radius) ** power
         factors.append(force / (2 * modulus * LENGTH * depth))
     assert abs(factors[1] / expected - 1) < 0.7 * abs(factors[0] / expected - 1) < 0.02
     assert 2 * factors[1] - factors[0] == pytest.approx(expected, rel=5e-4)
@@ -99,23 +90,17 @@ def test_the_displacement_on_one_layer_is_that_of_its_closed_form(boundary: str,
     grid = pl.Grid(points=[32, 24], size=LENGTH, boundary=boundary)
     pressure = np.random.default_rng(0).uniform(size=grid.shape)
     layer, solid = Layer(YOUNGS, nu, LENGTH / 5), HalfSpace(YOUNGS, nu)
-    for table, known in (
-        (kernel([layer]), {"type": "bonded_layer", **layer._asdict()}),
-        (kernel([layer, layer], solid), {"type": "half_space", **solid._asdict()}),
+    for stack, known in (
+        (kernel([layer]), pl.kernel("bonded_layer", **layer._asdict())),
+        (kernel([layer, layer], solid), pl.kernel("half_space", **solid._asdict())),
     ):
         ours, theirs = (
-            pl.displacement(pressure, kernel=pl.Run(**_problem(k, grid)).kernel, grid=grid)
-            for k in (table, known)
+            pl.displacement(pressure, kernel=k, grid=grid)
+            for k in (pl.kernel(stack.pop("type"), **stack), known)
         )
         # On a free boundary a table stands for the closed form of the half-space.
         rtol = 1e-10 if boundary == "free" else 1e-12
         np.testing.assert_allclose(ours, theirs, rtol=rtol, atol=rtol * np.abs(theirs).max())
-
-
-def _problem(table: dict[str, Any], grid: pl.Grid) -> dict[str, Any]:
-    """Return a run on a kernel, whatever its indenter."""
-    indenter = {"type": "paraboloid", "radius": LENGTH}
-    return {"grid": grid, "kernel": table, "indenter": indenter, "loading": {"depth": 1e-6}}
 
 
 @pytest.mark.parametrize("name", STACKS)
@@ -123,19 +108,20 @@ def test_full_contact_of_a_sine(name: str, solver: str) -> None:
     """On a periodic boundary the amplitude of the pressure is that of the heights over G(q)."""
     layers, substrate = STACKS[name]
     points, waves, amplitude = 32, 2, LENGTH / 1000
-    heights = amplitude * np.cos(2 * np.pi * waves * np.arange(points) / points)
+    wave = amplitude * np.cos(2 * np.pi * waves * np.arange(points) / points)
     q = 2 * np.pi * waves / LENGTH
     expected = amplitude / stack_compliance(layers, substrate, q)
-    step = solve(
+    pressed = step(
+        solver,
+        1e-10,
         grid={"points": [points, 1], "size": LENGTH, "boundary": "periodic"},
         kernel=kernel(layers, substrate),
-        indenter={"type": "heights", "values": heights[:, None], "unit": 1.0},
+        indenter=heights(wave[:, None]),
         loading={"mean_pressure": 2 * expected},
-        solver={"type": solver, "tolerance": 1e-10},
     )
-    assert step["contact"].all()
-    pressure = step["pressure"].values[:, 0]
-    np.testing.assert_allclose(pressure / expected, 2 + heights / amplitude, atol=1e-7)
+    assert pressed["contact"].all()
+    pressure = pressed["pressure"].values[:, 0]
+    np.testing.assert_allclose(pressure / expected, 2 + wave / amplitude, atol=1e-7)
 
 
 @pytest.mark.parametrize("boundary", ["free", "periodic"])
@@ -147,10 +133,10 @@ def test_the_number_of_applications_is_flat(boundary: str) -> None:
         Layer(0.1 * YOUNGS, 0.45, 0.2 * LENGTH),
     ]
     for points in (64, 256):
-        step = solve(
+        pressed = step(
             grid={"points": points, "size": LENGTH, "boundary": boundary},
             kernel=kernel(layers, HalfSpace(1e6 * YOUNGS, 0.2)),
-            indenter={"type": "paraboloid", "radius": LENGTH},
+            indenter=paraboloid(LENGTH),
             loading={"depth": 0.02 * LENGTH},
         )
-        assert step["operator_applications"] <= 25
+        assert pressed["operator_applications"] <= 25

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import pellicle as pl
+from tests.physics.tables import half_space, paraboloid
 
 RADIUS, MODULUS = 1e-3, 1e4
 POINTS, SIZE = 32, 5e-4
-CELL = SIZE / POINTS
 COARSE = "too coarse for this contact"
 
 
@@ -20,8 +20,8 @@ def pressed(points: Any = POINTS, **loading: Any) -> pl.Result:
     return pl.run(
         {
             "grid": {"points": points, "size": SIZE},
-            "kernel": {"type": "half_space", "reduced_modulus": MODULUS},
-            "indenter": {"type": "paraboloid", "radius": RADIUS},
+            "kernel": half_space(MODULUS),
+            "indenter": paraboloid(RADIUS),
             "loading": loading,
         },
         progress=False,

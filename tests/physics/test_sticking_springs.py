@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pytest
 
-import pellicle as pl
 from pellicle.arrays import Array
+from tests.adhesive_paths import solved
+from tests.physics.tables import heights
 
 # A rough punch has few cells in its zone of attraction.
 pytestmark = pytest.mark.filterwarnings("ignore::pellicle.errors.ConvergenceWarning")
@@ -52,30 +54,22 @@ def _one_by_one(
         {"type": "winkler", "foundation": 1.0},
         # p = M u/h with M = 1.225 E*, on cells five times as wide as the layer is thick.
         {
-            "type": "bonded_layer",
-            "reduced_modulus": 0.01 / 1.225,
-            "poissons_ratio": 0.3,
+            "type": "bonded_layer", "reduced_modulus": 0.01 / 1.225, "poissons_ratio": 0.3,
             "thickness": 0.01,
         },
     ],
     ids=["springs", "layer"],
-)
+)  # fmt: skip
 def test_springs_close_and_open_one_by_one(
-    kernel: dict[str, object], turn: tuple[slice, slice], work: float, reach: float
+    kernel: dict[str, Any], turn: tuple[slice, slice], work: float, reach: float
 ) -> None:
     """Cells jump in and off where their own spring does, there and back, in mirror images too."""
-    heights = _rough()
-    steps = pl.run(
-        {
-            "grid": {"points": POINTS, "size": 1.0},
-            "kernel": kernel,
-            "indenter": {"type": "heights", "values": heights[turn], "unit": 1.0},
-            "interaction": {"type": "linear", "work_of_adhesion": work, "range": reach},
-            "loading": {"depth": PATH},
-        },
-        progress=False,
-    ).dataset
-    forces, cells = _one_by_one(heights, work, reach, PATH)
+    rough = _rough()
+    law = {"type": "linear", "work_of_adhesion": work, "range": reach}
+    steps = solved(
+        POINTS, 0.0, PATH, size=1.0, kernel=kernel, indenter=heights(rough[turn]), interaction=law
+    )
+    forces, cells = _one_by_one(rough, work, reach, PATH)
     if kernel["type"] == "winkler":
         assert steps["contact"].values.sum((1, 2)).tolist() == cells
         np.testing.assert_allclose(steps["force"], forces, atol=1e-7 * np.abs(forces).max())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,8 +9,8 @@ import pytest
 
 import pellicle as pl
 from pellicle.results.path import path_variables
-from pellicle.runs import steps
-from tests.adhesive_paths import FORCE, pulled_off, relaxing
+from tests.adhesive_paths import FORCE, PARABOLOID, pulled_off, relaxing, solved
+from tests.physics.tables import coated, half_space, heights
 
 # The units E* = R = w = 1 have slopes beyond the theory.
 pytestmark = pytest.mark.filterwarnings("ignore::pellicle.errors.ConvergenceWarning")
@@ -24,7 +23,7 @@ def configuration(**changes: Any) -> dict[str, Any]:
     return {
         "grid": {"points": 24, "size": 6.0, "boundary": "free"},
         "kernel": relaxing(),
-        "indenter": {"type": "paraboloid", "radius": 1.0},
+        "indenter": PARABOLOID,
         "interaction": LINEAR,
         "loading": {
             "depth": [0.2, 0.4, 0.4, 0.2, -0.2, -0.6, -0.9],
@@ -42,16 +41,11 @@ def test_springs_that_relax_open_as_the_law_softens() -> None:
     times = np.array([0.0, 1.0, 1.5, 1.5, 4.0])
     law = {"type": "linear", "work_of_adhesion": 0.6, "strength": 1.2}
     springs = {"type": "winkler", "foundation": stiffness}
-    data = pl.run(
-        configuration(
-            grid={"points": 8, "size": 1.0, "boundary": "periodic"},
-            kernel=relaxing(share, time, springs),
-            indenter={"type": "heights", "values": np.zeros((8, 8)), "unit": 1.0},
-            interaction=law,
-            loading={"depth": depth, "time": times},
-        ),
-        progress=False,
-    ).dataset
+    data = solved(
+        8, 0.0, depth.tolist(), size=1.0, boundary="periodic", time=times, interaction=law,
+        kernel=relaxing(share, time, springs),
+        indenter=heights(np.zeros((8, 8))),
+    )  # fmt: skip
     slope = 1.2**2 / (2 * 0.6)
     u = carried = 0.0
     for index, (z, t) in enumerate(zip(depth, times, strict=True)):
@@ -92,12 +86,11 @@ def test_limits_are_elastic(law: dict[str, Any], time: float, share: float) -> N
         # The drop at its range is spread as the instantaneous solid requires.
         run["interaction"] = {**LINEAR, "strength": 1.0}
     slow = pl.run(run | {"kernel": relaxing(time=time)}, progress=False).dataset
-    elastic = {"type": "half_space", "reduced_modulus": 5.0 * share}
-    depth = run["loading"]["depth"]
-    other = pl.run(run | {"kernel": elastic, "loading": {"depth": depth}}, progress=False).dataset
+    other = {"kernel": half_space(5.0 * share), "loading": {"depth": run["loading"]["depth"]}}
+    elastic = pl.run(run | other, progress=False).dataset
     after = slice(1, None) if share < 1 else slice(None)
     for name in ("force", "contact_area", "zone_area"):
-        np.testing.assert_allclose(slow[name][after], other[name][after], rtol=1e-7)
+        np.testing.assert_allclose(slow[name][after], elastic[name][after], rtol=1e-7)
 
 
 @pytest.mark.slow
@@ -107,32 +100,6 @@ def test_pull_off_at_a_speed_depends_on_the_range_and_not_on_the_cells() -> None
     for coarse, fine in pulls:
         assert coarse == pytest.approx(fine, rel=0.02)
     assert pulls[1][1] < 2 * pulls[0][1] < -3 * FORCE
-
-
-def test_killed_run_goes_on_with_wall_zone_and_memory(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """After four of seven steps, on the way back, bit by bit as one that was not killed."""
-    run = configuration()
-    whole = pl.run(run, progress=False, directory=tmp_path / "whole").dataset
-    assert whole["jumped"].values.tolist()[0]
-    assert (whole["zone_area"][3:] > 0).all()
-    solve_step, solved_steps = steps.solve_step, 0
-
-    def killed(*arguments: Any) -> Any:
-        nonlocal solved_steps
-        if solved_steps == 4:
-            raise KeyboardInterrupt
-        solved_steps += 1
-        return solve_step(*arguments)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(steps, "solve_step", killed)
-        with pytest.raises(KeyboardInterrupt):
-            pl.run(run, directory=tmp_path / "killed", progress=False)
-    resumed = pl.run(run, directory=tmp_path / "killed", progress=False).dataset
-    for name in set(whole.data_vars) - {"wall_time"}:
-        np.testing.assert_array_equal(resumed[name], whole[name], err_msg=name)
 
 
 def test_energy_that_the_solid_stores_is_not_known() -> None:
@@ -153,7 +120,7 @@ def test_jkr_needs_a_tension_that_the_cells_resolve(cells: float, message: str) 
     tension = 0.5 * 5.0 * cells * 6.0 / 24
     changes = configuration(
         grid={"points": 24, "size": 6.0, "boundary": "periodic"},
-        kernel={"type": "coated", "tension": tension, "substrate": relaxing()},
+        kernel=coated(relaxing(), tension),
         interaction={"type": "jkr", "work_of_adhesion": 1.0},
     )
     if not message:

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import pellicle as pl
+from tests.physics.tables import paraboloid, tensed
+from tests.physics.tables import step as solved
 
 DATA = Path(__file__).parents[1] / "data"
 CONTACT_RADIUS = 0.1
@@ -25,20 +27,14 @@ def test_force_area_and_centre_pressure_agree_with_the_reference(
 ) -> None:
     """At the reference depth, N = 256: force within 1e-3, corrected area and p(0) within 5e-3."""
     a = CONTACT_RADIUS
-    run = pl.Run(
+    step = solved(
+        solver,
         grid={"points": 256, "size": 2.6 * a},
-        kernel={
-            "type": "tensed_membrane",
-            "reduced_modulus": 1.0,
-            "tension": row["s_over_a"] * a / 2,
-        },
-        indenter={"type": "paraboloid", "radius": 1.0},
+        kernel=tensed(1.0, row["s_over_a"] * a / 2),
+        indenter=paraboloid(),
         loading={"depth": row["delta_over_deltaH"] * a**2},
-        solver={"type": solver},
         corrections=[{"type": "yastrebov"}],
     )
-    step = pl.run(run, progress=False).dataset.isel(step=0)
-    assert step["converged"]
     assert float(step["force"]) == pytest.approx(row["P_over_PH"] * 4 / 3 * a**3, rel=1e-3)
     assert float(step["contact_area_yastrebov"]) == pytest.approx(np.pi * a**2, rel=5e-3)
     centre = step["pressure"].values[127:129, 127:129].mean()
@@ -71,15 +67,15 @@ def test_the_published_figure_3(solver: str) -> None:
     true = np.pi * indent(Paraboloid(radius=1e-3), 10e3, 1.0, depth=0.05e-3).contact_radius ** 2
     errors = {}
     for points in (32, 64, 128, 272):
-        run = pl.Run(
+        step = solved(
+            solver,
+            1e-6,
             grid={"points": points, "size": 2 * np.sqrt(1e-3 * 0.05e-3)},
-            kernel={"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "1 N/m"},
-            indenter={"type": "paraboloid", "radius": "1 mm"},
-            loading={"depth": "0.05 mm"},
-            solver={"type": solver, "tolerance": 1e-6},
+            kernel=tensed(1e4, 1.0),
+            indenter=paraboloid(1e-3),
+            loading={"depth": 5e-5},
             corrections=[{"type": "yastrebov"}],
         )
-        step = pl.run(run, progress=False).dataset.isel(step=0)
         counted = float(step["contact_area"]) / true - 1
         corrected = float(step["contact_area_yastrebov"]) / true - 1
         assert abs(corrected) < abs(counted)

@@ -2,64 +2,27 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import pellicle as pl
+from tests.physics.tables import coated, half_space, paraboloid, relaxing, steps
 
 MODULUS, SHARE, TIME = 1e4, 0.75, 2.0
-SLS = [{"fraction": SHARE, "time": TIME}]
 JUMP = {"to": "1 um", "time": 0, "num": 1}
-TOML = f"""
-title = "creep"
-outputs = []
-[grid]
-points = 12
-size = "0.5 mm"
-[kernel]
-type = "viscoelastic"
-solid = {{ type = "half_space", reduced_modulus = "10 kPa" }}
-relaxation = [ {{ fraction = {SHARE}, time = "{TIME} s" }} ]
-[indenter]
-type = "flat_punch"
-radius = "0.2 mm"
-[loading]
-force = [ {{ to = "1 uN", time = "0 s", num = 1 }}, {{ hold = "8 s", num = 24 }} ]
-[solver]
-type = "active_set"
-tolerance = 1e-10
-"""
 
 
 def punch(**loading: Any) -> Any:
     """Return the dataset of a flat punch on a half-space that relaxes."""
-    solid = {"type": "half_space", "reduced_modulus": MODULUS}
-    result = pl.run(
-        {
-            "grid": {"points": 12, "size": "0.5 mm"},
-            "kernel": {"type": "viscoelastic", "solid": solid, "relaxation": SLS},
-            "indenter": {"type": "flat_punch", "radius": "0.2 mm"},
-            "loading": loading,
-            "solver": {"type": "active_set", "tolerance": 1e-10},
-        },
-        progress=False,
+    return steps(
+        tolerance=1e-10,
+        grid={"points": 12, "size": "0.5 mm"},
+        kernel=relaxing(half_space(MODULUS), SHARE, TIME),
+        indenter={"type": "flat_punch", "radius": "0.2 mm"},
+        loading=loading,
     )
-    assert result.converged
-    return result.dataset
-
-
-def test_creep_from_a_file(tmp_path: Path) -> None:
-    """Under a constant force δ(t)/δ(0) = 4 − 3 e^(−t/4τ), the creep compliance, to 0.1 %."""
-    file = tmp_path / "creep.toml"
-    file.write_text(TOML, encoding="utf-8")
-    data = pl.run(file, progress=False).dataset
-    depth = data["depth"].values
-    rest = 1 - SHARE
-    creep = (1 - SHARE * np.exp(-rest * data["time"].values / TIME)) / rest
-    np.testing.assert_allclose(depth / depth[0], creep, rtol=1e-3)
 
 
 @pytest.mark.parametrize("spring", [0.5, 20.0])
@@ -98,23 +61,6 @@ def test_triangle_is_a_loop() -> None:
     assert work > 0.1 * force.max() * 1e-6
 
 
-def test_sphere_held_at_a_depth_relaxes_as_the_modulus() -> None:
-    """The contact of a sphere that is pressed in at once stays as it is, and F falls as E(t)."""
-    solid = {"type": "half_space", "reduced_modulus": MODULUS}
-    data = pl.run(
-        {
-            "grid": {"points": 32, "size": "0.3 mm"},
-            "kernel": {"type": "viscoelastic", "solid": solid, "relaxation": SLS},
-            "indenter": {"type": "sphere", "radius": "1 mm"},
-            "loading": {"depth": [{**JUMP, "to": "10 um"}, {"hold": "20 s", "num": 3}]},
-        },
-        progress=False,
-    ).dataset
-    assert len(np.unique(data["contact_area"])) == 1
-    modulus = 1 - SHARE + SHARE * np.exp(-data["time"].values / TIME)
-    np.testing.assert_allclose(data["force"] / data["force"][0], modulus, rtol=1e-6)
-
-
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:step 4 and 2 more. converged, but the domain of 800 µm")
 @pytest.mark.parametrize(("boundary", "size"), [("periodic", 4e-4), ("free", 8e-4)])
@@ -127,13 +73,11 @@ def test_plateau_is_tension_alone(boundary: str, size: float) -> None:
     small for the depth on a liquid, and is said to be.
     """
     tension, radius, contact, points = 0.05, 1e-3, 8e-5, 64
-    solid = {"type": "half_space", "reduced_modulus": MODULUS}
-    liquid = {"type": "viscoelastic", "solid": solid, "relaxation": [{"fraction": 1, "time": 1.0}]}
     jump = {"to": contact, "time": 0, "num": 1}
     run = {
         "grid": {"points": points, "size": size, "boundary": boundary},
-        "kernel": {"type": "coated", "tension": tension, "substrate": liquid},
-        "indenter": {"type": "paraboloid", "radius": radius},
+        "kernel": coated(relaxing(half_space(MODULUS), 1.0, 1.0), tension),
+        "indenter": paraboloid(radius),
         "loading": {"contact_radius": [jump, {"hold": "100 s", "num": 3}]},
     }
     with pytest.warns(UserWarning, match="makes the solid a liquid"):

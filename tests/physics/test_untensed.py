@@ -9,31 +9,31 @@ import pytest
 import xarray as xr
 from scipy.optimize import brentq
 
-import pellicle as pl
 from pellicle_plugins.analytic.cone import cone
 from pellicle_plugins.analytic.flat_punch import flat_punch
 from pellicle_plugins.analytic.hertz import ellipse, sphere
 from pellicle_plugins.analytic.westergaard import wavy
+from tests.physics.tables import half_space, heights, paraboloid
+from tests.physics.tables import step as solved
 
 
 def _step(
     solver: str, points: Any, size: Any, indenter: dict[str, Any], **loading: Any
 ) -> xr.Dataset:
-    run = pl.Run(
+    return solved(
+        solver,
         grid={"points": points, "size": size},
-        kernel={"type": "half_space", "reduced_modulus": 1.0},
+        kernel=half_space(),
         indenter=indenter,
         loading=loading,
-        solver={"type": solver},
         corrections=[{"type": "yastrebov"}],
     )
-    return pl.run(run, progress=False).dataset.isel(step=0)
 
 
 def test_hertz_force_area_and_pressure(solver: str) -> None:
     """A paraboloid at N = 256 gives Hertz's force to 1e-3 and his pressure where it is smooth."""
     true = sphere(1.0, 1.0, depth=0.01)
-    step = _step(solver, 256, 3 * true.semi_x, {"type": "paraboloid", "radius": 1.0}, depth=0.01)
+    step = _step(solver, 256, 3 * true.semi_x, paraboloid(), depth=0.01)
     assert float(step["force"]) == pytest.approx(true.force, rel=1e-3)
     assert float(step["contact_area_yastrebov"]) == pytest.approx(np.pi * true.semi_x**2, rel=5e-3)
     x, y = step["x"].values[:, None], step["y"].values[None]
@@ -45,9 +45,7 @@ def test_hertz_force_area_and_pressure(solver: str) -> None:
 def test_a_given_hertz_force_gives_the_hertz_depth(solver: str) -> None:
     """Load control finds the depth that belongs to the force."""
     true = sphere(1.0, 1.0, depth=0.01)
-    step = _step(
-        solver, 64, 3 * true.semi_x, {"type": "paraboloid", "radius": 1.0}, force=true.force
-    )
+    step = _step(solver, 64, 3 * true.semi_x, paraboloid(), force=true.force)
     assert float(step["depth"]) == pytest.approx(0.01, rel=1e-3)
     assert float(step["force"]) == pytest.approx(true.force, rel=1e-12)
 
@@ -74,32 +72,26 @@ def test_sneddon_cone(solver: str) -> None:
 
 def test_the_sphere_is_stiffer_than_its_paraboloid_by_the_quartic_term(solver: str) -> None:
     """The exact sphere differs from the paraboloid as the next term of its profile says."""
-    radius, depth = 1.0, 0.05
-    paraboloid = _step(solver, 64, 0.7, {"type": "paraboloid", "radius": radius}, depth=depth)
-    exact = _step(solver, 64, 0.7, {"type": "sphere", "radius": radius}, depth=depth)
+    depth = 0.05
+    quadratic = _step(solver, 64, 0.7, paraboloid(), depth=depth)
+    exact = _step(solver, 64, 0.7, {"type": "sphere", "radius": 1.0}, depth=depth)
     # Sneddon 1965, with L = ln((R+a)/(R−a)): δ = aL/2, F = E*[(R² + a²)L/2 − aR].
     a = brentq(lambda a: a * np.arctanh(a) - depth, 1e-3, 0.9)
     true = (1 + a**2) * np.arctanh(a) - a
-    hertz = sphere(radius, 1.0, depth=depth).force
-    assert float(exact["force"]) / float(paraboloid["force"]) == pytest.approx(
-        true / hertz, rel=2e-4
-    )
+    hertz = sphere(1.0, 1.0, depth=depth).force
+    ratio = float(exact["force"]) / float(quadratic["force"])
+    assert ratio == pytest.approx(true / hertz, rel=2e-4)
     assert abs(true / hertz - 1) > 4e-3
 
 
 def test_flat_punch_force_converges_at_first_order(solver: str) -> None:
     """The force of a punch, singular at its rim, comes near 2 E* a δ at least as 1/N."""
     true = flat_punch(1.0, 1.0, depth=0.01).force
-    points, errors = np.array([16, 32, 64, 128]), []
+    points, errors, punch = np.array([16, 32, 64, 128]), [], {"type": "flat_punch", "radius": 1.0}
     for n in points:
         # Several offsets of the rim against the grid, as a circle of cells is never quite round.
-        forces = [
-            float(
-                _step(solver, n, size, {"type": "flat_punch", "radius": 1.0}, depth=0.01)["force"]
-            )
-            for size in np.linspace(2.2, 2.5, 7)
-        ]
-        errors.append(np.sqrt(np.mean((np.array(forces) / true - 1) ** 2)))
+        steps = [_step(solver, n, size, punch, depth=0.01) for size in np.linspace(2.2, 2.5, 7)]
+        errors.append(np.sqrt(np.mean([(float(step["force"]) / true - 1) ** 2 for step in steps])))
     assert -np.polyfit(np.log(points), np.log(errors), 1)[0] > 0.8
     assert errors[-1] < 1e-2
 
@@ -110,15 +102,14 @@ def test_westergaard_wavy_contact(width: int, solver: str) -> None:
     n, amplitude, modulus = 256, 1e-3, 1.0
     true = wavy(amplitude, 1.0, modulus, half_width=0.2)
     x = (np.arange(n) + 0.5) / n - 0.5
-    heights = np.repeat(amplitude * np.cos(2 * np.pi * x)[:, None], width, axis=1)
-    run = pl.Run(
+    wave = np.repeat(amplitude * np.cos(2 * np.pi * x)[:, None], width, axis=1)
+    step = solved(
+        solver,
         grid={"points": [n, width], "size": [1.0, 0.3], "boundary": "periodic"},
-        kernel={"type": "half_space", "reduced_modulus": modulus},
-        indenter={"type": "heights", "values": heights, "unit": 1.0},
+        kernel=half_space(modulus),
+        indenter=heights(wave),
         loading={"mean_pressure": true.mean_pressure},
-        solver={"type": solver},
     )
-    step = pl.run(run, progress=False).dataset.isel(step=0)
     assert float(step["contact_fraction"]) == pytest.approx(0.4, abs=2 / n)
     pressure, expected = step["pressure"].values[:, 0], true.pressure(x)
     inner = np.abs(x) < 0.18

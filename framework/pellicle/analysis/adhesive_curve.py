@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import inf, nan, pi
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
 
 STEPS = 8
 """Fewest steps of a path."""
@@ -33,16 +35,8 @@ class AdhesiveContact(NamedTuple):
     """F [N], negative where the indenter is pulled."""
 
 
-@dataclass(frozen=True)
-class AdhesiveCurve:
+class AdhesiveCurve(AdhesiveContact):
     """Adhesive equilibria, stable or not, by growing contact radius; arrays of shape (n,)."""
-
-    contact_radius: Array
-    """a [m]."""
-    depth: Array
-    """δ [m]."""
-    force: Array
-    """F [N], negative where the indenter is pulled."""
 
     def instability(self, spring_constant: float = 0.0) -> AdhesiveContact:
         """Return the last stable equilibrium of a retraction.
@@ -67,9 +61,18 @@ class AdhesiveCurve:
         lowest = np.flatnonzero(~rises[:-1] & rises[1:])
         if not lowest.size:
             return AdhesiveContact(*np.full(3, nan))
-        middle = int(lowest[-1]) + 1
-        low, centre, high = fixed_quantity[middle - 1 : middle + 2]
-        return self._near(middle, (low - high) / (2 * (low - 2 * centre + high)))
+        # The vertex of the parabola through the lowest point and its neighbours.
+        near = slice(int(lowest[-1]), int(lowest[-1]) + 3)
+        low, centre, high = fixed_quantity[near]
+        offset = (low - high) / (2 * (low - 2 * centre + high))
+        return AdhesiveContact(
+            *(
+                np.asarray(
+                    centre + offset * (high - low) / 2 + offset**2 * (low - 2 * centre + high) / 2
+                )
+                for low, centre, high in (y[near] for y in self)
+            )
+        )
 
     def at_zero_load(self) -> AdhesiveContact:
         """Return the largest contact that is neither pressed nor pulled; NaN if there is none."""
@@ -78,23 +81,7 @@ class AdhesiveCurve:
             return AdhesiveContact(*np.full(3, nan))
         low = int(rising[-1])
         share = self.force[low] / (self.force[low] - self.force[low + 1])
-        columns = self.contact_radius, self.depth, self.force
-        return AdhesiveContact(
-            *(np.asarray(y[low] + share * (y[low + 1] - y[low])) for y in columns)
-        )
-
-    def _near(self, middle: int, offset: float) -> AdhesiveContact:
-        """Return the contact at a number of points from point ``middle``, by parabolas."""
-        columns = self.contact_radius, self.depth, self.force
-        triples = (y[middle - 1 : middle + 2] for y in columns)
-        return AdhesiveContact(
-            *(
-                np.asarray(
-                    centre + offset * (high - low) / 2 + offset**2 * (low - 2 * centre + high) / 2
-                )
-                for low, centre, high in triples
-            )
-        )
+        return AdhesiveContact(*(np.asarray(y[low] + share * (y[low + 1] - y[low])) for y in self))
 
 
 def adhesive_curve(
@@ -138,29 +125,30 @@ def adhesive_curve(
         raise ConfigError(
             f"must be positive and finite, got {work_of_adhesion!r}", "work_of_adhesion"
         )
-    path = np.stack(
-        [
-            np.asarray(values, dtype=np.float64)
-            for values in (depth, force, contact_radius, stiffness)
-        ]
-    )
+    columns = depth, force, contact_radius, stiffness
+    path = np.stack([np.asarray(values, dtype=np.float64) for values in columns])
     if not np.all((path > 0) & np.isfinite(path)):
         raise ConfigError("depth, force, contact radius and stiffness must be positive", "path")
     # Steps with the same depth count once.
     path = np.log(path[:, np.unique(path[0], return_index=True)[1]])
-    by_depth = _Fit(path[0], path[1], np.exp(2 * path[2]), "depth")
+    force_by_depth = _spline(path[0], path[1], np.exp(2 * path[2]), "depth")
     # Steps with the same cells in contact have the same stiffness but for rounding.
     distinct = path[:, np.unique(path[2], return_index=True)[1]]
     distinct = distinct[:, np.argsort(distinct[3])]
-    by_stiffness = _Fit(distinct[3], distinct[2], np.exp(distinct[2]), "contact radius")
+    radius_by_stiffness = _spline(distinct[3], distinct[2], np.exp(distinct[2]), "contact radius")
 
-    hard_depth, hard_force, slope = _between_steps(path[0], by_depth)
+    steps = path.shape[1]
+    between = np.linspace(0, steps - 1, _POINTS_PER_STEP * (steps - 1) + 1)
+    log_depth = np.interp(between, np.arange(steps), path[0])
+    hard_depth, hard_force = np.exp(log_depth), np.exp(force_by_depth(log_depth))
+    slope = hard_force / hard_depth * force_by_depth.derivative()(log_depth)
     lowest, highest = np.exp(distinct[3, [0, -1]])
     # The slope of the force and the measured stiffness differ by 3e-4 on a grid.
     in_range = (slope >= lowest * (1 - _SCATTER)) & (slope <= highest * (1 + _SCATTER))
     hard_depth, hard_force, slope = hard_depth[in_range], hard_force[in_range], slope[in_range]
     log_slope = np.log(slope)
-    radius, growth = np.exp(by_stiffness.value(log_slope)), by_stiffness.slope(log_slope)
+    radius = np.exp(radius_by_stiffness(log_slope))
+    growth = radius_by_stiffness.derivative()(log_slope)
     # The smallest contacts, of few cells, may scatter too much.
     falling = np.flatnonzero((np.diff(radius, prepend=0.0) <= 0) | (growth <= 0))
     first = int(falling[-1]) + 1 if falling.size else 0
@@ -179,29 +167,16 @@ def adhesive_curve(
     )
 
 
-def _between_steps(log_depth: Array, by_depth: _Fit) -> tuple[Array, Array, Array]:
-    """Return depth [m], force [N] and its slope [N/m] at points on and between the steps."""
-    steps = log_depth.size
-    log_depth = np.interp(
-        np.linspace(0, steps - 1, _POINTS_PER_STEP * (steps - 1) + 1), np.arange(steps), log_depth
-    )
-    depth, force = np.exp(log_depth), np.exp(by_depth.value(log_depth))
-    return depth, force, force / depth * by_depth.slope(log_depth)
+def _spline(x: Array, y: Array, weights: Array, name: str) -> BSpline:
+    """Return a cubic spline through weighted points, with a knot at every third."""
+    # Most outputs need no splines, and scipy.interpolate takes long to import.
+    from scipy.interpolate import make_lsq_spline
 
-
-class _Fit:
-    """A cubic spline through weighted points, with a knot at every third."""
-
-    def __init__(self, x: Array, y: Array, weights: Array, name: str) -> None:
-        # Most outputs need no splines, and scipy.interpolate takes long to import.
-        from scipy.interpolate import make_lsq_spline
-
-        if x.size < STEPS:
-            raise ConfigError(
-                f"has {x.size} steps that differ in {name}; give at least {STEPS}", "path"
-            )
-        pieces = x.size // _STEPS_PER_PIECE
-        knots = np.interp(np.linspace(0, x.size - 1, pieces + 1), np.arange(x.size), x)
-        ends = np.repeat(knots[0], 3), np.repeat(knots[-1], 3)
-        self.value = make_lsq_spline(x, y, np.concatenate([ends[0], knots, ends[1]]), w=weights)
-        self.slope = self.value.derivative()
+    if x.size < STEPS:
+        raise ConfigError(
+            f"has {x.size} steps that differ in {name}; give at least {STEPS}", "path"
+        )
+    pieces = x.size // _STEPS_PER_PIECE
+    knots = np.interp(np.linspace(0, x.size - 1, pieces + 1), np.arange(x.size), x)
+    padded = np.pad(knots, 3, mode="edge")
+    return make_lsq_spline(x, y, padded, w=weights)

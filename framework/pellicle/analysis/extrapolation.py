@@ -69,22 +69,15 @@ def extrapolate(spacing: ArrayLike, values: ArrayLike) -> Extrapolation:
 
 
 def _fit(h: Array, v: Array) -> tuple[float, float, float]:
-    """Return limit, coefficient and exponent."""
+    """Return limit, coefficient and exponent; NaN if no exponent in the range fits best."""
+    from scipy.optimize import minimize_scalar
+
     h_max, middle, spread = h.max(), v.mean(), np.ptp(v)
     if np.unique(h).size < 3:
         return nan, nan, nan
     if spread == 0:
         return float(middle), 0.0, nan
-    exponent = _best(h / h_max, (v - middle) / spread)
-    if exponent is None:
-        return nan, nan, nan
-    (limit, coefficient), _ = _line((h / h_max) ** exponent, (v - middle) / spread)
-    return float(middle + spread * limit), float(spread * coefficient / h_max**exponent), exponent
-
-
-def _best(h: Array, v: Array) -> float | None:
-    """Return the exponent that fits best, or None if it is at an end of the range."""
-    from scipy.optimize import minimize_scalar
+    h, v = h / h_max, (v - middle) / spread
 
     def squares(log_exponent: float) -> float:
         return _line(h ** np.exp(log_exponent), v)[1]
@@ -92,10 +85,12 @@ def _best(h: Array, v: Array) -> float | None:
     trials = np.log(np.geomspace(*_EXPONENTS, 200))
     best = int(np.argmin([squares(trial) for trial in trials]))
     if best in (0, trials.size - 1):
-        return None
+        return nan, nan, nan
     bounds = trials[best - 1], trials[best + 1]
     result = minimize_scalar(squares, bounds=bounds, method="bounded", options={"xatol": 1e-12})
-    return float(np.exp(result.x))
+    exponent = float(np.exp(result.x))
+    (limit, coefficient), _ = _line(h**exponent, v)
+    return float(middle + spread * limit), float(spread * coefficient / h_max**exponent), exponent
 
 
 def _line(x: Array, y: Array) -> tuple[Array, float]:

@@ -67,9 +67,8 @@ def oscillations(
     responses = []
     for first in np.flatnonzero(begins):
         after = [*np.flatnonzero(begins[first + 1 :]) + first + 1, *ends[ends > first]]
-        responses.append(
-            _response(slice(int(first), int(min(after))), t, cycles, delta, load, good)
-        )
+        leg = slice(int(first), int(min(after)))
+        responses.append(_response(leg, t, cycles, delta, load, good))
     return responses
 
 

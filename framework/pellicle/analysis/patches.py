@@ -87,14 +87,12 @@ def coordination(labels: Labels, grid: Grid) -> NDArray[np.int64]:
     regions = labels[i, j]
     # On a periodic grid these arrays take the memory of four fields.
     del empty, i, j
-    pairs = np.concatenate([_pairs(regions, axis, periodic) for axis in (0, 1)], axis=1)
-    pairs = np.unique(np.sort(pairs, axis=0), axis=1)
-    return np.bincount(pairs.ravel(), minlength=count + 1)[1:]
-
-
-def _pairs(labels: Labels, axis: int, periodic: bool) -> Labels:
-    """Return pairs of different labels on both sides of a cell edge along an axis, (2, edges)."""
-    pairs = np.stack([labels, np.roll(labels, -1, axis)])
-    if not periodic:
-        pairs = np.delete(pairs, -1, axis + 1)
-    return np.asarray(pairs[:, pairs[0] != pairs[1]])
+    # Pairs of different labels on both sides of a cell edge, (2, edges).
+    edges = []
+    for axis in (0, 1):
+        pairs = np.stack([regions, np.roll(regions, -1, axis)])
+        if not periodic:
+            pairs = np.delete(pairs, -1, axis + 1)
+        edges.append(pairs[:, pairs[0] != pairs[1]])
+    neighbours = np.unique(np.sort(np.concatenate(edges, axis=1), axis=0), axis=1)
+    return np.bincount(neighbours.ravel(), minlength=count + 1)[1:]

@@ -72,7 +72,13 @@ def legs(depth: ArrayLike) -> list[Leg]:
     values = np.asarray(depth, dtype=float)
     if not values.size:
         return []
-    rises = _rises(values)
+    # Whether the depth grows in each interval between steps; a hold is as before it.
+    signs = np.sign(np.diff(values))
+    moving = np.flatnonzero(signs)
+    rises = np.ones(max(signs.size, 1), dtype=bool)
+    if moving.size:
+        last = np.searchsorted(moving, np.arange(signs.size), side="right") - 1
+        rises = signs[moving[np.maximum(last, 0)]] > 0
     turns = np.flatnonzero(rises[1:] != rises[:-1]) + 1
     ends = [0, *turns.tolist(), values.size - 1]
     return [
@@ -131,17 +137,6 @@ def path_summary(
         step = int(summary["pull_off_step"]) - 1
         summary["pull_off_accuracy"] = float(np.asarray(force_error, dtype=float)[step])
     return PathSummary(**summary)
-
-
-def _rises(depth: Array) -> Mask:
-    """Return for each interval between steps whether the depth grows; a hold is as before it."""
-    signs = np.sign(np.diff(depth))
-    moving = np.flatnonzero(signs)
-    if not moving.size:
-        return np.ones(max(signs.size, 1), dtype=bool)
-    last = np.maximum(np.searchsorted(moving, np.arange(signs.size), side="right") - 1, 0)
-    rises: Mask = signs[moving[last]] > 0
-    return rises
 
 
 def _pull_off(

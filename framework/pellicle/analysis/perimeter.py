@@ -7,7 +7,6 @@ from math import atan2, hypot, pi
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pellicle.arrays import Mask
 from pellicle.grid import Grid
 
 
@@ -35,9 +34,14 @@ def perimeter(contact: ArrayLike, grid: Grid) -> float:
     if grid.boundary == "free":
         inside = np.pad(inside, 1)
     dx, dy = grid.spacing
+
+    def switches(step: tuple[int, int]) -> int:
+        """Return the number of switches of contact between cells and those one step away."""
+        # A contact on a free boundary has been padded, so it can be treated as periodic.
+        return int(np.count_nonzero(inside != np.roll(inside, step, (0, 1))))
+
     if 1 in grid.shape:
-        edges = ((1, 0), dy), ((0, 1), dx)
-        return sum(length * _switches(inside, step) for step, length in edges)
+        return dy * switches((1, 0)) + dx * switches((0, 1))
     slope = atan2(dy, dx)
     across = dx * dy / hypot(dx, dy)
     # Step to the next cell; distance between parallel lines; angle represented by the direction.
@@ -49,11 +53,5 @@ def perimeter(contact: ArrayLike, grid: Grid) -> float:
     )
     total = 0.0
     for step, between, angle in directions:
-        total += angle * between * _switches(inside, step) / 2
+        total += angle * between * switches(step) / 2
     return total
-
-
-def _switches(inside: Mask, step: tuple[int, int]) -> int:
-    """Return the number of switches of contact between cells and those one step away."""
-    # A contact on a free boundary has been padded, so it can be treated as periodic.
-    return int(np.count_nonzero(inside != np.roll(inside, step, (0, 1))))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
+import scipy.fft
 from numpy.typing import ArrayLike, NDArray
 
 from pellicle.arrays import Array
@@ -55,13 +56,11 @@ def spectrum(heights: ArrayLike, grid: Grid) -> Spectrum:
     ValueError
         A height is NaN or infinite.
     """
-    import scipy.fft
-
     h = np.asarray(heights, dtype=np.float64)
     if not np.isfinite(h).all():
         raise ValueError("the heights are not finite everywhere, so they have no spectrum")
     if grid.boundary == "free":
-        window = _hann(grid.shape[0])[:, None] * _hann(grid.shape[1])
+        window = np.outer(*(np.sin(pi * (np.arange(n) + 0.5) / n) ** 2 for n in grid.shape))
         h = (h - np.average(h, weights=window)) * window
         h /= np.sqrt(np.mean(window**2))
     density = np.abs(scipy.fft.rfft2(h) * grid.cell_area) ** 2 / grid.area
@@ -81,8 +80,3 @@ def spectrum(heights: ArrayLike, grid: Grid) -> Spectrum:
         return np.asarray(np.bincount(ring, (times * values).ravel())[filled] / count[filled])
 
     return Spectrum(mean(q), mean(density), count[filled].astype(np.int64), grid.area)
-
-
-def _hann(points: int) -> Array:
-    """Return the Hann window sin² at the cell centres."""
-    return np.asarray(np.sin(pi * (np.arange(points) + 0.5) / points) ** 2)

@@ -32,18 +32,16 @@ def steepest(profile: Array, contact: Mask, grid: Grid) -> float:
     grid
         The cells.
     """
-    # Each block with the first row of the next, so that no slope between two is left out.
-    number = max(1, _BLOCK // contact.shape[1])
-    rows = [slice(block.start, block.stop + 1) for block in blocks(contact.shape[0], number)]
-    return max(_steepest(np.where(contact[r], profile[r], np.nan), grid) for r in rows)
-
-
-def _steepest(heights: Array, grid: Grid) -> float:
-    """Return the largest slope of heights [m], NaN off the contact."""
-    by_x, by_y = (np.diff(heights, axis=axis) / width for axis, width in enumerate(grid.spacing))
-    at_corners = 0.5 * np.hypot(by_x[:, 1:] + by_x[:, :-1], by_y[1:] + by_y[:-1])
-    slopes = np.concatenate([np.abs(by_x).ravel(), np.abs(by_y).ravel(), at_corners.ravel()])
-    return float(np.fmax.reduce(slopes, initial=0.0))
+    largest = 0.0
+    for block in blocks(contact.shape[0], max(1, _BLOCK // contact.shape[1])):
+        # With the first row of the next block, so that no slope between two is left out.
+        rows = slice(block.start, block.stop + 1)
+        heights = np.where(contact[rows], profile[rows], np.nan)
+        by_x, by_y = (np.diff(heights, axis=n) / width for n, width in enumerate(grid.spacing))
+        at_corners = 0.5 * np.hypot(by_x[:, 1:] + by_x[:, :-1], by_y[1:] + by_y[:-1])
+        for slopes in (np.abs(by_x), np.abs(by_y), at_corners):
+            largest = float(np.fmax.reduce(slopes, axis=None, initial=largest))
+    return largest
 
 
 def rim_slope(compliance: Callable[[Array], Array], equilibrium: Equilibrium) -> float:

@@ -6,9 +6,6 @@ its objects can be pickled to workers. A concrete component declares
 ``type: Literal["name"] = "name"``.
 """
 
-from typing import TYPE_CHECKING
-
-from pellicle.errors import PluginError
 from pellicle.numerics.problem import Depth as Depth
 from pellicle.numerics.problem import Force as Force
 from pellicle.numerics.relaxation import Branch as Branch
@@ -67,13 +64,3 @@ FAMILIES: dict[str, type[Component]] = {
     )
 }
 """The base class of each of pellicle's own families, by name."""
-
-if not TYPE_CHECKING:
-
-    def __getattr__(name: str) -> object:
-        if name == "Place":
-            raise PluginError(
-                "Place belongs to the contract of outputs of an earlier version; write "
-                "write(runs, stem), where stem is the path that its files begin with"
-            )
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from pellicle.errors import PluginError
 from pellicle.model.base import Model
 from pellicle.results.variables import words_of_name
 
@@ -19,25 +17,12 @@ class Component(Model):
     """Where a file has components of the family; ``[]`` stands for an entry of a list."""
     libraries: ClassVar[tuple[str, ...]] = ()
     """Distributions that it uses besides numpy and scipy; results record their versions."""
-    replaced_methods: ClassVar[Mapping[str, str]] = {}
-    """Replacements for methods of an earlier contract; a class with such a method is refused."""
 
     @property
     def type_name(self) -> str:
         """The component's type, such as ``half_space``."""
         # A base class with a field ``type: str`` would not let components narrow it to a literal.
         return str(getattr(self, "type", type(self).__name__))
-
-    @classmethod
-    def __pydantic_init_subclass__(cls, **options: Any) -> None:
-        """Refuse a class written for the contract of an earlier version."""
-        super().__pydantic_init_subclass__(**options)
-        for name, replacement in cls.replaced_methods.items():
-            if name in vars(cls):
-                raise PluginError(
-                    f"{cls.__name__}.{name}() belongs to the contract of an earlier version, and "
-                    f"nothing calls it any more; write {replacement}"
-                )
 
 
 def words_of_type(component: type[Component], type_: str) -> str:

@@ -37,17 +37,7 @@ _DIGITS = 1e-13
 
 
 def law_of(interaction: Interaction, kernel: Kernel, grid: Grid) -> Law:
-    """Return the law of an interaction, resolved on a grid, with checked values.
-
-    Raises
-    ------
-    ConfigError
-        The range is below the rounding error of the displacements that the strength causes.
-    PluginError
-        The traction repels, grows with the gap or is not the derivative of the energy, the energy
-        is not 0 at the cutoff, the slope is not the derivative of the traction, or a value is not a
-        finite number.
-    """
+    """Return the law of an interaction, resolved on a grid, with checked values."""
 
     def resolve(grid: Grid) -> _CheckedLaw:
         with errors_attributed_to(interaction):
@@ -76,7 +66,6 @@ def law_of(interaction: Interaction, kernel: Kernel, grid: Grid) -> Law:
             "rounding error of that; give a longer range or, for adhesion of no range, jkr",
             "interaction",
         )
-    # Laws of packages written before it lack the attribute.
     return Law(law, resolve, averaged=bool(getattr(law.law, "averaged", False)))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from fnmatch import fnmatchcase
 from itertools import product
 from pathlib import Path
@@ -29,9 +29,6 @@ class Output(Component):
 
     family: ClassVar[str] = "output"
     place: ClassVar[str] = "outputs[]"
-    replaced_methods: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("open", "close", "study", "endings", "resume"), "write(runs, stem)"
-    )
     scope: ClassVar[Literal["run", "study", "both"]] = "both"
     """Whether the output can show a run, a study or both.
 
@@ -89,15 +86,7 @@ def stem_of(output: Output, stem: Path) -> Path:
 
 
 def refuse_shared_files(outputs: Sequence[Output], *, of_study: bool = False) -> None:
-    """Refuse outputs that would write the same file, or one that the framework writes itself.
-
-    Raises
-    ------
-    ConfigError
-        Two would write one file; the message names both and the field to change.
-    PluginError
-        The suffixes of an output are not a tuple of texts.
-    """
+    """Refuse outputs that would write the same file, or one that the framework writes itself."""
     for index, output in enumerate(outputs):
         if of_study and output.scope != "run":
             name, owner, reserved = "study", "the table of the study", [".h5", ".csv"]
@@ -109,21 +98,21 @@ def refuse_shared_files(outputs: Sequence[Output], *, of_study: bool = False) ->
                 f"outputs.{index}.type",
             )
         for earlier, other in enumerate(outputs[:index]):
-            if shared := _shared(_suffixes(output), _suffixes(other)):
-                raise _refusal(shared, (index, output), (earlier, other))
-
-
-def _refusal(shared: str, *both: tuple[int, Output]) -> ConfigError:
-    """Return the error for two outputs of one file, in the field of one that can be renamed."""
-    (index, output), (other_index, other) = sorted(
-        both, key=lambda one: "name" not in type(one[1]).model_fields
-    )
-    is_nameable = "name" in type(output).model_fields
-    return ConfigError(
-        f"{output.type_name!r} would write NAME{shared}, as outputs.{other_index} "
-        f"({other.type_name!r}) does; {'give it another name' if is_nameable else 'leave one out'}",
-        f"outputs.{index}.{'name' if is_nameable else 'type'}",
-    )
+            if not (shared := _shared(_suffixes(output), _suffixes(other))):
+                continue
+            # The field to change is the name of either, or else the type of the later one.
+            pair = sorted(
+                ((index, output), (earlier, other)),
+                key=lambda one: "name" not in type(one[1]).model_fields,
+            )
+            (place, changed), (beside, kept) = pair
+            is_nameable = "name" in type(changed).model_fields
+            remedy = "give it another name" if is_nameable else "leave one out"
+            raise ConfigError(
+                f"{changed.type_name!r} would write NAME{shared}, as outputs.{beside} "
+                f"({kept.type_name!r}) does; {remedy}",
+                f"outputs.{place}.{'name' if is_nameable else 'type'}",
+            )
 
 
 def _own_suffix(output: Output) -> str:
@@ -142,10 +131,7 @@ def _suffixes(output: Output) -> list[str]:
 
 
 def _shared(some: Iterable[str], others: Sequence[str]) -> str:
-    """Return a suffix that both contain, or an empty text.
-
-    Case is ignored, since some file systems do not distinguish it.
-    """
+    """Return a suffix that both contain, whatever the case, as some file systems; else ""."""
     for one, other in product(some, others):
         if fnmatchcase(one.casefold(), other.casefold()):
             return one

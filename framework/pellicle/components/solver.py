@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Protocol, runtime_checkable
 
@@ -43,11 +43,6 @@ class Solver(Component):
 
     family: ClassVar[str] = "solver"
     place: ClassVar[str] = "solver"
-    replaced_methods: ClassVar[Mapping[str, str]] = {
-        "punch_pressure": "response(problem, state, monitor), for the contact state.pressure > 0",
-        "patience": "terminate(problem, state), which returns Stop.STALLED to end the iteration",
-        "merits": "terminate(problem, state), which returns Stop.STALLED to end the iteration",
-    }
 
     tolerance: Annotated[
         float,

@@ -12,8 +12,7 @@ import numpy as np
 from pellicle.components import Component
 from pellicle.components.base import words_of_type
 from pellicle.model.base import Model
-from pellicle.model.input_path import AS_GIVEN
-from pellicle.model.input_path import as_given as path_as_given
+from pellicle.model.input_path import PORTABLE
 from pellicle.model.paths import get, walk
 from pellicle.model.ranges import Values
 from pellicle.results.variables import WORDS, WORDS_OF_VALUES
@@ -96,25 +95,22 @@ def _text(value: Any) -> str:
     return value if isinstance(value, str) else readable(value, digits=DIGITS)
 
 
-def as_json(given: Any, value: Any, *, as_given: bool = False) -> Any:
+def as_json(given: Any, value: Any, *, portable: bool = False) -> Any:
     """Return a ``given`` value in a form that JSON can hold.
 
-    ``value`` is the validated value of the run, whose paths replace the given ones: absolute or, if
-    ``as_given``, as the user wrote them.
+    ``value`` is the validated value of the run, whose absolute paths replace the given ones unless
+    the text is to be ``portable``.
     """
     if isinstance(given, Model):
-        context = AS_GIVEN if as_given else None
+        context = PORTABLE if portable else None
         return given.model_dump(mode="json", exclude_none=True, context=context)
     if isinstance(value, Path):
-        return path_as_given(value) if as_given else str(value)
+        return str(given if portable else value)
     if isinstance(given, Mapping):
-        return {
-            name: as_json(inner, get(value, name), as_given=as_given)
-            for name, inner in given.items()
-        }
+        return {n: as_json(inner, get(value, n), portable=portable) for n, inner in given.items()}
     if isinstance(given, (list, tuple)):
         return [
-            as_json(inner, get(value, str(index)), as_given=as_given)
+            as_json(inner, get(value, str(index)), portable=portable)
             for index, inner in enumerate(given)
         ]
     if hasattr(given, "tolist"):
@@ -127,7 +123,7 @@ def _single(value: Any, given: Any) -> Any:
     several = isinstance(value, tuple) and value and len(set(map(str, value))) == 1
     if several and not isinstance(given, (list, tuple, Mapping)):
         return value[0]
-    return path_as_given(value) if isinstance(value, Path) else value
+    return str(given) if isinstance(value, Path) else value
 
 
 def units_of(run: Run) -> dict[str, str]:

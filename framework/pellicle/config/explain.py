@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import itertools
 import json
 import re
 from collections.abc import Iterator, Mapping
@@ -76,22 +77,17 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
         A type such as ``half_space``, also with its family as in ``kernel.half_space``.
     tables
         Further tables that have fields, by name.
-
-    Raises
-    ------
-    ConfigError
-        There is nothing of that name; the message names similar ones.
-    PluginError
-        The plugin that it is of is broken.
     """
     entries = {**tables, **_TABLES}
     name = re.sub(r"[\s-]+", "_", word.strip().strip("[]").lower())
     families = registry().components
     if name in entries:
         return [_of_table(name, entries[name])]
-    for family in (name, name.removesuffix("s")):
-        if family in families:
-            return [_of_family(family)]
+    family = name if name in families else name.removesuffix("s")
+    if family in families:
+        types = [FieldRow(t, "", "", entry.summary) for t, entry in families[family].items()]
+        meaning = _documentation(registry().families[family])
+        return [Explanation(family, "family", "", meaning, types, "")]
     given, _, type_ = name.rpartition(".")
     matches = [
         members[type_]
@@ -103,10 +99,10 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
             entry = broken.origin.entry_point
             if name in (entry, *entry.split(".")):
                 raise PluginError(f"{shown(word)} is broken: {broken}")
-        types = {type_ for members in families.values() for type_ in members}
-        hint = similar(name, types | {*entries, *families}) or "see `pellicle plugins`"
+        hint = similar(name, {*entries, *families, *itertools.chain(*families.values())})
         raise ConfigError(
-            f"{shown(word)} is neither a type, a family nor a table of what is installed; {hint}",
+            f"{shown(word)} is neither a type, a family nor a table of what is installed; "
+            f"{hint or 'see `pellicle plugins`'}",
             "TYPE",
         )
     return [_of_component(match) for match in matches]
@@ -120,50 +116,34 @@ def words_by_kind(tables: Mapping[str, type[BaseModel]]) -> dict[str, list[str]]
 
 
 def _of_table(name: str, model: type[BaseModel]) -> Explanation:
-    rows = [
-        row for row in fields_of(model) if (model, row.name.partition(".")[0]) != (Study, "run")
-    ]
+    rows = fields_of(model)
+    if model is Study:
+        rows = [row for row in rows if row.name != "run"]
     if model is Loading:
-        rows = [*_prescription_rows(), *rows]
+        options = rows
+        rows = []
+        for type_ in registry().components["prescription"]:
+            for row in fields_of(loading_model(type_)):
+                required = "one of these" if row.name == type_ else f"with {type_}"
+                if row.name not in OPTIONS:
+                    rows.append(row._replace(default=row.default.replace("required", required)))
+        rows += options
     example = _toml(*_EXAMPLES[model]) if model in _EXAMPLES else ""
     if name not in _TABLES:
         example = _lines(dict(example_values(model)))
     return Explanation(name, "table", "", _documentation(model), rows, example)
 
 
-def _prescription_rows() -> Iterator[FieldRow]:
-    """Yield the keys of which ``[loading]`` has one, each with the fields that it brings."""
-    for type_ in registry().components["prescription"]:
-        for row in fields_of(loading_model(type_)):
-            required = "one of these" if row.name == type_ else f"with {type_}"
-            if row.name not in OPTIONS:
-                yield row._replace(default=row.default.replace("required", required))
-
-
-def _of_family(family: str) -> Explanation:
-    """Return a family as a table of its types."""
-    rows = [
-        FieldRow(type_, "", "", entry.summary)
-        for type_, entry in registry().components[family].items()
-    ]
-    return Explanation(family, "family", "", _documentation(registry().families[family]), rows, "")
-
-
 def _of_component(entry: Registered) -> Explanation:
     family = entry.component.family
     model = loading_model(entry.type) if family == "prescription" else entry.component
     origin = f"{entry.origin.distribution} {entry.origin.version}"
-    refusal = "".join(f"\n# {line}" for line in refusal_of_example(entry.component).splitlines())
-    return Explanation(
-        entry.type,
-        family,
-        origin,
-        _documentation(entry.component),
-        fields_of(model),
-        f"# none; it would be refused:{refusal}"
-        if refusal
-        else _toml(entry.component.place, example_table(entry)),
-    )
+    if refusal := refusal_of_example(entry.component):
+        example = "\n# ".join(["# none; it would be refused:", *refusal.splitlines()])
+    else:
+        example = _toml(entry.component.place, example_table(entry))
+    text = _documentation(entry.component)
+    return Explanation(entry.type, family, origin, text, fields_of(model), example)
 
 
 def _documentation(model: type[BaseModel]) -> str:
@@ -283,12 +263,10 @@ def example_values(model: type[BaseModel]) -> Iterator[tuple[str, Any]]:
     It is the first of the ``examples`` of the field; without any, its unit or its kind gives one.
     Of alternatives in ``json_schema_extra`` the first is taken.
     """
-    extra = model.model_config.get("json_schema_extra")
-    alternatives = extra if isinstance(extra, dict) else {}
+    extra: Any = model.model_config.get("json_schema_extra")
     names_required: set[str] = set()
-    for key in ("anyOf", "oneOf"):
-        choices: Any = alternatives.get(key, [])
-        names_required |= {name for choice in choices[:1] for name in choice.get("required", ())}
+    for key in ("anyOf", "oneOf") if isinstance(extra, dict) else ():
+        names_required |= {*(extra.get(key) or [{}])[0].get("required", ())}
     for name, info in model.model_fields.items():
         if name != "type" and (info.is_required() or info.examples or name in names_required):
             yield name, _example(name, info)
@@ -301,14 +279,12 @@ def _example(name: str, info: FieldInfo) -> Any:
     value: Any
     if (quantity := quantity_of(info)) is not None:
         value = quantity.example
-    elif inner is not None and not issubclass(inner, Component):
-        value = dict(example_values(inner))
-    elif inner is not None:
+    elif inner is not None and issubclass(inner, Component):
         types = registry().components.get(inner.family, {}).values()
         simplest = min(types, key=lambda e: (len(e.component.model_fields), e.type), default=None)
-        value = {"type": "…"}
-        if simplest:
-            value = {"type": simplest.type, **dict(example_values(simplest.component))}
+        value = example_table(simplest) if simplest else {"type": "…"}
+    elif inner is not None:
+        value = dict(example_values(inner))
     else:
         value = {"true or false": True, "whole number": 1}.get(_kind(info.annotation), name)
     return [value] if _is_list(info.annotation) else value

@@ -30,8 +30,11 @@ def json_schema(model: type[BaseModel]) -> dict[str, Any]:
     others of their own family without end, so their fields refer to schemas. The loading is a
     choice of one table per prescription.
     """
-    models = _models_in(model)
-    refs, generated = models_json_schema([(entry, "validation") for entry in models])
+    models, referred_to = [model], [model]
+    while referred_to:
+        refs, generated = models_json_schema([(entry, "validation") for entry in models])
+        referred_to = [entry for entry in _referred_to(generated) if entry not in models]
+        models += dict.fromkeys(referred_to)
     names = {entry: refs[entry, "validation"]["$ref"].rpartition("/")[2] for entry in models}
     definitions: dict[str, Any] = generated["$defs"]
     if Loading.__name__ in definitions:
@@ -41,37 +44,25 @@ def json_schema(model: type[BaseModel]) -> dict[str, Any]:
     written: dict[str, list[dict[str, Any]]] = defaultdict(list)
     for component in models[1:]:
         if issubclass(component, Component):
-            required = {"required": ["type", *_required(component)]}
+            fields = (name for name, info in component.model_fields.items() if info.is_required())
+            required = {"required": ["type", *fields]}
             referred[component.family].append(refs[component, "validation"] | required)
             written[component.family].append(definitions[names[component]] | required)
     top = _filled(_filled(definitions.pop(names[model]), written), referred)
     return {"$defs": _filled(definitions, referred), **top}
 
 
-def _models_in(model: type[BaseModel]) -> list[type[BaseModel]]:
-    """Return a model, then the components and tables of the loading that it and these refer to."""
-    models = [model]
-    for one in models:
-        _, generated = models_json_schema([(one, "validation")])
-        found: list[type[BaseModel]] = [
-            registered.component
-            for family in _families_in(generated)
-            for registered in registry().components.get(family, {}).values()
-        ]
-        if Loading.__name__ in generated["$defs"]:
-            found += _loadings()
-        models += [other for other in dict.fromkeys(found) if other not in models]
-    return models
-
-
-def _families_in(schema: Any) -> Iterator[str]:
+def _referred_to(schema: Any) -> Iterator[type[BaseModel]]:
+    """Yield the components and the tables of the loading that a schema refers to."""
     if isinstance(schema, dict):
-        if FAMILY in schema:
-            yield schema[FAMILY]
+        for entry in registry().components.get(schema.get(FAMILY, ""), {}).values():
+            yield entry.component
+        if Loading.__name__ in schema.get("$defs", {}):
+            yield from _loadings()
         schema = [*schema.values()]
     if isinstance(schema, list):
         for inner in schema:
-            yield from _families_in(inner)
+            yield from _referred_to(inner)
 
 
 def _loadings() -> list[type[BaseModel]]:
@@ -92,10 +83,6 @@ def _filled(schema: Any, choices: dict[str, list[dict[str, Any]]]) -> Any:
     if not choice:
         return filled | {"not": {}}
     return filled | {"oneOf": choice}
-
-
-def _required(model: type[BaseModel]) -> list[str]:
-    return [name for name, info in model.model_fields.items() if info.is_required()]
 
 
 def schema(model: type[BaseModel] = Run) -> dict[str, Any]:

@@ -156,24 +156,12 @@ class Loading(Model):
 
 
 def model_of(loading: Mapping[str, Any]) -> type[Model]:
-    """Return the model that validates a table ``[loading]``.
-
-    Raises
-    ------
-    ConfigError, PluginError
-        The table does not name exactly one installed prescription.
-    """
+    """Return the model that validates a table ``[loading]``."""
     return loading_model(prescribed_in(loading))
 
 
 def refuse_pulls(loading: Mapping[str, Any]) -> None:
-    """Refuse values of ``[loading]`` that only an interaction allows, such as a force below 0.
-
-    Raises
-    ------
-    ConfigError
-        A value is not allowed without an interaction.
-    """
+    """Refuse values of ``[loading]`` that only an interaction allows, such as a force below 0."""
     data = {key: value for key, value in loading.items() if value is not None}
     try:
         loading_model(prescribed_in(data), interaction=False)(**data)
@@ -212,13 +200,7 @@ def loading_model(type_: str, interaction: bool = True) -> type[Model]:
 
 
 def prescribed_in(data: Mapping[str, Any]) -> str:
-    """Return the key of a table that names its prescription.
-
-    Raises
-    ------
-    ConfigError
-        The table has no such key, or several.
-    """
+    """Return the key of a table that names its prescription."""
     families = registry().components["prescription"]
     types = [*_USUAL, *sorted(families.keys() - {*_USUAL})]
     keys = [name for name in types if name in data]

@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from pellicle.errors import ConfigError, Problem, shown
+from pellicle.errors import ConfigError, Problem, first_of, shown
 from pellicle.model.base import Model
 from pellicle.model.paths import get, replaced
 from pellicle.model.ranges import Axes
@@ -22,8 +22,6 @@ class Point(NamedTuple):
 
     position: tuple[int, ...]
     """Index along each dimension of the study."""
-    name: str
-    """The varied parameters with their values."""
     run: Run
 
 
@@ -31,11 +29,6 @@ def points_of(table: Mapping[str, Any], dimensions: Mapping[str, Axes]) -> Itera
     """Yield the runs of a study, the last dimension varying fastest.
 
     ``table`` holds the fields that all runs share; ``dimensions`` is `Study.dimensions`.
-
-    Raises
-    ------
-    ConfigError
-        Runs are not valid; each problem is named once, under the axis that causes it.
     """
     problems: dict[Problem, list[str]] = {}
     names: dict[str, str] = {}
@@ -63,7 +56,7 @@ def points_of(table: Mapping[str, Any], dimensions: Mapping[str, Axes]) -> Itera
             problems[Problem("vary", message)] = []
         names[identity] = name
         if not problems:
-            yield Point(index, name, run)
+            yield Point(index, run)
     if problems:
         total = math.prod(shape)
         raise ConfigError(
@@ -96,8 +89,7 @@ def _with_runs(message: str, runs: list[str], total: int) -> str:
     """Return a message with the runs that it concerns, unless it concerns all."""
     if len(runs) == total:
         return message
-    more = f" and {len(runs) - 1} more" if len(runs) > 1 else ""
-    return f"{message} (in the run of {runs[0]}{more})"
+    return f"{message} (in the run of {first_of(runs)})"
 
 
 def short(value: object) -> str:

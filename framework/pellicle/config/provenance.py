@@ -9,10 +9,9 @@ from importlib.metadata import PackageNotFoundError, version
 
 from pellicle.components import Component
 from pellicle.files import for_document
-from pellicle.model.paths import walk
 from pellicle.plugins import registry
 
-from .run import Run
+from .run import Run, components_in
 
 
 def provenance(run: Run) -> dict[str, str]:
@@ -27,13 +26,8 @@ def provenance(run: Run) -> dict[str, str]:
 
 def now_with(runs: Iterable[Run]) -> dict[str, str]:
     """Return the date, and the versions of the packages that solve ``runs``, as attributes."""
-    used = {
-        type(value)
-        for run in runs
-        for value in (run.loading.prescription, *(value for _, value, _ in walk(run)))
-        if isinstance(value, Component)
-    }
-    numbers = versions(used)
+    used = (components_in([run, run.loading.prescription]) for run in runs)
+    numbers = versions(set().union(*used))
     return {
         "versions": ", ".join(f"{name} {number}" for name, number in numbers.items()),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Self
@@ -133,7 +133,17 @@ class Run(FromFile):
                 f"legs of {self.loading.prescribed}",
                 "loading.time",
             )
-        _refuse_times(self.kernel, self.loading)
+        if isinstance(self.kernel, HasTimeSpan):
+            shortest, longest = self.kernel.time_span()
+            duration = math.fsum(self.loading.durations)
+            least = min((t for t in self.loading.durations if t > 0), default=math.inf)
+            if least < shortest or duration > longest:
+                reason = f"has a step of {least:g}" if least < shortest else f"lasts {duration:g}"
+                raise ConfigError(
+                    f"{reason} s, and the relaxation of {name!r} holds from {shortest:g} to "
+                    f"{longest:g} s; give it a wider span, or other times",
+                    f"loading.{self.loading.prescribed if self.loading.samples else 'time'}",
+                )
         return self
 
     @model_validator(mode="after")
@@ -153,9 +163,27 @@ class Run(FromFile):
 
     @model_validator(mode="after")
     def _range_where_it_relaxes(self) -> Self:
-        kernel = self.kernel
-        if self.interaction and branches_of(kernel) and isinstance(kernel, HasRelaxation):
-            _refuse_range_of_the_grid(self.interaction, kernel, self.grid)
+        """Refuse an interaction without a range on a solid that relaxes without a tense skin.
+
+        The solid in the zone relaxes at a rate that depends on the width of the zone, so the force
+        has no limit as the cells shrink, unless an elastic skin is much stiffer than it there.
+        """
+        kernel, interaction = self.kernel, self.interaction
+        if interaction is None or not branches_of(kernel) or interaction.cutoff() > 0:
+            return self
+        assert isinstance(kernel, HasRelaxation)
+        q = np.array([np.pi / self.grid.cell_size])
+        with errors_attributed_to(kernel):
+            solid = kernel.without_skin().compliance(q).item()
+            cells = (solid / kernel.compliance(q).item() - 1) / np.pi
+        if cells < _TENSED_CELLS:
+            raise ConfigError(
+                f"{interaction.type_name!r} takes its range from the cells, and where the solid "
+                "relaxes the force depends on the range; give linear or dugdale with a range, or a "
+                f"tension τ₀ whose length 2τ₀/E* is {_TENSED_CELLS:g} cells or more: here it is "
+                f"{cells:.2g}",
+                "interaction.type",
+            )
         return self
 
     @model_validator(mode="after")
@@ -237,69 +265,17 @@ class Run(FromFile):
         for path, value, _ in walk(self):
             if isinstance(value, Path) and isinstance(get(identifying, path), str):
                 identifying = replaced(identifying, path, _digest_of(value))
-        if versions := _versions_of_others(self):
-            identifying["plugins"] = versions
+        solving = self.kernel, self.indenter, self.interaction, self.solver, self.corrections
+        versions = registry().versions(components_in((*solving, self.loading.prescription)))
+        if others := {name: number for name, number in versions.items() if name != "pellicle"}:
+            identifying["plugins"] = others
         return hashlib.sha256(json.dumps(identifying, sort_keys=True).encode()).hexdigest()
 
 
-def _versions_of_others(run: Run) -> dict[str, str]:
-    """Return the versions of the packages, besides pellicle, whose components solve a run."""
-    parts = (run.kernel, run.indenter, run.interaction, run.solver, run.corrections)
-    values = (run.loading.prescription, *(value for _, value, _ in walk(parts)))
-    used = {type(value) for value in values if isinstance(value, Component)}
-    versions = registry().versions(used)
-    return {name: number for name, number in versions.items() if name != "pellicle"}
-
-
-def _refuse_times(kernel: Kernel, loading: Loading) -> None:
-    """Refuse steps at times for which the relaxation of a kernel is not meant.
-
-    Raises
-    ------
-    ConfigError
-        A step is shorter than the span of the kernel begins, or the path longer than it ends.
-    """
-    if not isinstance(kernel, HasTimeSpan):
-        return
-    shortest, longest = kernel.time_span()
-    duration = math.fsum(loading.durations)
-    least = min((step for step in loading.durations if step > 0), default=math.inf)
-    if least < shortest or duration > longest:
-        reason = f"has a step of {least:g} s" if least < shortest else f"lasts {duration:g} s"
-        raise ConfigError(
-            f"{reason}, and the relaxation of {kernel.type_name!r} holds from {shortest:g} to "
-            f"{longest:g} s; give it a wider span, or other times",
-            f"loading.{loading.prescribed if loading.samples else 'time'}",
-        )
-
-
-def _refuse_range_of_the_grid(interaction: Interaction, kernel: HasRelaxation, grid: Grid) -> None:
-    """Refuse an interaction without a range on a solid that relaxes and is not under tension.
-
-    The solid in the zone relaxes at a rate that depends on the width of the zone, so the force has
-    no limit as the cells shrink, unless an elastic skin is much stiffer than the solid there.
-
-    Raises
-    ------
-    ConfigError
-        The interaction has no range of its own, and no skin dominates at the size of the cells.
-    """
-    if interaction.cutoff() > 0:
-        return
-    q = np.array([np.pi / grid.cell_size])
-    with errors_attributed_to(kernel):
-        solid, whole = (
-            response.compliance(q).item() for response in (kernel.without_skin(), kernel)
-        )
-    cells = (solid / whole - 1) / np.pi
-    if cells < _TENSED_CELLS:
-        raise ConfigError(
-            f"{interaction.type_name!r} takes its range from the cells, and where the solid "
-            "relaxes the force depends on the range; give linear or dugdale with a range, or a "
-            f"tension τ₀ whose length 2τ₀/E* is {_TENSED_CELLS:g} cells or more: here it is "
-            f"{cells:.2g}",
-            "interaction.type",
-        )
+def components_in(parts: Iterable[object]) -> set[type[Component]]:
+    """Return the classes of the components in parts of a configuration."""
+    values = (value for _, value, _ in walk([*parts]))
+    return {type(value) for value in values if isinstance(value, Component)}
 
 
 def _digest_of(path: Path) -> str:

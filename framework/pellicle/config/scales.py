@@ -12,7 +12,6 @@ from pellicle.model.paths import walk
 from pellicle.units import Quantity, printed, quantity_of, readable
 
 from .run import Run
-from .study import Study
 
 _LARGE = 1.0
 """Edge of a domain [m] beyond which a solid of a modulus above `_STIFF` is doubted."""
@@ -26,20 +25,8 @@ _STICKY = 10.0
 """Largest plausible displacement by adhesion over the domain."""
 
 
-def doubtful_scales(configuration: Run | Study) -> Iterator[tuple[str, str]]:
-    """Yield path and message of each value out of scale with the others of its run, each once."""
-    if isinstance(configuration, Run):
-        runs = [configuration]
-    else:
-        runs = [point.run for point in configuration.points]
-    doubts: dict[str, str] = {}
-    for run in runs:
-        for path, message in _doubts(run):
-            doubts.setdefault(path, message)
-    yield from doubts.items()
-
-
-def _doubts(run: Run) -> Iterator[tuple[str, str]]:
+def doubtful_scales(run: Run) -> Iterator[tuple[str, str]]:
+    """Yield path and message of each value out of scale with the others of a run."""
     size = max(run.grid.size)
     domain = f"on a domain of {readable(size, 'm', 3)}"
     values = list(_values(run))
@@ -51,7 +38,7 @@ def _doubts(run: Run) -> Iterator[tuple[str, str]]:
         longest = np.array([2 * math.pi / size])
         softness = float(np.asarray(run.kernel.compliance(longest))[0]) / size
     if size > _LARGE and max(moduli, default=0.0) > _STIFF:
-        yield _doubt("grid.size", size, "m", "")
+        yield _doubt("grid.size", size, "m")
     for path, value, unit in values:
         part = path.partition(".")[0]
         if part == "indenter" and unit == "m" and value > _LENGTHS * size:
@@ -72,18 +59,18 @@ def _doubts(run: Run) -> Iterator[tuple[str, str]]:
 def _values(run: Run) -> Iterator[tuple[str, float, str]]:
     """Yield path, largest size and unit of the numbers of a run that are not 0."""
     for path, value, field in walk(run):
-        if path.startswith("loading."):
+        if path.startswith("loading.") or path[-1].isdecimal():
             continue
         quantity = quantity_of(field) if field else None
         several = value if isinstance(value, (tuple, list)) else [value]
-        numbers = [abs(v) for v in several if isinstance(v, float) and math.isfinite(v)]
-        if quantity and numbers and max(numbers) > 0 and not path[-1].isdecimal():
-            yield path, max(numbers), quantity.unit
+        largest = max((abs(v) for v in several if isinstance(v, float)), default=0.0)
+        if quantity and largest > 0:
+            yield path, largest, quantity.unit
     loading = run.loading
     yield f"loading.{loading.prescribed}", max(map(abs, loading.values)), loading.prescription.unit
 
 
-def _doubt(path: str, value: float, unit: str, reason: str) -> tuple[str, str]:
+def _doubt(path: str, value: float, unit: str, reason: str = "") -> tuple[str, str]:
     given, usual = f"{value:g}", str(Quantity(unit).example).partition(" ")[2]
     because = f", {reason}" if reason else ""
     return path, (

@@ -12,7 +12,6 @@ from typing import Annotated, Any, Self
 import numpy as np
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
-from pellicle import memory
 from pellicle.components import Executor, FromRegistry
 from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError, Problem, shown
@@ -31,17 +30,12 @@ from .run import Run
 from .wording import words_at
 
 DEFAULT_EXECUTOR = "serial"
-_BYTES_PER_RUN = 40_000
+_MOST = 100_000
+"""Largest number of runs, which are all created before the first is solved."""
 
 
 def from_toml(path: str | Path, overrides: Iterable[str] = ()) -> Run | Study:
-    """Return the study that a TOML file describes, or the run if it has no table ``study``.
-
-    Raises
-    ------
-    ConfigError, PluginError
-        As for `Run.from_toml` and `Study.from_toml`.
-    """
+    """Return the study that a TOML file describes, or the run if it has no table ``study``."""
     kind = Study if "study" in read(path, overrides) else Run
     return kind.from_toml(path, overrides)
 
@@ -58,18 +52,15 @@ def _expanded(entries: object) -> tuple[Axes, ...]:
     tables = []
     for index, table in enumerate(entries):
         try:
-            tables.append(expand(table))
-            _same_length(tables[-1])
+            axes = expand(table)
         except ConfigError as error:
             raise error.within(str(index)) from None
+        lengths = {key: len(values) for key, values in axes.items()}
+        if len(set(lengths.values())) != 1:
+            reason = ", ".join(f"{key} has {n}" for key, n in lengths.items()) or "is empty"
+            raise ConfigError(f"{reason}; give axes of equally many values", str(index))
+        tables.append(axes)
     return tuple(tables)
-
-
-def _same_length(table: Axes) -> None:
-    lengths = {key: len(values) for key, values in table.items()}
-    if not table or len(set(lengths.values())) > 1:
-        reason = ", ".join(f"{key} has {length}" for key, length in lengths.items()) or "is empty"
-        raise ConfigError(f"{reason}; give axes of equally many values")
 
 
 class Study(FromFile):
@@ -112,23 +103,22 @@ class Study(FromFile):
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: the varied parameters and the number of runs."""
-        varied = [*self.vary.items(), *(pair for table in self.zip for pair in table.items())]
         run = self.points[0].run
         configuration = json.loads(run.to_json())
         rows = [
             (words_at(configuration, Run, name), ", ".join(map(str, values)), name)
-            for name, values in varied
+            for axes in self.dimensions.values()
+            for name, values in axes.items()
         ]
         heads = ("varied", "values", "field")
         return summary(run.title or "Study", f"{len(self.points)} runs", heads, rows)
 
     @model_validator(mode="after")
     def _expand(self) -> Self:
-        self._set_points()
+        self._create_runs()
         return self
 
-    def _set_points(self) -> None:
-        """Create the runs, or refuse the study."""
+    def _create_runs(self) -> None:
         self._check_axes()
         # Workers may run in another current folder.
         with paths_relative_to(None):
@@ -143,7 +133,7 @@ class Study(FromFile):
         """Return a copy with the fields of ``update``, and the runs that these describe."""
         copy = super().model_copy(update=update, deep=deep)
         if update:
-            copy._set_points()
+            copy._create_runs()
         return copy
 
     @property
@@ -162,6 +152,11 @@ class Study(FromFile):
         }
 
     @property
+    def _parameters(self) -> list[str]:
+        """The dotted paths that vary, combined or zipped."""
+        return [*self.vary, *itertools.chain.from_iterable(self.zip)]
+
+    @property
     def shape(self) -> tuple[int, ...]:
         """Number of values along each dimension."""
         return tuple(len(next(iter(axes.values()))) for axes in self.dimensions.values())
@@ -178,11 +173,8 @@ class Study(FromFile):
 
     def _runs_along(self, number: int) -> list[Run]:
         """Return a run for each value along a dimension, at the first value of all others."""
-        return [
-            point.run
-            for point in self.points
-            if not any(index for other, index in enumerate(point.position) if other != number)
-        ]
+        stride = math.prod(self.shape[number + 1 :])
+        return [point.run for point in self.points[: stride * self.shape[number] : stride]]
 
     @property
     def varying(self) -> set[str]:
@@ -193,7 +185,7 @@ class Study(FromFile):
             path
             for path, value in constants(first).items()
             if any(get(run, path) != value for run in others)
-        } - {*self.vary, *itertools.chain.from_iterable(self.zip)}
+        } - {*self._parameters}
 
     @classmethod
     def from_mapping(cls, data: Mapping[str, Any]) -> Self:
@@ -222,59 +214,49 @@ class Study(FromFile):
                 for field, message in error.problems
             ) from None
 
-    def to_json(self, *, as_given: bool = False) -> str:
+    def to_json(self, *, portable: bool = False) -> str:
         """Return the study as JSON in the form of a study file, with ranges written out as lists.
 
         Values are kept as the user gave them; paths of input files are absolute unless
-        ``as_given``.
+        ``portable``.
         """
-        tables = []
-        for number, axes in enumerate(self.dimensions.values()):
-            runs = self._runs_along(number)
-            tables.append(
-                {
-                    key: [
-                        as_json(value, get(run, key), as_given=as_given)
-                        for value, run in zip(values, runs, strict=True)
-                    ]
-                    for key, values in axes.items()
-                }
-            )
+        tables = [
+            {
+                key: [
+                    as_json(value, get(run, key), portable=portable)
+                    for value, run in zip(values, self._runs_along(number), strict=True)
+                ]
+                for key, values in axes.items()
+            }
+            for number, axes in enumerate(self.dimensions.values())
+        ]
         count = len(self.vary)
-        vary = {key: values for table in tables[:count] for key, values in table.items()}
-        executor = self.executor and self.executor.model_dump(mode="json", exclude_none=True)
-        optional = {
-            "executor": executor,
-            "vary": vary,
+        study = {
+            "executor": self.executor and self.executor.model_dump(mode="json", exclude_none=True),
+            "vary": {key: values for table in tables[:count] for key, values in table.items()},
             "zip": tables[count:],
             "derived": self.derived,
         }
-        study = {name: value for name, value in optional.items() if value}
         first = self.points[0].run
         run = {
-            key: as_json(value, get(first, key), as_given=as_given)
+            key: as_json(value, get(first, key), portable=portable)
             for key, value in self.run.items()
         }
-        return json.dumps({**run, "study": study}, ensure_ascii=False)
+        given = {name: value for name, value in study.items() if value}
+        return json.dumps({**run, "study": given}, ensure_ascii=False)
 
     def _check_axes(self) -> None:
-        keys = [*self.vary, *itertools.chain.from_iterable(self.zip)]
-        if not keys:
+        if not self._parameters:
             raise ConfigError("varies nothing; give at least one axis", "vary")
-        for first, other in itertools.combinations(keys, 2):
+        for first, other in itertools.combinations(self._parameters, 2):
             if first == other or first.startswith(f"{other}.") or other.startswith(f"{first}."):
                 short, long = sorted((first, other), key=len)
                 raise ConfigError(
                     f"would override the axis {short}, which sets the same value; leave one out",
                     f"vary.{long}",
                 )
-        count, available = math.prod(self.shape), memory.available()
-        if available is not None and _BYTES_PER_RUN * count > available:
-            raise ConfigError(
-                f"the list of {count} runs needs about "
-                f"{memory.shortage(_BYTES_PER_RUN * count, available)}; give fewer values",
-                "vary",
-            )
+        if (count := math.prod(self.shape)) > _MOST:
+            raise ConfigError(f"gives {count} runs; give values for {_MOST} at most", "vary")
 
     def _check_derived(self) -> None:
         """Refuse expressions with names that the table will not have, before any run is solved."""
@@ -286,10 +268,10 @@ class Study(FromFile):
             for variable in point.run.variables
             if point.run is run or variable.kind in ("interaction", "path", "oscillation")
         }
-        allowed |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
-        names = python_names([*self.vary, *itertools.chain.from_iterable(self.zip)])
-        reserved = {*FUNCTIONS, *CONSTANTS, *texts, *names.values(), "run", BEYOND_THEORY, "step"}
-        reserved |= {"x", "y"}
+        allowed |= {*self._parameters}
+        names = python_names(self._parameters).values()
+        columns = {*texts, *names, BEYOND_THEORY, "run", "step", "x", "y"}
+        reserved = {*FUNCTIONS, *CONSTANTS, *columns}
         varying = self.varying if self.derived else set()
         problems: list[Problem] = []
         for name, text in self.derived.items():

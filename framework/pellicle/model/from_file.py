@@ -12,7 +12,7 @@ import tomli_w
 from pellicle.errors import ConfigError, shown
 
 from .base import Model
-from .input_path import AS_GIVEN, paths_relative_to
+from .input_path import PORTABLE, paths_relative_to
 from .paths import replaced
 from .toml import parse_override, read_toml
 
@@ -99,13 +99,13 @@ class FromFile(Model):
             raise ConfigError(f"not a JSON object; give one like {cls.__name__}.to_json() returns")
         return cls.from_mapping(data)
 
-    def to_json(self, *, as_given: bool = False) -> str:
+    def to_json(self, *, portable: bool = False) -> str:
         """Return the whole configuration as JSON, defaults included, in SI floats.
 
-        Paths of input files are absolute or, if ``as_given``, as the configuration file gives them:
-        such a text can be passed on with the files and does not reveal their folder.
+        Paths of input files are absolute or, if ``portable``, the names of the files alone: such a
+        text can be passed on with the files and does not reveal their folder.
         """
-        return self.model_dump_json(exclude_none=True, context=AS_GIVEN if as_given else None)
+        return self.model_dump_json(exclude_none=True, context=PORTABLE if portable else None)
 
     def to_toml(self) -> str:
         """Return the whole configuration as TOML; see `to_json`."""
@@ -113,13 +113,7 @@ class FromFile(Model):
 
 
 def read(path: str | Path, overrides: Iterable[str] = ()) -> dict[str, Any]:
-    """Return the content of a TOML file after applying the overrides of ``--set``.
-
-    Raises
-    ------
-    ConfigError
-        The file cannot be read, or an override cannot be applied.
-    """
+    """Return the content of a TOML file after applying the overrides of ``--set``."""
     return overridden(read_toml(Path(path)), overrides)
 
 

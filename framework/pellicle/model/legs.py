@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from abc import abstractmethod
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, ClassVar, NamedTuple
 
 from pydantic import Field, PrivateAttr
@@ -40,26 +39,12 @@ class Sample(NamedTuple):
 
 
 class Leg(Model):
-    """A part of a path that goes on from the end of the one before."""
+    """A part of a path that goes on from the end of the one before, in ``num`` load steps."""
 
     key: ClassVar[str]
     """The field that only this kind of leg has."""
 
     _unit: str = PrivateAttr("1")
-
-    @property
-    @abstractmethod
-    def steps(self) -> int:
-        """The number of its load steps."""
-
-    @property
-    @abstractmethod
-    def duration(self) -> float:
-        """Its duration [s]."""
-
-    @abstractmethod
-    def samples(self, start: float, time: float, index: int) -> Iterator[Sample]:
-        """Yield the load steps of leg ``index`` after ``start``, the value at ``time`` [s]."""
 
     @property
     def described_fields(self) -> Mapping[str, FieldInfo]:
@@ -79,23 +64,6 @@ class Move(Leg):
     ]
     num: Number
 
-    @property
-    def steps(self) -> int:
-        """The number of its load steps."""
-        return self.num
-
-    @property
-    def duration(self) -> float:
-        """Its duration [s]."""
-        return self.time
-
-    def samples(self, start: float, time: float, index: int) -> Iterator[Sample]:
-        """Yield ``num`` values evenly spaced, the last one ``to``."""
-        values = ramp(start, self.to, self.num + 1)[1:]
-        times = ramp(time, time + self.duration, self.steps + 1)[1:]
-        for value, end in zip(values, times, strict=True):
-            yield Sample(value, end, index)
-
 
 class Hold(Leg):
     """A time at the value reached: { hold, num }."""
@@ -107,21 +75,6 @@ class Hold(Leg):
         Field(title="duration", description="duration of the leg [s]"),
     ]
     num: Number
-
-    @property
-    def steps(self) -> int:
-        """The number of its load steps."""
-        return self.num
-
-    @property
-    def duration(self) -> float:
-        """Its duration [s]."""
-        return self.hold
-
-    def samples(self, start: float, time: float, index: int) -> Iterator[Sample]:
-        """Yield ``num`` times evenly spaced at the value ``start``."""
-        for end in ramp(time, time + self.duration, self.steps + 1)[1:]:
-            yield Sample(start, end, index)
 
 
 class Oscillation(Leg):
@@ -141,26 +94,6 @@ class Oscillation(Leg):
             description="number of load steps of each cycle",
         ),
     ]
-
-    @property
-    def steps(self) -> int:
-        """The number of its load steps."""
-        return self.cycles * self.num
-
-    @property
-    def duration(self) -> float:
-        """Its duration [s]."""
-        return self.cycles / self.frequency
-
-    def samples(self, start: float, time: float, index: int) -> Iterator[Sample]:
-        """Yield ``num`` values each cycle of ``start`` + amplitude · sin(2πft)."""
-        times = ramp(time, time + self.duration, self.steps + 1)[1:]
-        for number, end in enumerate(times, start=1):
-            angle = 2 * math.pi * (number % self.num) / self.num
-            # Rounding removes the 1e-16 that sin(π) leaves.
-            wave = round(math.sin(angle), 15)
-            value = float(f"{start + self.amplitude * wave:.15g}")
-            yield Sample(value, end, index, number / self.num)
 
 
 KINDS: tuple[type[Leg], ...] = (Move, Hold, Oscillation)
@@ -197,7 +130,7 @@ def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
             "is a jump",
             "0",
         )
-    if (steps := sum(leg.steps for leg in legs)) > _MOST:
+    if (steps := number_of_steps([leg.model_dump() for leg in legs])) > _MOST:
         raise ConfigError(f"has {shown(steps)} load steps; give legs of {_MOST} at most")
     lowest = [math.inf] * len(legs)
     for sample in sampled(legs):
@@ -249,7 +182,22 @@ def sampled(legs: Sequence[Leg]) -> tuple[Sample, ...]:
     """Return the load steps of a path in legs, which begins at the value 0 at time 0."""
     samples = [Sample(0.0, 0.0, 0)]
     for index, leg in enumerate(legs):
-        samples += leg.samples(samples[-1].value, samples[-1].time, index)
+        start, begin, *_ = samples[-1]
+        match leg:
+            case Move(to=to, time=duration, num=num):
+                values = ramp(start, to, num + 1)[1:]
+                cycles = [math.nan] * num
+            case Hold(hold=duration, num=num):
+                values, cycles = [start] * num, [math.nan] * num
+            case Oscillation(cycles=count, num=num):
+                duration = count / leg.frequency
+                # Rounding removes the 1e-16 that sin(π) leaves.
+                sine = [round(math.sin(2 * math.pi * n / num), 15) for n in range(num)]
+                steps = range(1, count * num + 1)
+                values = [float(f"{start + leg.amplitude * sine[n % num]:.15g}") for n in steps]
+                cycles = [n / num for n in steps]
+        times = ramp(begin, begin + duration, len(values) + 1)[1:]
+        samples += map(Sample, values, times, [index] * len(values), cycles)
     return tuple(samples[1:])
 
 

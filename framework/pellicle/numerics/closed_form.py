@@ -11,13 +11,16 @@ and of r, where the trapezoidal rule converges exponentially.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
 
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle.checks import component_name
+from pellicle.errors import PluginError
+from pellicle.grid import Grid
 
-Radial = Callable[[Array], Array]
+from .kernel_calls import HasClosedForm, checked_call, positive_compliance
 
 # Relative difference that an approximate closed form may have; a wrong one differs by more.
 _ALLOWED = 1e-3
@@ -29,53 +32,55 @@ _CELLS = 2.0  # width of the narrow Gaussian in cells
 _SHARE = 0.25  # width of the wide Gaussian over the domain
 
 
-def disagreement(
-    compliance: Radial, greens_function: Radial, radial_primitive: Radial, cell: float, size: float
-) -> str:
-    """Return a message if the formulas of a kernel contradict each other; empty if they agree.
+def refuse_contradiction(kernel: HasClosedForm, grid: Grid) -> None:
+    """Refuse a kernel whose closed form is not the transform of its compliance.
 
-    This compares the displacements under two Gaussian pressures, one about as wide as a ``cell``
-    [m], the other as the domain of ``size`` [m], and the growth of the primitive between these
-    radii.
+    This compares the displacements under two Gaussian pressures, one about as wide as a cell, the
+    other as the domain, and the growth of the primitive between these radii.
     """
+    compliance = checked_call(kernel, "compliance")
+    greens_function = checked_call(kernel, "greens_function")
+    radial_primitive = checked_call(kernel, "radial_primitive")
+    cell, size = min(grid.spacing), math.hypot(*grid.size)
+
+    def positive(q: Array) -> Array:
+        with np.errstate(all="ignore"):
+            values = compliance(q)
+        # Formulas may cancel for waves far longer than the domain, which hardly contribute.
+        near = q > 1e-3 / size
+        positive_compliance(kernel, q[near], values[near])
+        return np.where(np.isfinite(values), values, 0.0)
+
+    def nodes(start: float) -> Array:
+        number = int(np.log(_WIDEST / start) / _STEP)
+        return np.asarray(_WIDEST * np.exp(_STEP * np.arange(-number, 1)))
+
+    def trapezoid(integrand: Array) -> float:
+        return float(_STEP * (integrand.sum() - (integrand[0] + integrand[-1]) / 2))
+
     for width in (_CELLS * cell, _SHARE * size):
-        q = _nodes(_LOWEST_WAVE, _WIDEST) / width
-        waves = compliance(q) * np.exp(-((q * width) ** 2) / 2) * q**2
-        by_compliance = width**2 * _trapezoid(waves)
-        r = _nodes(_LOWEST_RADIUS, _WIDEST) * width
+        q = nodes(_LOWEST_WAVE) / width
+        waves = positive(q) * np.exp(-((q * width) ** 2) / 2) * q**2
+        by_compliance = width**2 * trapezoid(waves)
+        r = nodes(_LOWEST_RADIUS) * width
         rings = radial_primitive(r) * np.exp(-((r / width) ** 2) / 2) * r**2
-        by_primitive = 2 * np.pi / width**2 * _trapezoid(rings)
+        by_primitive = 2 * np.pi / width**2 * trapezoid(rings)
         if abs(by_primitive - by_compliance) > _ALLOWED * by_compliance:
-            return (
-                f"radial_primitive(r) gives {by_primitive:.6g} m at the centre of a Gaussian "
-                f"pressure of 1 Pa and standard deviation {width:.3g} m, compliance(q) "
-                f"{by_compliance:.6g} m; they have to agree"
+            raise PluginError(
+                f"{component_name(kernel)}: radial_primitive(r) gives {by_primitive:.6g} m at the "
+                f"centre of a Gaussian pressure of 1 Pa and standard deviation {width:.3g} m, "
+                f"compliance(q) {by_compliance:.6g} m; they have to agree"
             )
-    by_greens_function = _growth(greens_function, cell, size)
+    # ∫ G(r) r dr [m³/N] between the two radii.
+    edges = np.linspace(np.log(cell), np.log(size), 2 + int(np.log(size / cell)))
+    points, weights = np.polynomial.legendre.leggauss(16)
+    middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
+    r = np.exp(middle[:, None] + half[:, None] * points)
+    by_greens_function = float((half[:, None] * weights * greens_function(r) * r**2).sum())
     start, end = radial_primitive(np.array([cell, size]))
     if abs(end - start - by_greens_function) > _ALLOWED * max(abs(start), abs(end)):
-        return (
-            f"radial_primitive(r) grows by {end - start:.6g} m³/N from r = {cell:.3g} m to "
-            f"{size:.3g} m, and the integral of greens_function(r) r by {by_greens_function:.6g} "
-            "m³/N; they have to agree"
+        raise PluginError(
+            f"{component_name(kernel)}: radial_primitive(r) grows by {end - start:.6g} m³/N from "
+            f"r = {cell:.3g} m to {size:.3g} m, and the integral of greens_function(r) r by "
+            f"{by_greens_function:.6g} m³/N; they have to agree"
         )
-    return ""
-
-
-def _growth(greens_function: Radial, start: float, end: float) -> float:
-    """Return ∫ G(r) r dr [m³/N] between two radii [m]."""
-    edges = np.linspace(np.log(start), np.log(end), 2 + int(np.log(end / start)))
-    nodes, weights = np.polynomial.legendre.leggauss(16)
-    middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
-    r = np.exp(middle[:, None] + half[:, None] * nodes)
-    return float((half[:, None] * weights * greens_function(r) * r**2).sum())
-
-
-def _nodes(start: float, end: float) -> Array:
-    number = int(np.log(end / start) / _STEP)
-    nodes: Array = end * np.exp(_STEP * np.arange(-number, 1))
-    return nodes
-
-
-def _trapezoid(integrand: Array) -> float:
-    return float(_STEP * (integrand.sum() - (integrand[0] + integrand[-1]) / 2))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
+from scipy.ndimage import distance_transform_edt, gaussian_filter, map_coordinates
 
 from pellicle.arrays import Array, Mask
 from pellicle.grid import Boundary, Grid
@@ -52,8 +53,6 @@ def shifted(grid: Grid, before: Traction, last: Traction, ratio: float) -> Tract
     both. Tractions across the gap move with the front, since they are the same function of the
     distance from it wherever it is; the wall pressure at a distance from it changes linearly.
     """
-    from scipy.ndimage import map_coordinates
-
     # With a margin in which the fields go on beyond the domain.
     mode: Literal["wrap", "edge"] = "wrap" if grid.boundary == "periodic" else "edge"
     one, two = (
@@ -87,8 +86,6 @@ def shifted(grid: Grid, before: Traction, last: Traction, ratio: float) -> Tract
 
 def _signed_distance(contact: Mask, grid: Grid) -> Array:
     """Return the distance of each cell from the edge of the contact [m], < 0 in contact."""
-    from scipy.ndimage import distance_transform_edt
-
     half = 0.5 * min(grid.spacing)
     outside = distance_transform_edt(~contact, sampling=grid.spacing) - half
     inside = distance_transform_edt(contact, sampling=grid.spacing) - half
@@ -97,8 +94,6 @@ def _signed_distance(contact: Mask, grid: Grid) -> Array:
 
 def _averaged(values: Array, distance: Array, grid: Grid) -> Array:
     """Return the mean of values near the front around each cell."""
-    from scipy.ndimage import gaussian_filter
-
     weight = np.exp(-np.square(distance / (_NEAR * max(grid.spacing))))
     total = gaussian_filter(weight, _SMOOTH)
     mean = gaussian_filter(values * weight, _SMOOTH)
@@ -107,8 +102,6 @@ def _averaged(values: Array, distance: Array, grid: Grid) -> Array:
 
 def _along_normals(values: Array, distance: Array, grid: Grid) -> Array:
     """Return at each cell the value at the nearest cell of the front."""
-    from scipy.ndimage import distance_transform_edt
-
     away = np.abs(distance) > max(grid.spacing)
     rows, columns = distance_transform_edt(
         away, sampling=grid.spacing, return_distances=False, return_indices=True

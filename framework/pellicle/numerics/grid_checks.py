@@ -44,36 +44,26 @@ def error_of_cells(compliance: Callable[[Array], Array], spacing: float) -> floa
 
 
 def warn_of_cells(compliance: Callable[[Array], Array], grid: Grid) -> None:
-    """Warn if cells on a free boundary are too wide for an accuracy of a few per cent.
-
-    Warns
-    -----
-    UserWarning
-        The message estimates the error of results and the number of points required.
-    """
+    """Warn if cells on a free boundary are too wide for an accuracy of a few per cent."""
     if grid.boundary != "free":
         return
     errors = [error_of_cells(compliance, spacing) for spacing in grid.spacing]
     error = max(errors, key=lambda value: abs(value) if math.isfinite(value) else 0.0)
     if not abs(error) > _ALLOWED:
         return
+    factor, enough = 1.0, "more points"
+    while (factor := factor * _FINER) < _FINEST:
+        if all(abs(error_of_cells(compliance, d / factor)) <= _ALLOWED for d in grid.spacing):
+            nx, ny = (math.ceil(n * factor) for n in grid.points)
+            enough = f"about {nx} × {ny} points"
+            break
     warnings.warn(
         f"grid.points: cells of {' × '.join(readable(d, 'm', 3) for d in grid.spacing)} yield to "
         f"long waves by {abs(error):.0%} {'more' if error > 0 else 'less'} than the kernel does, "
         "and forces are likely to be as wrong; an incompressible layer needs cells no wider than "
-        f"it is thick: use {_enough(compliance, grid)}",
+        f"it is thick: use {enough}",
         stacklevel=3,
     )
-
-
-def _enough(compliance: Callable[[Array], Array], grid: Grid) -> str:
-    """Return a phrase with the number of points required."""
-    factor = 1.0
-    while (factor := factor * _FINER) < _FINEST:
-        if all(abs(error_of_cells(compliance, d / factor)) <= _ALLOWED for d in grid.spacing):
-            nx, ny = (math.ceil(n * factor) for n in grid.points)
-            return f"about {nx} × {ny} points"
-    return "more points"
 
 
 # A step between opposite edges above this multiple of steps inside means a non-periodic surface.
@@ -85,11 +75,6 @@ def warn_of_period(heights: Array, grid: Grid) -> None:
 
     The rms of this step is then more than three times that between any two neighbouring lines of
     cells. ``heights`` [m] have the grid's shape.
-
-    Warns
-    -----
-    UserWarning
-        The message names the axis and the height of the step.
     """
     if grid.boundary != "periodic" or not np.isfinite(heights).all():
         return

@@ -65,9 +65,15 @@ class Tabulated:
         # Every other sample, including the last, without the first decade.
         later = round(np.log(10) / _STEP)
         coarser = slice(later + (x.size - 1 - later) % 2, None, 2)
-        self.error = self._apart(
-            reach, *_transform(x[coarser], values[coarser], rest[coarser], reach)
+        rg, p_over_r = _transform(x[coarser], values[coarser], rest[coarser], reach)
+        # Their largest difference, also between nodes.
+        log_r = np.linspace(reach[0], reach[1], math.ceil((reach[1] - reach[0]) / _STEP))
+        r = np.exp(log_r)
+        largest = np.maximum.accumulate(np.abs(self.radial_primitive(r)))
+        apart = np.maximum(
+            np.abs(rg(log_r) - self._rg(log_r)), np.abs(p_over_r(log_r) - self._p_over_r(log_r))
         )
+        self.error = float((apart * r / largest).max())
         """Estimated error, relative as `ACCURACY` is."""
         if not self.error <= ACCURACY:
             raise ConfigError(
@@ -80,27 +86,13 @@ class Tabulated:
                 "kernel",
             )
 
-    def covers(self, shortest: float, longest: float) -> bool:
-        """Return whether all radii between these two [m] are tabulated."""
-        return self.shortest <= shortest and longest <= self.longest
-
     def greens_function(self, r: Array) -> Array:
         """Return G(r) [m/N]; a constant part of G(q) contributes only at r = 0."""
-        return self._power_law.greens_function(r) + _real(self._rg(np.log(r))) / r
+        return np.asarray(self._power_law.greens_function(r) + self._rg(np.log(r)) / r)
 
     def radial_primitive(self, r: Array) -> Array:
         """Return P(r) [m³/N]."""
-        return self._power_law.radial_primitive(r) + _real(self._p_over_r(np.log(r))) * r
-
-    def _apart(self, reach: Array, rg: CubicSpline, p_over_r: CubicSpline) -> float:
-        """Return the largest relative difference from a coarser table, also between nodes."""
-        log_r = np.linspace(reach[0], reach[1], math.ceil((reach[1] - reach[0]) / _STEP))
-        r = np.exp(log_r)
-        largest = np.maximum.accumulate(np.abs(self.radial_primitive(r)))
-        apart = np.maximum(
-            np.abs(rg(log_r) - self._rg(log_r)), np.abs(p_over_r(log_r) - self._p_over_r(log_r))
-        )
-        return float((apart * r / largest).max())
+        return np.asarray(self._power_law.radial_primitive(r) + self._p_over_r(np.log(r)) * r)
 
 
 class _PowerLaw(NamedTuple):
@@ -229,7 +221,3 @@ def _weight(x: Array, g: Array, f: Array, power: float, reach: Array) -> float:
         return float((b * x[nonzero] + part).max(initial=-np.inf) - (b * x[inside] + wanted).min())
 
     return min((power + share * (2 - power) for share in (0.25, 0.5, 0.75)), key=decades)
-
-
-def _real(values: object) -> Array:
-    return np.asarray(values, dtype=np.float64)

@@ -46,21 +46,8 @@ def cell_coefficients(
 ) -> Array:
     """Return integrals of the Green's function over cells at all offsets (i, j) of a grid.
 
-    Parameters
-    ----------
-    greens_function:
-        G(r) in m/N for an array of distances r > 0 in m.
-    radial_primitive:
-        P(R) = ∫₀^R G(r) r dr in m³/N for an array of distances R ≥ 0 in m.
-    shape:
-        (nx, ny), the number of offsets i = 0..nx-1 and j = 0..ny-1.
-    spacing:
-        (dx, dy), the sides of a cell in m.
-
-    Returns
-    -------
-    Array of shape (nx, ny) in m/Pa: the displacement at the centre of a cell under unit
-    pressure on the cell that lies i dx and j dy away.
+    They are the displacements [m/Pa] at the centre of a cell under unit pressure on the cell that
+    lies i dx and j dy away, from G(r) [m/N] for r > 0 and P(R) = ∫₀^R G r dr [m³/N] for R ≥ 0 [m].
     """
     (nx, ny), (dx, dy) = shape, spacing
     if dx == dy and nx < ny:
@@ -81,24 +68,18 @@ def _far_cells(greens_function: Radial, shape: Shape, spacing: Spacing) -> Array
     for start in range(0, nx, rows):
         stop = min(start + rows, nx)
         columns = min(stop, ny) if symmetric else ny
-        lattice = _lattice_values(greens_function, (start, stop), columns, spacing)
+        # G at the cell centres of the rows and columns and of a margin around them.
+        x = np.arange(start - _HALO, stop + _HALO) * spacing[0]
+        y = np.arange(-_HALO, columns + _HALO) * spacing[1]
+        square = (x * x)[:, None] + y * y
+        # The origin is singular; any finite value will do, as near cells are overwritten.
+        np.maximum(square, min(spacing) ** 2, out=square)
+        lattice = greens_function(np.sqrt(square, out=square))
         result[start:stop, :columns] = _mean_along_rows(_mean_along_rows(lattice).T).T
         if symmetric and start < ny:
             result[:start, start:columns] = result[start:columns, :start].T
     result *= spacing[0] * spacing[1]
     return result
-
-
-def _lattice_values(
-    greens_function: Radial, rows: tuple[int, int], columns: int, spacing: Spacing
-) -> Array:
-    """Return G at the cell centres of the rows and columns and of a margin around them."""
-    x = np.arange(rows[0] - _HALO, rows[1] + _HALO) * spacing[0]
-    y = np.arange(-_HALO, columns + _HALO) * spacing[1]
-    square = (x * x)[:, None] + y * y
-    # The origin is singular; any finite value will do, as near cells are overwritten.
-    np.maximum(square, min(spacing) ** 2, out=square)
-    return greens_function(np.sqrt(square, out=square))
 
 
 def _mean_along_rows(values: Array) -> Array:

@@ -11,9 +11,6 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to, read_only, real_array, real_number
 from pellicle.errors import ConfigError, PluginError
-from pellicle.grid import Grid
-
-from .closed_form import disagreement
 
 # Factors on the grid's largest q at which G(q) is checked for growth.
 _SHORTER = np.geomspace(1.0, 1e12, 13)
@@ -101,14 +98,8 @@ def refuse_growth(
 
     For short waves a solid is a half-space, with G(q) ∝ 1/q; for a bed of springs G(q) is constant.
     G(q) of an incompressible layer grows with q down to waves about as long as the layer is thick.
-    These may be shorter than the grid's waves, so still shorter waves are checked.
-
-    Parameters
-    ----------
-    compliance
-        The checked call of the kernel.
-    shortest
-        The largest wavenumber of the grid [rad/m].
+    These may be shorter than the grid's waves, so still shorter waves are checked. ``compliance``
+    is the checked call, ``shortest`` the largest wavenumber of the grid [rad/m].
     """
     if not shortest > 0:
         return
@@ -126,26 +117,3 @@ def refuse_growth(
             f"{shortest / 2:.3g} rad/m to {values[known - 1]:.3g} m/Pa at {q[known - 1]:.3g} "
             "rad/m; for short waves it has to fall, or to tend to a constant"
         )
-
-
-def refuse_contradiction(kernel: HasClosedForm, grid: Grid) -> None:
-    """Refuse a kernel whose closed form is not the transform of its compliance."""
-    compliance = checked_call(kernel, "compliance")
-
-    def positive(q: Array) -> Array:
-        with np.errstate(all="ignore"):
-            values = compliance(q)
-        # Formulas may cancel for waves far longer than the domain, which hardly contribute.
-        near = q > 1e-3 / math.hypot(*grid.size)
-        positive_compliance(kernel, q[near], values[near])
-        return np.where(np.isfinite(values), values, 0.0)
-
-    message = disagreement(
-        positive,
-        checked_call(kernel, "greens_function"),
-        checked_call(kernel, "radial_primitive"),
-        min(grid.spacing),
-        math.hypot(*grid.size),
-    )
-    if message:
-        raise PluginError(f"{component_name(kernel)}: {message}")

@@ -20,17 +20,13 @@ def labelled(mask: Mask, boundary: Boundary, connectivity: Literal[4, 8]) -> tup
     the domain are one.
     """
     from scipy import ndimage
-
-    structure = ndimage.generate_binary_structure(2, 1 if connectivity == 4 else 2)
-    labels, count = ndimage.label(mask, structure)
-    return _joined(labels, count, connectivity) if boundary == "periodic" else (labels, count)
-
-
-def _joined(labels: Labels, count: int, connectivity: Literal[4, 8]) -> tuple[Labels, int]:
-    """Return labels in which patches that meet across the edges of the domain are one."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
+    structure = ndimage.generate_binary_structure(2, 1 if connectivity == 4 else 2)
+    labels, count = ndimage.label(mask, structure)
+    if boundary == "free":
+        return labels, count
     shifts = (0,) if connectivity == 4 else (-1, 0, 1)
     edges: list[Any] = []
     for lines in (labels, labels.T):

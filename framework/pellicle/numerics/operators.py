@@ -19,6 +19,7 @@ from pellicle.checks import component_name, read_only
 from pellicle.errors import ConfigError, shown
 from pellicle.grid import Grid
 
+from .closed_form import refuse_contradiction
 from .convolution import Workspace, convolve
 from .grid_checks import warn_of_cells
 from .hankel import Tabulated
@@ -29,7 +30,6 @@ from .kernel_calls import (
     checked_call,
     mean_compliance,
     positive_compliance,
-    refuse_contradiction,
     refuse_growth,
 )
 
@@ -116,13 +116,7 @@ class Operator:
         return scaled
 
     def coarsened(self) -> Operator:
-        """Return the operator of the same kernel on `Grid.coarsened`, as `scaled` as this one.
-
-        Raises
-        ------
-        ConfigError
-            The kernel cannot be used on the coarser grid.
-        """
+        """Return the operator of the same kernel on `Grid.coarsened`, as `scaled` as this one."""
         # The kernel itself has been checked on the finest grid.
         coarse = _operator(self.kernel, self.grid.coarsened()).scaled(self._factor)
         return coarse.with_spring(self._spring_compliance)
@@ -257,8 +251,13 @@ class FreeOperator(Operator):
             )
         px, py = (scipy.fft.next_fast_len(2 * n - 1, real=True) for n in grid.shape)
         self.padded = px, py
-        # Even in both directions, so the transform of the wrapped coefficients is real.
-        self._symbol = _Symbol(scipy.fft.rfft2(_wrap(cells, self.padded)).real.copy())
+        # In wrap-around order they are even in both directions, so the transform is real.
+        nx, ny = cells.shape
+        wrapped = np.zeros(self.padded)
+        wrapped[:nx, :ny] = cells
+        wrapped[px - nx + 1 :, :ny] = cells[:0:-1]
+        wrapped[:, py - ny + 1 :] = wrapped[:, ny - 1 : 0 : -1]
+        self._symbol = _Symbol(scipy.fft.rfft2(wrapped).real.copy())
 
 
 def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
@@ -286,17 +285,14 @@ def _operator(kernel: HasCompliance, grid: Grid) -> Operator:
     with np.errstate(all="ignore"):
         if grid.boundary == "periodic":
             return PeriodicOperator(kernel, grid)
-        return FreeOperator(_in_real_space(kernel, grid), grid)
-
-
-def _in_real_space(kernel: HasCompliance, grid: Grid) -> HasClosedForm:
-    # These radii cover all coarser grids of the same domain, which reuse the table.
-    radii = 0.2 * min(grid.spacing), 3 * math.hypot(*grid.size)
-    if isinstance(kernel, Tabulated):
-        return kernel if kernel.covers(*radii) else Tabulated(kernel.compliance, *radii)
-    if isinstance(kernel, HasClosedForm):
-        return kernel
-    return Tabulated(checked_call(kernel, "compliance"), *radii)
+        # These radii cover all coarser grids of the same domain, which reuse the table.
+        shortest, longest = 0.2 * min(grid.spacing), 3 * math.hypot(*grid.size)
+        if isinstance(kernel, Tabulated):
+            if shortest < kernel.shortest or kernel.longest < longest:
+                kernel = Tabulated(kernel.compliance, shortest, longest)
+        elif not isinstance(kernel, HasClosedForm):
+            kernel = Tabulated(checked_call(kernel, "compliance"), shortest, longest)
+        return FreeOperator(kernel, grid)
 
 
 def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array:
@@ -310,11 +306,6 @@ def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array
     ConfigError
         The pressure is not a finite real array of the grid's shape, or ``kernel`` is not a kernel,
         or ``grid`` is not a grid.
-
-    Warns
-    -----
-    UserWarning
-        The cells are too wide for the kernel.
     """
     if not hasattr(kernel, "compliance"):
         raise ConfigError(
@@ -334,13 +325,3 @@ def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array
     operator = make_operator(kernel, grid)
     warn_of_cells(kernel.compliance, grid)
     return operator(given.astype(np.float64))
-
-
-def _wrap(cells: Array, padded: tuple[int, ...]) -> Array:
-    """Return coefficients at offsets 0 … n−1 in wrap-around order on the padded grid."""
-    (nx, ny), (px, py) = cells.shape, padded
-    wrapped = np.zeros((px, py))
-    wrapped[:nx, :ny] = cells
-    wrapped[px - nx + 1 :, :ny] = cells[:0:-1]
-    wrapped[:, py - ny + 1 :] = wrapped[:, ny - 1 : 0 : -1]
-    return wrapped

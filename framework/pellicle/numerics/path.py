@@ -7,10 +7,8 @@ from typing import Final, NamedTuple, Self
 
 import numpy as np
 
-from pellicle.arrays import Array, Mask
-from pellicle.grid import Boundary
+from pellicle.arrays import Array
 
-from .front import Traction, same_patches, shifted
 from .problem import Depth, Problem
 from .solution import State
 
@@ -50,17 +48,9 @@ class Start(State):
 
 
 def start_of(problem: Problem, state: State | None, path: Sequence[PathPoint]) -> State | None:
-    """Return the start of a load step: ``state``, with its extrapolation if there is one.
+    """Return the start of a load step: its last state, with its extrapolation if there is one.
 
-    Parameters
-    ----------
-    problem
-        The load step.
-    state
-        The state at the end of the last step.
-    path
-        The last two load steps, the earlier one first; fewer if there are no more.
-
+    ``path`` has the last two load steps, the earlier one first; fewer if there are no more.
     Nothing is extrapolated across a reversal of the path or a jump, to more than twice the last
     step, and in a solid that relaxes, whose next state also depends on what earlier steps have left
     behind. Neither is it with a law that acts before there is contact: its contacts come and go
@@ -107,24 +97,14 @@ def _pressure_ahead(problem: Problem, before: PathPoint, last: PathPoint, ratio:
     gaps = [np.maximum(point.gap.ravel()[coming], 0.0) for point in (before, last)]
     linear = gaps[1] + ratio * (gaps[1] - gaps[0])
     one, two = (gap ** (1 / _GAP_POWER) for gap in gaps)
-    joins = (
-        np.where(
-            _beside(contact, problem.grid.boundary).ravel()[coming],
-            linear,
-            two + ratio * (two - one),
-        )
-        < 0
-    )
+    # Cells beside the contact have an edge in common with one of its cells.
+    periodic = problem.grid.boundary == "periodic"
+    padded = np.pad(contact, 1, mode="wrap" if periodic else "constant")
+    rows, columns = padded[:, 1:-1], padded[1:-1]
+    beside = (rows[:-2] | rows[2:] | columns[:, :-2] | columns[:, 2:]).ravel()[coming]
+    joins = np.where(beside, linear, two + ratio * (two - one)) < 0
     np.put(pressure, coming[joins], _JOINING * float(pressure.max()))
     return pressure
-
-
-def _beside(contact: Mask, boundary: Boundary) -> Mask:
-    """Return the cells that have an edge in common with a cell of the contact."""
-    padded = np.pad(contact, 1, mode="wrap" if boundary == "periodic" else "constant")
-    rows, columns = padded[:, 1:-1], padded[1:-1]
-    neighbours: Mask = rows[:-2] | rows[2:] | columns[:, :-2] | columns[:, 2:]
-    return neighbours & ~contact
 
 
 def _sticking_ahead(
@@ -135,12 +115,20 @@ def _sticking_ahead(
     None if a patch of the contact or its zone comes, goes, splits or merges, which is for the
     descent from the last state to find.
     """
+    # The import takes long, and only contacts that stick need it.
+    from .front import Traction, same_patches, shifted
+
+    def traction(state: State) -> Traction:
+        contact = state.contact
+        across = np.where(contact, -strength, state.pressure - state.wall)
+        return Traction(contact, np.where(contact, state.pressure - across, 0.0), across)
+
     law, boundary = problem.law, problem.grid.boundary
     assert law
     if not law.needs_contact:
         return None
     strength = law.strength()
-    one, two = (_traction(state, strength) for state in (before, last))
+    one, two = traction(before), traction(last)
     if not same_patches(one.across != 0, two.across != 0, boundary):
         return None
     ahead = shifted(problem.grid, one, two, ratio)
@@ -153,9 +141,3 @@ def _sticking_ahead(
     least = _JOINING * float(last.wall.max())
     wall = np.where(contact, np.maximum(ahead.wall, least), 0.0)
     return wall + across, wall
-
-
-def _traction(state: State, strength: float) -> Traction:
-    contact = state.contact
-    across = np.where(contact, -strength, state.pressure - state.wall)
-    return Traction(contact, np.where(contact, state.pressure - across, 0.0), across)

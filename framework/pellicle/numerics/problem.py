@@ -162,13 +162,7 @@ class Problem:
         return height_scale(self.heights, contact, depth - below, wave)
 
     def coarsened(self) -> Problem:
-        """Return the same problem with half as many cells each way.
-
-        Raises
-        ------
-        ConfigError
-            The kernel cannot be used on the coarser grid.
-        """
+        """Return the same problem with half as many cells each way."""
         operator = self.operator.coarsened()
         grid = operator.grid
         return replace(

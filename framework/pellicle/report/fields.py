@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellicle.arrays import Array, Mask
+from pellicle.arrays import Array
 from pellicle.components import Solver
 from pellicle.numerics.problem import height_scale
 from pellicle.results.path import has_interaction, has_times, label_of_step
@@ -148,9 +148,8 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
     if edge.any():
         axes.plot(x[edge], pressure[edge], ".", color="C0", markersize=3)
     about = f"\ndots: {EDGE_CELLS}" if edge.any() else ""
-    axes.set(
-        xlabel=f"x [{length_name}] at y = {line['y'].item() * length:.3g} {length_name}{about}"
-    )
+    at = f"{line['y'].item() * length:.3g} {length_name}{about}"
+    axes.set_xlabel(f"x [{length_name}] at y = {at}")
     axes.set_ylabel(f"{'' if pulls else 'contact '}pressure [{name}]", color="C0")
     axes.set_title(_caption(result, step))
     gap_axes = axes.twinx()
@@ -158,25 +157,19 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
     gap_axes.set_ylabel(f"gap [{gap_name}]", color="C1")
     if pulls:
         axes.axhline(0.0, color="C0", linewidth=0.6)
-        _shade(axes, x, line["contact"].values)
+        # An empty shade would set the limits of the axes to round-off.
+        if contact.any():
+            style: dict[str, Any] = {"step": "mid", "color": "0.9", "zorder": 0}
+            over = axes.get_xaxis_transform()
+            shade = axes.fill_between(x, 0, 1, where=contact, transform=over, **style)
+            # Otherwise 0 and 1 are edges of the vertical axis.
+            shade.sticky_edges.y.clear()
     for side in (gap_axes,) if pulls else (axes, gap_axes):
         side.set_ylim(bottom=0.0)
     if not opens and float(data["depth"]) > 0:
         gap_axes.set_ylim(top=float(data["depth"]) * gap_scale)
     elif opens and not near.all():
         gap_axes.set_ylim(top=float(gap[near].max()) * gap_scale)
-
-
-def _shade(axes: Axes, x: Array, where: Mask) -> None:
-    """Shade the cells at ``x`` where a mask holds, over the whole height of the axes."""
-    # An empty shade would set the limits of the axes to round-off.
-    if where.any():
-        over = axes.get_xaxis_transform()
-        shade = axes.fill_between(
-            x, 0, 1, where=where, step="mid", transform=over, color="0.9", zorder=0
-        )
-        # Otherwise 0 and 1 are edges of the vertical axis.
-        shade.sticky_edges.y.clear()
 
 
 def _caption(result: Result, step: int) -> str:
@@ -190,10 +183,10 @@ def _caption(result: Result, step: int) -> str:
 
 def extent(x: Array, y: Array) -> tuple[float, float, float, float]:
     """Return the outer edges of the domain from its cell centres, for ``Axes.imshow``."""
-    return (*_edges(x), *_edges(y))
-
-
-def _edges(centres: Array) -> tuple[float, float]:
-    """Return the outer edges of a row of cells from their centres."""
-    half = (centres[1] - centres[0]) / 2 if centres.size > 1 else 0.5
-    return float(centres[0] - half), float(centres[-1] + half)
+    dx, dy = (c[1] - c[0] if c.size > 1 else 1.0 for c in (x, y))
+    return (
+        float(x[0] - dx / 2),
+        float(x[-1] + dx / 2),
+        float(y[0] - dy / 2),
+        float(y[-1] + dy / 2),
+    )

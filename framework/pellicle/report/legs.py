@@ -37,10 +37,21 @@ def draw_legs(
             drawn["markerfacecolor"] = style["color"]
             if style.get("linestyle") != "none":
                 drawn["linestyle"] = RETRACTION
-        axes.plot(x[leg.steps], y[leg.steps], label=label, **drawn)
-        if arrows:
-            _point_along(axes, x[leg.steps], y[leg.steps], style["color"])
+        u, v = x[leg.steps], y[leg.steps]
+        axes.plot(u, v, label=label, **drawn)
         label = None
+        # An arrow in the middle of the part of the line in which y changes.
+        finite = np.isfinite(u) & np.isfinite(v)
+        starts = np.flatnonzero(finite[:-1] & finite[1:] & (v[1:] != v[:-1]))
+        if arrows and starts.size:
+            start = int(starts[starts.size // 2])
+            arrow = {"arrowstyle": "-|>", "mutation_scale": 15, "shrinkA": 0, "shrinkB": 0}
+            axes.annotate(
+                "",
+                xy=((u[start] + u[start + 1]) / 2, (v[start] + v[start + 1]) / 2),
+                xytext=(u[start], v[start]),
+                arrowprops=arrow | {"color": style["color"]},
+            )
 
 
 def name_legs(axes: Axes, paths: Iterable[Iterable[Leg]], hue: str = "0.4") -> None:
@@ -52,18 +63,3 @@ def name_legs(axes: Axes, paths: Iterable[Iterable[Leg]], hue: str = "0.4") -> N
         style: dict[str, Any] = {"color": hue, "marker": "o", "markersize": 4}
         axes.plot([], [], label="approach", markerfacecolor="white", **style)
         axes.plot([], [], label="retraction", linestyle=RETRACTION, **style)
-
-
-def _point_along(axes: Axes, x: Array, y: Array, colour: Any) -> None:
-    """Draw an arrow in the middle of the part of a line in which y changes, in its order."""
-    finite = np.isfinite(x) & np.isfinite(y)
-    starts = np.flatnonzero(finite[:-1] & finite[1:] & (y[1:] != y[:-1]))
-    if starts.size:
-        start = int(starts[starts.size // 2])
-        arrow = {"arrowstyle": "-|>", "mutation_scale": 15, "shrinkA": 0, "shrinkB": 0}
-        axes.annotate(
-            "",
-            xy=((x[start] + x[start + 1]) / 2, (y[start] + y[start + 1]) / 2),
-            xytext=(x[start], y[start]),
-            arrowprops=arrow | {"color": colour},
-        )

@@ -109,6 +109,8 @@ class Maps:
     @property
     def data(self) -> dict[str, Any]:
         """The input of the page's script; lengths and values are in the units that it names."""
+        import matplotlib
+
         sizes = np.array([frame.grid.size for frame in self.frames])
         length, length_unit = axis_unit(sizes / 2, "m")
         fields, scales = [], []
@@ -116,6 +118,7 @@ class Maps:
             ends = [(frame.packed[number].low, frame.packed[number].high) for frame in self.frames]
             scale, unit = axis_unit(np.array(ends), field.unit)
             scales.append(scale)
+            colours = matplotlib.colormaps[field.colours](np.arange(256), bytes=True)[:, :3]
             fields.append(
                 {
                     "name": field.name,
@@ -125,7 +128,8 @@ class Maps:
                     "blank": field.blank,
                     "power": field.power,
                     **({"centred": True} if field.centred else {}),
-                    "colours": _colours(field.colours),
+                    # The 256 colours of the map, three bytes for each.
+                    "colours": base64.b64encode(colours.tobytes()).decode(),
                     "low": min(low for low, _ in ends) * scale,
                     "high": max(high for _, high in ends) * scale,
                 }
@@ -179,11 +183,3 @@ def _pack(values: Array) -> _Packed:
     steps = np.diff(codes, prepend=np.uint16(0))
     planes = np.stack([steps >> 8, steps & 0xFF]).astype(np.uint8).tobytes()
     return _Packed(float(low), float(high), base64.b64encode(zlib.compress(planes, 9)).decode())
-
-
-def _colours(name: str) -> str:
-    """Return the 256 colours of a colour map, three bytes for each."""
-    import matplotlib
-
-    table = matplotlib.colormaps[name](np.arange(256), bytes=True)[:, :3]
-    return base64.b64encode(table.tobytes()).decode()

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pellicle.analysis import Leg, legs
 from pellicle.arrays import Array, Mask
+from pellicle.results.dimensions import parts
 from pellicle.results.path import has_interaction, has_times
 from pellicle.results.result import Result
 from pellicle.results.shape import is_periodic
@@ -94,13 +95,7 @@ def save_figures(
     formats: Iterable[str],
     style: FigureStyle | None = None,
 ) -> tuple[Path, ...]:
-    """Write every figure as ``directory/name-figure.format`` and return the files.
-
-    Raises
-    ------
-    StorageError
-        A file cannot be written.
-    """
+    """Write every figure as ``directory/name-figure.format`` and return the files."""
     return _save(drawings(result), directory, name, formats, style)
 
 
@@ -128,11 +123,6 @@ def save_study_figures(
     """Write the figures of `study_drawings` as ``directory/name-figure.format``.
 
     Parameters are as for `save_figures`; ``table`` is that of `pellicle.run_study`.
-
-    Raises
-    ------
-    StorageError
-        A file cannot be written.
     """
     return _save(study_drawings(table), directory, name, formats, style)
 
@@ -158,19 +148,28 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     Where steps have times, it is drawn against the time; where each run has one step only, against
     the first axis of numbers instead.
     """
-    against, along, compared, stacked = _layout(table)
+    # The horizontal axis, and the dimension along which each line goes.
+    dimensions = [str(d) for d in table["status"].dims if d != "step"]
+    numbers = [d for d in dimensions if table[d].dtype.kind in "if" and table.sizes[d] > 1]
+    over_steps = table.sizes["step"] > 1 or not numbers
+    along = "step" if over_steps else numbers[0]
+    against = ("time" if has_times(table) else "depth") if over_steps else along
+    # Values of the first of the others have colours of their own; seeds are only repetitions.
+    rest = [d for d in dimensions if d != along]
+    compared = sorted(rest, key=lambda d: d.endswith("seed") or table.sizes[d] == 1)[:1]
+    stacked = [str(d) for d in table["status"].dims if d not in (along, *compared)]
     y_axis, x_axis = wording(table[variable]), wording(table[against])
     named_by = wording(table[compared[0]]) if compared else None
     many = table.sizes[compared[0]] if compared else 1
     ordered = bool(compared) and is_ordered(table, compared[0])
     pulls, paths = has_interaction(table), list[list[Leg]]()
-    for number, part in enumerate(_parts(table, compared)):
+    for number, part in enumerate(parts(table, compared)):
         hue = colour(number, many, ordered=ordered)
         marker = MARKERS[number % len(MARKERS)]
         # Of many values only some are named: colours change evenly between them.
         named = compared and number % -(-many // _MOST_NAMED) == 0
         label = named_by.text(part[compared[0]].item()) if named and named_by else ""
-        for line in _parts(part, stacked):
+        for line in parts(part, stacked):
             x = line[against].values * x_axis.scale.factor
             y = line[variable].values * y_axis.scale.factor
             path, good = None, line["converged"].values
@@ -196,33 +195,6 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
         axes.legend(fontsize="small", loc="upper left" if many > _MOST_NAMED else "best")
 
 
-class _Layout(NamedTuple):
-    """What a figure of a study shows along which dimension of its table."""
-
-    against: str
-    """Variable of the horizontal axis."""
-    along: str
-    """Dimension along which each line goes."""
-    compared: list[str]
-    """Dimension whose values have colours of their own; empty if there is none."""
-    stacked: list[str]
-    """All others, whose values have lines of one colour."""
-
-
-def _layout(table: xr.Dataset) -> _Layout:
-    dimensions = [str(d) for d in table["status"].dims if d != "step"]
-    numbers = [d for d in dimensions if table[d].dtype.kind in "if" and table.sizes[d] > 1]
-    over_steps = table.sizes["step"] > 1 or not numbers
-    of_steps = "time" if has_times(table) else "depth"
-    against = of_steps if over_steps else numbers[0]
-    along = "step" if over_steps else against
-    # Seeds are repetitions, not values to compare.
-    rest = [d for d in dimensions if d != along]
-    compared = sorted(rest, key=lambda d: d.endswith("seed") or table.sizes[d] == 1)[:1]
-    stacked = [str(d) for d in table["status"].dims if d not in (along, *compared)]
-    return _Layout(against, along, compared, stacked)
-
-
 def _save(
     figures: Mapping[str, Callable[[Figure], None]],
     directory: Path,
@@ -234,12 +206,6 @@ def _save(
     for suffix, fill in figures.items():
         files += save_figure(fill, directory / f"{name}-{suffix}", formats, style=style)
     return tuple(files)
-
-
-def _parts(table: xr.Dataset, dimensions: Sequence[str]) -> Iterator[xr.Dataset]:
-    """Yield the part of a table at each combination of indices along dimensions."""
-    for index in np.ndindex(*(table.sizes[d] for d in dimensions)):
-        yield table.isel(dict(zip(dimensions, index, strict=True)))
 
 
 def _curve(result: Result, axes: Axes, labels: Mapping[str, str | None], against: str) -> None:

@@ -29,11 +29,6 @@ def save_figure(
     """Let ``draw`` fill a figure of ``size`` [inch], and write it as ``stem.format``.
 
     The width of a ``style`` replaces that of ``size``, with the height in proportion.
-
-    Raises
-    ------
-    StorageError
-        A file cannot be written.
     """
     files = []
     with _figure(draw, size, style) as figure:

@@ -26,8 +26,6 @@ NO_CONTACT = "0.93"
 """Grey of cells without contact."""
 MARKERS = "os^Dv<>P"
 LINES = ("-", "--", "-.", ":")
-INCH = 0.0254
-"""An inch [m]."""
 _SMALL = 8.0
 _MARKER_DISTANCE = 0.12
 """Distance of the markers on a smooth curve over the diagonal of the axes."""
@@ -62,15 +60,26 @@ class FigureStyle(Model):
         """Return the size of a figure [inch], scaled to the width."""
         if self.width is None:
             return size
-        width = self.width / INCH
+        width = self.width / 0.0254
         return width, size[1] * width / size[0]
 
     @contextmanager
     def applied(self) -> Iterator[None]:
         """Apply the style to what is drawn inside the context."""
+        import matplotlib as mpl
         import matplotlib.style
         from cycler import cycler
 
+        from_file: Any = {}
+        if self.file is not None:
+            try:
+                # Unknown keys are logged; bad values raise.
+                from_file = mpl.rc_params_from_file(self.file, True, False)
+            except (OSError, ValueError) as error:
+                raise ConfigError(
+                    f"{self.file} cannot be read as a style file of matplotlib: {error}",
+                    "style.file",
+                ) from None
         house: dict[str, Any] = {
             "axes.prop_cycle": cycler(color=OKABE_ITO),
             "legend.frameon": False,
@@ -80,22 +89,8 @@ class FigureStyle(Model):
         font_size = _SMALL if self.font_size is None and self.width else self.font_size
         if font_size is not None:
             own["font.size"] = font_size
-        with matplotlib.style.context(["default", house, self._from_file(), own]):
+        with mpl.style.context(["default", house, dict(from_file), own]):
             yield
-
-    def _from_file(self) -> dict[str, Any]:
-        import matplotlib as mpl
-
-        if self.file is None:
-            return {}
-        try:
-            # Unknown keys are logged; bad values raise.
-            values: Any = mpl.rc_params_from_file(self.file, True, False)
-            return dict(values)
-        except (OSError, ValueError) as error:
-            raise ConfigError(
-                f"{self.file} cannot be read as a style file of matplotlib: {error}", "style.file"
-            ) from None
 
 
 def colour(number: int, count: int, *, ordered: bool = False) -> Any:
@@ -141,7 +136,7 @@ def is_log_spaced(values: Array) -> bool:
 
 def label_log_axes(figure: Figure) -> None:
     """Label also ticks between the powers of ten on logarithmic axes of about two decades."""
-    from matplotlib.ticker import FuncFormatter, LogLocator
+    from matplotlib.ticker import LogLocator, StrMethodFormatter
 
     for axes in figure.axes:
         for axis, scale in ((axes.xaxis, axes.get_xscale()), (axes.yaxis, axes.get_yscale())):
@@ -153,8 +148,8 @@ def label_log_axes(figure: Figure) -> None:
                 continue
             between = range(2, 10) if decades < 0.5 else (2, 3, 5, 7) if decades < 1 else (2, 5)
             axis.set_minor_locator(LogLocator(subs=between, numticks=50))
-            for formatter in (axis.set_major_formatter, axis.set_minor_formatter):
-                formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+            axis.set_minor_formatter(StrMethodFormatter("{x:g}"))
 
 
 def lay_out(figure: Figure) -> None:
@@ -166,36 +161,27 @@ def lay_out(figure: Figure) -> None:
     if engine is None:
         return
     engine.execute(figure)
-    if _clear_legends(figure):
+    covering = []
+    for axes in figure.axes:
+        legend = axes.get_legend()
+        if not legend:
+            continue
+        box = legend.get_window_extent()
+        artists: list[Any] = [*(line for line in axes.lines if line.get_visible()), *axes.patches]
+        for artist in artists:
+            path = artist.get_path().transformed(artist.get_transform())
+            finite = np.isfinite(path.vertices).all(axis=1)
+            if finite.any() and path.intersects_bbox(box, filled=False):
+                covering.append((axes, legend))
+                break
+    for axes, legend in covering:
+        legend.set_loc("upper left")
+        legend.set_bbox_to_anchor((1.01, 1.0), transform=axes.transAxes)
+    if covering:
         engine.execute(figure)
     figure.set_layout_engine("none")
 
 
-def _clear_legends(figure: Figure) -> bool:
-    """Move legends that lie on a curve beside their axes; return whether any did."""
-    moved = False
-    for axes in figure.axes:
-        legend = axes.get_legend()
-        if legend and _covers(axes, legend.get_window_extent()):
-            legend.set_loc("upper left")
-            legend.set_bbox_to_anchor((1.01, 1.0), transform=axes.transAxes)
-            moved = True
-    return moved
-
-
-def _covers(axes: Axes, box: Any) -> bool:
-    lines = [(line, line.get_transform()) for line in axes.lines if line.get_visible()]
-    paths = [line.get_path().transformed(transform) for line, transform in lines]
-    paths += [patch.get_path().transformed(patch.get_transform()) for patch in axes.patches]
-    for path in paths:
-        finite = np.isfinite(path.vertices).all(axis=1)
-        if finite.any() and path.intersects_bbox(box, filled=False):
-            return True
-    return False
-
-
 def add_colour_bar(axes: Axes, image: Any, label: str) -> None:
     """Add a bar of colours beside a map, as high as it."""
-    figure = axes.get_figure()
-    if figure is not None:
-        figure.colorbar(image, cax=axes.inset_axes((1.04, 0.0, 0.05, 1.0)), label=label)
+    image.figure.colorbar(image, cax=axes.inset_axes((1.04, 0.0, 0.05, 1.0)), label=label)

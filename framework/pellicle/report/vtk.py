@@ -23,12 +23,20 @@ _TYPES = {"f8": "Float64", "i8": "Int64", "b1": "UInt8"}
 
 
 @contextmanager
-def writer(path: Path) -> Iterator[XMLGenerator]:
-    """Yield a writer of the elements of a file."""
+def writer(path: Path, kind: str, **attributes: str) -> Iterator[XMLGenerator]:
+    """Yield a writer of the elements inside those of a VTK file of a ``kind``."""
+    outer = {
+        "type": kind,
+        "version": "1.0",
+        "byte_order": "LittleEndian" if sys.byteorder == "little" else "BigEndian",
+        "header_type": "UInt64",
+        "compressor": "vtkZLibDataCompressor",
+    }
     with atomic_write(path) as part, part.open("wb") as file:
         xml = XMLGenerator(file, "utf-8", short_empty_elements=True)
         xml.startDocument()
-        yield xml
+        with element(xml, "VTKFile", **outer), element(xml, kind, **attributes):
+            yield xml
         xml.endDocument()
 
 
@@ -40,32 +48,13 @@ def element(xml: XMLGenerator, name: str, **attributes: str) -> Iterator[None]:
     xml.endElement(name)
 
 
-@contextmanager
-def file_of(xml: XMLGenerator, kind: str, **attributes: str) -> Iterator[None]:
-    """Write the outer elements of a VTK file around the elements inside."""
-    with (
-        element(
-            xml,
-            "VTKFile",
-            type=kind,
-            version="1.0",
-            byte_order="LittleEndian" if sys.byteorder == "little" else "BigEndian",
-            header_type="UInt64",
-            compressor="vtkZLibDataCompressor",
-        ),
-        element(xml, kind, **attributes),
-    ):
-        yield
-
-
 def array(
     xml: XMLGenerator, name: str, dtype: np.dtype[Any], blocks: Iterable[bytes], **attributes: str
 ) -> None:
     """Write numbers, given as `base64_of` takes them."""
     kind = _TYPES[dtype.str[1:]]
     with element(xml, "DataArray", **attributes, type=kind, Name=name, format="binary"):
-        for text in base64_of(blocks):
-            xml.characters(text)
+        xml.characters(base64_of(blocks))
 
 
 def rows_of(number: int, size: int) -> list[slice]:
@@ -74,8 +63,8 @@ def rows_of(number: int, size: int) -> list[slice]:
     return [slice(start, start + many) for start in range(0, number, many)]
 
 
-def base64_of(blocks: Iterable[bytes]) -> Iterator[str]:
-    """Yield blocks of bytes, all of one size but the last, in base64, each compressed.
+def base64_of(blocks: Iterable[bytes]) -> str:
+    """Return blocks of bytes, all of one size but the last, in base64, each compressed.
 
     The header holds the number of blocks, their size, that of the last block if it is smaller, else
     0, and the compressed size of each block.
@@ -85,12 +74,5 @@ def base64_of(blocks: Iterable[bytes]) -> Iterator[str]:
         packed.append(zlib.compress(block, 1))
         sizes.append(len(block))
     head = [len(packed), sizes[0], sizes[-1] % sizes[0], *map(len, packed)]
-    yield base64.b64encode(struct.pack(f"={len(head)}Q", *head)).decode("ascii")
-    rest = b""
-    for block in packed:
-        # Three bytes make four letters.
-        data = rest + block
-        whole = len(data) - len(data) % 3
-        yield base64.b64encode(data[:whole]).decode("ascii")
-        rest = data[whole:]
-    yield base64.b64encode(rest).decode("ascii")
+    parts = struct.pack(f"={len(head)}Q", *head), b"".join(packed)
+    return "".join(base64.b64encode(part).decode("ascii") for part in parts)

@@ -65,11 +65,6 @@ def derive(
     A column has a value for each step, or one for each run if it uses variables of the path only.
     Its unit follows from those of its variables and of the fields of the configuration, which
     ``units`` has by dotted path; it has none where they do not agree.
-
-    Raises
-    ------
-    ConfigError
-        An expression is not arithmetic, or a name in it is unknown.
     """
     for name, text in expressions.items():
         per_run = {
@@ -110,13 +105,7 @@ def constants(configuration: object) -> dict[str, float]:
 
 
 def as_array(text: str, data: xr.Dataset) -> xr.DataArray:
-    """Return the value of an expression over a result or a table as an array.
-
-    Raises
-    ------
-    ConfigError
-        The text is not arithmetic, or a name in it is unknown.
-    """
+    """Return the value of an expression over a result or a table as an array."""
     import xarray as xr
 
     value = evaluate(text, names(data))

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Hashable, Iterable, Iterator
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from pellicle.model.paths import python_names
 
@@ -12,6 +15,13 @@ if TYPE_CHECKING:
 
 PARAMETER = "parameter"
 """Attribute of a coordinate of `with_python_names`: the dotted path of the parameter."""
+
+
+def parts(table: xr.Dataset, dimensions: Iterable[Hashable]) -> Iterator[xr.Dataset]:
+    """Yield the part of a table at each combination of indices along dimensions, in C order."""
+    dimensions = list(dimensions)
+    for index in np.ndindex(*(table.sizes[dim] for dim in dimensions)):
+        yield table.isel(dict(zip(dimensions, index, strict=True)))
 
 
 def with_python_names(table: xr.Dataset) -> xr.Dataset:

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pellicle.analysis import Oscillation, oscillations, path_summary
-from pellicle.arrays import Array
 from pellicle.loading import OPTIONS
 from pellicle.units import DIGITS, readable
 
+from .dimensions import parts
 from .variables import VARIABLES
 from .wording import wording
 
@@ -70,19 +71,16 @@ def path_variables(steps: xr.Dataset) -> dict[str, float]:
     They are those of `pellicle.analysis.PathSummary` where there is an interaction, and of the last
     `pellicle.analysis.Oscillation` where there is one, by name.
     """
-    last = oscillations_of(steps)[-1:]
-    return _events(steps) | (asdict(last[0]) if last else {})
-
-
-def _events(steps: xr.Dataset) -> dict[str, float]:
-    """Return the variables of kind ``path``; none without an interaction."""
-    if not has_interaction(steps):
-        return {}
-    done = steps.isel(step=~np.isnan(steps["zone_area"].values))
-    if not done.sizes["step"]:
-        return {}
-    names = "depth", "force", "contact_radius", "energy", "converged", "force_error"
-    return asdict(path_summary(**{name: done[name].values for name in names if name in done}))
+    variables: dict[str, float] = {}
+    if has_interaction(steps):
+        done = steps.isel(step=~np.isnan(steps["zone_area"].values))
+        if done.sizes["step"]:
+            names = "depth", "force", "contact_radius", "energy", "converged", "force_error"
+            columns = {name: done[name].values for name in names if name in done}
+            variables |= asdict(path_summary(**columns))
+    for oscillation in oscillations_of(steps)[-1:]:
+        variables |= asdict(oscillation)
+    return variables
 
 
 def with_path(table: xr.Dataset) -> xr.Dataset:
@@ -94,11 +92,11 @@ def with_path(table: xr.Dataset) -> xr.Dataset:
         return table
     dims = [dim for dim in table["converged"].dims if dim != "step"]
     shape = [table.sizes[dim] for dim in dims]
-    values: dict[str, Array] = {}
-    for index in np.ndindex(*shape):
-        run = table.isel(dict(zip(dims, index, strict=True)))
-        for name, value in path_variables(run).items():
-            values.setdefault(name, np.full(shape, np.nan))[index] = value
+    runs = [path_variables(run) for run in parts(table, dims)]
+    columns = {
+        name: np.array([run.get(name, np.nan) for run in runs], dtype=float).reshape(shape)
+        for name in dict.fromkeys(chain.from_iterable(runs))
+    }
     return table.assign(
-        {name: (dims, array, VARIABLES[name].attributes) for name, array in values.items()}
+        {name: (dims, column, VARIABLES[name].attributes) for name, column in columns.items()}
     )

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pellicle.analysis import Oscillation
-from pellicle.errors import ConfigError, StorageError
+from pellicle.errors import ConfigError, StorageError, first_of
 from pellicle.files import for_document, is_folder
 from pellicle.grid import Grid
 from pellicle.model.html import summary
@@ -116,7 +116,7 @@ class Result:
         ]
 
     def _repr_html_(self) -> str:
-        """Return HTML for a notebook: status, numbers of the steps, the pressure of the last."""
+        """Return HTML for a notebook: status, numbers of the steps, all variables folded away."""
         columns = [name for name in _SHOWN if name in self.dataset]
         values = {
             name: [readable(float(v), VARIABLES[name].unit, 4) for v in self.dataset[name].values]
@@ -133,21 +133,8 @@ class Result:
             _outcome(len(self.dataset["step"]), self.planned_steps, len(self.failures())),
             ["step", *(name.replace("_", " ") for name in columns), "status"],
             rows,
-            picture=self._picture(),
             details=self.dataset._repr_html_(),
         )
-
-    def _picture(self) -> bytes:
-        """Return a small map of the pressure of the last step as PNG."""
-        from io import BytesIO
-
-        from matplotlib.figure import Figure
-
-        figure = Figure(figsize=(3.2, 2.6), layout="constrained")
-        self.plot(ax=figure.subplots())
-        with BytesIO() as file:
-            figure.savefig(file, format="png", dpi=80)
-            return file.getvalue()
 
     def plot(self, variable: str = "pressure", *, step: int = -1, **options: Any) -> Any:
         """Draw a field of a load step as a map, x to the right and y up; grey without pressure.
@@ -235,18 +222,11 @@ def caveats_of(data: xr.Dataset) -> list[tuple[int, Status, str]]:
 
 def first_message(steps: Sequence[tuple[int, str]]) -> str:
     """Return the number and message of the first step, and the number of further steps."""
-    (number, message), *others = steps
-    return f"step {number}{f' and {len(others)} more' if others else ''}: {message}"
+    return f"{first_of([f'step {number}' for number, _ in steps])}: {steps[0][1]}"
 
 
 def file_of_run(path: Path) -> Path:
-    """Return the result file of a run's folder, or the path itself if it is not such a folder.
-
-    Raises
-    ------
-    StorageError
-        The folder holds several result files.
-    """
+    """Return the result file of a run's folder, or the path itself if it is not such a folder."""
     files = sorted(path.glob("*.h5")) if is_folder(path) else []
     if len(files) > 1:
         names = ", ".join(for_document(file.name) for file in files)

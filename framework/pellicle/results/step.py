@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 
 from pellicle.analysis import ellipse, patches, perimeter
 from pellicle.arrays import Array
@@ -16,9 +16,6 @@ from pellicle.numerics.solution import State
 
 from . import storage
 from .variables import VARIABLES, Variable
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def step_dataset(
@@ -39,8 +36,6 @@ def step_dataset(
     variables
         Variables for the names in ``scalars`` that are not in `VARIABLES`.
     """
-    import xarray as xr
-
     fields = {
         "pressure": equilibrium.pressure,
         "displacement": equilibrium.displacement,
@@ -135,8 +130,6 @@ class Steps:
 
     def append(self, step: xr.Dataset) -> xr.Dataset:
         """Copy a step of `step_dataset` into the arrays, and return it as views of them."""
-        import xarray as xr
-
         index = slice(len(self), len(self) + 1)
         fields = {}
         for name, variable in step.variables.items():
@@ -153,8 +146,6 @@ class Steps:
 
     def joined(self) -> xr.Dataset:
         """Return all steps as one dataset; no step can be appended afterwards."""
-        import xarray as xr
-
         done = slice(len(self))
         fields = {name: field.isel(step=done) for name, field in self._fields.items()}
         scalars = storage.joined(self._scalars)

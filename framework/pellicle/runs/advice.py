@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
+from scipy.ndimage import binary_dilation
 
 from pellicle.arrays import Array, Mask
 from pellicle.components.calls import profile_of
@@ -18,9 +20,6 @@ from pellicle.model.paths import walk
 from pellicle.results.status import Status
 
 from .runner import solve
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _SHARES = 1 / 4, 1 / 3, 1 / 2
 """Cells along an edge of the coarser grids, over those of the run."""
@@ -110,56 +109,34 @@ def advise(run: Run, allowed: float) -> Advice:
     and the order with which errors of such contacts were observed to fall, give estimates that
     less than 5 of 100 true errors of force and depth exceed: order 2 for smooth contacts without
     interaction and history, 1 for others.
-
-    Raises
-    ------
-    ConfigError
-        The grid is too coarse to compare with coarser ones, or the indenter is tied to its grid.
     """
-    grids = _coarser_of(run)
+    grids = _resolving(run)
     results = [_solved(run, grid) for grid in grids]
     at_edge = _at_edge(results[-1])
     if at_edge:
-        held = size_for(run)
-        points = _points(run.grid, held, 1.0)
-        run = _on(run, run.grid.model_copy(update={"points": points, "size": held}))
+        size = size_for(run)
+        points = _points(run.grid, size, 1.0)
+        run = _on(run, run.grid.model_copy(update={"points": points, "size": size}))
         grids = _coarser(run.grid)
         results = [_solved(run, grid) for grid in grids]
     contacts = results[-1]["contact"].values
     smooth = _is_smooth(run, grids[-1], contacts)
-    extents = [_extent(contact, grids[-1]) for contact in contacts]
-    steps = [
-        Expected(index + 1, force, max(extent) / run.grid.cell_size, *errors)
-        for index, (force, extent, errors) in enumerate(
-            zip(
-                results[-1]["force"].values.tolist(),
-                extents,
-                _errors_of_steps(run, grids, results, smooth=smooth),
-                strict=True,
-            )
-        )
-    ]
-    size = run.grid.size if at_edge else _fitting_size(run, np.max(extents, axis=0))
-    with_error = [step for step in steps if not math.isnan(step.error)]
-    worst = max((step.error / allowed for step in with_error), default=1.0)
+    steps = _expected(run, grids, results, smooth=smooth)
+    with_contact = [step for step in steps if not math.isnan(step.error)]
+    worst = max((step.error / allowed for step in with_contact), default=1.0)
     # Fewer cells are advised only while the area, which errs most, stays known to a tenth.
-    of_areas = (min(1.0, step.area_error / _AREA_ERROR) for step in with_error)
-    order = (_SMOOTH if smooth else _OTHER).order
-    factor = max(worst ** (1 / order), *of_areas, 0.0)
-    points = _points(run.grid, size or run.grid.size, factor)
+    of_areas = (min(1.0, step.area_error / _AREA_ERROR) for step in with_contact)
+    factor = max(worst ** (1 / (_SMOOTH if smooth else _OTHER).order), *of_areas, 0.0)
+    extent = np.max([_extent(contact, grids[-1]) for contact in contacts], axis=0)
+    fitting = run.grid.size if at_edge else _fitting_size(run, extent)
+    points = _points(run.grid, fitting or run.grid.size, factor)
     waves = [value for path, value, _ in walk(run.indenter) if path.endswith("cutoff_wavelength")]
     in_wave = min(waves) / run.grid.cell_size if waves else None
-    return Advice(tuple(steps), points, size, at_edge, in_wave)
+    return Advice(steps, points, fitting, at_edge, in_wave)
 
 
 def size_for(run: Run) -> tuple[float, float]:
-    """Return edges [m] of a domain that holds the contact of every step.
-
-    Raises
-    ------
-    ConfigError
-        A domain 64 times as wide does not.
-    """
+    """Return edges [m] of a domain that holds the contact of every step."""
     scale = min(1.0, _MOST / 2 / max(run.grid.points))
     points = tuple(max(1, round(n * scale)) for n in run.grid.points)
     for factor in 2.0 ** np.arange(1, 7):
@@ -180,11 +157,63 @@ def size_for(run: Run) -> tuple[float, float]:
     )
 
 
+def _expected(
+    run: Run, grids: Sequence[Grid], results: Sequence[xr.Dataset], *, smooth: bool
+) -> tuple[Expected, ...]:
+    """Return force, contact and errors of each step, from results on three coarser grids.
+
+    A difference to the finest of them, the last, is extrapolated to the cells of the run. Small
+    contacts have larger errors: they take part of the differences of all steps, pooled at equal
+    cells across the contact, and a least error.
+    """
+    force, depth, area = (
+        np.array([data[name].values for data in results], dtype=float)
+        for name in ("force", "depth", "contact_area")
+    )
+    sizes = np.array([grid.cell_size for grid in grids]) / run.grid.cell_size
+    cells = np.where(area[-1] > 0, np.sqrt(area[-1]) / run.grid.cell_size, math.nan)
+
+    def errors(values: Array, scale: Array, rule: _Rule) -> list[float]:
+        # A quantity that is prescribed is equal on all grids and has no error.
+        exact = (np.ptp(values, axis=0) <= _ROUND_OFF * scale) | (scale == 0)
+        scale = np.where(np.isnan(cells) | (scale == 0), math.nan, scale)
+        falls = sizes[:-1] ** rule.order - sizes[-1] ** rule.order
+        slopes = np.abs(values[:-1] - values[-1]) / scale / falls[:, None]
+        differences = (slopes * cells**rule.order)[:, ~np.isnan(scale)]
+        pooled = math.sqrt(np.mean(differences**2)) if differences.size else 0.0
+        least = rule.least * np.abs(values[-1]) / scale
+        others = np.maximum(rule.pooled * pooled, least) / cells**rule.order
+        relative = np.maximum(rule.own * slopes.max(axis=0), others)
+        of_steps: list[float] = np.where(exact, 0.0 * scale, relative).tolist()
+        return of_steps
+
+    columns = zip(
+        force[-1].tolist(),
+        [max(_extent(contact, grids[-1])) for contact in results[-1]["contact"].values],
+        errors(force, np.abs(force[-1]), _SMOOTH if smooth else _OTHER),
+        errors(
+            depth,
+            np.full(cells.shape, np.abs(depth[-1]).max()),
+            _SMOOTH_DEPTH if smooth else _OTHER,
+        ),
+        errors(area, area[-1], _AREA),
+        strict=True,
+    )
+    return tuple(
+        Expected(number, newtons, width / run.grid.cell_size, *of_step)
+        for number, (newtons, width, *of_step) in enumerate(columns, 1)
+    )
+
+
 def _solved(run: Run, grid: Grid) -> xr.Dataset:
     with warnings.catch_warnings():
         # Coarse grids warn of being coarse.
         warnings.simplefilter("ignore")
         return solve(_on(run, grid)).dataset
+
+
+def _on(run: Run, grid: Grid) -> Run:
+    return run.model_copy(update={"grid": grid, "outputs": ()})
 
 
 def _at_edge(result: xr.Dataset) -> tuple[int, ...]:
@@ -193,30 +222,43 @@ def _at_edge(result: xr.Dataset) -> tuple[int, ...]:
     return tuple(result["step"].values[reaches].tolist())
 
 
-def _errors_of_steps(
-    run: Run, grids: Sequence[Grid], results: Sequence[xr.Dataset], *, smooth: bool
-) -> list[list[float]]:
-    """Return the expected errors of force, depth and area of each step.
+def _extent(contact: Mask, grid: Grid) -> tuple[float, float]:
+    """Return the edges of the rectangle around the contact [m]."""
+    along = [np.flatnonzero(contact.any(axis=axis)) for axis in (1, 0)]
+    cells = [float(np.ptp(index) + 1) if index.size else 0.0 for index in along]
+    return cells[0] * grid.spacing[0], cells[1] * grid.spacing[1]
 
-    ``results`` are those of ``run`` on coarser ``grids``, the last on the finest.
-    """
-    force, depth, area = (
-        np.array([data[name].values for data in results], dtype=float)
-        for name in ("force", "depth", "contact_area")
-    )
-    cells = np.where(area[-1] > 0, np.sqrt(area[-1]) / run.grid.cell_size, math.nan)
-    deepest = np.full(cells.shape, np.abs(depth[-1]).max())
-    sizes = np.array([grid.cell_size for grid in grids]) / run.grid.cell_size
-    errors = [
-        _errors(values, scale, sizes, cells, rule)
-        for values, scale, rule in (
-            (force, np.abs(force[-1]), _SMOOTH if smooth else _OTHER),
-            (depth, deepest, _SMOOTH_DEPTH if smooth else _OTHER),
-            (area, area[-1], _AREA),
+
+def _is_smooth(run: Run, grid: Grid, contact: Mask) -> bool:
+    """Return whether all contacts are of a smooth body, away from its edges, and elastic."""
+    if run.interaction or run.loading.times is not None or run.indenter.footprint == "domain":
+        return False
+    beside = ~np.isfinite(profile_of(run.indenter, grid))
+    return not (contact.any(axis=0) & binary_dilation(beside, np.ones((3, 3)))).any()
+
+
+def _coarser(grid: Grid, shares: Sequence[float] = _SHARES) -> list[Grid]:
+    scale = min(1.0, 2 * _MOST / max(grid.points)) if shares == _SHARES else 1.0
+    sizes = [[round(n * scale * share) if n > 1 else 1 for n in grid.points] for share in shares]
+    if min(map(max, sizes)) < _FEWEST:
+        raise ConfigError(
+            f"of {grid.points} cells leave nothing to compare with; give at least "
+            f"{math.ceil(_FEWEST / _SHARES[0])} along an edge",
+            "grid.points",
         )
-    ]
-    of_steps: list[list[float]] = np.transpose(errors).tolist()
-    return of_steps
+    return [grid.model_copy(update={"points": tuple(points)}) for points in sizes]
+
+
+def _resolving(run: Run) -> list[Grid]:
+    """Return three coarser grids, each of which resolves the indenter if possible."""
+    grids = _coarser(run.grid)
+    for shares in _LARGEST_SHARES:
+        try:
+            profile_of(run.indenter, grids[0])
+            break
+        except ConfigError:
+            grids = _coarser(run.grid, shares)
+    return grids
 
 
 def _points(grid: Grid, size: tuple[float, float], factor: float) -> tuple[int, int]:
@@ -228,86 +270,6 @@ def _points(grid: Grid, size: tuple[float, float], factor: float) -> tuple[int, 
     more = max(1.0, _LEAST / min(n for n in cells if n > 1))
     nx, ny = (2 * math.ceil(n * more / 2) if n > 1 else 1 for n in cells)
     return nx, ny
-
-
-def _coarser(grid: Grid) -> list[Grid]:
-    scale = min(1.0, 2 * _MOST / max(grid.points))
-    grids = []
-    for share in _SHARES:
-        points = tuple(round(n * scale * share) if n > 1 else 1 for n in grid.points)
-        if max(points) < _FEWEST:
-            raise ConfigError(
-                f"of {grid.points} cells leave nothing to compare with; give at least "
-                f"{math.ceil(_FEWEST / _SHARES[0])} along an edge",
-                "grid.points",
-            )
-        grids.append(grid.model_copy(update={"points": points}))
-    return grids
-
-
-def _coarser_of(run: Run) -> list[Grid]:
-    """Return three coarser grids, each of which resolves the indenter of a run."""
-    grids = _coarser(run.grid)
-    for shares in _LARGEST_SHARES:
-        try:
-            profile_of(run.indenter, grids[0])
-            break
-        except ConfigError:
-            cells = (
-                [round(n * share) if n > 1 else 1 for n in run.grid.points] for share in shares
-            )
-            grids = [run.grid.model_copy(update={"points": tuple(points)}) for points in cells]
-    return grids
-
-
-def _on(run: Run, grid: Grid) -> Run:
-    return run.model_copy(update={"grid": grid, "outputs": ()})
-
-
-def _extent(contact: Mask, grid: Grid) -> tuple[float, float]:
-    """Return the edges of the rectangle around the contact [m]."""
-    along = [np.flatnonzero(contact.any(axis=axis)) for axis in (1, 0)]
-    cells = [float(np.ptp(index) + 1) if index.size else 0.0 for index in along]
-    return cells[0] * grid.spacing[0], cells[1] * grid.spacing[1]
-
-
-def _is_smooth(run: Run, grid: Grid, contact: Mask) -> bool:
-    """Whether the contacts of all steps are of a smooth body, away from its edges, and elastic."""
-    from scipy.ndimage import binary_dilation
-
-    if run.interaction or run.loading.times is not None or run.indenter.footprint == "domain":
-        return False
-    beside = ~np.isfinite(profile_of(run.indenter, grid))
-    return not (contact.any(axis=0) & binary_dilation(beside, np.ones((3, 3)))).any()
-
-
-def _errors(values: Array, scale: Array, sizes: Array, cells: Array, rule: _Rule) -> Array:
-    """Return the expected relative error of each step.
-
-    Parameters
-    ----------
-    values
-        On coarser grids, of shape (3, steps), the last on the finest.
-    scale
-        Of what the errors are shares, of shape (steps,).
-    sizes
-        Cell sizes of these grids over that of the run, of shape (3,).
-    cells
-        Square root of the number of cells in contact, of shape (steps,); NaN without contact.
-    """
-    # A quantity that is prescribed is equal on all grids and has no error.
-    exact = (np.ptp(values, axis=0) <= _ROUND_OFF * scale) | (scale == 0)
-    scale = np.where(np.isnan(cells) | (scale == 0), math.nan, scale)
-    falls = sizes[:-1] ** rule.order - sizes[-1] ** rule.order
-    slopes = np.abs(values[:-1] - values[-1]) / scale / falls[:, None]
-    differences = (slopes * cells**rule.order)[:, ~np.isnan(scale)]
-    pooled = math.sqrt(np.mean(differences**2)) if differences.size else 0.0
-    least = rule.least * np.abs(values[-1]) / scale
-    errors: Array = np.maximum(
-        rule.own * slopes.max(axis=0),
-        np.maximum(rule.pooled * pooled, least) / cells**rule.order,
-    )
-    return np.where(exact, 0.0 * scale, errors)
 
 
 def _fitting_size(run: Run, extent: Array) -> tuple[float, float] | None:

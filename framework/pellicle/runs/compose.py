@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pellicle.checks import errors_attributed_to
-from pellicle.components import Force, Prescription, Search, Setting
+from pellicle.components import Force, Search, Setting
 from pellicle.components.calls import (
     check_solver,
     check_value,
@@ -22,16 +22,7 @@ from .relaxation import warn_of_relaxation
 
 
 def compose(run: Run) -> Setting:
-    """Return the setting of the first load step.
-
-    Raises
-    ------
-    ConfigError
-        The kernel, the indenter or the loading does not fit the grid, or the solver or the loading
-        not the interaction.
-    PluginError
-        A component breaks its contract.
-    """
+    """Return the setting of the first load step."""
     with errors_attributed_to(run.kernel):
         operator = make_operator(instantaneous(run.kernel), run.grid)
         warn_of_cells(run.kernel.compliance, run.grid)
@@ -48,17 +39,11 @@ def compose(run: Run) -> Setting:
     for index, value in enumerate(run.loading.values):
         field = f"loading.{run.loading.field_of(index)}"
         check_value(prescription, setting, value, field)
-        if law:
-            _check_search(prescription, setting, value, field)
+        target = target_of(prescription, setting, value) if law else None
+        if isinstance(target, Search) and target.control is Force:
+            raise ConfigError(
+                "is searched by force, along which a contact that sticks jumps; prescribe depth or "
+                "base_displacement where there is an interaction",
+                field,
+            )
     return setting
-
-
-def _check_search(prescription: Prescription, setting: Setting, value: float, field: str) -> None:
-    """Refuse a search by force, which cannot follow a contact that sticks."""
-    target = target_of(prescription, setting, value)
-    if isinstance(target, Search) and target.control is Force:
-        raise ConfigError(
-            "is searched by force, along which a contact that sticks jumps; prescribe depth or "
-            "base_displacement where there is an interaction",
-            field,
-        )

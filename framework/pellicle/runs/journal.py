@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import xarray as xr
 
 from pellicle.errors import StorageError
 from pellicle.files import check_writable, storage_errors
 from pellicle.results import storage
 from pellicle.results.result import load
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 @dataclass(frozen=True)
@@ -32,13 +30,7 @@ class Journal:
         return self.stem.with_name(f"{self.stem.name}.h5")
 
     def numbers(self) -> xr.Dataset | None:
-        """Return the numbers of the steps in the file; None if it is not a file of this run.
-
-        Raises
-        ------
-        StorageError
-            The file exists but cannot be read or resumed.
-        """
+        """Return the numbers of the steps in the file; None if it is not a file of this run."""
         with storage_errors(self.path):
             exists = self.path.exists()
         if self.overwrite or not exists:
@@ -50,13 +42,7 @@ class Journal:
         return numbers
 
     def resume(self) -> list[xr.Dataset]:
-        """Return the steps that an earlier process finished, one by one.
-
-        Raises
-        ------
-        StorageError
-            The file cannot be written, is damaged, or holds the result of another run.
-        """
+        """Return the steps that an earlier process finished, one by one."""
         check_writable(self.path)
         if self.overwrite or not self.path.exists():
             return []

@@ -22,11 +22,6 @@ def locked(folder: Path, name: str) -> Iterator[None]:
 
     The lock itself is one of the operating system, on a second file, so it ends with the process.
     Both files are removed at the end.
-
-    Raises
-    ------
-    StorageError
-        Another process has locked them, or the folder cannot be written.
     """
     sign = folder / f"{name}.lock"
     lock = filelock.FileLock(folder / f".{name}.lock")

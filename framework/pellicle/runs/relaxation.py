@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from typing import Final, Self
@@ -17,7 +17,7 @@ from pellicle.components import Branch, HasRelaxation, HasTimeSpan, Kernel, Sett
 from pellicle.components.calls import branches_of
 from pellicle.config.run import Run
 from pellicle.grid import Grid
-from pellicle.numerics.kernel_calls import HasCompliance, mean_compliance
+from pellicle.numerics.kernel_calls import mean_compliance
 from pellicle.numerics.outside import PlaneOperator
 from pellicle.numerics.relaxation import (
     Memory,
@@ -72,18 +72,17 @@ class SkinOperators:
     def __init__(self, kernel: HasRelaxation, grid: Grid) -> None:
         solid = kernel.without_skin()
 
-        def operator_of(
-            kernel_of: Callable[[Kernel], HasCompliance],
-        ) -> Callable[[float], PlaneOperator]:
-            @lru_cache(maxsize=_OPERATORS)
-            def operator(share: float) -> PlaneOperator:
-                with errors_attributed_to(kernel):
-                    return PlaneOperator(kernel_of(kernel.scaled(share)), grid)
+        @lru_cache(maxsize=_OPERATORS)
+        def whole(share: float) -> PlaneOperator:
+            with errors_attributed_to(kernel):
+                return PlaneOperator(kernel.scaled(share), grid)
 
-            return operator
+        @lru_cache(maxsize=_OPERATORS)
+        def carried(share: float) -> PlaneOperator:
+            with errors_attributed_to(kernel):
+                return PlaneOperator(CarriedShare(kernel.scaled(share), solid), grid)
 
-        self._whole = operator_of(lambda whole: whole)
-        self._carried = operator_of(lambda whole: CarriedShare(whole, solid))
+        self._whole, self._carried = whole, carried
 
     def whole(self, step: TimeStep) -> PlaneOperator:
         """Return the operator from pressure to displacement [m/Pa]."""
@@ -102,11 +101,6 @@ def warn_of_relaxation(run: Run) -> None:
     """Warn if a solid relaxes to a liquid, or far faster than the steps of its run.
 
     A kernel that states its time span has a share of its own for all times beyond.
-
-    Warns
-    -----
-    UserWarning
-        The message names the relaxation time, or what carries the load in the end.
     """
     kernel, branches = run.kernel, branches_of(run.kernel)
     if not branches:

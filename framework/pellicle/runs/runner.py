@@ -10,7 +10,10 @@ from contextlib import ExitStack, closing
 from functools import partial
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
+
+import scipy.fft
+import xarray as xr
 
 from pellicle import memory
 from pellicle.checks import checked_threads, errors_attributed_to, read_only_dataset
@@ -30,9 +33,6 @@ from .lock import locked
 from .progress import Bar, Report, RunProgress
 from .relaxation import history_arrays
 from .steps import solve_steps
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 STANDARD_OUTPUTS = ("csv", "figures")
 """Types of the outputs of a configuration that names none."""
@@ -85,7 +85,12 @@ def run(
         is far outside the theory.
     """
     threads = checked_threads(threads)
-    run, name = _as_run(configuration)
+    run = Run.of(configuration)
+    if isinstance(configuration, (str, Path)):
+        name = Path(configuration).stem
+    else:
+        title = re.sub(r"\W+", "-", run.title).lower().encode()
+        name = title[:_LONGEST_STEM].decode(errors="ignore").strip("-") or "run"
     outputs = standard_outputs(run.outputs) if directory is not None else run.outputs or ()
     writes = directory is not None or bool(outputs)
     journal = Journal(Path(directory or ".") / name, run.identity, overwrite) if writes else None
@@ -128,13 +133,14 @@ def execute(
     written. No other process may write the same files meanwhile; without ``lock`` the caller has to
     ensure that.
     """
-    import scipy.fft
-
-    history, sticks = history_arrays(run), run.interaction is not None
-    memory.require(run.grid, len(run.loading.values), run.solver, history, sticks=sticks)
+    memory.require(memory_of(run), run.grid, len(run.loading.values))
     steps = Steps(len(run.loading.values))
     outputs = [output for output in outputs if journal and output.scope != "study"]
     files: tuple[Path, ...] = ()
+
+    def runs() -> Runs:
+        return Runs.of_run(read_only_dataset(result.dataset), run.to_json(portable=True))
+
     with scipy.fft.set_workers(threads or default_threads(run.grid)), bar, ExitStack() as stack:
         try:
             solved = solve_steps(run, compose(run), steps, bar)
@@ -157,7 +163,8 @@ def execute(
             if steps:
                 result = Result(steps.joined())
                 if journal:
-                    files = _written(run, result, outputs, journal)
+                    calls = [journal.close, *writers(outputs, runs, journal.stem, run)]
+                    files = tuple(chain(*all_done(calls)))
     return Executed(result, files, resumed)
 
 
@@ -178,15 +185,6 @@ def _hand_over(
 
     calls = [partial(give, output) for output in outputs]
     all_done([partial(journal.append, step), *calls] if is_new else calls)
-
-
-def _written(
-    run: Run, result: Result, outputs: Sequence[Output], journal: Journal
-) -> tuple[Path, ...]:
-    def runs() -> Runs:
-        return Runs.of_run(read_only_dataset(result.dataset), run.to_json(as_given=True))
-
-    return tuple(chain(*all_done([journal.close, *writers(outputs, runs, journal.stem, run)])))
 
 
 def writers(
@@ -220,19 +218,6 @@ def all_done(calls: Iterable[Callable[[], Value]]) -> list[Value]:
     if errors:
         raise errors[0]
     return values
-
-
-def _as_run(configuration: Run | Mapping[str, Any] | str | Path) -> tuple[Run, str]:
-    run = Run.of(configuration)
-    if isinstance(configuration, (str, Path)):
-        return run, Path(configuration).stem
-    return run, _file_stem(run.title)
-
-
-def _file_stem(title: str) -> str:
-    """Return the file name for a title, cut where it would be too long for a file system."""
-    stem = re.sub(r"\W+", "-", title).lower().encode()[:_LONGEST_STEM].decode(errors="ignore")
-    return stem.strip("-") or "run"
 
 
 def standard_outputs(named: Sequence[Output] | None) -> Sequence[Output]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import time
 from collections.abc import Generator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 
 from pellicle.arrays import Mask
 from pellicle.components import Depth, Monitor, Search, Setting
@@ -34,9 +34,6 @@ from .progress import Bar
 from .relaxation import Relaxation
 from .target_search import Reached, reach
 from .verdict import judge
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def solve_steps(

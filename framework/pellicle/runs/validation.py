@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import chain
 
 from pellicle.components import Case
 from pellicle.config.run import Run
@@ -44,15 +45,12 @@ def validate(cases: Iterable[Case] | None = None) -> Iterator[Verdict]:
         A case cannot be run.
     """
     solved: dict[str, Result] = {}
-    for case in _registered() if cases is None else cases:
+    if cases is None:
+        cases = chain.from_iterable(suite() for suite in registry().suites)
+    for case in cases:
         key = json.dumps(case.configuration, sort_keys=True)
         if key not in solved:
             # Only the latest run is kept: cases that share one are registered in a row.
             solved = {key: solve(Run(**case.configuration))}
         result = solved[key]
         yield Verdict(case, case.computed(result), result.converged)
-
-
-def _registered() -> Iterator[Case]:
-    for suite in registry().suites:
-        yield from suite()

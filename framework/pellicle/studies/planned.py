@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
 
 from pellicle.checks import errors_attributed_to
 from pellicle.components import Runs
@@ -15,18 +14,9 @@ from pellicle.results.variables import FIELDS, VARIABLES, WALL_PRESSURE
 
 from .table import StudyTable
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 def check_outputs(study: Study) -> None:
-    """Refuse settings of outputs that do not fit the axes, runs and numbers of a study.
-
-    Raises
-    ------
-    ConfigError
-        The message names the field of the output.
-    """
+    """Refuse settings of outputs that do not fit the axes, runs and numbers of a study."""
     runs = _planned(study)
     for number, output in enumerate(study.points[0].run.outputs or ()):
         if output.scope == "run":
@@ -48,26 +38,17 @@ def _planned(study: Study) -> Runs:
         like = steps.isel(step=-1, drop=True) if of_run else steps
         empty = np.full(like.shape, variable.type != "truth" and np.nan)
         table[name] = like.dims, empty, variable.attributes
-    runs = {point.run.identity[:16]: point for point in study.points}
+    points = {point.run.identity[:16]: point for point in study.points}
 
     def last_step(name: str) -> xr.Dataset:
-        position, run = runs[name].position, runs[name].run
+        position, run = points[name].position, points[name].run
         where = *position, [len(run.loading.values) - 1]
         row = table.isel(dict(zip(steps.dims, where, strict=True))).reset_coords(drop=True)
-        fields = [VARIABLES[field] for field in (*FIELDS, *[WALL_PRESSURE] * bool(run.interaction))]
-        cells = {
-            field.name: (
-                ("step", *CELLS),
-                np.zeros((1, 2, 2), bool if field.type == "truth" else float),
-                field.attributes,
-            )
-            for field in fields
-        }
+        for field in (*FIELDS, *[WALL_PRESSURE] * bool(run.interaction)):
+            cells = np.zeros((1, 2, 2), bool if VARIABLES[field].type == "truth" else float)
+            row[field] = ("step", *CELLS), cells, VARIABLES[field].attributes
         sides = [edge / 4 * np.array([-1, 1]) for edge in run.grid.size]
-        return (
-            row.assign(cells)
-            .assign_coords(dict(zip(CELLS, sides, strict=True)))
-            .assign_attrs(configuration=run.to_json())
-        )
+        row = row.assign_coords(dict(zip(CELLS, sides, strict=True)))
+        return row.assign_attrs(configuration=run.to_json())
 
-    return Runs(derive(table, study.derived, {}), last_step, study.to_json(as_given=True))
+    return Runs(derive(table, study.derived, {}), last_step, study.to_json(portable=True))

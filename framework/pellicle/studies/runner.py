@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 import tempfile
 import threading
 import time
@@ -15,7 +14,9 @@ from functools import partial
 from itertools import chain
 from multiprocessing import parent_process
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
+
+import xarray as xr
 
 from pellicle import memory
 from pellicle.batch import BatchProgress, locked, mapped
@@ -37,9 +38,6 @@ from pellicle.runs.progress import ProgressReporter
 from . import table
 from .planned import check_outputs
 from .summary import caveats, failures, progress_of, run_names
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _TABLE_SHARE = 0.05
 _LONG = 10.0
@@ -64,7 +62,7 @@ class RunTask:
     @property
     def memory(self) -> int:
         """Estimated peak memory of the run [bytes]."""
-        return int(min(runner.memory_of(self.run), sys.maxsize))
+        return int(runner.memory_of(self.run))
 
     @property
     def steps(self) -> int:
@@ -86,7 +84,6 @@ def run_study(
     directory: str | Path | None = None,
     *,
     progress: bool = True,
-    fields: bool = False,
     overwrite: bool = False,
     threads: int | None = None,
 ) -> xr.Dataset:
@@ -101,9 +98,6 @@ def run_study(
         of the same runs in these files are not solved again. Without a folder no file is kept.
     progress
         Show a bar on a terminal or in a notebook; elsewhere, a line for each run.
-    fields
-        Add pressure, displacement, gap and contact to the table; they are read from the files of
-        the runs when they are used.
     overwrite
         Start over and replace the files in the folder.
     threads
@@ -129,18 +123,8 @@ def run_study(
     ConvergenceWarning
         A step did not converge, or a run failed; see ``status``.
     """
-    from .lazy_fields import add_fields
-
     threads = checked_threads(threads)
     study = Study.of(configuration)
-    if fields:
-        if directory is None:
-            raise ConfigError("fields are read from files: give a directory", "fields")
-        if any(key.partition(".")[0] == "grid" for key in study.coordinates()):
-            raise ConfigError(
-                "runs on different grids have no fields in common; open the files in runs/",
-                "fields",
-            )
     with tempfile.TemporaryDirectory() as temporary:
         rows = execute(
             study,
@@ -151,19 +135,11 @@ def run_study(
         ).table
     if message := failures(rows):
         warnings.warn(f"{message}; see status", ConvergenceWarning, stacklevel=2)
-    if fields and directory:
-        rows = add_fields(rows, Path(directory) / "runs")
     return with_python_names(rows)
 
 
 def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[RunTask]:
-    """Return all runs of a study, finished or not.
-
-    Raises
-    ------
-    ConfigError
-        The settings of an output do not fit the study.
-    """
+    """Return all runs of a study, finished or not; its outputs have to fit it."""
     check_outputs(study)
     outputs = tuple(o for o in study.points[0].run.outputs or () if o.scope == "run")
     names = run_names(table.StudyTable(study).dataset())
@@ -199,14 +175,16 @@ def execute(
 def _execute(
     study: Study, directory: Path, progress: bool, overwrite: bool, threads: int | None
 ) -> StudyResult:
-    first = study.points[0].run
-    outputs = [o for o in runner.standard_outputs(first.outputs) if o.scope != "run"]
-    check_writable(directory / "study.h5")
+    path, first = directory / "study.h5", study.points[0].run
+    check_writable(path)
     check_writable(directory / "runs" / "run.h5")
-    _require_table(directory / "study.h5", overwrite)
     rows = table.StudyTable(study)
-    if not overwrite:
-        rows.recall(directory / "study.h5")
+    if not overwrite and path.exists():
+        # A file that is not the table of a study is not replaced.
+        try:
+            rows.recall(storage.table(path))
+        except StorageError as error:
+            raise StorageError(f"{error}; {storage.REPLACING}") from None
     unfinished = {
         task.index: task
         for task in tasks(study, directory, overwrite=overwrite)
@@ -221,14 +199,29 @@ def _execute(
         del unfinished[task.index]
         if isinstance(outcome, Exception):
             _collect(task, rows)
-            rows.fail(task.index, _one_line(outcome))
+            reason = "; ".join(str(outcome).splitlines()) or "no reason given"
+            if not isinstance(outcome, (ConfigError, StorageError)):
+                reason = f"{type(outcome).__name__}: {reason}"
+            rows.fail(task.index, reason)
+            verdict = Status.FAILED.value.format(reason=reason)
         else:
             rows.put(task.index, outcome)
             rows.beyond_theory[task.index] = outcome.attrs.pop(BEYOND_THEORY)
             messages.update(dict.fromkeys(outcome.attrs.pop(_WARNINGS)))
+            _, _, verdict = progress_of(outcome)
         # On a full disk all later runs would fail: writing the table at once detects that.
         files.write(rows, at_once=isinstance(outcome, StorageError))
-        return _verdict(outcome)
+        return verdict, verdict != "converged"
+
+    def runs() -> Runs:
+        return Runs.of_study(read_only_dataset(whole), directory, study.to_json(portable=True))
+
+    def written(write: Callable[[], tuple[Path, ...]]) -> tuple[Path, ...]:
+        try:
+            return write()
+        except ConfigError as error:
+            messages[str(error)] = None
+            return ()
 
     try:
         with BatchProgress(len(study.points), resumed, progress) as bar:
@@ -238,15 +231,12 @@ def _execute(
             _collect(task, rows)
         files.write(rows, at_once=True)
         whole = rows.dataset()
-
-        def runs() -> Runs:
-            return Runs.of_study(read_only_dataset(whole), directory, study.to_json(as_given=True))
-
+        outputs = [o for o in runner.standard_outputs(first.outputs) if o.scope != "run"]
         calls = runner.writers(outputs, runs, directory / "study", first)
-        written = runner.all_done([partial(_or_warning, call, messages) for call in calls])
+        of_outputs = runner.all_done([partial(written, call) for call in calls])
     for message in (*messages, *caveats(whole)):
         warnings.warn(message, stacklevel=4)
-    return StudyResult(whole, (*files.paths, *chain(*written)), resumed)
+    return StudyResult(whole, (*files.paths, *chain(*of_outputs)), resumed)
 
 
 def _solve_all(
@@ -261,7 +251,6 @@ def _solve_all(
     Without an executor they are executed in this process, until those left would take long at the
     pace of the last and can be shared.
     """
-    import xarray as xr
 
     def solve_by(by: Executor, tasks: Sequence[RunTask]) -> None:
         mapped(by, partial(solve, threads=threads or by.threads), tasks, xr.Dataset, keep, bar)
@@ -282,10 +271,8 @@ def _solve_all(
 
 
 def _can_share(todo: Sequence[RunTask], threads: int) -> bool:
-    """Return whether two of the tasks can be executed at once, each in a process of its own.
-
-    A process that another one started leaves the cores to its siblings.
-    """
+    """Return whether two of the tasks can be executed at once, each in a process of its own."""
+    # A process that another one started leaves the cores to its siblings.
     if min(len(todo), runner.available_cores() // threads) < 2 or parent_process():
         return False
     available = memory.available()
@@ -315,7 +302,6 @@ def _recorded_warnings() -> Iterator[list[warnings.WarningMessage]]:
 
     How warnings are shown belongs to the process: of two threads that record them at the same time
     the second would leave it to the record of the first, so that no warning is shown any more.
-    Warnings of another thread are recorded here, or shown as usual.
     """
     if not _recording.acquire(blocking=False):
         yield []
@@ -328,86 +314,15 @@ def _recorded_warnings() -> Iterator[list[warnings.WarningMessage]]:
         _recording.release()
 
 
-class Planned(NamedTuple):
-    """A run before it is executed."""
-
-    task: RunTask
-    finished: int
-    """Number of steps in its file."""
-    problem: str
-    """Reason why its file cannot be used; empty if it can."""
-
-
-def plan(runs: Sequence[RunTask]) -> Iterator[Planned]:
-    """Yield each run with the number of its finished steps."""
+def plan(runs: Sequence[RunTask]) -> Iterator[tuple[RunTask, int, str]]:
+    """Yield each run, the number of its finished steps, and why its file cannot be used, if so."""
     for task in runs:
         try:
             numbers = task.journal.numbers()
         except StorageError as error:
-            yield Planned(task, 0, str(error))
+            yield task, 0, str(error)
         else:
-            yield Planned(task, 0 if numbers is None else numbers.sizes["step"], "")
-
-
-def read(path: Path) -> tuple[xr.Dataset, Path]:
-    """Return the table of a study and its folder, given the folder or its ``study.h5``.
-
-    Raises
-    ------
-    StorageError
-        The table does not exist or cannot be read.
-    """
-    whole = path / "study.h5" if is_folder(path) else path
-    dataset = storage.table(whole)
-    if problem := table.damage(dataset):
-        raise StorageError(f"{whole}: {problem}, so it is damaged; run the study again")
-    rows = with_paths(dataset)
-    if Status.NOT_RUN.name in rows["status_code"].values:
-        rows = _completed(rows, whole.parent)
-    return rows, whole.parent
-
-
-def _completed(rows: xr.Dataset, directory: Path) -> xr.Dataset:
-    """Return the table with the steps in the files of its runs, which a kill leaves ahead of it."""
-    try:
-        study = Study.of(json.loads(rows.attrs["configuration"]))
-        runs = tasks(study, directory)
-    except (ConfigError, PluginError):
-        # A file that it reads, or a plugin, may be gone.
-        return rows
-    current = table.StudyTable(study)
-    current.recall(directory / "study.h5")
-    of_steps = rows[[name for name in rows.data_vars if "step" in rows[name].dims]]
-    for task in runs:
-        current.put(task.index, of_steps.isel(dict(zip(study.dimensions, task.index, strict=True))))
-        _collect(task, current)
-    return current.dataset().assign_attrs(rows.attrs)
-
-
-def is_table(path: Path) -> bool:
-    """Return whether a path is the folder of a study, or its table.
-
-    The result of a single run has the name of the table if its run file is called ``study.toml``.
-    """
-    whole = path / "study.h5" if is_folder(path) else path
-    if whole.name != "study.h5" or (whole != path and not is_file(whole)):
-        return False
-    try:
-        storage.attributes(whole)
-    except StorageError:
-        return True
-    return False
-
-
-def _or_warning(
-    write: Callable[[], tuple[Path, ...]], messages: dict[str, None]
-) -> tuple[Path, ...]:
-    """Return the files of an output; settings that do not fit are added to the messages."""
-    try:
-        return write()
-    except ConfigError as error:
-        messages[str(error)] = None
-        return ()
+            yield task, 0 if numbers is None else numbers.sizes["step"], ""
 
 
 def _collect(task: RunTask, rows: table.StudyTable) -> int:
@@ -423,28 +338,46 @@ def _collect(task: RunTask, rows: table.StudyTable) -> int:
     return numbers.sizes["step"]
 
 
-def _require_table(path: Path, overwrite: bool) -> None:
-    """Refuse to replace a file that is not the table of a study."""
-    if overwrite or not path.exists():
-        return
+def read(path: Path) -> tuple[xr.Dataset, Path]:
+    """Return the table of a study and its folder, given the folder or its ``study.h5``.
+
+    A kill leaves the files of the runs ahead of the table; their steps are in the table returned.
+    """
+    whole = path / "study.h5" if is_folder(path) else path
+    dataset = storage.table(whole)
+    if problem := table.damage(dataset):
+        raise StorageError(f"{whole}: {problem}, so it is damaged; run the study again")
+    rows = with_paths(dataset)
+    if Status.NOT_RUN.name not in rows["status_code"].values:
+        return rows, whole.parent
     try:
-        with storage.opened(path, "table"):
-            pass
-    except StorageError as error:
-        raise StorageError(f"{error}; {storage.REPLACING}") from None
+        study = Study.of(json.loads(rows.attrs["configuration"]))
+        runs = tasks(study, whole.parent)
+    except (ConfigError, PluginError):
+        # A file that it reads, or a plugin, may be gone.
+        return rows, whole.parent
+    current = table.StudyTable(study)
+    current.recall(dataset)
+    of_steps = rows[[name for name in rows.data_vars if "step" in rows[name].dims]]
+    for task in runs:
+        current.put(task.index, of_steps.isel(dict(zip(study.dimensions, task.index, strict=True))))
+        _collect(task, current)
+    return current.dataset().assign_attrs(rows.attrs), whole.parent
 
 
-def _verdict(outcome: xr.Dataset | Exception) -> tuple[str, bool]:
-    if isinstance(outcome, Exception):
-        return Status.FAILED.value.format(reason=_one_line(outcome)), True
-    _, _, verdict = progress_of(outcome)
-    return verdict, verdict != "converged"
+def is_table(path: Path) -> bool:
+    """Return whether a path is the folder of a study, or its table.
 
-
-def _one_line(error: Exception) -> str:
-    message = "; ".join(str(error).splitlines()) or "no reason given"
-    is_ours = isinstance(error, (ConfigError, StorageError))
-    return message if is_ours else f"{type(error).__name__}: {message}"
+    The result of a single run has the name of the table if its run file is called ``study.toml``.
+    """
+    whole = path / "study.h5" if is_folder(path) else path
+    if whole.name != "study.h5" or (whole != path and not is_file(whole)):
+        return False
+    try:
+        storage.attributes(whole)
+    except StorageError:
+        return True
+    return False
 
 
 class _Writer:

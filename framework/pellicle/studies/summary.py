@@ -5,19 +5,19 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
+from pellicle.errors import first_of
+from pellicle.results.dimensions import parts
 from pellicle.results.shape import means_something
 from pellicle.results.status import Status, statuses_of
 from pellicle.results.variables import BEYOND_THEORY, names_of
-from pellicle.results.wording import wording
+from pellicle.results.wording import Wording, wording
 from pellicle.units.conversion import factor_to_si, split
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _FAILURES = {
     "failed": "failed",
@@ -45,9 +45,8 @@ _WORST_FIRST = "failed", "not run", "NOT CONVERGED"
 
 def columns(table: xr.Dataset, *, si: bool = False) -> Columns:
     """Return head and cells of the table of runs: parameters, main numbers and verdict."""
-    derived = json.loads(table.attrs["configuration"])["study"].get("derived", {})
     main = [n for n in names_of("main") if means_something(table, n)]
-    names = [n for n in (*main, *derived) if n in table and "step" in table[n].dims]
+    names = [n for n in (*main, *_derived(table)) if n in table and "step" in table[n].dims]
     runs = list(runs_of(table))
     progress = [progress_of(run) for run in runs]
     last: Columns = []
@@ -60,7 +59,10 @@ def columns(table: xr.Dataset, *, si: bool = False) -> Columns:
         last.append((column.head, cells))
     return [
         ("run", list(map(str, range(1, len(runs) + 1)))),
-        *_parameters(table, si=si),
+        *(
+            (axis.head, [axis.number(run[name].item()) for run in runs])
+            for name, axis in _axes(table, si=si).items()
+        ),
         ("steps", [f"{done}/{planned}" for done, planned, _ in progress]),
         *last,
         ("status", [verdict for *_, verdict in progress]),
@@ -70,35 +72,29 @@ def columns(table: xr.Dataset, *, si: bool = False) -> Columns:
 
 def paths(table: xr.Dataset, *, si: bool = False) -> Columns:
     """Return the main numbers of the whole path of each run; no columns where it has none."""
-    derived = json.loads(table.attrs["configuration"])["study"].get("derived", {})
-    per_run = [n for n in derived if n in table and "step" not in table[n].dims]
+    per_run = [n for n in _derived(table) if n in table and "step" not in table[n].dims]
     names = [n for n in (*_EVENTS, *per_run) if n in table]
-    wordings = {name: wording(table[name], si=si) for name in names}
     runs = list(runs_of(table))
-    numbers = [
-        (wordings[name].head, [wordings[name].number(run[name].item()) for run in runs])
-        for name in names
-    ]
-    return [("run", list(map(str, range(1, len(runs) + 1)))), *numbers] if names else []
+    columns = [("run", list(map(str, range(1, len(runs) + 1))))]
+    for name in names:
+        column = wording(table[name], si=si)
+        columns.append((column.head, [column.number(run[name].item()) for run in runs]))
+    return columns if names else []
 
 
-def _parameters(table: xr.Dataset, *, si: bool = False) -> Columns:
-    """Return the values of each run on the axes of the study."""
-    runs = list(runs_of(table))
-    wordings = {name: wording(table[name], si=si) for name in table.coords if name != "step"}
-    return [
-        (axis.head, [axis.number(run[name].item()) for run in runs])
-        for name, axis in wordings.items()
-    ]
+def _derived(table: xr.Dataset) -> list[str]:
+    return list(json.loads(table.attrs["configuration"])["study"].get("derived", {}))
+
+
+def _axes(table: xr.Dataset, *, si: bool = False) -> dict[str, Wording]:
+    """Return how each varied parameter is shown."""
+    return {str(n): wording(table[n], si=si) for n in table.coords if n != "step"}
 
 
 def run_names(table: xr.Dataset) -> list[str]:
     """Return the values that distinguish each run, such as "surface tension 30 mN/m"."""
-    wordings = {name: wording(table[name]) for name in table.coords if name != "step"}
-    return [
-        ", ".join(axis.text(run[name].item()) for name, axis in wordings.items())
-        for run in runs_of(table)
-    ]
+    axes = _axes(table).items()
+    return [", ".join(axis.text(run[n].item()) for n, axis in axes) for run in runs_of(table)]
 
 
 def short_files(table: xr.Dataset) -> list[str]:
@@ -131,15 +127,13 @@ def reasons(table: xr.Dataset) -> Iterator[str]:
         if bad is not None and statuses[bad] != Status.NOT_RUN:
             message = str(run["status"].values[bad])
             groups.setdefault(message, []).append(f"{name} (file {file})")
-    for message, (first, *others) in groups.items():
-        yield f"{first}{f' and {len(others)} more' if others else ''}: {message}"
+    for message, runs in groups.items():
+        yield f"{first_of(runs)}: {message}"
 
 
 def runs_of(table: xr.Dataset) -> Iterator[xr.Dataset]:
     """Yield the part of a table that belongs to each run."""
-    sizes = table["run"].sizes
-    for index in np.ndindex(*sizes.values()):
-        yield table.isel(dict(zip(sizes, index, strict=True)))
+    return parts(table, table["run"].dims)
 
 
 def failures(table: xr.Dataset) -> str:

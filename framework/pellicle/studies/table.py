@@ -5,14 +5,14 @@ from __future__ import annotations
 import csv
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from pellicle.config.coordinates import units_of
 from pellicle.config.provenance import now_with
 from pellicle.config.study import Study
-from pellicle.errors import StorageError
 from pellicle.files import atomic_write, for_document
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN, VARYING, derive
@@ -21,9 +21,6 @@ from pellicle.results.path import with_path
 from pellicle.results.status import Status
 from pellicle.results.variables import BEYOND_THEORY, VARIABLES, header
 from pellicle.results.variables import damage as damage_of
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _TEXTS = "status_code", "status"
 
@@ -36,7 +33,7 @@ class StudyTable:
         self._attributes = {
             "title": for_document(study.points[0].run.title),
             "configuration": study.to_json(),
-            FIRST_RUN: study.points[0].run.to_json(as_given=True),
+            FIRST_RUN: study.points[0].run.to_json(portable=True),
             VARYING: json.dumps(sorted(study.varying)),
             "axes": json.dumps({name: list(axes) for name, axes in study.dimensions.items()}),
             **now_with(point.run for point in study.points),
@@ -67,12 +64,8 @@ class StudyTable:
             empty = np.full(self._texts["status"].shape, missing)
             self._numbers.setdefault(str(name), empty)[index][:count] = variable.values
 
-    def recall(self, path: Path) -> None:
+    def recall(self, earlier: xr.Dataset) -> None:
         """Take over what an earlier table of the same runs says to be beyond the theory."""
-        try:
-            earlier = storage.table(path)
-        except StorageError:
-            return
         if BEYOND_THEORY in earlier:
             columns = (earlier[name].values.ravel() for name in ("run", BEYOND_THEORY))
             texts = dict(zip(*columns, strict=True))
@@ -88,8 +81,6 @@ class StudyTable:
 
     def dataset(self) -> xr.Dataset:
         """Return the table, with NaN for missing numbers."""
-        import xarray as xr
-
         dimensions = *self._study.dimensions, "step"
         variables: dict[str, Any] = {
             name: (dimensions, _whole(values, name), self._descriptions[name])
@@ -129,26 +120,17 @@ def damage(table: xr.Dataset) -> str:
     required = (*_TEXTS, "run", *(["converged"] if numbers else []))
     if problem := damage_of(table.data_vars, required, ("", *Status.__members__)):
         return problem
+    names = "configuration", "axes", FIRST_RUN
     try:
-        study, axes, run = (
-            json.loads(table.attrs[name]) for name in ("configuration", "axes", FIRST_RUN)
-        )
+        study, axes, run = (json.loads(table.attrs[name]) for name in names)
         is_complete = all(isinstance(part, dict) for part in (study["study"], axes, run))
     except (LookupError, TypeError, ValueError):
         is_complete = False
-    if not is_complete:
-        return "has no configuration of its study"
-    return ""
+    return "" if is_complete else "has no configuration of its study"
 
 
 def write(table: xr.Dataset, directory: Path) -> tuple[Path, Path]:
-    """Write ``study.h5`` and ``study.csv`` and return their paths.
-
-    Raises
-    ------
-    StorageError
-        They cannot be written.
-    """
+    """Write ``study.h5`` and ``study.csv`` and return their paths."""
     whole, text = directory / "study.h5", directory / "study.csv"
     storage.write(with_python_names(table), whole)
     with atomic_write(text) as part, part.open("w", newline="", encoding="utf-8") as file:

@@ -6,9 +6,8 @@ import inspect
 import json
 import pickle
 import tomllib
-from collections.abc import Callable, Iterable, Iterator
 from importlib.metadata import PackageNotFoundError, version
-from typing import Annotated, Any, get_args, get_origin
+from typing import Any, get_args
 
 import tomli_w
 from pydantic import ValidationError
@@ -17,7 +16,7 @@ from pellicle.components import FAMILIES, Component
 from pellicle.config.explain import refusal_of_example
 from pellicle.errors import ConfigError, PellicleError
 from pellicle.plugins import GROUP, checked_type, family_of, registry
-from pellicle.units import Quantity
+from pellicle.units import quantity_of
 
 from .rules import Rule, keep, require
 
@@ -67,35 +66,21 @@ def docstring_starts_with_a_sentence(component: Component) -> None:
 def numbers_have_units(component: Component) -> None:
     """A float field is a Quantity, of unit "1" for a pure number; its description has the unit."""
     for name, info in type(component).model_fields.items():
-        quantities = [*_among(info.metadata), *_quantities(info.annotation)]
+        quantity = quantity_of(info)
         require(
-            bool(quantities) or float not in _kinds(info.annotation),
+            quantity is not None or not _holds_float(info.annotation),
             f'the field {name} is a bare float; annotate it with Quantity("SI unit") or one of '
             "pellicle.units, such as Length",
         )
-        for unit in {quantity.unit for quantity in quantities} - {"1"}:
+        if quantity and quantity.unit != "1":
             require(
-                f"[{unit}]" in (info.description or ""),
-                f"the description of {name}, {info.description!r}, lacks [{unit}]",
+                f"[{quantity.unit}]" in (info.description or ""),
+                f"the description of {name}, {info.description!r}, lacks [{quantity.unit}]",
             )
 
 
-def _kinds(annotation: Any) -> Iterator[Any]:
-    inner = get_args(annotation)
-    if get_origin(annotation) is Annotated:
-        inner = inner[:1]
-    yield annotation
-    for kind in inner:
-        yield from _kinds(kind)
-
-
-def _quantities(annotation: Any) -> Iterator[Quantity]:
-    for kind in _kinds(annotation):
-        yield from _among(getattr(kind, "__metadata__", ()))
-
-
-def _among(metadata: Iterable[Any]) -> Iterator[Quantity]:
-    return (item for item in metadata if isinstance(item, Quantity))
+def _holds_float(annotation: Any) -> bool:
+    return annotation is float or any(map(_holds_float, get_args(annotation)))
 
 
 def is_frozen(component: Component) -> None:
@@ -117,16 +102,13 @@ def pickles(component: Component) -> None:
 
 def goes_through_json(component: Component) -> None:
     """The JSON in a result file reproduces the component."""
-    _goes_through(component, lambda table: json.loads(json.dumps(table, allow_nan=False)))
+    again = type(component)(**json.loads(json.dumps(_table(component), allow_nan=False)))
+    require(again == component, f"{again!r} of {component!r}")
 
 
 def goes_through_toml(component: Component) -> None:
     """The component written as TOML reproduces the component."""
-    _goes_through(component, _by_toml)
-
-
-def _goes_through(component: Component, copy: Callable[[dict[str, Any]], dict[str, Any]]) -> None:
-    again = type(component)(**copy(_table(component)))
+    again = type(component)(**_by_toml(_table(component)))
     require(again == component, f"{again!r} of {component!r}")
 
 
@@ -137,8 +119,7 @@ def _table(component: Component) -> dict[str, Any]:
 
 
 def _by_toml(table: dict[str, Any]) -> dict[str, Any]:
-    read: dict[str, Any] = tomllib.loads(tomli_w.dumps({"it": table}))["it"]
-    return read
+    return tomllib.loads(tomli_w.dumps(table))
 
 
 def unknown_field_is_refused(component: Component) -> None:

@@ -9,7 +9,7 @@ from pellicle.checks import real_number
 from pellicle.components import AreaCorrection
 
 from .component import check
-from .rules import Rule, require, require_close
+from .rules import require, require_close, rules_of
 from .runs import solved
 
 _SPACING = (2e-6, 3e-6)
@@ -24,13 +24,8 @@ def check_correction(correction: AreaCorrection) -> None:
     the same if the contact is mirrored, shifted or has x and y exchanged; an overridden
     ``periodic_area`` does not depend on where the edge of the domain lies; and the area goes into
     the result of a run.
-
-    Raises
-    ------
-    AssertionError
-        A rule is broken; the message states the rule and the violation.
     """
-    check(correction, "correction", RULES)
+    check(correction, "correction", rules_of(__name__))
 
 
 def _islands() -> Mask:
@@ -117,26 +112,6 @@ def periodic_area_has_no_seam(correction: AreaCorrection) -> None:
 
 def goes_into_the_result(correction: AreaCorrection) -> None:
     """The result of a run has the area as contact_area_<type>."""
-    dataset = solved(
-        {
-            "grid": {"points": 24, "size": "1 mm"},
-            "kernel": {"type": "half_space", "reduced_modulus": 1e4},
-            "indenter": {"type": "paraboloid", "radius": "1 mm"},
-            "loading": {"depth": "50 um"},
-            "corrections": [correction],
-        }
-    )
+    dataset = solved(loading={"depth": "50 um"}, corrections=[correction])
     area = dataset[f"contact_area_{correction.type_name}"].item()
     require(area > 0, f"{area:g} m² for {dataset['contact_area'].item():g} m² of cells")
-
-
-RULES: list[Rule] = [
-    area_is_pure,
-    no_contact_has_no_area,
-    full_contact_is_the_domain,
-    area_is_near_the_count,
-    area_scales_with_the_cells,
-    area_does_not_depend_on_the_view,
-    periodic_area_has_no_seam,
-    goes_into_the_result,
-]

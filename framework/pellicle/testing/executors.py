@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import os
-import sys
 import threading
 import time
 from collections import Counter
 from dataclasses import dataclass
-from functools import cached_property
+from functools import lru_cache
 from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,9 +17,10 @@ from uuid import uuid4
 from pellicle.components import Executor, Say
 
 from .component import check
-from .rules import Rule, require
+from .rules import require, rules_of
+from .runs import ignore
 
-_TASKS, _FAILS, _EXITS = 7, 3, 5
+_TASKS = 7
 _DURATION = 0.1
 """Time that a slow task takes [s], long compared with closing an executor's iterator."""
 
@@ -29,16 +29,11 @@ def check_executor(executor: Executor) -> None:
     """Check that an executor keeps its contract.
 
     Besides the rules of all components: ``map`` executes each task once and yields it with the
-    value or exception of its work; a failure, ``sys.exit()`` or the death of a worker process stops
-    no other task; ``report`` receives the messages of the work with their task, in the calling
-    thread; and if the iterator is closed early, no task continues.
-
-    Raises
-    ------
-    AssertionError
-        A rule is broken; the message states the rule and the violation.
+    value or exception of its work; a failure or the death of a worker process stops no other task;
+    ``report`` receives the messages of the work with their task, in the calling thread; and if the
+    iterator is closed early, no task continues.
     """
-    check(executor, "executor", RULES, Observations(executor))
+    check(executor, "executor", rules_of(__name__))
 
 
 @dataclass(frozen=True)
@@ -57,7 +52,7 @@ class Chore:
         return f"chore {self.number}"
 
 
-def work(task: Chore, say: Say) -> int:
+def _work(task: Chore, say: Say) -> int:
     """Send two messages, leave two files if the task has a folder; return its number squared."""
     say(("begun", task.number))
     say(("nearly done", task.number))
@@ -69,16 +64,14 @@ def work(task: Chore, say: Say) -> int:
     return task.number**2
 
 
-def fail_or_exit(task: Chore, say: Say) -> int:
-    """Raise in the third task and exit the interpreter in the fifth, as a bad plugin might."""
-    if task.number == _FAILS:
+def _fail_third(task: Chore, say: Say) -> int:
+    """Raise in the third task."""
+    if task.number == 3:
         raise ValueError("the third task is bad")
-    if task.number == _EXITS:
-        sys.exit(3)
     return task.number**2
 
 
-def die_third(task: Chore, say: Say) -> int:
+def _die_third(task: Chore, say: Say) -> int:
     """End the process of the third task, unless it is the one that must not die."""
     if task.number == 3:
         if os.getpid() != task.home:
@@ -91,31 +84,26 @@ def _chores(**fields: Any) -> list[Chore]:
     return [Chore(number, **fields) for number in range(1, _TASKS + 1)]
 
 
-def _ignore(task: Chore, message: Any) -> None:
-    pass
-
-
-def _by_number(tasks: list[Chore], pairs: list[tuple[Chore, Any]]) -> dict[int, Any]:
-    """Return the outcomes by number of the task; each task must be yielded once, itself."""
+def _require_squares(
+    tasks: list[Chore], pairs: list[tuple[Chore, Any]], *, but: int = 0
+) -> dict[int, Any]:
+    """Require each task once, itself, and with its square but for one; return the outcomes."""
     counts = Counter(task.number for task, _ in pairs)
     for task in tasks:
-        require(
-            counts[task.number] == 1,
-            f"task {task.number} of {len(tasks)} is yielded {counts[task.number]} times",
-        )
+        times = counts[task.number]
+        require(times == 1, f"task {task.number} of {len(tasks)} is yielded {times} times")
     require(
         {id(task) for task, _ in pairs} == {id(task) for task in tasks},
         "a yielded task is not one of the objects passed to map()",
     )
-    return {task.number: outcome for task, outcome in pairs}
-
-
-def _require_squares(outcomes: dict[int, Any]) -> None:
-    for number, outcome in outcomes.items():
+    outcomes = {task.number: outcome for task, outcome in pairs}
+    for number in outcomes.keys() - {but}:
+        outcome = outcomes[number]
         require(outcome == number**2, f"task {number} comes with {outcome!r}, not {number**2}")
+    return outcomes
 
 
-class Healthy(NamedTuple):
+class Observations(NamedTuple):
     """Observations of tasks that succeed."""
 
     tasks: list[Chore]
@@ -128,116 +116,77 @@ class Healthy(NamedTuple):
     traces: list[str]
 
 
-class Observations:
-    """Observations that several rules check; made once, because an executor may start slowly."""
+@lru_cache(maxsize=1)
+def _observed(executor: Executor) -> Observations:
+    """Execute nine tasks, for several rules: an executor may start slowly."""
+    messages: list[tuple[Chore, Any]] = []
+    callers = set()
 
-    def __init__(self, executor: Executor) -> None:
-        self._executor = executor
+    def report(task: Chore, message: Any) -> None:
+        callers.add((threading.get_ident(), os.getpid()))
+        messages.append((task, message))
 
-    @cached_property
-    def healthy(self) -> Healthy:
-        """Observations of nine tasks, executed on first use."""
-        messages: list[tuple[Chore, Any]] = []
-        callers = set()
-
-        def report(task: Chore, message: Any) -> None:
-            callers.add((threading.get_ident(), os.getpid()))
-            messages.append((task, message))
-
-        with TemporaryDirectory() as folder:
-            tasks, equal = _chores(folder=folder), [Chore(8), Chore(8)]
-            pairs = list(self._executor.map(work, [*tasks, *equal], report))
-            return Healthy(tasks, equal, pairs, messages, callers, os.listdir(folder))
-
-    @cached_property
-    def troubled(self) -> tuple[dict[int, Any], bool]:
-        """Outcomes of seven tasks, of which one fails and one exits, and whether that ended map."""
-        outcomes = {}
-        try:
-            for task, outcome in self._executor.map(fail_or_exit, _chores(), _ignore):
-                outcomes[task.number] = outcome
-        except SystemExit:
-            return outcomes, True
-        return outcomes, False
+    with TemporaryDirectory() as folder:
+        tasks, equal = _chores(folder=folder), [Chore(8), Chore(8)]
+        pairs = list(executor.map(_work, [*tasks, *equal], report))
+        return Observations(tasks, equal, pairs, messages, callers, os.listdir(folder))
 
 
-def each_task_comes_once_with_its_outcome(executor: Executor, observations: Observations) -> None:
+def each_task_comes_once_with_its_outcome(executor: Executor) -> None:
     """map() yields each task once, the same object, with the return value of work(task, say)."""
-    healthy = observations.healthy
-    pairs = [(task, outcome) for task, outcome in healthy.pairs if task not in healthy.equal]
-    _require_squares(_by_number(healthy.tasks, pairs))
+    observed = _observed(executor)
+    _require_squares(observed.tasks, [pair for pair in observed.pairs if pair[0].number != 8])
 
 
-def each_task_is_executed_once(executor: Executor, observations: Observations) -> None:
+def each_task_is_executed_once(executor: Executor) -> None:
     """Each task is executed exactly once, and all have ended when map() ends."""
-    counts = Counter(trace.rpartition(" ")[0] for trace in observations.healthy.traces)
+    counts = Counter(trace.rpartition(" ")[0] for trace in _observed(executor).traces)
     for number in range(1, _TASKS + 1):
         for event in ("began", "ended"):
             times = counts[f"{number} {event}"]
             require(times == 1, f"when map() has ended, task {number} {event} {times} times")
 
 
-def equal_tasks_are_two_tasks(executor: Executor, observations: Observations) -> None:
+def equal_tasks_are_two_tasks(executor: Executor) -> None:
     """Equal tasks are two tasks: they are distinguished by identity, not by content."""
-    equal = observations.healthy.equal
-    pairs = [(task, outcome) for task, outcome in observations.healthy.pairs if task in equal]
+    pairs = [pair for pair in _observed(executor).pairs if pair[0].number == 8]
     require([outcome for _, outcome in pairs] == [64, 64], f"two tasks of 8 give {pairs}")
 
 
-def no_tasks_yield_nothing(executor: Executor, observations: Observations) -> None:
+def no_tasks_yield_nothing(executor: Executor) -> None:
     """Without tasks map() yields nothing."""
     none: list[Chore] = []
-    pairs = list(executor.map(work, none, _ignore))
+    pairs = list(executor.map(_work, none, ignore))
     require(not pairs, f"{pairs}")
 
 
-def failure_is_an_outcome(executor: Executor, observations: Observations) -> None:
+def failure_is_an_outcome(executor: Executor) -> None:
     """An exception of work is yielded unchanged as its task's outcome, and stops no other task."""
-    outcomes, exited = observations.troubled
-    bad = outcomes.get(_FAILS)
+    tasks = _chores()
+    bad = _require_squares(tasks, list(executor.map(_fail_third, tasks, ignore)), but=3)[3]
     require(
-        (isinstance(bad, ValueError) and str(bad) == "the third task is bad")
-        or (exited and _FAILS not in outcomes),
-        f"for ValueError('the third task is bad') task {_FAILS} comes with {bad!r}",
+        isinstance(bad, ValueError) and str(bad) == "the third task is bad",
+        f"for ValueError('the third task is bad') task 3 comes with {bad!r}",
     )
-    _require_squares({n: outcome for n, outcome in outcomes.items() if n not in (_FAILS, _EXITS)})
 
 
-def exit_is_an_outcome(executor: Executor, observations: Observations) -> None:
-    """Work that calls sys.exit() has failed; it ends neither other tasks nor this process."""
-    outcomes, exited = observations.troubled
-    require(not exited, "sys.exit() in a task leaves map()")
-    bad = outcomes.get(_EXITS)
-    require(isinstance(bad, Exception), f"task {_EXITS} comes with {bad!r}, not an Exception")
-    missing = sorted(set(range(1, _TASKS + 1)) - outcomes.keys())
-    require(not missing, f"if one task fails and one exits, tasks {missing} are not yielded")
-
-
-def death_of_a_worker_is_an_outcome(executor: Executor, observations: Observations) -> None:
-    """A task that ends its worker process comes with an exception, and stops no other task."""
-    tasks = _chores(home=os.getpid())
-    outcomes = _by_number(tasks, list(executor.map(die_third, tasks, _ignore)))
-    bad = outcomes.pop(3)
-    require(isinstance(bad, Exception), f"task 3 comes with {bad!r}")
-    _require_squares(outcomes)
-
-
-def messages_are_reported(executor: Executor, observations: Observations) -> None:
+def messages_are_reported(executor: Executor) -> None:
     """report(task, message) is called in this thread, with the messages of the task in order."""
-    healthy = observations.healthy
+    observed = _observed(executor)
     caller = threading.get_ident(), os.getpid()
-    require(healthy.callers <= {caller}, "report is called in another thread")
-    passed = {id(task) for task in (*healthy.tasks, *healthy.equal)}
-    for task, _ in healthy.messages:
-        require(id(task) in passed, f"report is called with {task!r}, not one of the tasks")
-    for task in (*healthy.tasks, *healthy.equal):
+    require(observed.callers <= {caller}, "report is called in another thread")
+    tasks = [*observed.tasks, *observed.equal]
+    for task, _ in observed.messages:
+        passed = any(task is one for one in tasks)
+        require(passed, f"report is called with {task!r}, not one of the tasks")
+    for task in tasks:
         sent = [("begun", task.number), ("nearly done", task.number)]
-        received = [tuple(message) for owner, message in healthy.messages if owner is task]
+        received = [tuple(message) for owner, message in observed.messages if owner is task]
         in_order = [message for message in sent if message in received]
         require(received == in_order, f"{task.name} sent {sent}, and report received {received}")
 
 
-def report_that_raises_ends_the_tasks(executor: Executor, observations: Observations) -> None:
+def report_that_raises_ends_the_tasks(executor: Executor) -> None:
     """An interruption raised by report comes out of map()."""
     messages = []
 
@@ -246,16 +195,16 @@ def report_that_raises_ends_the_tasks(executor: Executor, observations: Observat
         raise KeyboardInterrupt
 
     try:
-        list(executor.map(work, _chores(), report))
+        list(executor.map(_work, _chores(), report))
     except KeyboardInterrupt:
         return
     require(not messages, "KeyboardInterrupt raised by report does not come out of map()")
 
 
-def nothing_goes_on_after_closing(executor: Executor, observations: Observations) -> None:
+def nothing_goes_on_after_closing(executor: Executor) -> None:
     """After the iterator is closed early, no task continues or begins."""
     with TemporaryDirectory() as folder:
-        running = executor.map(work, _chores(folder=folder), _ignore)
+        running = executor.map(_work, _chores(folder=folder), ignore)
         list(islice(running, 1))
         close = getattr(running, "close", None)
         require(close is not None, "map() returns an iterator without close(); write it with yield")
@@ -267,15 +216,8 @@ def nothing_goes_on_after_closing(executor: Executor, observations: Observations
         require(not later, f"after close(): {', '.join(later)}")
 
 
-RULES: list[Rule] = [
-    each_task_comes_once_with_its_outcome,
-    each_task_is_executed_once,
-    equal_tasks_are_two_tasks,
-    no_tasks_yield_nothing,
-    failure_is_an_outcome,
-    exit_is_an_outcome,
-    messages_are_reported,
-    report_that_raises_ends_the_tasks,
-    nothing_goes_on_after_closing,
-    death_of_a_worker_is_an_outcome,
-]
+def death_of_a_worker_is_an_outcome(executor: Executor) -> None:
+    """A task that ends its worker process comes with an exception, and stops no other task."""
+    tasks = _chores(home=os.getpid())
+    bad = _require_squares(tasks, list(executor.map(_die_third, tasks, ignore)), but=3)[3]
+    require(isinstance(bad, Exception), f"task 3 comes with {bad!r}")

@@ -13,7 +13,7 @@ from pellicle.errors import shown
 from pellicle.grid import Grid
 
 from .component import check
-from .rules import Rule, require, require_close
+from .rules import require, require_close, rules_of
 from .runs import solved
 
 
@@ -32,13 +32,18 @@ def check_indenter(indenter: Indenter, grid: Grid | None = None) -> None:
     grid
         Points that suit the indenter, the lowest point among them; 13 × 11 on 1.3 mm × 1.1 mm if
         None.
-
-    Raises
-    ------
-    AssertionError
-        A rule is broken; the message states the rule and the violation.
     """
-    check(indenter, "indenter", RULES, grid or Grid(points=[13, 11], size=["1.3 mm", "1.1 mm"]))
+    check(
+        indenter,
+        "indenter",
+        rules_of(__name__),
+        grid or Grid(points=[13, 11], size=["1.3 mm", "1.1 mm"]),
+    )
+
+
+def footprint_is_known(indenter: Indenter, grid: Grid) -> None:
+    """The footprint is "unbounded" or "domain", which decides how contact at the edge is judged."""
+    require(indenter.footprint in get_args(Footprint), repr(indenter.footprint))
 
 
 def profile_has_the_shape_of_the_grid(indenter: Indenter, grid: Grid) -> None:
@@ -53,6 +58,16 @@ def profile_has_the_shape_of_the_grid(indenter: Indenter, grid: Grid) -> None:
     )
 
 
+def profile_is_nowhere_positive(indenter: Indenter, grid: Grid) -> None:
+    """Heights are ≤ 0, finite or −inf, and at least one is finite."""
+    profile = indenter.profile(*grid.coordinates())
+    x, y = np.broadcast_arrays(*grid.coordinates())
+    for at in np.argwhere(~(profile <= 0)):
+        i, j = map(int, at)
+        raise AssertionError(f"{profile[i, j]:g} m at x = {x[i, j]:g} m, y = {y[i, j]:g} m")
+    require(np.isfinite(profile).any(), "no height is finite")
+
+
 def profile_is_pure(indenter: Indenter, grid: Grid) -> None:
     """profile(x, y) does not change x or y, and a second call returns an equal, new array."""
     points = grid.coordinates()
@@ -64,21 +79,6 @@ def profile_is_pure(indenter: Indenter, grid: Grid) -> None:
         first[...] = -np.inf
     again = indenter.profile(*grid.coordinates())
     require(np.array_equal(again, expected, equal_nan=True), "the second profile differs")
-
-
-def profile_is_nowhere_positive(indenter: Indenter, grid: Grid) -> None:
-    """Heights are ≤ 0, finite or −inf, and at least one is finite."""
-    profile = indenter.profile(*grid.coordinates())
-    x, y = np.broadcast_arrays(*grid.coordinates())
-    for at in np.argwhere(~(profile <= 0)):
-        i, j = map(int, at)
-        raise AssertionError(f"{profile[i, j]:g} m at x = {x[i, j]:g} m, y = {y[i, j]:g} m")
-    require(np.isfinite(profile).any(), "no height is finite")
-
-
-def footprint_is_known(indenter: Indenter, grid: Grid) -> None:
-    """The footprint is "unbounded" or "domain", which decides how contact at the edge is judged."""
-    require(indenter.footprint in get_args(Footprint), repr(indenter.footprint))
 
 
 def lowest_point_is_at_zero(indenter: Indenter, grid: Grid) -> None:
@@ -134,28 +134,9 @@ def _force_curve(indenter: HasForceCurve, depth: Array, length: float) -> ForceC
 def run_converges(indenter: Indenter, grid: Grid) -> None:
     """Pressed into a half-space, the indenter makes contact and the run converges."""
     depth = 0.01 * _range(indenter.profile(*grid.coordinates())) or 0.01 * min(grid.size)
-    dataset = solved(
-        {
-            "grid": grid,
-            "kernel": {"type": "half_space", "reduced_modulus": 1e4},
-            "indenter": indenter,
-            "loading": {"depth": depth},
-        }
-    )
+    dataset = solved(grid=grid, indenter=indenter, loading={"depth": depth})
     require(dataset["force"].item() > 0, f"no contact at a depth of {depth:g} m")
 
 
 def _range(heights: Array) -> float:
     return float(np.ptp(heights[np.isfinite(heights)]))
-
-
-RULES: list[Rule] = [
-    footprint_is_known,
-    profile_has_the_shape_of_the_grid,
-    profile_is_nowhere_positive,
-    profile_is_pure,
-    lowest_point_is_at_zero,
-    heights_depend_on_their_own_point,
-    force_curve_rises,
-    run_converges,
-]

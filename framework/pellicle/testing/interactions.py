@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any, cast
 
 import numpy as np
 
@@ -15,17 +14,15 @@ from pellicle.numerics.gap_law import GapLaw
 from pellicle.plugins import registry
 
 from .component import check
-from .rules import Rule, require, require_close
+from .rules import require, require_close, require_pure, require_vectorised, rules_of
 from .runs import solved
 
-_GAPS = 2001
 _ROUNDING = 1e-12
 # Energy left at the cutoff, over the work of adhesion.
 _LEFT = 1e-3
 _RINGS = 20001
 _RADIUS = 1e-3
-"""Radius R of the sphere [m]."""
-_CELLS = 64
+"""Radius R of the sphere [m], that of the paraboloid of `solved`."""
 
 
 def check_interaction(interaction: Interaction) -> None:
@@ -36,18 +33,18 @@ def check_interaction(interaction: Interaction) -> None:
     strongest there and falls; the traction is the derivative of the energy, and the slope that of
     the traction; what `resolved` returns does the same with the same work of adhesion w on every
     grid; a rigid sphere is pulled by 2πwR; and a small run under a pulling force converges.
-
-    Raises
-    ------
-    AssertionError
-        A rule is broken; the message states the rule and the violation.
     """
-    check(interaction, "interaction", RULES)
+    check(interaction, "interaction", rules_of(__name__))
 
 
 def _work(law: GapLaw) -> float:
     """Return the work of adhesion −γ(0) [J/m²]."""
     return -float(np.ravel(law.energy(np.zeros(1)))[0])
+
+
+def _traction(law: GapLaw) -> float:
+    """Return σ(0) [Pa]."""
+    return float(np.ravel(law.traction(np.zeros(1)))[0])
 
 
 def _kernel(modulus: float) -> Kernel:
@@ -63,8 +60,7 @@ def _sizes(interaction: Interaction) -> tuple[float, float]:
     if cutoff == 0:
         radius = 0.1 * _RADIUS
         return 4.5 * np.pi * work * _RADIUS**2 / radius**3, 6 * radius
-    reach = work / -float(np.ravel(interaction.traction(np.zeros(1)))[0])
-    modulus = work * _RADIUS**0.5 / reach**1.5
+    modulus = work * _RADIUS**0.5 / (work / -_traction(interaction)) ** 1.5
     # Contact radius without load (Johnson, Kendall & Roberts 1971).
     radius = (4.5 * np.pi * work * _RADIUS**2 / modulus) ** (1 / 3)
     return modulus, 2 * (radius + 1.5 * float(np.sqrt(2 * _RADIUS * cutoff)))
@@ -81,12 +77,15 @@ def _laws(interaction: Interaction) -> Iterator[tuple[str, GapLaw]]:
         yield f"what is resolved on {points} cells of {size:.3g} m", law
 
 
-def _gaps(law: GapLaw) -> Array:
-    return np.linspace(0.0, law.cutoff(), _GAPS)
+def _gaps(law: GapLaw, number: int = 2001) -> Array:
+    return np.linspace(0.0, law.cutoff(), number)
 
 
-def _functions(law: GapLaw) -> tuple[tuple[str, Callable[[Array], Array]], ...]:
-    return (("energy", law.energy), ("traction", law.traction), ("slope", law.slope))
+def _functions(interaction: Interaction) -> Iterator[tuple[str, GapLaw, Callable[[Array], Array]]]:
+    for name, law in _laws(interaction):
+        yield f"energy(gap) of {name}", law, law.energy
+        yield f"traction(gap) of {name}", law, law.traction
+        yield f"slope(gap) of {name}", law, law.slope
 
 
 def cutoff_is_a_length(interaction: Interaction) -> None:
@@ -101,57 +100,30 @@ def closed_gap_attracts(interaction: Interaction) -> None:
     What `resolved` returns has a range.
     """
     require(_work(interaction) > 0, f"energy(0) is {-_work(interaction):g} J/m²")
-    if interaction.cutoff() > 0:
-        _require_strength("the interaction", interaction)
     for name, law in _laws(interaction):
         require(bool(0 < law.cutoff() < np.inf), f"cutoff() of {name} is {law.cutoff()!r} m")
-        _require_strength(name, law)
-
-
-def _require_strength(name: str, law: GapLaw) -> None:
-    traction = float(np.ravel(law.traction(np.zeros(1)))[0])
-    require(traction < 0, f"traction(0) of {name} is {traction:g} Pa")
-
-
-def values_are_vectorised(interaction: Interaction) -> None:
-    """Each function of the gap is a float array of its shape; a value depends on its gap only."""
-    for name, law in _laws(interaction):
-        gaps = np.linspace(0.0, law.cutoff(), 24)
-        for function_name, function in _functions(law):
-            single = [np.ravel(function(gaps[i : i + 1].copy()))[0] for i in range(24)]
-            for shape in ((24,), (4, 6)):
-                values = function(gaps.reshape(shape).copy())
-                require(
-                    isinstance(values, np.ndarray) and values.dtype == np.float64,
-                    f"{function_name}(gap) of {name} is {type(values).__name__} of "
-                    f"{getattr(values, 'dtype', 'no')} dtype",
-                )
-                require_close(
-                    values,
-                    np.reshape(single, shape),
-                    f"{function_name} of {name} for gaps of shape {shape}",
-                    absolute=_ROUNDING * float(np.abs(single).max()),
-                )
-
-
-def functions_leave_their_argument(interaction: Interaction) -> None:
-    """An interaction is pure: it does not change the gap, and a second call returns the same."""
-    for name, law in _laws(interaction):
-        for function_name, function in _functions(law):
-            gaps = _gaps(law)
-            first = np.array(function(gaps))
-            require_close(gaps, _gaps(law), f"after {function_name}(gap) of {name}, the gap")
-            require_close(function(gaps), first, f"the second {function_name}(gap) of {name}")
+        require(_traction(law) < 0, f"traction(0) of {name} is {_traction(law):g} Pa")
 
 
 def values_are_finite(interaction: Interaction) -> None:
     """Energy, traction and slope are finite from a closed gap to the cutoff."""
-    for name, law in _laws(interaction):
+    for name, law, function in _functions(interaction):
         gaps = _gaps(law)
-        for function_name, function in _functions(law):
-            for bad in np.flatnonzero(~np.isfinite(function(gaps))):
-                value = function(gaps)[bad]
-                raise AssertionError(f"{function_name} of {name} is {value} at {gaps[bad]:g} m")
+        values = function(gaps)
+        for bad in np.flatnonzero(~np.isfinite(values)):
+            raise AssertionError(f"{name} is {values[bad]} at {gaps[bad]:g} m")
+
+
+def values_are_vectorised(interaction: Interaction) -> None:
+    """Each function of the gap is a float array of its shape; a value depends on its gap only."""
+    for name, law, function in _functions(interaction):
+        require_vectorised(function, _gaps(law, 24), name, absolute=_ROUNDING)
+
+
+def functions_leave_their_argument(interaction: Interaction) -> None:
+    """An interaction is pure: it does not change the gap, and a second call returns the same."""
+    for name, law, function in _functions(interaction):
+        require_pure(function, _gaps(law), name)
 
 
 def energy_rises_to_nothing(interaction: Interaction) -> None:
@@ -177,6 +149,20 @@ def attraction_falls_with_the_gap(interaction: Interaction) -> None:
         require(most <= 0, f"traction of {name} is {most:g} Pa, which repels")
 
 
+def rigid_sphere_is_pulled_by_2_pi_w_r(interaction: Interaction) -> None:
+    """The traction on a rigid paraboloid that touches a rigid plane adds up to 2πwR (Bradley 1932).
+
+    It is added over rings of equal width.
+    """
+    for name, law in _laws(interaction):
+        radii = np.linspace(0.0, float(np.sqrt(2 * _RADIUS * law.cutoff())), _RINGS)
+        density = -2 * np.pi * radii * law.traction(radii**2 / (2 * _RADIUS))
+        pull = float((0.5 * (density[1:] + density[:-1])).sum() * radii[1])
+        require_close(
+            pull, 2 * np.pi * _work(law) * _RADIUS, f"the pull [N] of {name}", relative=2 * _LEFT
+        )
+
+
 def traction_is_the_derivative_of_the_energy(interaction: Interaction) -> None:
     """Between two gaps, −Δγ/Δg lies between the tractions at both (mean value theorem)."""
     for name, law in _laws(interaction):
@@ -200,7 +186,7 @@ def slope_is_the_derivative_of_the_traction(interaction: Interaction) -> None:
     distance of two gaps.
     """
     for name, law in _laws(interaction):
-        if law is interaction and interaction.cutoff() > 0 and "resolved" in vars(type(law)):
+        if law is interaction and "resolved" in vars(type(law)):
             continue
         gaps = _gaps(law)
         slope, traction = law.slope(gaps), law.traction(gaps)
@@ -222,50 +208,17 @@ def resolved_keeps_the_work_of_adhesion(interaction: Interaction) -> None:
     law_of(interaction, _kernel(modulus), Grid(points=16, size=size, boundary="free"))
 
 
-def rigid_sphere_is_pulled_by_2_pi_w_r(interaction: Interaction) -> None:
-    """The traction on a rigid paraboloid that touches a rigid plane adds up to 2πwR (Bradley 1932).
-
-    It is added over rings of equal width.
-    """
-    for name, law in _laws(interaction):
-        radii = np.linspace(0.0, float(np.sqrt(2 * _RADIUS * law.cutoff())), _RINGS)
-        density = -2 * np.pi * radii * law.traction(radii**2 / (2 * _RADIUS))
-        pull = float((0.5 * (density[1:] + density[:-1])).sum() * radii[1])
-        require_close(
-            pull, 2 * np.pi * _work(law) * _RADIUS, f"the pull [N] of {name}", relative=2 * _LEFT
-        )
-
-
 def run_under_a_pull_converges(interaction: Interaction) -> None:
     """A sphere that is pressed, and then pulled by 0.5πwR, stays in contact; the run converges."""
     modulus, size = _sizes(interaction)
     unit = np.pi * _work(interaction) * _RADIUS
     data = solved(
-        {
-            "grid": {"points": _CELLS, "size": size, "boundary": "free"},
-            "kernel": {"type": "half_space", "reduced_modulus": modulus},
-            "indenter": {"type": "paraboloid", "radius": _RADIUS},
-            "interaction": cast(Any, interaction),
-            "loading": {"force": [0.1 * unit, -0.5 * unit]},
-            "solver": {"type": "active_set", "tolerance": 1e-6},
-        }
+        grid={"points": 64, "size": size, "boundary": "free"},
+        kernel=_kernel(modulus),
+        interaction=interaction,
+        loading={"force": [0.1 * unit, -0.5 * unit]},
+        solver={"type": "active_set", "tolerance": 1e-6},
     )
     require_close(data["force"], [0.1 * unit, -0.5 * unit], "the force [N]", relative=1e-4)
     areas = data["contact_area"].values
     require(bool(areas[0] > areas[1] > 0), f"the contact areas are {areas} m²")
-
-
-RULES: list[Rule] = [
-    cutoff_is_a_length,
-    closed_gap_attracts,
-    values_are_finite,
-    values_are_vectorised,
-    functions_leave_their_argument,
-    energy_rises_to_nothing,
-    attraction_falls_with_the_gap,
-    rigid_sphere_is_pulled_by_2_pi_w_r,
-    traction_is_the_derivative_of_the_energy,
-    slope_is_the_derivative_of_the_traction,
-    resolved_keeps_the_work_of_adhesion,
-    run_under_a_pull_converges,
-]

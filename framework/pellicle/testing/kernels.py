@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle.checks import read_only
 from pellicle.components import HasRelaxation, Kernel
 from pellicle.components.calls import branches_of
 from pellicle.grid import Grid
@@ -15,11 +16,13 @@ from pellicle.numerics.kernel_calls import HasClosedForm, mean_compliance
 from pellicle.numerics.operators import displacement
 
 from .component import check
-from .rules import Rule, require, require_close
+from .rules import require, require_close, require_pure, require_vectorised, rules_of
 from .runs import solved
 
 _WIDTH = 1e-4
 """Width w of the Gaussian pressure exp(−r²/2w²) [m]."""
+_WAVES = read_only(np.geomspace(1.0, 1e9, 24))
+"""Wavenumbers q [rad/m]."""
 _FORMS = ("greens_function", "radial_primitive")
 
 
@@ -31,42 +34,18 @@ def check_kernel(kernel: Kernel) -> None:
     has one, agrees with it; so do the operators of both boundaries; a small indentation converges
     on both. A kernel with ``branches`` has valid ones, and its ``scaled`` kernels are those of a
     stiffer or softer solid under the same skin; the indentation is then that of ``scaled(1)``.
-
-    Raises
-    ------
-    AssertionError
-        A rule is broken; the message states the rule and the violation.
     """
-    check(kernel, "kernel", RULES)
-
-
-def _wavenumbers() -> Array:
-    return np.geomspace(1.0, 1e9, 24)
+    check(kernel, "kernel", rules_of(__name__))
 
 
 def compliance_is_vectorised(kernel: Kernel) -> None:
     """compliance(q) is a float array of the shape of q; each value depends on its own q only."""
-    single = [np.ravel(kernel.compliance(_wavenumbers()[i : i + 1]))[0] for i in range(24)]
-    for shape in ((24,), (4, 6), (2, 3, 4)):
-        values = kernel.compliance(_wavenumbers().reshape(shape))
-        require(
-            isinstance(values, np.ndarray) and values.dtype == np.float64,
-            f"compliance(q) is {type(values).__name__} of {getattr(values, 'dtype', 'no')} dtype",
-        )
-        require_close(
-            values,
-            np.reshape(single, shape),
-            f"compliance of q of shape {shape}",
-            relative=1e-12,
-        )
+    require_vectorised(kernel.compliance, _WAVES, "compliance(q)", relative=1e-12)
 
 
 def compliance_leaves_its_argument(kernel: Kernel) -> None:
     """A kernel is pure: it does not change q, and a second call returns the same."""
-    q = _wavenumbers()
-    first = np.array(kernel.compliance(q))
-    require_close(q, _wavenumbers(), "after compliance(q), q")
-    require_close(kernel.compliance(q), first, "the second compliance(q)")
+    require_pure(kernel.compliance, _WAVES, "compliance(q)")
 
 
 def compliance_is_positive_and_finite(kernel: Kernel) -> None:
@@ -88,6 +67,73 @@ def compliance_does_not_grow_for_short_waves(kernel: Kernel) -> None:
         )
 
 
+def branches_have_shares_and_times(kernel: Kernel) -> None:
+    """branches() returns pairs of a share > 0 and a time > 0, whose shares sum to at most 1."""
+    branches_of(kernel)
+
+
+def scaled_by_one_is_the_kernel(kernel: Kernel) -> None:
+    """scaled(1) is elastic, with the compliance and the mean compliance of the kernel."""
+    if not isinstance(kernel, HasRelaxation):
+        return
+    elastic = kernel.scaled(1.0)
+    require(not branches_of(elastic), f"scaled(1) has the branches {branches_of(elastic)}")
+    require_close(
+        elastic.compliance(_WAVES),
+        kernel.compliance(_WAVES),
+        "the compliance [m/Pa] of scaled(1)",
+        relative=1e-12,
+    )
+    require(
+        math.isclose(mean_compliance(elastic), mean_compliance(kernel), rel_tol=1e-12),
+        f"mean_compliance() of scaled(1) is {mean_compliance(elastic):g} m/Pa; expected "
+        f"{mean_compliance(kernel):g}",
+    )
+
+
+def scaled_stiffens_the_solid_alone(kernel: Kernel) -> None:
+    """The stiffness of scaled(share) is 1/G + (share − 1)/G₀, with G₀ of without_skin()."""
+    if not isinstance(kernel, HasRelaxation):
+        return
+    q = _WAVES
+    whole, solid = 1 / kernel.compliance(q), 1 / kernel.without_skin().compliance(q)
+    for share in (0.01, 0.5, 3.0):
+        require_close(
+            1 / kernel.scaled(share).compliance(q),
+            whole + (share - 1) * solid,
+            f"the stiffness [Pa/m] of scaled({share:g})",
+            # The two terms cancel for small shares.
+            relative=1e-11,
+        )
+
+
+def without_skin_has_no_skin(kernel: Kernel) -> None:
+    """The solid without its skin relaxes as the kernel does, and has no skin to take off."""
+    if not isinstance(kernel, HasRelaxation):
+        return
+    solid = kernel.without_skin()
+    if not isinstance(solid, HasRelaxation):
+        require(not branches_of(kernel), "without_skin() does not relax")
+        return
+    require(
+        branches_of(solid) == branches_of(kernel), "without_skin() relaxes as another kernel does"
+    )
+    require_close(
+        solid.without_skin().compliance(_WAVES),
+        solid.compliance(_WAVES),
+        "the compliance [m/Pa] of without_skin().without_skin()",
+        relative=1e-12,
+    )
+
+
+def _indent(kernel: Kernel, boundary: str) -> None:
+    # A run of a kernel that relaxes would need times.
+    if isinstance(kernel, HasRelaxation):
+        kernel = kernel.scaled(1.0)
+    grid = {"points": 24, "size": "1 mm", "boundary": boundary}
+    solved(grid=grid, kernel=kernel, loading={"depth": ["5 um", "20 um"]})
+
+
 def periodic_operator_is_the_compliance(kernel: Kernel) -> None:
     """A wave of pressure on a periodic grid displaces the surface by G(q) times the wave."""
     grid = Grid(points=[32, 18], size=["1 mm", "0.7 mm"], boundary="periodic")
@@ -104,6 +150,11 @@ def periodic_operator_is_the_compliance(kernel: Kernel) -> None:
         )
 
 
+def periodic_run_converges(kernel: Kernel) -> None:
+    """A paraboloid pressed into a periodic surface converges."""
+    _indent(kernel, "periodic")
+
+
 def uniform_pressure_sinks_by_the_mean_compliance(kernel: Kernel) -> None:
     """On a periodic grid uniform pressure p displaces by p mean_compliance(), or 0 if that is ∞."""
     grid = Grid(points=[6, 5], size="1 mm", boundary="periodic")
@@ -111,30 +162,6 @@ def uniform_pressure_sinks_by_the_mean_compliance(kernel: Kernel) -> None:
     expected = np.full(grid.shape, 3 * mean if np.isfinite(mean) else 0.0)
     values = displacement(np.full(grid.shape, 3.0), kernel=kernel, grid=grid)
     require_close(values, expected, "the displacement [m] under 3 Pa", relative=1e-13)
-
-
-def periodic_run_converges(kernel: Kernel) -> None:
-    """A paraboloid pressed into a periodic surface converges."""
-    _indent(kernel, "periodic")
-
-
-def free_run_converges(kernel: Kernel) -> None:
-    """A paraboloid pressed into a free surface converges."""
-    _indent(kernel, "free")
-
-
-def _indent(kernel: Kernel, boundary: str) -> None:
-    # A run of a kernel that relaxes would need times.
-    if isinstance(kernel, HasRelaxation):
-        kernel = kernel.scaled(1.0)
-    solved(
-        {
-            "grid": {"points": 24, "size": "1 mm", "boundary": boundary},
-            "kernel": kernel,
-            "indenter": {"type": "paraboloid", "radius": "1 mm"},
-            "loading": {"depth": ["5 um", "20 um"]},
-        }
-    )
 
 
 def closed_form_is_whole(kernel: Kernel) -> None:
@@ -147,9 +174,36 @@ def closed_form_leaves_its_argument(kernel: Kernel) -> None:
     """greens_function(r) and radial_primitive(r) do not change r."""
     for name in _FORMS:
         if method := getattr(kernel, name, None):
-            r = np.geomspace(1e-6, 1.0, 9)
-            method(r)
-            require_close(r, np.geomspace(1e-6, 1.0, 9), f"after {name}(r), r")
+            require_pure(method, np.geomspace(1e-6, 1.0, 9), f"{name}(r)")
+
+
+def _middle_by_compliance(kernel: Kernel, cell: float = 0.0) -> float:
+    """Return u(0) = ∫ G(q) p̂(q) q dq / 2π [m] for the Gaussian, p̂ = 2πw² exp(−q²w²/2).
+
+    A pressure uniform in each cell of side h has p̂ smaller by the factor 1 − q²h²/24. Springs, the
+    limit of G at q → ∞, respond to the value at the centre of their cell instead.
+    """
+    springs = kernel.compliance(np.array([1e12]))
+
+    def integrand(t: Array) -> float:
+        q = t / _WIDTH
+        compliance = kernel.compliance(q)
+        reduction = (compliance - springs) * (q * cell) ** 2 / 24
+        return float(((compliance - reduction) * t)[0])
+
+    return _integral(integrand)
+
+
+def _integral(function: Callable[[Array], float]) -> float:
+    """Return ∫ f(t) exp(−t²/2) dt over t > 0."""
+    # Imported here because the workers of `check_executor` import this package too.
+    from scipy.integrate import quad
+
+    def integrand(t: float) -> float:
+        return function(np.array([t])) * float(np.exp(-(t**2) / 2))
+
+    # Without full_output, quad may warn of its accuracy, which pytest may turn into an error.
+    return float(quad(integrand, 0, 9, epsabs=0, epsrel=1e-11, limit=200, full_output=1)[0])
 
 
 def primitive_is_the_integral_of_the_closed_form(kernel: Kernel) -> None:
@@ -205,110 +259,6 @@ def free_operator_is_the_transform_of_the_compliance(kernel: Kernel) -> None:
     )
 
 
-def _middle_by_compliance(kernel: Kernel, cell: float = 0.0) -> float:
-    """Return u(0) = ∫ G(q) p̂(q) q dq / 2π [m] for the Gaussian, p̂ = 2πw² exp(−q²w²/2).
-
-    A pressure uniform in each cell of side h has p̂ smaller by the factor 1 − q²h²/24. Springs, the
-    limit of G at q → ∞, respond to the value at the centre of their cell instead.
-    """
-    springs = kernel.compliance(np.array([1e12]))
-
-    def integrand(t: Array) -> float:
-        q = t / _WIDTH
-        compliance = kernel.compliance(q)
-        reduction = (compliance - springs) * (q * cell) ** 2 / 24
-        return float(((compliance - reduction) * t)[0])
-
-    return _integral(integrand)
-
-
-def _integral(function: Callable[[Array], float]) -> float:
-    """Return ∫ f(t) exp(−t²/2) dt over t > 0."""
-    # Imported here because the workers of `check_executor` import this package too.
-    from scipy.integrate import quad
-
-    def integrand(t: float) -> float:
-        return function(np.array([t])) * float(np.exp(-(t**2) / 2))
-
-    # Without full_output, quad may warn of its accuracy, which pytest may turn into an error.
-    return float(quad(integrand, 0, 9, epsabs=0, epsrel=1e-11, limit=200, full_output=1)[0])
-
-
-def branches_have_shares_and_times(kernel: Kernel) -> None:
-    """branches() returns pairs of a share > 0 and a time > 0, whose shares sum to at most 1."""
-    branches_of(kernel)
-
-
-def scaled_by_one_is_the_kernel(kernel: Kernel) -> None:
-    """scaled(1) is elastic, with the compliance and the mean compliance of the kernel."""
-    if not isinstance(kernel, HasRelaxation):
-        return
-    elastic = kernel.scaled(1.0)
-    require(not branches_of(elastic), f"scaled(1) has the branches {branches_of(elastic)}")
-    require_close(
-        elastic.compliance(_wavenumbers()),
-        kernel.compliance(_wavenumbers()),
-        "the compliance [m/Pa] of scaled(1)",
-        relative=1e-12,
-    )
-    require(
-        math.isclose(mean_compliance(elastic), mean_compliance(kernel), rel_tol=1e-12),
-        f"mean_compliance() of scaled(1) is {mean_compliance(elastic):g} m/Pa; expected "
-        f"{mean_compliance(kernel):g}",
-    )
-
-
-def scaled_stiffens_the_solid_alone(kernel: Kernel) -> None:
-    """The stiffness of scaled(share) is 1/G + (share − 1)/G₀, with G₀ of without_skin()."""
-    if not isinstance(kernel, HasRelaxation):
-        return
-    q = _wavenumbers()
-    whole, solid = 1 / kernel.compliance(q), 1 / kernel.without_skin().compliance(q)
-    for share in (0.01, 0.5, 3.0):
-        require_close(
-            1 / kernel.scaled(share).compliance(q),
-            whole + (share - 1) * solid,
-            f"the stiffness [Pa/m] of scaled({share:g})",
-            # The two terms cancel for small shares.
-            relative=1e-11,
-        )
-
-
-def without_skin_has_no_skin(kernel: Kernel) -> None:
-    """The solid without its skin relaxes as the kernel does, and has no skin to take off."""
-    if not isinstance(kernel, HasRelaxation):
-        return
-    solid = kernel.without_skin()
-    if not isinstance(solid, HasRelaxation):
-        require(not branches_of(kernel), "without_skin() does not relax")
-        return
-    require(
-        branches_of(solid) == branches_of(kernel), "without_skin() relaxes as another kernel does"
-    )
-    require_close(
-        solid.without_skin().compliance(_wavenumbers()),
-        solid.compliance(_wavenumbers()),
-        "the compliance [m/Pa] of without_skin().without_skin()",
-        relative=1e-12,
-    )
-
-
-RULES: list[Rule] = [
-    compliance_is_vectorised,
-    compliance_leaves_its_argument,
-    compliance_is_positive_and_finite,
-    compliance_does_not_grow_for_short_waves,
-    branches_have_shares_and_times,
-    scaled_by_one_is_the_kernel,
-    scaled_stiffens_the_solid_alone,
-    without_skin_has_no_skin,
-    periodic_operator_is_the_compliance,
-    periodic_run_converges,
-    uniform_pressure_sinks_by_the_mean_compliance,
-    closed_form_is_whole,
-    closed_form_leaves_its_argument,
-    primitive_is_the_integral_of_the_closed_form,
-    closed_form_is_the_transform_of_the_compliance,
-    free_operator_is_the_transform_of_the_compliance,
-    free_run_converges,
-]
+def free_run_converges(kernel: Kernel) -> None:
+    """A paraboloid pressed into a free surface converges."""
+    _indent(kernel, "free")

@@ -10,7 +10,9 @@ from fnmatch import fnmatch
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import xarray as xr
 
 from pellicle.components import Output, Runs
 from pellicle.components.calls import require_files
@@ -24,13 +26,19 @@ from pellicle.runs.runner import execute, solve
 from pellicle.studies import runner as studies
 
 from .component import check
-from .rules import Rule, require
-
-if TYPE_CHECKING:
-    import xarray as xr
+from .rules import require, rules_of
+from .runs import PARABOLOID
 
 _STEPS = 2
 _VARIED = "kernel.tension"
+_RUN: dict[str, Any] = {
+    "title": "Two steps",
+    "grid": {"points": [16, 12], "size": ["0.4 mm", "0.3 mm"]},
+    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "1 N/m"},
+    "indenter": PARABOLOID,
+    "loading": {"depth": ["5 um", "10 um"], "stiffness": True},
+    "corrections": [{"type": "yastrebov"}],
+}
 
 
 def check_output(output: Output) -> None:
@@ -39,26 +47,13 @@ def check_output(output: Output) -> None:
     Besides the rules of all components: it leaves exactly the files that it returns, with
     its `suffixes`, also if a run is interrupted and repeated; an output of scope ``"run"`` shows
     every step; and it works in the runs and studies of its scope.
-
-    Raises
-    ------
-    AssertionError
-        A rule is broken; the message states the rule and the violation.
     """
-    check(output, "output", RULES)
+    check(output, "output", rules_of(__name__))
 
 
 @cache
 def _run() -> Run:
-    configuration: dict[str, Any] = {
-        "title": "Two steps",
-        "grid": {"points": [16, 12], "size": ["0.4 mm", "0.3 mm"]},
-        "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "1 N/m"},
-        "indenter": {"type": "paraboloid", "radius": "1 mm"},
-        "loading": {"depth": ["5 um", "10 um"], "stiffness": True},
-        "corrections": [{"type": "yastrebov"}],
-    }
-    return Run(**configuration)
+    return Run(**_RUN)
 
 
 @cache
@@ -176,12 +171,3 @@ def works_in_a_study(output: Output) -> None:
         statuses = {*result.table["status"].values.ravel()}
         require(all(path.is_file() for path in result.files), f"files {result.files}")
         require(bool(result.table["converged"].all()), f"the runs end as {statuses}")
-
-
-RULES: list[Rule] = [
-    leaves_its_data_as_they_are,
-    leaves_the_files_it_returns,
-    loses_no_step,
-    works_in_a_run,
-    works_in_a_study,
-]

@@ -22,20 +22,9 @@ from pellicle.runs.compose import compose
 from pellicle.runs.target_search import reach
 
 from .component import check
-from .rules import Rule, require, require_close
+from .rules import require, require_close, rules_of
+from .runs import HALF_SPACE, ROUGH, ignore
 
-_ROUGH = {
-    "grid": {"points": 32, "size": "1 mm", "boundary": "periodic"},
-    "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
-    "indenter": {
-        "type": "self_affine",
-        "rms_height": "10 um",
-        "hurst": 0.7,
-        "cutoff_wavelength": "0.125 mm",
-        "seed": 5,
-    },
-    "loading": {"force": ["0.1 mN", "0.2 mN"]},
-}
 # A contact area of whole cells misses its value by more than other quantities do.
 _NEAR = 0.05
 
@@ -56,27 +45,20 @@ def check_prescription(prescription: Prescription, values: Sequence[float] = ())
     values
         The prescribed quantity [its unit] under these two forces. They can be left out if a result
         has a variable named like the prescription's type, for example from ``report``.
-
-    Raises
-    ------
-    AssertionError
-        A rule is broken; the message states the rule and the violation.
     """
-    check(prescription, "prescription", RULES, tuple(values))
+    check(prescription, "prescription", rules_of(__name__), tuple(values))
 
 
 @cache
 def _reference_steps() -> tuple[Setting, tuple[Equilibrium, ...], Solver]:
     """Return the setting, the two steps that are known, and their solver."""
-    run = Run(**_ROUGH)
+    grid: Any = {"points": 32, "size": "1 mm", "boundary": "periodic"}
+    loading: Any = {"force": ["0.1 mN", "0.2 mN"]}
+    run = Run(grid=grid, kernel=HALF_SPACE, indenter=ROUGH, loading=loading)
     setting = compose(run)
     problems = [setting.problem(Force(force)) for force in run.loading.values]
-    steps = [measure(p, solution_of(run.solver, p, None, _ignore).pressure) for p in problems]
+    steps = [measure(p, solution_of(run.solver, p, None, ignore).pressure) for p in problems]
     return setting, tuple(steps), run.solver
-
-
-def _ignore(iteration: int, residual_ratio: float) -> None:
-    pass
 
 
 def _value(prescription: Prescription, step: Equilibrium) -> float | None:
@@ -150,10 +132,10 @@ def step_has_what_is_prescribed(prescription: Prescription, values: Sequence[flo
     for value, reference in zip(_values(prescription, values), steps, strict=True):
         target = target_of(prescription, setting, value)
         if isinstance(target, Search):
-            step = reach(setting, target, solver, _ignore).equilibrium
+            step = reach(setting, target, solver, ignore).equilibrium
         else:
             problem = setting.problem(target)
-            step = measure(problem, solution_of(solver, problem, None, _ignore).pressure)
+            step = measure(problem, solution_of(solver, problem, None, ignore).pressure)
         require_close(
             step.force,
             reference.force,
@@ -163,12 +145,3 @@ def step_has_what_is_prescribed(prescription: Prescription, values: Sequence[flo
         again = _value(prescription, step)
         if again is not None:
             require_close(again, value, f"{prescription.type_name} prescribed", relative=_NEAR)
-
-
-RULES: list[Rule] = [
-    report_is_as_declared,
-    target_is_pure,
-    values_are_refused_in_words,
-    search_does_not_fall,
-    step_has_what_is_prescribed,
-]

@@ -3,24 +3,32 @@
 from __future__ import annotations
 
 import inspect
+import sys
 from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pellicle.arrays import Array
+
 Rule = Callable[..., None]
 """A function of a component that raises if the component breaks the rule in its docstring."""
 
 
-def keep(rules: Iterable[Rule], component: Any, *arguments: Any) -> None:
-    """Call each rule with the component and ``arguments``.
+def rules_of(module: str) -> list[Rule]:
+    """Return the rules of a module, which are all of its public functions, in their order."""
+    return [
+        value
+        for name, value in vars(sys.modules[module]).items()
+        if inspect.isfunction(value)
+        and value.__module__ == module
+        and not name.startswith(("_", "check_"))
+    ]
 
-    Raises
-    ------
-    AssertionError
-        A rule is broken; the message states the class, the rule and the violation.
-    """
+
+def keep(rules: Iterable[Rule], component: Any, *arguments: Any) -> None:
+    """Call each rule; raise AssertionError with class, rule and violation of the first broken."""
     for rule in rules:
         try:
             rule(component, *arguments)
@@ -67,3 +75,36 @@ def require_close(
         f"{name} is {float(actual[at]):.10g}{where}; expected {float(expected[at]):.10g} within "
         f"{allowed:.1e}; {int(differs.sum())} of {differs.size} values differ"
     )
+
+
+def require_vectorised(
+    function: Callable[[Array], Array],
+    argument: Array,
+    name: str,
+    *,
+    relative: float = 0.0,
+    absolute: float = 0.0,
+) -> None:
+    """Require an array of floats, each of which depends on its own one of 24 arguments only."""
+    single = [np.ravel(function(argument[i : i + 1].copy()))[0] for i in range(24)]
+    for shape in ((24,), (4, 6), (2, 3, 4)):
+        values = function(argument.reshape(shape).copy())
+        require(
+            isinstance(values, np.ndarray) and values.dtype == np.float64,
+            f"{name} is {type(values).__name__} of {getattr(values, 'dtype', 'no')} dtype",
+        )
+        require_close(
+            values,
+            np.reshape(single, shape),
+            f"{name} for an argument of shape {shape}",
+            relative=relative,
+            absolute=absolute * float(np.abs(single).max()),
+        )
+
+
+def require_pure(function: Callable[[Array], Array], argument: Array, name: str) -> None:
+    """Require that a function leaves its argument, and returns the same in a second call."""
+    passed = argument.copy()
+    first = np.array(function(passed))
+    require_close(passed, argument, f"after {name}, its argument")
+    require_close(function(passed), first, f"the second {name}")

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from pellicle.components import IterativeSolver, Solver
 from pellicle.components.calls import solution_of
@@ -17,28 +18,19 @@ from pellicle.numerics.problem import Depth, Force, Problem
 from pellicle.numerics.solution import State, Stop
 
 from .component import check
-from .rules import Rule, require, require_close
-from .runs import solved
-
-if TYPE_CHECKING:
-    import xarray as xr
+from .rules import require, require_close, rules_of
+from .runs import PARABOLOID, ROUGH, ignore, solved
 
 _SKIN = {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 1.0}
 _SMOOTH: dict[str, Any] = {
     "grid": {"points": 32, "size": "0.4472 mm", "boundary": "free"},
     "kernel": _SKIN,
-    "indenter": {"type": "paraboloid", "radius": "1 mm"},
+    "indenter": PARABOLOID,
 }
 _ROUGH: dict[str, Any] = {
     "grid": {"points": [32, 24], "size": ["1 mm", "0.75 mm"], "boundary": "periodic"},
     "kernel": _SKIN | {"tension": 0.1},
-    "indenter": {
-        "type": "self_affine",
-        "rms_height": "10 um",
-        "hurst": 0.7,
-        "cutoff_wavelength": "0.125 mm",
-        "seed": 5,
-    },
+    "indenter": ROUGH,
 }
 _PUNCH = _SMOOTH | {"indenter": {"type": "flat_punch", "radius": "0.1 mm"}}
 _CASES: list[tuple[dict[str, Any], str, float]] = [
@@ -62,19 +54,13 @@ def check_solver(solver: Solver) -> None:
     ``tolerance``, with pressure ≥ 0; the solution depends on neither the step before nor the unit
     of stiffness; arguments are unchanged; the monitor is called; ``response`` is that of a flat
     punch; and the ``residual`` of an iterative solver has no side effect.
-
-    Raises
-    ------
-    AssertionError
-        A rule is broken; the message states the rule and the violation.
     """
-    check(solver, "solver", RULES)
+    check(solver, "solver", rules_of(__name__))
 
 
 def _solve(problem: dict[str, Any], solver: Solver, prescribed: str, *values: float) -> xr.Dataset:
     """Return the last of several load steps, each started from the one before."""
-    steps = {"solver": solver, "loading": {prescribed: list(values)}}
-    return solved(problem | steps).isel(step=-1)
+    return solved(**problem, solver=solver, loading={prescribed: list(values)}).isel(step=-1)
 
 
 @lru_cache(maxsize=len(_CASES))
@@ -98,20 +84,16 @@ def _state(pressure: Any) -> State:
     return State(pressure, pressure, 0.0)
 
 
-def _ignore(iteration: int, residual_ratio: float) -> None:
-    pass
-
-
 def solve_returns_a_solution(solver: Solver) -> None:
     """solve() returns a Solution of real numbers and leaves its problem as it is."""
     for problem in _problems():
-        solution_of(solver, problem, None, _ignore)
+        solution_of(solver, problem, None, ignore)
 
 
 def pressure_is_nowhere_negative(solver: Solver) -> None:
     """solve() returns a finite pressure ≥ 0 of the grid's shape."""
     for problem in _problems():
-        pressure = solver.solve(problem, None, _ignore).pressure
+        pressure = solver.solve(problem, None, ignore).pressure
         require(np.shape(pressure) == problem.grid.shape, f"shape {np.shape(pressure)}")
         require(np.isfinite(pressure).all(), "a pressure that is not finite")
         lowest, highest = pressure.min(), pressure.max()
@@ -121,10 +103,58 @@ def pressure_is_nowhere_negative(solver: Solver) -> None:
 def done_means_solved(solver: Solver) -> None:
     """A solver that stops with Stop.DONE has met its tolerance, measured independently."""
     for problem in _problems():
-        solution = solver.solve(problem, None, _ignore)
+        solution = solver.solve(problem, None, ignore)
         residual = measure(problem, solution.pressure).residual
         what = f"Stop.DONE at a residual of {residual:.1e}, for {problem.control}"
         require(solution.stop is not Stop.DONE or residual <= solver.tolerance, what)
+
+
+def start_belongs_to_the_caller(solver: Solver) -> None:
+    """solve() changes neither the start nor the profile, and returns another array."""
+    for problem in _problems():
+        pressure = np.full(problem.grid.shape, 100.0)
+        profile = problem.profile.copy()
+        solution = solver.solve(problem, _state(pressure), ignore)
+        require((pressure == 100.0).all(), "solve() changes start.pressure")
+        require(np.array_equal(profile, problem.profile), "solve() changes problem.profile")
+        shared = np.shares_memory(solution.pressure, pressure)
+        require(not shared, "the pressure returned is the array start.pressure")
+
+
+def response_is_that_of_a_flat_punch(solver: Solver) -> None:
+    """response() displaces the contact of a state by 1 and acts nowhere else."""
+    for problem in _problems():
+        contact = problem.profile > 0.1 * problem.profile.min()
+        pressure = solver.response(problem, _state(contact.astype(np.float64)), ignore)
+        require(np.shape(pressure) == problem.grid.shape, f"shape {np.shape(pressure)}")
+        require(not pressure[~contact].any(), "response() has pressure outside the contact")
+        residual = measure_stiffness(problem, contact, pressure).residual
+        what = f"response() misses the displacement 1 by {residual:.1e}"
+        require(residual <= solver.tolerance, what)
+
+
+def residual_has_no_side_effect(solver: Solver) -> None:
+    """residual() of an iterative solver neither applies the operator nor changes the iterate."""
+    if not isinstance(solver, IterativeSolver):
+        return
+    for problem in _problems():
+        state = solver.begin(problem, None)
+        for _ in range(3):
+            applied = problem.operator.applications
+            first, second = solver.residual(problem, state), solver.residual(problem, state)
+            require(problem.operator.applications == applied, "residual() applies the operator")
+            require(first == second, f"residual() returns {first:g}, and then {second:g}")
+            state = solver.step(problem, state)
+
+
+def _require_same_pressure(
+    result: xr.Dataset, case: int, factor: float, solver: Solver, what: str
+) -> None:
+    pressure = factor * _from_scratch(solver, case)["pressure"].values
+    allowed = _CONDITION * solver.tolerance * float(pressure.max())
+    require_close(
+        result["pressure"].values, pressure, f"the pressure [Pa] {what}", absolute=allowed
+    )
 
 
 def prescribed_values_are_met(solver: Solver) -> None:
@@ -151,28 +181,6 @@ def pressure_is_proportional_to_the_stiffness(solver: Solver) -> None:
         _require_same_pressure(doubled, case, 2.0, solver, "of twice the stiffness")
 
 
-def _require_same_pressure(
-    result: xr.Dataset, case: int, factor: float, solver: Solver, what: str
-) -> None:
-    pressure = factor * _from_scratch(solver, case)["pressure"].values
-    allowed = _CONDITION * solver.tolerance * float(pressure.max())
-    require_close(
-        result["pressure"].values, pressure, f"the pressure [Pa] {what}", absolute=allowed
-    )
-
-
-def start_belongs_to_the_caller(solver: Solver) -> None:
-    """solve() changes neither the start nor the profile, and returns another array."""
-    for problem in _problems():
-        pressure = np.full(problem.grid.shape, 100.0)
-        profile = problem.profile.copy()
-        solution = solver.solve(problem, _state(pressure), _ignore)
-        require((pressure == 100.0).all(), "solve() changes start.pressure")
-        require(np.array_equal(profile, problem.profile), "solve() changes problem.profile")
-        shared = np.shares_memory(solution.pressure, pressure)
-        require(not shared, "the pressure returned is the array start.pressure")
-
-
 def monitor_is_called(solver: Solver) -> None:
     """monitor(iteration, residual / tolerance) is called, the last time with the result's."""
     for problem in _problems():
@@ -184,43 +192,3 @@ def monitor_is_called(solver: Solver) -> None:
         what = f"monitor ends at iteration {iterations[-1]}, the result at {solution.iterations}"
         require(iterations[-1] == solution.iterations, what)
         require(calls[-1][1] <= 1, f"the last residual is {calls[-1][1]:g} of the tolerance")
-
-
-def response_is_that_of_a_flat_punch(solver: Solver) -> None:
-    """response() displaces the contact of a state by 1 and acts nowhere else."""
-    for problem in _problems():
-        contact = problem.profile > 0.1 * problem.profile.min()
-        pressure = solver.response(problem, _state(contact.astype(np.float64)), _ignore)
-        require(np.shape(pressure) == problem.grid.shape, f"shape {np.shape(pressure)}")
-        require(not pressure[~contact].any(), "response() has pressure outside the contact")
-        residual = measure_stiffness(problem, contact, pressure).residual
-        what = f"response() misses the displacement 1 by {residual:.1e}"
-        require(residual <= solver.tolerance, what)
-
-
-def residual_has_no_side_effect(solver: Solver) -> None:
-    """residual() of an iterative solver neither applies the operator nor changes the iterate."""
-    if not isinstance(solver, IterativeSolver):
-        return
-    for problem in _problems():
-        state = solver.begin(problem, None)
-        for _ in range(3):
-            applied = problem.operator.applications
-            first, second = solver.residual(problem, state), solver.residual(problem, state)
-            require(problem.operator.applications == applied, "residual() applies the operator")
-            require(first == second, f"residual() returns {first:g}, and then {second:g}")
-            state = solver.step(problem, state)
-
-
-RULES: list[Rule] = [
-    solve_returns_a_solution,
-    pressure_is_nowhere_negative,
-    done_means_solved,
-    start_belongs_to_the_caller,
-    response_is_that_of_a_flat_punch,
-    residual_has_no_side_effect,
-    prescribed_values_are_met,
-    start_does_not_matter,
-    pressure_is_proportional_to_the_stiffness,
-    monitor_is_called,
-]

@@ -6,7 +6,8 @@ Inside pellicle every number is in SI; units exist only in texts that are read a
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+import operator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from numbers import Real
@@ -49,6 +50,14 @@ _EXAMPLES = {
 }
 
 
+_LIMITS = (
+    (">", "exclusiveMinimum", operator.gt),
+    ("≥", "minimum", operator.ge),
+    ("<", "exclusiveMaximum", operator.lt),
+    ("≤", "maximum", operator.le),
+)
+"""Sign, keyword in JSON schemas and meaning of the bounds of a `Quantity`, in their order."""
+
 LARGEST: Final = 1e100
 """Bound of numbers in SI; its inverse bounds those near 0. Their squares can be represented."""
 
@@ -83,13 +92,7 @@ class Quantity:
         number = self._in_si(value)
         if not math.isfinite(number):
             raise ValueError(f"{shown(value)} is not finite; give {self._wanted()}")
-        is_outside = (
-            (self.above is not None and number <= self.above)
-            or (self.at_least is not None and number < self.at_least)
-            or (self.below is not None and number >= self.below)
-            or (self.at_most is not None and number > self.at_most)
-        )
-        if is_outside:
+        if not all(holds(number, bound) for _, _, holds, bound in self._limits()):
             raise ValueError(f"{shown(value)} is not allowed; give {self._wanted()}")
         if number and not 1 / LARGEST < abs(number) < LARGEST:
             raise ValueError(
@@ -109,27 +112,25 @@ class Quantity:
             value = f"{float(value.magnitude)!r} {value.units}".removesuffix("dimensionless")  # type: ignore[attr-defined]
         if not isinstance(value, str):
             raise ValueError(f"{shown(value)} is not a number; give {self._wanted()}")
-        if value.strip().lower().lstrip("+-") in ("nan", "inf", "infinity"):
-            return float(value)
         match = NUMBER_AND_UNIT.fullmatch(value.strip())
         if match is None:
             raise ValueError(f"{shown(value)} is not a number with a unit; give {self._wanted()}")
-        number, unit = match.groups()
+        number, unit = float(match[1]), match[2]
+        if not math.isfinite(number):
+            return number
         if self.unit == "1":
             if unit:
                 raise ValueError(f"{shown(value)} has a unit; give {self._wanted()}")
-            return float(number)
+            return number
         if not unit:
             raise ValueError(f"{shown(value)} is text without a unit; give {self._wanted()}")
         try:
             factor = factor_to_si(" ".join(unit.split()), self.unit)
         except ValueError as problem:
             raise ValueError(f"{shown(value)} {problem}; give {self._wanted()}") from None
-        if not math.isfinite(float(number)) or float(number) == 0:
-            # Its exponent may be beyond the range of a decimal.
-            return float(number)
-        # In decimal "10 um" is 1e-05; in binary it would be 9.999999999999999e-06.
-        return float(Decimal(number) * Decimal(repr(factor)))
+        # In decimal "10 um" is 1e-05; in binary it would be 9.999999999999999e-06. The exponent of
+        # what is 0 in binary may be beyond decimals.
+        return float(Decimal(match[1]) * Decimal(repr(factor))) if number else 0.0
 
     @property
     def has_known_unit(self) -> bool:
@@ -147,11 +148,14 @@ class Quantity:
         pressure = int(dimensions.get("[mass]", 0))
         return pressure, int(dimensions.get("[length]", 0)) + pressure
 
+    def _limits(self) -> list[tuple[str, str, Callable[[float, float], bool], float]]:
+        bounds = self.above, self.at_least, self.below, self.at_most
+        return [(*limit, b) for limit, b in zip(_LIMITS, bounds, strict=True) if b is not None]
+
     @property
     def bounds(self) -> list[str]:
         """The bounds as text, e.g. ``["> 0", "≤ 0.5"]``."""
-        all_four = ((">", self.above), ("≥", self.at_least), ("<", self.below), ("≤", self.at_most))
-        return [f"{sign} {bound:g}" for sign, bound in all_four if bound is not None]
+        return [f"{sign} {bound:g}" for sign, _, _, bound in self._limits()]
 
     @property
     def example(self) -> str | float:
@@ -181,13 +185,7 @@ class Quantity:
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
-        bounds = {
-            "exclusiveMinimum": self.above,
-            "minimum": self.at_least,
-            "exclusiveMaximum": self.below,
-            "maximum": self.at_most,
-        }
-        number = {"type": "number"} | {k: v for k, v in bounds.items() if v is not None}
+        number = {"type": "number"} | {key: bound for _, key, _, bound in self._limits()}
         if self.unit == "1":
             return number
         text: dict[str, Any] = {"type": "string", "pattern": r"^\s*[-+]?[0-9.].*[A-Za-zµ°]"}

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     import pint
 
 NUMBER_AND_UNIT = re.compile(
-    r"([-+]?(?:nan\b|inf\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*(.*)", re.DOTALL | re.IGNORECASE
+    r"([-+]?(?:nan\b|inf(?:inity)?\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*(.*)",
+    re.DOTALL | re.IGNORECASE,
 )
 # pint computes with the numbers in a text, and never ends "Pa*9**9**9**9". So only products and
 # quotients of names reach it, each name with one small power, and no power of a parenthesis.
@@ -67,13 +68,7 @@ def split(text: str) -> tuple[float, str] | None:
 
 
 def one(unit: str) -> Any:
-    """Return 1 of a unit as a pint quantity in SI, whose arithmetic keeps dimensions.
-
-    Raises
-    ------
-    ValueError
-        The unit is unknown.
-    """
+    """Return 1 of a unit as a pint quantity in SI, whose arithmetic keeps dimensions."""
     if len(unit) <= _LONGEST_UNIT and _UNIT.fullmatch(unit):
         try:
             return pint_registry().Quantity(1.0, unit).to_base_units()

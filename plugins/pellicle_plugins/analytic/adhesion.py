@@ -69,23 +69,17 @@ class Adhesion:
         return self._equilibrium(xi_at(self.indenter, radius))
 
     def instability(self, spring_constant: float = 0.0) -> AdhesiveContact:
-        """Return the last stable equilibrium of a retraction.
+        """Return the last stable equilibrium of a retraction, where dF/dδ = −k_c.
 
-        Parameters
-        ----------
-        spring_constant
-            k_c [N/m] of what holds the indenter; dF/dδ = −k_c there.  0, the default, is a dead
-            load: pull-off, the lowest force.  ``math.inf`` is a fixed depth: the lowest depth.
-
-        Returns
-        -------
-        AdhesiveContact
-            All 0 for a cone whose flank is steeper than the surface at its rim,
-            cot α ≥ √(2w/τ₀): its contact shrinks to nothing without being pulled.
+        k_c = ``spring_constant`` [N/m] is that of what holds the indenter.  0 is a dead load:
+        pull-off, the lowest force.  ``math.inf`` is a fixed depth: the lowest depth.  For a cone
+        whose flank is steeper than the surface at its rim, cot α ≥ √(2w/τ₀), all is 0: its contact
+        shrinks to nothing without being pulled.
         """
         if not spring_constant >= 0:
             raise ConfigError(f"must not be negative, got {spring_constant!r}", "spring_constant")
-        if self._never_sticks:
+        apex_slope = 2 / pi * float(self.indenter.abel_slope(np.zeros(1))[0])
+        if self.indenter.pointed and apex_slope >= self._rim_slope:
             return AdhesiveContact(*np.zeros(3))
         per_modulus = spring_constant / self.reduced_modulus
 
@@ -115,12 +109,6 @@ class Adhesion:
 
         start = xi_at(self.indenter, end.contact_radius) if end.contact_radius else self._guess()
         return self._equilibrium(np.array(_rising_root(excess, float(start), self._last)))
-
-    @property
-    def _never_sticks(self) -> bool:
-        """Whether the indenter is pointed and steeper than the surface at the rim."""
-        apex_slope = 2 / pi * float(self.indenter.abel_slope(np.zeros(1))[0])
-        return self.indenter.pointed and apex_slope >= self._rim_slope
 
     @property
     def _rim_slope(self) -> float:
@@ -184,18 +172,7 @@ def punch_pull_off(
     """Return the last equilibrium of a flat punch, the same for a dead load and a fixed depth.
 
     Its contact opens all at once, at D = √(4πa w / k′); without tension F = −√(8πE*w a³)
-    (Kendall 1971).
-
-    Parameters
-    ----------
-    radius
-        a [m].
-    reduced_modulus
-        E* = E / (1 − ν²) [Pa].
-    tension
-        τ₀ [N/m], zero included.
-    work_of_adhesion
-        w [J/m²].
+    (Kendall 1971).  The radius a is in m, E* = E / (1 − ν²) in Pa, τ₀ in N/m and w in J/m².
     """
     positive(work_of_adhesion=work_of_adhesion)
     contact = punch(radius, reduced_modulus, tension, depth=1.0)

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pellicle import Run, analysis
-from pellicle.arrays import Array, Mask
+from pellicle.arrays import Array
 from pellicle.components import Kernel
 from pellicle.errors import ConfigError
-from pellicle.grid import Grid
 from pellicle.results.result import Result
 
 if TYPE_CHECKING:
@@ -29,7 +28,18 @@ def curve_of(path: xr.Dataset, work_of_adhesion: float) -> analysis.AdhesiveCurv
     grid = Result(path).grid
     area = path["contact_area"].values
     if area.size:
-        _require_circle(path["contact"][int(area.argmax())].values, grid)
+        contact = path["contact"][int(area.argmax())].values
+        shape = analysis.ellipse(contact, grid)
+        major, minor = shape.semi_major_axis, shape.semi_minor_axis
+        # To a cell or 2 %.
+        allowed = _ROUND + max(grid.spacing) / major
+        filled = np.count_nonzero(contact) * grid.cell_area / (pi * major * minor)
+        if not (major <= minor * (1 + allowed) and abs(filled - 1) <= allowed):
+            raise ConfigError(
+                f"the contact is not a circle: its semi-axes are {major:.3g} and {minor:.3g} m, "
+                f"and it fills {filled:.3g} of that ellipse; an adhesive curve needs an "
+                "axisymmetric indenter"
+            )
     kernel = Run.from_json(path.attrs["configuration"]).kernel
     return analysis.adhesive_curve(
         path["depth"].values,
@@ -63,16 +73,3 @@ def excess_radius(kernel: Kernel, spacing: float) -> float:
     compliance = kernel.compliance(shortest * np.array([sqrt(0.5), sqrt(2.0)]))
     order = float(np.log2(compliance[0] / compliance[1]))
     return _EXCESS_CELLS * min(max(order, 0.0), 2.0) * spacing
-
-
-def _require_circle(contact: Mask, grid: Grid) -> None:
-    """Refuse a contact that is not a full circle, to a cell or 2 %."""
-    shape = analysis.ellipse(contact, grid)
-    major, minor = shape.semi_major_axis, shape.semi_minor_axis
-    allowed = _ROUND + max(grid.spacing) / major
-    filled = np.count_nonzero(contact) * grid.cell_area / (pi * major * minor)
-    if not (major <= minor * (1 + allowed) and abs(filled - 1) <= allowed):
-        raise ConfigError(
-            f"the contact is not a circle: its semi-axes are {major:.3g} and {minor:.3g} m, and it "
-            f"fills {filled:.3g} of that ellipse; an adhesive curve needs an axisymmetric indenter"
-        )

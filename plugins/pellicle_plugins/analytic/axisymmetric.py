@@ -67,15 +67,8 @@ def _contact(
         if old is not None:
             change = np.abs(new / old - 1)
             if np.all(change <= allowed):
-                force, depth = float(new[0]), float(new[1])
-                return AxisymmetricContact(
-                    contact_radius=a,
-                    depth=depth * a,
-                    force=force * reduced_modulus * a**2,
-                    reduced_modulus=reduced_modulus,
-                    tension=tension,
-                    _solution=solution,
-                )
+                depth, force = float(new[1]) * a, float(new[0]) * reduced_modulus * a**2
+                return AxisymmetricContact(a, depth, force, reduced_modulus, tension, solution)
         old = new
     raise ConvergenceError(
         f"force, depth and edge pressure still change by {change} (allowed {allowed}) "
@@ -92,18 +85,10 @@ def indent(
     depth: float | None = None,
     force: float | None = None,
 ) -> AxisymmetricContact:
-    """Return the contact of a rigid axisymmetric indenter for one given quantity.
+    """Return the contact of a rigid axisymmetric indenter for one of a [m], δ [m] or P [N].
 
-    Parameters
-    ----------
-    indenter
-        A paraboloid, sphere or cone component, or any other object with `HasAbelTransform`.
-    reduced_modulus
-        E* = E / (1 − ν²) [Pa].
-    tension
-        τ₀ [N/m], zero included.
-    contact_radius, depth, force
-        a [m], δ [m] or P [N].
+    The indenter is a paraboloid, sphere or cone component, or any other object with
+    `HasAbelTransform`; E* = E / (1 − ν²) [Pa], and the tension τ₀ [N/m] may be zero.
     """
     positive(reduced_modulus=reduced_modulus)
     not_negative(tension=tension)

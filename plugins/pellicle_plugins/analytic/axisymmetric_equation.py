@@ -21,7 +21,7 @@ from pellicle.arrays import Array
 
 from .abel_transform import HasAbelTransform
 from .panels import Panel, Points, graded, joined, points_at
-from .product_integration import clustering, collocation, weights
+from .product_integration import Kernel, clustering, collocation, weights
 from .tension_kernel import auxiliary_g, primitive
 
 LEVELS = ((12, 1e-3), (16, 3e-4), (22, 1e-4))
@@ -87,19 +87,23 @@ def solve(indenter: HasAbelTransform, a: float, ratio: float, level: int) -> Pan
     if not ratio:
         y: Array = slope / np.pi * np.sin(nodes.eta) / nodes.t**power
     else:
-
-        def influence(distance: Array, source: Points, target: Points) -> Array:
-            value = auxiliary_g(distance / ratio)
-            if power < 0:
-                # Cancels between a panel and its mirror image, each of which alone
-                # would diverge at the apex.
-                value = value - auxiliary_g(target.t / ratio)
-            weighted: Array = value / ratio * np.abs(source.t) ** power
-            return weighted
-
-        matrix = collocation(panels, influence, clustering(ratio), -1)
+        matrix = collocation(panels, influence(ratio, power), clustering(ratio), -1)
         y = np.asarray(np.linalg.solve(matrix, slope), dtype=np.float64)
     return PanelSolution(panels, y.reshape(len(panels), order), power, ratio)
+
+
+def influence(ratio: float, power: int) -> Kernel:
+    """Return the kernel K(x − t) of the equation at s/a = ratio, times t^power."""
+
+    def kernel(distance: Array, source: Points, target: Points) -> Array:
+        value = auxiliary_g(distance / ratio)
+        if power < 0:
+            # Cancels between a panel and its mirror image, each of which would diverge at the apex.
+            value = value - auxiliary_g(target.t / ratio)
+        weighted: Array = value / ratio * np.abs(source.t) ** power
+        return weighted
+
+    return kernel
 
 
 def without_negligible(ratio: float) -> float:

@@ -45,28 +45,18 @@ def cone(
 ) -> ConeContact:
     """Return the contact of a cone r cot α for one given quantity.
 
-    δ = (π/2) a cot α and F = (π/2) E* a² cot α (Sneddon 1965).
-
-    Parameters
-    ----------
-    half_angle
-        α, between axis and flank [rad].
-    reduced_modulus
-        E* = E / (1 − ν²) [Pa].
-    depth, force, contact_radius
-        δ [m], F [N] or a [m].
+    δ = (π/2) a cot α and F = (π/2) E* a² cot α (Sneddon 1965), with δ and a in m, F in N, α in rad
+    between axis and flank, and E* = E / (1 − ν²) in Pa.
     """
     positive(reduced_modulus=reduced_modulus)
     if not 0 < half_angle < np.pi / 2:
         raise ConfigError(f"must lie between 0 and π/2 rad, got {half_angle!r}", "half_angle")
     rate = np.pi / 2 / float(np.tan(half_angle))
-    match single(depth=depth, force=force, contact_radius=contact_radius):
-        case "depth", value:
-            a = value / rate
-        case "force", value:
-            a = float(np.sqrt(value / (reduced_modulus * rate)))
-        case _, a:
-            pass
+    quantity, a = single(depth=depth, force=force, contact_radius=contact_radius)
+    if quantity == "depth":
+        a = a / rate
+    elif quantity == "force":
+        a = float(np.sqrt(a / (reduced_modulus * rate)))
     return ConeContact(
         contact_radius=a,
         depth=rate * a,

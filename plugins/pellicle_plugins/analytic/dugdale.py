@@ -39,16 +39,7 @@ def transition_parameter(
 ) -> float:
     """Return λ = 2σ₀ (R / πwK²)^(1/3), K = 4E*/3 (Maugis 1992).
 
-    Parameters
-    ----------
-    radius
-        R [m].
-    reduced_modulus
-        E* = E / (1 − ν²) [Pa].
-    work_of_adhesion
-        w [J/m²].
-    strength
-        σ₀ [Pa].
+    R is the radius [m], E* = E / (1 − ν²) [Pa], w [J/m²] and σ₀ [Pa] the strength.
     """
     positive(
         radius=radius,
@@ -67,14 +58,9 @@ def dugdale_contact(
     strength: float,
     contact_radius: ArrayLike,
 ) -> DugdaleContact:
-    """Return the equilibria, stable or not, of contact radii ≥ 0 of any shape.
+    """Return the equilibria, stable or not, of contact radii a ≥ 0 [m] of any shape.
 
-    Parameters
-    ----------
-    radius, reduced_modulus, work_of_adhesion, strength
-        As for `transition_parameter`.
-    contact_radius
-        a [m]; at 0 the surfaces touch in a point.
+    At a = 0 the surfaces touch in a point; the others are as for `transition_parameter`.
     """
     transition = transition_parameter(radius, reduced_modulus, work_of_adhesion, strength)
     a = np.asarray(contact_radius, dtype=float)

@@ -39,16 +39,9 @@ class FlatPunchContact:
 def flat_punch(
     radius: float, reduced_modulus: float, *, depth: float | None = None, force: float | None = None
 ) -> FlatPunchContact:
-    """Return the contact of a flat punch, F = 2 E* a δ, for one given quantity.
+    """Return the contact of a flat punch, F = 2 E* a δ, for δ [m] or F [N].
 
-    Parameters
-    ----------
-    radius
-        a [m].
-    reduced_modulus
-        E* = E / (1 − ν²) [Pa].
-    depth, force
-        δ [m] or F [N].
+    a is its radius [m], and E* = E / (1 − ν²) [Pa].
     """
     positive(radius=radius, reduced_modulus=reduced_modulus)
     quantity, value = single(depth=depth, force=force)

@@ -14,18 +14,8 @@ def pressure_amplitude(
 
     A displacement Δ cos(q x) needs the pressure (E*/2)(q + s q²) Δ cos(q x) about its
     mean, q = 2π/λ and s = 2τ₀/E*: the stiffness symbol of the tensed half-space.
-    Contact is full once the mean pressure reaches this amplitude.
-
-    Parameters
-    ----------
-    amplitude
-        Δ [m], half of the height from valley to crest.
-    wavelength
-        λ [m].
-    reduced_modulus
-        E* = E / (1 − ν²) [Pa].
-    tension
-        τ₀ [N/m].
+    Contact is full once the mean pressure reaches this amplitude.  Δ [m] is half of the height from
+    valley to crest, λ [m] the wavelength, E* = E / (1 − ν²) [Pa] and τ₀ [N/m] the tension.
     """
     not_negative(amplitude=amplitude, tension=tension)
     positive(wavelength=wavelength, reduced_modulus=reduced_modulus)

@@ -49,25 +49,15 @@ def sphere(
 ) -> HertzContact:
     """Return the contact of a paraboloid r² / 2R for one given quantity.
 
-    a² = R δ, F = 4 E* a³ / 3R, p₀ = 2 E* a / πR.
-
-    Parameters
-    ----------
-    radius
-        R [m].
-    reduced_modulus
-        E* = E / (1 − ν²) [Pa].
-    depth, force, contact_radius
-        δ [m], F [N] or a [m].
+    a² = R δ, F = 4 E* a³ / 3R, p₀ = 2 E* a / πR, with δ, a and R in m, F in N and E* = E / (1 − ν²)
+    in Pa.
     """
     positive(radius=radius, reduced_modulus=reduced_modulus)
-    match single(depth=depth, force=force, contact_radius=contact_radius):
-        case "depth", value:
-            a = float(np.sqrt(radius * value))
-        case "force", value:
-            a = float(np.cbrt(3 * value * radius / (4 * reduced_modulus)))
-        case _, a:
-            pass
+    quantity, a = single(depth=depth, force=force, contact_radius=contact_radius)
+    if quantity == "depth":
+        a = float(np.sqrt(radius * a))
+    elif quantity == "force":
+        a = float(np.cbrt(3 * a * radius / (4 * reduced_modulus)))
     return HertzContact(
         semi_x=a,
         semi_y=a,
@@ -106,21 +96,11 @@ def ellipse(
     depth: float | None = None,
     force: float | None = None,
 ) -> HertzContact:
-    """Return the contact of a quadric x² / 2R_x + y² / 2R_y for a given δ or F.
+    """Return the contact of a quadric x² / 2R_x + y² / 2R_y for δ [m] or F [N].
 
-    Parameters
-    ----------
-    radius_x, radius_y
-        Radii of curvature [m].
-    reduced_modulus
-        E* = E / (1 − ν²) [Pa].
-    depth, force
-        δ [m] or F [N].
-
-    Notes
-    -----
-    With the major semi-axis a along the larger radius R, δ = a² K / (2 R D),
-    F = π E* a³ / (3 R D) and p₀ = 3F / (2π a b) (from Johnson 1985, section 4.2).
+    R_x and R_y are in m, E* = E / (1 − ν²) in Pa.  With the major semi-axis a along the larger
+    radius R, δ = a² K / (2 R D), F = π E* a³ / (3 R D) and p₀ = 3F / (2π a b) (from Johnson 1985,
+    section 4.2).
     """
     positive(radius_x=radius_x, radius_y=radius_y, reduced_modulus=reduced_modulus)
     quantity, value = single(depth=depth, force=force)

@@ -22,11 +22,11 @@ from numpy.polynomial.legendre import leggauss
 from pellicle.arrays import Array
 from pellicle_plugins.kernels.elastic_layer import BondedLayer
 
-from .axisymmetric_equation import LEVELS
+from .axisymmetric_equation import LEVELS, influence
 from .layer_curves import Shape
 from .panels import Panel, Points, gauss, graded, joined, points_at
 from .product_integration import clustering, collocation, weights
-from .tension_kernel import auxiliary_g, primitive
+from .tension_kernel import primitive
 
 _ENDS = np.concatenate([[0.0], np.geomspace(1e-5, 0.5, 12), np.arange(1.0, 15.0)])
 """Ends of intervals of qh; beyond the last the layer is a half-space to 1e-10."""
@@ -75,42 +75,30 @@ def half_space(shape: Shape, ratio: float, level: int = 0) -> HalfSpace:
         matrix = np.diag(np.pi * nodes.t**power / np.sin(nodes.eta))
         return HalfSpace(shape, ratio, nodes, measure, matrix, np.pi * measure)
 
-    def influence(distance: Array, source: Points, target: Points) -> Array:
-        value = auxiliary_g(distance / ratio)
-        if pointed:
-            # Cancels between a panel and its mirror image, each of which would diverge at the apex.
-            value = value - auxiliary_g(target.t / ratio)
-        weighted: Array = value / ratio * np.abs(source.t) ** power
-        return weighted
-
     def depth(distance: Array, source: Points, _target: Points) -> Array:
         return 2 * source.t**power * primitive(distance / ratio)
 
     cluster, parity = clustering(ratio), 1 if shape == "punch" else -1
     origin = points_at(np.zeros(1))
     reach = np.concatenate([weights(panel, origin, depth, power=cluster)[0] for panel in panels])
-    matrix = collocation(panels, influence, cluster, parity)
+    matrix = collocation(panels, influence(ratio, power), cluster, parity)
     return HalfSpace(shape, ratio, nodes, measure, matrix, reach)
 
 
 def moments(equation: HalfSpace, slopes: Array, confinement: float, ratio: float) -> Moments:
-    """Return force and depth on a layer.
+    """Return force and depth on a layer of a/h = ``confinement``, 0 for a half-space.
 
-    Parameters
-    ----------
-    equation
-        That of the half-space.
-    slopes
-        h′ at the nodes, of shape (n, number of profiles); of a punch δ/a instead.
-    confinement
-        a/h, 0 for a half-space.
-    ratio
-        Poisson's ratio.
+    ``equation`` is that of the half-space, ``slopes`` h′ at its nodes, of shape (n, profiles), or
+    δ/a of a punch, and ``ratio`` Poisson's.
     """
     t, measure, is_punch = equation.nodes.t, equation.measure, equation.shape == "punch"
     matrix, reach = equation.matrix, equation.reach
     if confinement:
-        q, transform = _layer_part(confinement, equation.ratio, ratio)
+        # The smooth part of the kernel, at Gauss points q a.
+        x, excess, weight = _compliance(ratio)
+        q, length = confinement * x, equation.ratio
+        below = (1 + length * q * (1 + excess)) * (1 + length * q)
+        transform = excess / below * weight * confinement
         waves = np.cos(t[:, None] * q) if is_punch else np.sin(t[:, None] * q)
         part = (waves * (2 * transform)) @ waves.T
         matrix = matrix + part * measure
@@ -119,14 +107,6 @@ def moments(equation: HalfSpace, slopes: Array, confinement: float, ratio: float
     if is_punch:
         return Moments(2 * np.pi * (measure @ unknown), slopes[0])
     return Moments(2 * np.pi * ((measure * t) @ unknown), reach @ unknown)
-
-
-def _layer_part(confinement: float, ratio: float, poissons_ratio: float) -> tuple[Array, Array]:
-    """Return Gauss points q a of the smooth part of the kernel, and its transform there."""
-    x, excess, weight = _compliance(poissons_ratio)
-    q = confinement * x
-    below = (1 + ratio * q * (1 + excess)) * (1 + ratio * q)
-    return q, excess / below * weight * confinement
 
 
 @lru_cache(maxsize=64)

@@ -77,23 +77,16 @@ def gauss(order: int) -> tuple[Array, Array, Array]:
     return nodes, weights, to_legendre * (degrees[:, None] + 0.5)
 
 
-def graded(order: int, edge: float, centre: float, ratio: float = 0.5) -> list[Panel]:
-    """Return panels over [0, π/2], from the axis to the edge.
+def graded(order: int, edge: float, centre: float) -> list[Panel]:
+    """Return panels of ``order`` Gauss points over [0, π/2], from the axis to the edge.
 
-    Parameters
-    ----------
-    order
-        Gauss points per panel.
-    edge, centre
-        Length in ψ below which panels are not divided further at either end.
-    ratio
-        Ratio of the lengths of neighbouring panels.
+    Each is half as long as its neighbour, down to ``centre`` and ``edge`` in ψ at either end.
     """
     nodes = gauss(order)[0]
 
     def half(finest: float) -> list[tuple[float, float]]:
-        steps = max(0, int(np.ceil(np.log(finest / (np.pi / 4)) / np.log(ratio))))
-        ends = [0.0] + [np.pi / 4 * ratio**k for k in range(steps, -1, -1)]
+        steps = max(0, int(np.ceil(np.log(finest / (np.pi / 4)) / np.log(0.5))))
+        ends = [0.0] + [np.pi / 4 * 0.5**k for k in range(steps, -1, -1)]
         return list(pairwise(ends))
 
     panels = []

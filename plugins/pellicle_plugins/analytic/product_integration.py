@@ -46,25 +46,11 @@ def _chord(target: Points, source: Points, separation: Array) -> Array:
 def weights(
     panel: Panel, targets: Points, kernel: Kernel, above: bool = False, power: int = 6
 ) -> Array:
-    """Return the weights of ∫ y(ψ) kernel(|t − x|, t, x) dψ over one panel.
+    """Return the weights of ∫ y(ψ) kernel(|t − x|, t, x) dψ over one panel, shape (m, order).
 
-    Parameters
-    ----------
-    panel
-        Where y is known, at ``order`` Gauss points.
-    targets
-        Positions x, shape (m,).
-    kernel
-        Function of the distance |t − x| > 0, of t and of x, smooth except at t = x.
-    above
-        Integrate over t > x only.
-    power
-        Power of the substitution near the singularity, see ``clustered``.
-
-    Returns
-    -------
-    array
-        Weights on the nodal values of y, shape (m, order).
+    They are those of y at the Gauss points of the panel, for targets x of shape (m,). The kernel is
+    smooth except at t = x, where ``power`` is that of the substitution, see ``clustered``. With
+    ``above`` the integral is over t > x only.
     """
     order = panel.nodes.psi.size
     rule = gauss(order)
@@ -107,16 +93,9 @@ def weights(
 
 
 def collocation(panels: list[Panel], kernel: Kernel, power: int, parity: int) -> Array:
-    """Return the matrix (n, n) of an integral over [−1, 1], collocated at the nodes.
+    """Return the matrix (n, n) of an integral over [−1, 1], collocated at the nodes of [0, 1].
 
-    Parameters
-    ----------
-    panels
-        Panels of [0, 1].
-    kernel, power
-        See ``weights``.
-    parity
-        1 if the unknown is even, −1 if it is odd.
+    ``parity`` is 1 if the unknown is even, −1 if it is odd.
     """
     nodes = joined(panels)
     blocks = []

@@ -73,15 +73,10 @@ def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
     if value == 0:
         return None
     modulus, tension = kernel.contact_modulus, getattr(kernel, "tension", 0.0)
-    match run.loading.prescribed:
-        case "depth":
-            return indent(indenter, modulus, tension, depth=value)
-        case "contact_radius":
-            return indent(indenter, modulus, tension, contact_radius=value)
-        case "contact_area":
-            return indent(indenter, modulus, tension, contact_radius=float(np.sqrt(value / np.pi)))
-        case _:
-            return indent(indenter, modulus, tension, force=value)
+    prescribed = run.loading.prescribed
+    if prescribed == "contact_area":
+        prescribed, value = "contact_radius", float(np.sqrt(value / np.pi))
+    return indent(indenter, modulus, tension, **{prescribed: value})
 
 
 def exact(runs: Runs) -> Runs:
@@ -148,14 +143,8 @@ def _numbers(
 def exact_line(run: xr.Dataset) -> xr.Dataset:
     """Return pressure, contact and numbers of the semi-analytic solution along a line.
 
-    Parameters
-    ----------
-    run
-        One step of a run, with either ``x`` or ``y`` as its only spatial dimension.
-
-    Returns
-    -------
-    The same step with finer points along that dimension, the edge of the contact among them.
+    ``run`` is one step with either ``x`` or ``y`` as its only spatial dimension, along which the
+    returned one has finer points, the edge of the contact among them.
     """
     import xarray as xr
 

@@ -11,14 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
 
-from .axisymmetric_equation import LEVELS, without_negligible
+from .axisymmetric_equation import LEVELS, influence, without_negligible
 from .checks import not_negative, positive, single
-from .panels import Points, gauss, graded, joined
+from .panels import gauss, graded, joined
 from .product_integration import clustering, collocation
-from .tension_kernel import auxiliary_g
 
 TOLERANCE = 1e-9
 RING_TOLERANCE = 1e-6
@@ -44,11 +42,7 @@ def unit_forces(ratio: float, level: int) -> tuple[float, float]:
         return 2.0, 0.0
     order, finest = LEVELS[level]
     panels = graded(order, finest * np.sqrt(min(1.0, ratio)), 1.0)
-
-    def influence(distance: Array, _source: Points, _target: Points) -> Array:
-        return auxiliary_g(distance / ratio) / ratio
-
-    matrix = collocation(panels, influence, clustering(ratio), 1)
+    matrix = collocation(panels, influence(ratio, 0), clustering(ratio), 1)
     y = np.linalg.solve(matrix, np.ones(joined(panels).psi.size)).reshape(len(panels), order)
     _, unit, to_legendre = gauss(order)
     halves = np.array([panel.length / 2 for panel in panels])
@@ -64,18 +58,9 @@ def punch(
     depth: float | None = None,
     force: float | None = None,
 ) -> TensedPunch:
-    """Return the contact of a flat punch for a given depth or force.
+    """Return the contact of a flat punch of a = ``radius`` [m] for a depth [m] or a force [N].
 
-    Parameters
-    ----------
-    radius
-        a [m].
-    reduced_modulus
-        E* = E / (1 − ν²) [Pa].
-    tension
-        τ₀ [N/m], zero included.
-    depth, force
-        δ [m] or P [N].
+    E* = E / (1 − ν²) [Pa] is the reduced modulus; the tension τ₀ [N/m] may be zero.
     """
     positive(radius=radius, reduced_modulus=reduced_modulus)
     not_negative(tension=tension)

@@ -27,17 +27,10 @@ def _tail(y: Array, first: int) -> Array:
 
 
 def auxiliary_g(y: Array) -> Array:
-    """Return g(y) = ∫₀^∞ cos(v) / (v + y) dv = −Ci(y) cos y − si(y) sin y, y > 0.
+    """Return g(y) = ∫₀^∞ cos(v) / (v + y) dv = −Ci(y) cos y − si(y) sin y, y > 0 of any shape.
 
-    Parameters
-    ----------
-    y
-        Distance over s, dimensionless, any shape, positive.
-
-    Notes
-    -----
-    Ci cos and si sin cancel to 1/y² for large y (Abramowitz & Stegun 1964, 5.2.35
-    is used there); near zero g → −ln y − γ.
+    Ci cos and si sin cancel to 1/y² for large y (Abramowitz & Stegun 1964, 5.2.35 is used there);
+    near zero g → −ln y − γ.
     """
     near = np.minimum(y, _FAR)
     sine, cosine = sici(near)
@@ -47,17 +40,10 @@ def auxiliary_g(y: Array) -> Array:
 
 
 def primitive(y: Array) -> Array:
-    """Return ∫₀^y g = π/2 − f(y), f(y) = ∫₀^∞ sin(v) / (v + y) dv, for y > 0.
+    """Return ∫₀^y g = π/2 − f(y), f(y) = ∫₀^∞ sin(v) / (v + y) dv, for y > 0 of any shape.
 
-    Parameters
-    ----------
-    y
-        Distance over s, dimensionless, any shape, positive.
-
-    Notes
-    -----
-    f = Ci(y) sin y − si(y) cos y (Abramowitz & Stegun 1964, 5.2.6 and 5.2.34),
-    arranged so that nothing cancels for small y.
+    f = Ci(y) sin y − si(y) cos y (Abramowitz & Stegun 1964, 5.2.6 and 5.2.34), arranged so that
+    nothing cancels for small y.
     """
     near = np.minimum(y, _FAR)
     sine, cosine = sici(near)

@@ -37,46 +37,37 @@ def closed_forms() -> Iterator[Case]:
 def _hertz() -> Iterator[Case]:
     true = hertz.sphere(_RADIUS, _MODULUS, depth=_DEPTH)
     paraboloid = {"type": "paraboloid", "radius": _RADIUS}
-    case = _with("Hertz paraboloid", "Hertz 1882", paraboloid, 3 * true.semi_x)
-    yield case("force", true.force, "N", 1e-3, _force)
-    yield case("corrected area", pi * true.semi_x**2, "m²", 5e-3, _area)
-    yield case("highest pressure", true.peak_pressure, "Pa", 5e-3, _highest_pressure)
+    expected = true.force, pi * true.semi_x**2, true.peak_pressure
+    return _cases("Hertz paraboloid", "Hertz 1882", paraboloid, 3 * true.semi_x, *expected)
 
 
 def _ellipse() -> Iterator[Case]:
     true = hertz.ellipse(_RADIUS, 2 * _RADIUS, _MODULUS, depth=_DEPTH)
     quadric = {"type": "quadric", "radius_x": _RADIUS, "radius_y": 2 * _RADIUS}
-    case = _with("Hertz ellipse", "Hertz 1882", quadric, 3 * true.semi_y)
-    yield case("force", true.force, "N", 1e-3, _force)
-    yield case("corrected area", pi * true.semi_x * true.semi_y, "m²", 5e-3, _area)
+    expected = true.force, pi * true.semi_x * true.semi_y
+    return _cases("Hertz ellipse", "Hertz 1882", quadric, 3 * true.semi_y, *expected)
 
 
 def _cone() -> Iterator[Case]:
-    angle = radians(70)
-    true = cone(angle, _MODULUS, depth=_DEPTH)
-    tip = {"type": "cone", "half_angle": angle}
-    case = _with("cone", "Sneddon 1965", tip, 3 * true.contact_radius)
-    yield case("force", true.force, "N", 1e-3, _force)
-    yield case("corrected area", pi * true.contact_radius**2, "m²", 5e-3, _area)
+    true = cone(radians(70), _MODULUS, depth=_DEPTH)
+    tip = {"type": "cone", "half_angle": radians(70)}
+    expected = true.force, pi * true.contact_radius**2
+    return _cases("cone", "Sneddon 1965", tip, 3 * true.contact_radius, *expected)
 
 
 def _flat_punch() -> Iterator[Case]:
     radius = 0.1 * _RADIUS
     true = flat_punch(radius, _MODULUS, depth=_DEPTH)
     end = {"type": "flat_punch", "radius": radius}
-    case = _with("flat punch", "Sneddon 1965", end, 2.2 * radius)
-    yield case("force", true.force, "N", 1e-2, _force)
+    return _cases("flat punch", "Sneddon 1965", end, 2.2 * radius, true.force, tolerance=1e-2)
 
 
 def _tensed_paraboloid() -> Iterator[Case]:
     true = indent(Paraboloid(radius=_RADIUS), _MODULUS, _TENSION, depth=_DEPTH)
     paraboloid = {"type": "paraboloid", "radius": _RADIUS}
-    source = "integral equation, after Long et al. 2017"
-    case = _with("tensed paraboloid", source, paraboloid, 2.6 * true.contact_radius, _TENSION)
-    yield case("force", true.force, "N", 1e-3, _force)
-    yield case("corrected area", pi * true.contact_radius**2, "m²", 5e-3, _area)
-    centre = float(true.pressure(np.array(0.0)))
-    yield case("highest pressure", centre, "Pa", 5e-3, _highest_pressure)
+    source, size = "integral equation, after Long et al. 2017", 2.6 * true.contact_radius
+    expected = true.force, pi * true.contact_radius**2, float(true.pressure(np.array(0.0)))
+    return _cases("tensed paraboloid", source, paraboloid, size, *expected, tension=_TENSION)
 
 
 def _adhesion() -> Iterator[Case]:
@@ -129,10 +120,16 @@ def _sine() -> Iterator[Case]:
     )
 
 
-def _with(
-    name: str, source: str, indenter: dict[str, Any], size: float, tension: float = 0.0
-) -> Callable[[str, float, str, float, Callable[[Result], float]], Case]:
-    """Return a function that makes the cases of one run, each for one quantity."""
+def _cases(
+    name: str,
+    source: str,
+    indenter: dict[str, Any],
+    size: float,
+    *expected: float,
+    tension: float = 0.0,
+    tolerance: float = 1e-3,
+) -> Iterator[Case]:
+    """Yield the cases of one run: force, to a tolerance, and if given area and pressure."""
     configuration = {
         "grid": {"points": 256, "size": size},
         "kernel": _kernel(tension),
@@ -140,18 +137,13 @@ def _with(
         "loading": {"depth": _DEPTH},
         "corrections": [{"type": "yastrebov"}],
     }
-
-    def case(
-        quantity: str,
-        expected: float,
-        unit: str,
-        tolerance: float,
-        computed: Callable[[Result], float],
-    ) -> Case:
-        row = f"{name}: {quantity}"
-        return Case(row, configuration, computed, expected, unit, tolerance, source)
-
-    return case
+    quantities: list[tuple[str, str, float, Callable[[Result], float]]] = [
+        ("force", "N", tolerance, lambda r: float(r.dataset["force"][-1])),
+        ("corrected area", "m²", 5e-3, lambda r: float(r.dataset["contact_area_yastrebov"][-1])),
+        ("highest pressure", "Pa", 5e-3, lambda r: float(r.dataset["pressure"][-1].max())),
+    ]
+    for value, (quantity, unit, allowed, computed) in zip(expected, quantities, strict=False):
+        yield Case(f"{name}: {quantity}", configuration, computed, value, unit, allowed, source)
 
 
 def _kernel(tension: float) -> dict[str, Any]:
@@ -160,24 +152,12 @@ def _kernel(tension: float) -> dict[str, Any]:
     return {"type": "half_space", "reduced_modulus": _MODULUS}
 
 
-def _force(result: Result) -> float:
-    return float(result.dataset["force"][-1])
-
-
-def _area(result: Result) -> float:
-    return float(result.dataset["contact_area_yastrebov"][-1])
-
-
 def _pull_off(result: Result) -> float:
     return float(curve_of(result.dataset, _WORK).instability().force)
 
 
 def _unloaded_radius(result: Result) -> float:
     return float(curve_of(result.dataset, _WORK).at_zero_load().contact_radius)
-
-
-def _highest_pressure(result: Result) -> float:
-    return float(result.dataset["pressure"][-1].max())
 
 
 @hookimpl

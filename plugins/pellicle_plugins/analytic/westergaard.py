@@ -53,16 +53,9 @@ def wavy(
     mean_pressure: float | None = None,
     half_width: float | None = None,
 ) -> WavyContact:
-    """Return the contact of a wavy surface, p̄ = p* sin²(πa/λ), for a given p̄ or a.
+    """Return the contact of a wavy surface, p̄ = p* sin²(πa/λ), for p̄ [Pa] or a ≤ λ/2 [m].
 
-    Parameters
-    ----------
-    amplitude, wavelength
-        Δ and λ [m].
-    reduced_modulus
-        E* = E / (1 − ν²) [Pa].
-    mean_pressure, half_width
-        p̄ [Pa] or a [m], at most λ/2.
+    Δ is the amplitude, λ the wavelength [m], and E* = E / (1 − ν²) [Pa].
     """
     positive(amplitude=amplitude, wavelength=wavelength, reduced_modulus=reduced_modulus)
     quantity, value = single(mean_pressure=mean_pressure, half_width=half_width)

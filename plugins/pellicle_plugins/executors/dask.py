@@ -45,12 +45,22 @@ class Dask(Executor):
         if not tasks:
             return
         try:
-            from .dask_tasks import Submission, connected
+            from distributed import Client
+
+            from .dask_tasks import Submission
         except ImportError as error:
             raise ConfigError(
                 f"'dask' needs {error.name}, which is not installed; pip install "
                 "'pellicle[cluster]'",
                 "type",
             ) from None
-        with connected(self.address) as client, Submission(client, work, tasks) as submission:
+        try:
+            client = Client(self.address, set_as_default=False)
+        except (OSError, ValueError) as error:
+            raise ConfigError(
+                f"no scheduler answers at {self.address!r} ({error}); give the address that `dask "
+                'scheduler` prints, or use the executor "processes" on one machine',
+                "address",
+            ) from None
+        with client, Submission(client, work, tasks) as submission:
             yield from submission.outcomes(report)

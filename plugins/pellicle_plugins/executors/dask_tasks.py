@@ -28,18 +28,6 @@ _END_TIMEOUT = 10.0
 _POLL_INTERVAL = 0.05
 
 
-def connected(address: str) -> Client:
-    """Return a client of the scheduler at ``address``."""
-    try:
-        return Client(address, set_as_default=False)
-    except (OSError, ValueError) as error:
-        raise ConfigError(
-            f"no scheduler answers at {address!r} ({error}); give the address that `dask "
-            'scheduler` prints, or use the executor "processes" on one machine',
-            "address",
-        ) from None
-
-
 class Submission(Generic[AnyTask]):
     """Tasks that are submitted on entry; unfinished tasks are withdrawn on exit."""
 

@@ -12,7 +12,7 @@ from pellicle.components import AnyTask, Outcome, Say, Work
 
 
 def execute(work: Work[AnyTask, Outcome], task: AnyTask, say: Say) -> Outcome | Exception:
-    """Return what ``work(task, say)`` returns or raises; only KeyboardInterrupt is not caught."""
+    """Return what ``work(task, say)`` returns, or the exception that it raises."""
     try:
         return work(task, say)
     except Exception as error:
@@ -45,12 +45,12 @@ def execute_remotely(payload: bytes, say: Say) -> bytes:
         packed: bytes = cloudpickle.dumps(outcome)
         # Exceptions with their own arguments can often be pickled but not unpickled.
         pickle.loads(packed)
+        return packed
     except Exception as error:
-        if isinstance(outcome, Exception):
-            return pickle.dumps(PellicleError(_line(outcome)))
         message = f"{task.name}: its outcome does not pickle: {_line(error)}"
+        if isinstance(outcome, Exception):
+            message = _line(outcome)
         return pickle.dumps(PellicleError(message))
-    return packed
 
 
 def _line(error: Exception) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from multiprocessing.connection import Connection, wait
 from typing import Any, Generic, Self
 
@@ -47,12 +47,16 @@ class ProcessPool(Generic[AnyTask]):
         for worker in [*self._idle, *(worker for worker, _ in self._running.values())]:
             worker.end()
 
-    @property
-    def busy(self) -> bool:
-        """Whether a task is running."""
-        return bool(self._running)
+    def outcomes(self, report: Report[AnyTask]) -> Iterator[tuple[AnyTask, Any]]:
+        """Yield each task with its outcome as it finishes, and report messages meanwhile."""
+        finished = self._start()
+        while self._running or finished:
+            yield from finished
+            # The next tasks start before the caller handles the finished ones.
+            finished = self._receive(report)
+            finished += self._start()
 
-    def start(self) -> list[tuple[AnyTask, Any]]:
+    def _start(self) -> list[tuple[AnyTask, Any]]:
         """Start as many tasks as possible; return those that cannot start, with the error."""
         refused: list[tuple[AnyTask, Any]] = []
         while self._waiting and len(self._running) < self._limit:
@@ -80,7 +84,7 @@ class ProcessPool(Generic[AnyTask]):
             worker.start(payload)
         return refused
 
-    def receive(self, report: Report[AnyTask]) -> list[tuple[AnyTask, Any]]:
+    def _receive(self, report: Report[AnyTask]) -> list[tuple[AnyTask, Any]]:
         """Wait for messages of the workers; return the tasks that have finished."""
         finished: list[tuple[AnyTask, Any]] = []
         # Without connections, wait() would return at once.
@@ -88,12 +92,12 @@ class ProcessPool(Generic[AnyTask]):
             assert isinstance(connection, Connection)
             worker, task = self._running[connection]
             is_outcome, message = worker.receive()
-            if is_outcome:
-                del self._running[connection]
-                self._idle.append(worker)
-                finished.append((task, message))
-            else:
+            if not is_outcome:
                 report(task, message)
+                continue
+            del self._running[connection]
+            self._idle.append(worker)
+            finished.append((task, message))
         return finished
 
     def _worker(self) -> Worker:

@@ -46,9 +46,4 @@ class Processes(Executor):
 
         workers = self.workers or max(1, loky.cpu_count() // self.threads)
         with ProcessPool(work, tasks, workers, self.threads) as pool:
-            finished = pool.start()
-            while pool.busy or finished:
-                yield from finished
-                # The next tasks start before the caller handles the finished ones.
-                finished = pool.receive(report)
-                finished += pool.start()
+            yield from pool.outcomes(report)

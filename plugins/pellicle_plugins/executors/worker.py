@@ -55,7 +55,10 @@ class Worker:
             message = self.connection.recv_bytes()
         except (EOFError, OSError):
             self._process.join()
-            cause = _cause(self._process.exitcode)
+            code = self._process.exitcode
+            cause = f"exit code {code}" if code >= 0 else signal.Signals(-code).name
+            if cause == "SIGKILL":
+                cause += ", as when the system is out of memory"
             return True, PellicleError(f"its worker died: {cause}; the other runs go on")
         return message[:1] == _OUTCOME, pickle.loads(message[1:])
 
@@ -69,13 +72,6 @@ class Worker:
         self.connection.close()
         self._process.terminate()
         self._process.join()
-
-
-def _cause(code: int) -> str:
-    if code >= 0:
-        return f"exit code {code}"
-    name = signal.Signals(-code).name
-    return f"{name}, as when the system is out of memory" if name == "SIGKILL" else name
 
 
 @contextmanager

@@ -20,7 +20,7 @@ from pellicle.model.matlab import read_mat
 
 from .file_checks import require_content, require_file, require_memory
 from .from_heights import FromHeights, HeightUnit
-from .text_table import read_tables
+from .text_table import FORMAT_MARKS, read_tables
 
 _KINDS = {".npy": "npy", ".h5": "hdf5", ".hdf5": "hdf5", ".nc": "hdf5", ".mat": "mat"}
 """What a file is by its ending; text otherwise."""
@@ -103,9 +103,16 @@ def _load(path: Path, dataset: str | None) -> Any:
                 raise ConfigError(
                     f"{path} has {content}; give one of: {', '.join(arrays)}", "dataset"
                 )
+            array = arrays[name]
             if kind != "text":
-                _require_header(arrays[name], path)
-            return arrays[name][...]
+                _require_kind(array, str(path), "path")
+                if (expected := shape_of_run()) is not None:
+                    _require_shape(array.shape, expected, str(path), "path")
+                require_content(array.size, path)
+                needed = float(array.size) * (array.dtype.itemsize + _BYTES)
+                subject = f"{path} with its {array.shape[0]} × {array.shape[1]} values"
+                require_memory(needed, subject, "resample it", "path")
+            return array[...]
     except ConfigError:
         raise
     except (OSError, ValueError, EOFError, MemoryError) as error:
@@ -121,7 +128,9 @@ def _load(path: Path, dataset: str | None) -> Any:
 def _arrays(path: Path, kind: str) -> Iterator[Mapping[str, Any]]:
     """Yield the arrays of an open file by name; those of HDF5 and .npy are not read yet."""
     if kind == "text":
-        yield {name: table.values for name, table in read_tables(read_text(path), path).items()}
+        if (text := read_text(path)).startswith(FORMAT_MARKS):
+            raise ConfigError(f"{path} has a scale of its own; read it as 'topography'", "type")
+        yield {name: table.values for name, table in read_tables(text, path).items()}
     elif kind == "mat":
         yield {name: value for name, value in read_mat(path).items() if np.ndim(value) == 2}
     elif kind == "hdf5":
@@ -136,32 +145,8 @@ def _arrays(path: Path, kind: str) -> Iterator[Mapping[str, Any]]:
             )
             yield arrays
     else:
-        try:
-            # A mapped array takes no memory, whatever shape and type its header claims.
-            mapped = np.lib.format.open_memmap(path, mode="r")
-        except ValueError as error:
-            if not any(word in str(error) for word in ("pickle", "magic", "Python objects")):
-                raise
-            raise ConfigError(
-                f"{path} is pickled or not an .npy file, and a pickle can run any code; save a "
-                "plain array with numpy.save(…, allow_pickle=False)",
-                "path",
-            ) from None
-        yield {"": mapped}
-
-
-def _require_header(array: Any, path: Path) -> None:
-    """Refuse an array of unusable shape, type or size before it is read."""
-    _require_kind(array, str(path), "path")
-    if (expected := shape_of_run()) is not None:
-        _require_shape(array.shape, expected, str(path), "path")
-    require_content(array.size, path)
-    require_memory(
-        float(array.size) * (array.dtype.itemsize + _BYTES),
-        f"{path} with its {array.shape[0]} × {array.shape[1]} values",
-        "resample it",
-        "path",
-    )
+        # A mapped array runs no pickle, and takes no memory whatever shape its header claims.
+        yield {"": np.lib.format.open_memmap(path, mode="r")}
 
 
 def _require_shape(

@@ -27,7 +27,3 @@ class UniformAxis(NamedTuple):
     def spacing(self) -> float:
         """Distance between neighbouring points [m]."""
         return self.period / self.number
-
-    def shifted(self, cells: float) -> UniformAxis:
-        """Return the axis shifted by a number of cells."""
-        return self._replace(first=self.first + cells * self.spacing)

@@ -36,9 +36,14 @@ class Channel(NamedTuple):
     is_height: bool
     is_areal: bool
     edges: Sequence[Edge]
-    """Edge lengths; empty if they are not stated."""
+    """Two edge lengths, as `known` returns them."""
     read: Callable[[], Array]
     """Return the values along x, then y; NaN where a point is missing."""
+
+
+def known(edges: Sequence[Edge]) -> Sequence[Edge]:
+    """Return the edge lengths of a surface; none where a program that did not know them wrote 0."""
+    return edges if len(edges) == 2 and all(0 < edge < inf for edge, _ in edges) else ()
 
 
 def metres(unit: str) -> float | None:
@@ -94,8 +99,7 @@ def edge_lengths(
     channel: Channel, given: tuple[float, float] | None, scale: float, path: Path
 ) -> tuple[float, float]:
     """Return the edge lengths [m], as stated or else ``given``; a value of 1 is ``scale`` [m]."""
-    # Programs that do not know the size write 0.
-    if not channel.edges or not all(0 < edge < inf for edge, _ in channel.edges):
+    if not channel.edges:
         if given is None:
             raise ConfigError(
                 f"is missing, and {path} does not state it; give the edge lengths of the scan, "
@@ -105,8 +109,7 @@ def edge_lengths(
         return given
     size = []
     for edge, unit in channel.edges:
-        in_metres = metres(unit) if unit else scale
-        if in_metres is None:
+        if (in_metres := metres(unit) if unit else scale) is None:
             raise ConfigError(
                 f"{path} states its size in {unit!r}, which is not a unit of length; in its "
                 "header, write decimals with a point and units such as um",

@@ -142,8 +142,11 @@ def _maximum(series: _Series, x: UniformAxis, y: UniformAxis) -> float:
     copies = [max(1, ceil(8 * shortest / axis.number)) for axis in (x, y)]
     tops: list[tuple[float, float, float]] = []
     for i, j in np.ndindex(*copies):
-        shifted = x.shifted(i / copies[0]), y.shifted(j / copies[1])
-        tops = sorted(tops + _highest(series, *shifted))[-4:]
+        axes = (
+            axis._replace(first=axis.first + cells * axis.spacing)
+            for axis, cells in ((x, i / copies[0]), (y, j / copies[1]))
+        )
+        tops = sorted(tops + _highest(series, *axes))[-4:]
     summits = [_climb(series, x, y, np.array(point)) for _, *point in tops]
     return max(tops[-1][0], *summits)
 

@@ -11,7 +11,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
 
-from .scan import Channel, Edge, metres
+from .scan import Channel, Edge, known, metres
 from .text_table import TextTable
 
 _QUANTITY = re.compile(r"([-+]?\d*\.?\d+(?:[eE][-+]?\d+)?)\s*(.*)")
@@ -64,17 +64,15 @@ def _channel(name: str, table: TextTable, path: Path) -> Channel:
     # SPIP's sizes have no unit; other files give that of y only where it differs from that of x.
     spip = any(line.startswith("# File Format = ASCII") for line in table.header)
     units: list[str | None] = ["nm" if spip else None]
-    edges: list[Edge] = []
+    stated: list[Edge] = []
     for axis, other, count in zip("xy", "yx", heights.shape, strict=True):
         edge = _quantity(entries, f"size {axis}")
         if edge is None and (pitch := _quantity(entries, f"pitch {axis}", f"pitch {other}")):
             edge = pitch[0] * count, pitch[1]
         units.append((edge and edge[1]) or _word(entries, f"unit {axis}") or units[-1])
         if edge:
-            edges.append((edge[0], units[-1]))
-    # Programs that do not know the size write 0.
-    if len(edges) < 2 or not all(edge > 0 for edge, _ in edges):
-        edges = []
+            stated.append((edge[0], units[-1]))
+    edges = known(stated)
     is_areal = min(heights.shape) > 2 or (len(heights) > 1 and bool(edges))
     if len(heights) == 3:
         heights, coordinates = _on_grid(heights, path)
@@ -83,10 +81,10 @@ def _channel(name: str, table: TextTable, path: Path) -> Channel:
         edges = edges or list(zip(coordinates, units[1:], strict=True))
     else:
         for what, count in zip(("columns", "rows"), heights.shape, strict=True):
-            stated = _quantity(entries, what)
-            if stated and stated[0] != count:
+            number = _quantity(entries, what)
+            if number and number[0] != count:
                 raise ConfigError(
-                    f"{path} states {stated[0]:g} {what} of heights and has {count}: it is damaged "
+                    f"{path} states {number[0]:g} {what} of heights and has {count}: it is damaged "
                     "or incomplete; export it again",
                     "path",
                 )

@@ -13,6 +13,8 @@ from pellicle.errors import ConfigError
 
 from .file_checks import require_memory
 
+FORMAT_MARKS = "aISO-", "Wyko ASCII"
+"""Beginnings of texts whose numbers have a scale of their own, which SurfaceTopography reads."""
 _TEXT_FACTOR = 10
 """Peak memory while a text is parsed, over its length; 9 were measured at 1000² zeros."""
 _FEWEST = 4
@@ -46,11 +48,6 @@ def read_tables(text: str, path: Path) -> dict[str, TextTable]:
     Numbers are separated by blanks, tabs, commas or semicolons. A comma is that of a decimal where
     semicolons, tabs or blanks separate the numbers. An empty entry is NaN; a separator at the end
     of a line is ignored unless the row lacks an entry.
-
-    Raises
-    ------
-    ConfigError
-        Rows have words among their numbers, or are not of one length.
     """
     subject = f"{path}, a file of {len(text) / 1e9:.3g} GB,"
     require_memory(_TEXT_FACTOR * len(text), subject, "export a part of it", "path")

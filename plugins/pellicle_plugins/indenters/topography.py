@@ -11,7 +11,7 @@ import numpy as np
 from numpy.polynomial.legendre import legvander
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
-from pellicle.arrays import Array, Mask
+from pellicle.arrays import Array
 from pellicle.errors import ConfigError
 from pellicle.grid import pair
 from pellicle.model.input_path import InputPath
@@ -204,7 +204,11 @@ class Topography(FromHeights):
                 "move or shrink the domain",
                 "fill",
             )
-            heights = _filled(heights, missing)
+            masked = np.ma.masked_array(np.where(missing, 0.0, heights), mask=missing)
+            scan = library().Topography(masked, heights.shape)
+            # The missing heights solve Laplace's equation.
+            filled = scan.interpolate_undefined_data_with_harmonic_function()
+            heights = np.asarray(np.ma.getdata(filled.heights()), dtype=np.float64)
         heights = _levelled(heights, _LEVELS.index(self.level) - 1)
         return -heights if self.invert else heights
 
@@ -214,14 +218,6 @@ def _rms(values: Array) -> float:
     finite = np.abs(values[np.isfinite(values)])
     largest = float(finite.max(initial=0.0))
     return largest * float(np.sqrt(np.mean((finite / largest) ** 2))) if largest else 0.0
-
-
-def _filled(heights: Array, missing: Mask) -> Array:
-    """Return heights with missing ones filled in by the solution of Laplace's equation."""
-    masked = np.ma.masked_array(np.where(missing, 0.0, heights), mask=missing)
-    scan = library().Topography(masked, heights.shape)
-    filled = scan.interpolate_undefined_data_with_harmonic_function()
-    return np.asarray(np.ma.getdata(filled.heights()), dtype=np.float64)
 
 
 def _levelled(heights: Array, degree: int) -> Array:

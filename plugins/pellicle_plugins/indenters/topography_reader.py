@@ -18,22 +18,16 @@ from pellicle.errors import ConfigError
 from pellicle.files import read_text
 
 from .file_checks import require_content, require_file, require_memory
-from .scan import Channel, Scan, chosen, edge_lengths, height_scale
+from .scan import Channel, Scan, chosen, edge_lengths, height_scale, known
 from .text_scan import text_channels
-from .text_table import read_tables
+from .text_table import FORMAT_MARKS, read_tables
 
 _ARRAYS = 9
 """Peak memory while a scan is read, in arrays of its points; 8 were measured at 2000² points."""
-_TEXT_MARKS = BOM_UTF16_LE, BOM_UTF16_BE
-_FORMAT_MARKS = b"aISO-", b"Wyko ASCII"
-"""Beginnings of texts that are no tables, which SurfaceTopography reads."""
 
 
 def read_scan(
-    path: Path,
-    channel: str | None = None,
-    unit: float | None = None,
-    size: tuple[float, float] | None = None,
+    path: Path, channel: str | None, unit: float | None, size: tuple[float, float] | None
 ) -> Scan:
     """Return the surface in a file, or in the ``channel`` of that name.
 
@@ -88,10 +82,10 @@ def _channels(file: BinaryIO, path: Path) -> list[Channel]:
     head = file.read(512)
     file.seek(0)
     text = ""
-    if head.startswith(_TEXT_MARKS) or not (b"\0" in head or head.startswith(_FORMAT_MARKS)):
+    if head.startswith((BOM_UTF16_LE, BOM_UTF16_BE)) or b"\0" not in head:
         with suppress(ValueError):
             text = read_text(path)
-    if tables := read_tables(text, path):
+    if not text.startswith(FORMAT_MARKS) and (tables := read_tables(text, path)):
         return text_channels(tables, path)
     io = library().IO
     with suppress(io.CannotDetectFileFormat):
@@ -121,7 +115,7 @@ def _library_channel(channel: Any, path: Path) -> Channel:
 
     is_height = channel.is_height_channel
     unit = channel.unit if is_height else channel.data_unit
-    edges = [(float(edge), None) for edge in channel.physical_sizes or ()]
+    edges = known([(float(edge), None) for edge in channel.physical_sizes or ()])
     return Channel(channel.name, unit, is_height, channel.dim == 2, edges, read)
 
 

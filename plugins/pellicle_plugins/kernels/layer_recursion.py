@@ -48,17 +48,9 @@ def half_space(coupling_ratio: float) -> SurfaceCompliance:
 def on_layer(below: SurfaceCompliance, x: Array, coupling_ratio: float) -> SurfaceCompliance:
     """Return the compliance of the upper surface of a layer glued to the surface ``below``.
 
-    Parameters
-    ----------
-    below
-        Compliance of the lower surface, in the units of the layer.
-    x
-        Wavenumber times thickness, positive.
-    coupling_ratio
-        g = (1 − 2ν)/(2(1 − ν)) of the layer.
+    ``below`` is in the units of the layer, x > 0 the wavenumber times the thickness, and
+    ``coupling_ratio`` is g = (1 − 2ν)/(2(1 − ν)) of the layer.
 
-    Notes
-    -----
     Two solutions of Hooke's law and equilibrium fit the lower surface. Their minors, determinants
     of pairs of tractions and displacements, obey a linear differential equation with constant
     coefficients in the height (Dunkin 1965). Its solution is used here, times e^{−2x}; divided by

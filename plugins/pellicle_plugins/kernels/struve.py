@@ -18,6 +18,7 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
+from numpy.polynomial.polynomial import polyval
 
 from pellicle.arrays import Array
 
@@ -27,12 +28,21 @@ _CHEBYSHEV_DEGREE = 21
 _BLOCK = 8192  # elements treated at once, so that temporaries stay in the cache
 _TINY = float(np.finfo(np.float64).tiny)
 
+# Coefficients in z^2 of odd, log and even in `_series` for (pi/2)(H0 - Y0), and for (pi/2) times
+# the primitive divided by z^2.
+_K = np.arange(1, _SERIES_TERMS)
+_ODD = np.cumprod(np.append(1.0, -1.0 / (2 * _K + 1) ** 2))
+_LOG = np.cumprod(np.append(1.0, -1.0 / (4 * _K**2)))
+_EVEN = np.append(0.0, np.cumsum(1.0 / _K)) * _LOG
+_POWER = 2.0 * np.arange(_SERIES_TERMS) + 2.0
+_PRIMITIVE = _ODD / (_POWER + 1.0), _LOG / _POWER, _EVEN / _POWER + _LOG / _POWER**2
+
 
 def struve_minus_bessel(z: Array) -> Array:
     """H0(z) - Y0(z) for an array of any shape with z > 0."""
 
     def below(z: Array) -> Array:
-        return _series(z, *_difference_coefficients())
+        return _series(z, _ODD, _LOG, _EVEN)
 
     def above(z: Array) -> Array:
         return _tail(z, -0.5) * (2.0 / np.pi) / z
@@ -44,7 +54,7 @@ def struve_minus_bessel_primitive(z: Array) -> Array:
     """Integral of t (H0(t) - Y0(t)) over 0 < t < z, that is z (H1(z) - Y1(z)) - 2/pi, z >= 0."""
 
     def below(z: Array) -> Array:
-        return z * z * _series(z, *_primitive_coefficients())
+        return z * z * _series(z, *_PRIMITIVE)
 
     def above(z: Array) -> Array:
         return (z * _tail(z, 0.5) - 1.0) * (2.0 / np.pi)
@@ -60,53 +70,17 @@ def _blockwise(z: Array, below: Callable[[Array], Array], above: Callable[[Array
     for start in range(0, flat.size, _BLOCK):
         block, target = flat[start : start + _BLOCK], result[start : start + _BLOCK]
         small = block < _SPLIT
-        if small.all():
-            target[:] = below(block)
-        elif not small.any():
-            target[:] = above(block)
-        else:
-            large = ~small
-            target[small] = below(block[small])
-            target[large] = above(block[large])
+        target[small] = below(block[small])
+        target[~small] = above(block[~small])
     return result.reshape(z.shape)
-
-
-@lru_cache(maxsize=1)
-def _difference_coefficients() -> tuple[Array, Array, Array]:
-    """Coefficients in z^2 of odd, log and even for (pi/2)(H0 - Y0), combined as in `_series`."""
-    k = np.arange(1, _SERIES_TERMS)
-    odd = np.cumprod(np.append(1.0, -1.0 / (2 * k + 1) ** 2))
-    log = np.cumprod(np.append(1.0, -1.0 / (4 * k**2)))
-    harmonic = np.append(0.0, np.cumsum(1.0 / k))
-    return odd, log, harmonic * log
-
-
-@lru_cache(maxsize=1)
-def _primitive_coefficients() -> tuple[Array, Array, Array]:
-    """Coefficients of the same three series for (pi/2) times the primitive divided by z^2."""
-    odd, log, even = _difference_coefficients()
-    k = np.arange(_SERIES_TERMS)
-    power = 2.0 * k + 2.0
-    return odd / (power + 1.0), log / power, even / power + log / power**2
 
 
 def _series(z: Array, odd: Array, log: Array, even: Array) -> Array:
     """(2/pi) [z odd(z^2) - ln(z e^gamma/2) log(z^2) + even(z^2)]."""
     square = z * z
     logarithm = np.log(np.maximum(z, _TINY)) + (np.euler_gamma - np.log(2.0))
-    value = z * _horner(square, odd)
-    value -= logarithm * _horner(square, log)
-    value += _horner(square, even)
-    return value * (2.0 / np.pi)
-
-
-def _horner(x: Array, coefficients: Array) -> Array:
-    """Polynomial in x with ascending coefficients."""
-    value = np.full_like(x, coefficients[-1])
-    for coefficient in coefficients[-2::-1]:
-        value *= x
-        value += coefficient
-    return value
+    value = z * polyval(square, odd) - logarithm * polyval(square, log) + polyval(square, even)
+    return np.asarray(value * (2.0 / np.pi))
 
 
 @lru_cache(maxsize=2)

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -49,28 +47,16 @@ _LINE = 70
 _MARKERS = {"pull-off": "o", "no load": "s", "last at fixed depth": "v"}
 
 
-@dataclass(frozen=True)
-class _Drawn:
-    """The path of a run and its adhesive curve."""
+class _Drawn(NamedTuple):
+    """The path of a run and its adhesive curve, without points if the path has none."""
 
     name: Label
     colour: Any
     path: xr.Dataset
     curve: analysis.AdhesiveCurve | None
-    """None if the path has none."""
+    points: dict[str, analysis.AdhesiveContact]
+    """Pull-off, zero load and the instability at fixed depth, NaN where unknown."""
     status: str
-
-    def points(self) -> dict[str, analysis.AdhesiveContact]:
-        """Return pull-off, zero load and the instability at fixed depth, NaN where unknown."""
-        if self.curve is None:
-            unknown = analysis.AdhesiveContact(*np.full(3, np.nan))
-            return dict.fromkeys(_MARKERS, unknown)
-        contacts = (
-            self.curve.instability(),
-            self.curve.at_zero_load(),
-            self.curve.instability(inf),
-        )
-        return dict(zip(_MARKERS, contacts, strict=True))
 
 
 class AdhesiveCurve(TableFigure):
@@ -110,12 +96,19 @@ class AdhesiveCurve(TableFigure):
         ]
         files = self.save(lambda figure: self._fill(figure.add_subplot(), drawn), stem)
         rows = (
-            (drawing.name.key, *row)
-            for drawing in drawn
-            if (curve := drawing.curve)
-            for row in zip(curve.contact_radius, curve.depth, curve.force, strict=True)
+            (d.name.key, *row)
+            for d in drawn
+            if d.curve
+            for row in zip(d.curve.contact_radius, d.curve.depth, d.curve.force, strict=True)
         )
-        summary = map(self._summary, drawn)
+        summary = []
+        for d in drawn:
+            pull_off, zero_load, fixed_depth = d.points.values()
+            ends = [(c.force, c.contact_radius, c.depth) for c in (pull_off, fixed_depth)]
+            unloaded = zero_load.contact_radius, zero_load.depth
+            summary.append(
+                (d.name.key, self.work_of_adhesion, *ends[0], *unloaded, *ends[1], d.status)
+            )
         return (
             *files,
             write_csv(stem, _HEADS, rows),
@@ -128,39 +121,35 @@ class AdhesiveCurve(TableFigure):
         try:
             curve = curve_of(path, self.work_of_adhesion)
         except ConfigError as error:
-            return _Drawn(name, hue, path, None, str(error))
-        drawn = _Drawn(name, hue, path, curve, "")
-        return replace(drawn, status=_status(curve, drawn.points(), path))
-
-    def _summary(self, drawn: _Drawn) -> tuple[object, ...]:
-        pull_off, zero_load, fixed_depth = drawn.points().values()
-        return (
-            drawn.name.key,
-            self.work_of_adhesion,
-            pull_off.force,
-            pull_off.contact_radius,
-            pull_off.depth,
-            zero_load.contact_radius,
-            zero_load.depth,
-            fixed_depth.force,
-            fixed_depth.contact_radius,
-            fixed_depth.depth,
-            drawn.status,
-        )
+            unknown = analysis.AdhesiveContact(*np.full(3, np.nan))
+            return _Drawn(name, hue, path, None, dict.fromkeys(_MARKERS, unknown), str(error))
+        contacts = curve.instability(), curve.at_zero_load(), curve.instability(inf)
+        points = dict(zip(_MARKERS, contacts, strict=True))
+        return _Drawn(name, hue, path, curve, points, _status(curve, points, path))
 
     def _fill(self, axes: Axes, drawn: list[_Drawn]) -> None:
-        curves = [(drawing, drawing.curve) for drawing in drawn if drawing.curve is not None]
-        zero = np.zeros(1)
-        depths = [zero, *(d.path["depth"].values for d in drawn), *(c.depth for _, c in curves)]
-        forces = [zero, *(d.path["force"].values for d in drawn), *(c.force for _, c in curves)]
+        curves = [d.curve for d in drawn if d.curve is not None]
+        depths = [np.zeros(1), *(d.path["depth"].values for d in drawn), *(c.depth for c in curves)]
+        forces = [np.zeros(1), *(d.path["force"].values for d in drawn), *(c.force for c in curves)]
         length, length_name = axis_unit(np.concatenate(depths), "m")
         newton, newton_name = axis_unit(np.concatenate(forces), "N")
-        for drawing in drawn:
-            path = drawing.path["depth"].values * length, drawing.path["force"].values * newton
-            axes.plot(*path, "--", color=drawing.colour, linewidth=0.8)
-        for number, (drawing, curve) in enumerate(curves):
+        for d in drawn:
+            path = d.path["depth"].values * length, d.path["force"].values * newton
+            axes.plot(*path, "--", color=d.colour, linewidth=0.8)
+        for number, d in enumerate(drawn):
+            if d.curve is None:
+                continue
+            end = d.points["last at fixed depth"].contact_radius
+            # Without that point on the curve all of it is stable at a fixed depth.
+            stable = ~(d.curve.contact_radius < end)
+            x, y = d.curve.depth * length, d.curve.force * newton
+            shared = {"color": d.colour, "linewidth": 1.4}
             marked = sparse_marker(number) if len(drawn) > 1 else {}
-            _draw(axes, drawing, curve, (length, newton), marked)
+            axes.plot(x[stable], y[stable], "-", label=d.name.words or None, **shared, **marked)
+            axes.plot(x[~stable], y[~stable], ":", **shared)
+            for mark, contact in d.points.items():
+                at = contact.depth * length, contact.force * newton
+                axes.plot(*at, _MARKERS[mark], color=d.colour, markersize=5, mfc="white")
         hue = "0.4" if len(drawn) != 1 else drawn[0].colour
         if curves:
             axes.plot([], [], "-", color=hue, linewidth=1.4, label="with adhesion")
@@ -171,36 +160,18 @@ class AdhesiveCurve(TableFigure):
         axes.axhline(0.0, color="0.6", linewidth=0.6)
         axes.set(xlabel=f"depth [{length_name}]", ylabel=f"force [{newton_name}]", title=self.title)
         set_scales(axes, ())
-        _zoom(axes, [curve for _, curve in curves], length, newton)
+        strongest = -min((curve.force.min() for curve in curves), default=0.0)
+        if strongest > 0:
+            # Curves are shown up to a push as large as the strongest pull.
+            shown = np.concatenate([curve.depth[curve.force <= strongest] for curve in curves])
+            left, right = shown.min() * length, shown.max() * length
+            margin = 0.05 * (right - left)
+            axes.set_xlim(left - margin, right + margin)
+            axes.set_ylim(-1.1 * strongest * newton, 1.1 * strongest * newton)
         axes.legend(frameon=False, fontsize="small", loc="upper left")
-        problems = dict.fromkeys(drawing.status for drawing in drawn if drawing.curve is None)
+        problems = dict.fromkeys(d.status for d in drawn if d.curve is None)
         text = "\n".join(textwrap.fill(problem, _LINE) for problem in problems)
         axes.text(0.02, 0.02, text, color="red", fontsize="small", transform=axes.transAxes)
-
-
-def _draw(
-    axes: Axes,
-    drawn: _Drawn,
-    curve: analysis.AdhesiveCurve,
-    factors: tuple[float, float],
-    marked: Mapping[str, Any],
-) -> None:
-    """Draw one curve, stable and unstable parts, and its points.
-
-    ``factors`` are those from m and N to the units of the axes; ``marked`` holds the markers of the
-    stable part.
-    """
-    points, (length, newton) = drawn.points(), factors
-    end = points["last at fixed depth"].contact_radius
-    # Without that point on the curve all of it is stable at a fixed depth.
-    stable = ~(curve.contact_radius < end)
-    x, y = curve.depth * length, curve.force * newton
-    shared = {"color": drawn.colour, "linewidth": 1.4}
-    axes.plot(x[stable], y[stable], "-", label=drawn.name.words or None, **shared, **marked)
-    axes.plot(x[~stable], y[~stable], ":", **shared)
-    for mark, contact in points.items():
-        x, y = contact.depth * length, contact.force * newton
-        axes.plot(x, y, _MARKERS[mark], color=drawn.colour, markersize=5, mfc="white")
 
 
 def _status(
@@ -239,18 +210,6 @@ def _status(
             f"slopes, below about {_STEEP}"
         )
     return "; ".join(problems) or "computed"
-
-
-def _zoom(axes: Axes, curves: list[analysis.AdhesiveCurve], length: float, newton: float) -> None:
-    """Show the curves up to a push as large as the strongest pull."""
-    strongest = -min((curve.force.min() for curve in curves), default=0.0)
-    if strongest <= 0:
-        return
-    parts = [curve.depth[curve.force <= strongest] for curve in curves]
-    left, right = min(map(np.min, parts)) * length, max(map(np.max, parts)) * length
-    margin = 0.05 * (right - left)
-    axes.set_xlim(left - margin, right + margin)
-    axes.set_ylim(-1.1 * strongest * newton, 1.1 * strongest * newton)
 
 
 def _refuse(run: xr.Dataset) -> None:

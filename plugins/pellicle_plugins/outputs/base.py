@@ -83,8 +83,7 @@ class TableFigure(Output):
 
     def check(self, runs: Runs) -> None:
         """Refuse an axis or a label that the table does not have."""
-        for _ in self.picked(runs.table):
-            pass
+        list(self.picked(runs.table))
 
     def save(
         self, draw: Callable[[Figure], None], stem: Path, size: tuple[float, float] = SIZE
@@ -139,13 +138,11 @@ class XYFigure(TableFigure):
             for run in self.compared(runs):
                 require_solution(Run.from_json(run.attrs["configuration"]))
             figure = self.model_copy(update={"reference": None})
-        for _ in figure.draw(Figure().add_subplot(), runs):
-            pass
+        list(figure.draw(Figure().add_subplot(), runs))
 
     def compared(self, runs: Runs) -> Iterator[xr.Dataset]:
         """Yield the runs that a reference is drawn beside."""
-        for _, run in self.steps(runs):
-            yield run
+        yield from (run for _, run in self.steps(runs))
 
     @abstractmethod
     def draw(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
@@ -259,6 +256,12 @@ def set_scales(axes: Axes, log: Sequence[str], *, signed: bool = False) -> None:
         elif low < 0 and getattr(axes.dataLim, f"{direction}0") >= 0:
             getattr(axes, f"set_{direction}lim")(**{"left" if direction == "x" else "bottom": 0.0})
     axes.grid(alpha=0.3)
+
+
+def add_legend(axes: Axes) -> None:
+    """Add a legend if there is something to tell apart."""
+    if axes.get_legend_handles_labels()[1]:
+        axes.legend(frameon=False, fontsize="small")
 
 
 def write_csv(stem: Path, heads: Sequence[str], rows: Iterable[Iterable[object]]) -> Path:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import csv
-from os import SEEK_END
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pellicle.components import Output, Runs
 from pellicle.files import storage_errors
@@ -13,8 +12,6 @@ from pellicle.results.variables import header
 
 if TYPE_CHECKING:
     import xarray as xr
-
-_TEXT: dict[str, Any] = {"newline": "", "encoding": "utf-8"}
 
 
 class Csv(Output):
@@ -38,15 +35,12 @@ class Csv(Output):
             if variable.dims == ("step",)
         }
         number = record["step"].item()
-        with storage_errors(path), path.open("a+" if number > 1 else "w+", **_TEXT) as file:
-            file.seek(0)
-            # Steps that an earlier version solved may have fewer columns.
-            heads = next(csv.reader(file), ["step", *row])
-            file.seek(0, SEEK_END)
-            writer = csv.DictWriter(file, heads, extrasaction="ignore")
+        mode = "a" if number > 1 else "w"
+        with storage_errors(path), path.open(mode, newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
             if number == 1:
-                writer.writeheader()
-            writer.writerow({"step": number, **row})
+                writer.writerow(["step", *row])
+            writer.writerow([number, *row.values()])
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Return the file, which is complete."""

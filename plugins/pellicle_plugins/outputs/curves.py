@@ -26,6 +26,7 @@ from .base import (
     Log,
     Reference,
     XYFigure,
+    add_legend,
     along,
     in_words,
     joined,
@@ -160,24 +161,29 @@ class Curves(XYFigure):
         factor_x, x_label = scaled(self.x, [x], self.x_label, runs.table)
         factor_y, y_label, named = self._scaled_y(ys, runs.table)
         lines = list(self._lines(runs, x, ys, named))
+        axis, log = self.x.strip(), self.log
+        if "log" not in self.model_fields_set and axis in runs.table.sizes and axis != "step":
+            # An evenly growing axis of the study.
+            values = runs.table[axis].values
+            log = ("x",) if values.dtype.kind in "if" and is_log_spaced(values) else ()
         for line in lines:
             line.draw(axes, factor_x, factor_y, bool(self.log))
-        published = list(self._draw_published(axes))
+        published: list[dict[str, object]] = []
+        for number, other in enumerate(self.published):
+            style = "-" if other.style == "line" else "*x+"[number % 3]
+            axes.plot(
+                other.x, other.y, style, color="black", markersize=9, zorder=5, label=other.label
+            )
+            published += [
+                {"curve": other.label, "series": "published", "x": x, "y": y}
+                for x, y in zip(other.x, other.y, strict=True)
+            ]
         axes.set(xlabel=x_label, ylabel=y_label, title=self.title)
-        set_scales(axes, self._log(runs.table), signed=has_interaction(runs.table))
-        if axes.get_legend_handles_labels()[1]:
-            axes.legend(frameon=False, fontsize="small")
+        set_scales(axes, log, signed=has_interaction(runs.table))
+        add_legend(axes)
         for line in lines:
             yield from line.rows()
         yield from published
-
-    def _log(self, table: xr.Dataset) -> tuple[Literal["x", "y"], ...]:
-        """Return the logarithmic axes: x too if it is an evenly growing axis of the study."""
-        axis = self.x.strip()
-        if "log" in self.model_fields_set or axis not in table.sizes or axis == "step":
-            return self.log
-        values = table[axis].values
-        return ("x",) if values.dtype.kind in "if" and is_log_spaced(values) else ()
 
     def _scaled_y(
         self, ys: Sequence[xr.DataArray], table: xr.Dataset
@@ -224,7 +230,12 @@ class Curves(XYFigure):
                 directions |= {leg.direction for leg in path}
                 yield Line(points, style, legend, name.key, series, path)
                 if self.extrapolate:
-                    _require_grids(_at(x, point))
+                    if (count := np.unique(_at(x, point)).size) < _GRIDS:
+                        raise ConfigError(
+                            f"{count} values of x on a curve do not fix a limit, a coefficient and "
+                            f"an exponent; vary the grid over at least {_GRIDS}",
+                            "extrapolate",
+                        )
                     # An interrupted study may lack some of them.
                     if np.unique(points.x).size >= _GRIDS:
                         yield Limit(points, style, name.key, f"{series}, extrapolated")
@@ -255,15 +266,6 @@ class Curves(XYFigure):
             mark = number if self.reference and len(self.y) > 1 else index
         marker = MARKERS[mark % len(MARKERS)]
         return LineStyle(hue, number, marker, scattered=self.reference is not None)
-
-    def _draw_published(self, axes: Axes) -> Iterator[dict[str, object]]:
-        for number, other in enumerate(self.published):
-            style = "-" if other.style == "line" else "*x+"[number % 3]
-            axes.plot(
-                other.x, other.y, style, color="black", markersize=9, zorder=5, label=other.label
-            )
-            for x, y in zip(other.x, other.y, strict=True):
-                yield {"curve": other.label, "series": "published", "x": x, "y": y}
 
     def _points(
         self, table: xr.Dataset, x: xr.DataArray, y: xr.DataArray
@@ -299,16 +301,6 @@ class Curves(XYFigure):
             # The many legs of an oscillation are not told apart by their style.
             path = path if has_interaction(table) or len(path) <= MOST_LEGS else []
         return CurvePoints(*values[:, finite]), path
-
-
-def _require_grids(x: xr.DataArray) -> None:
-    """Refuse a curve over too few grids to be extrapolated."""
-    if (count := np.unique(x).size) < _GRIDS:
-        raise ConfigError(
-            f"{count} values of x on a curve do not fix a limit, a coefficient and an exponent; "
-            f"vary the grid over at least {_GRIDS}",
-            "extrapolate",
-        )
 
 
 def _at(column: xr.DataArray, point: dict[str, int]) -> xr.DataArray:

@@ -14,7 +14,7 @@ from pellicle.report.style import LINES, colour
 from pellicle.results.path import has_interaction
 from pellicle.units import axis_unit
 
-from .base import Label, Log, TableFigure, set_scales, write_csv
+from .base import Label, Log, TableFigure, add_legend, set_scales, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -68,9 +68,8 @@ class Distributions(TableFigure):
             edges = [densities[field].edges for _, densities in curves]
             factor, name = axis_unit(np.concatenate([*edges, np.zeros(1)]), unit)
             for number, (curve, densities) in enumerate(curves):
-                density = densities[field].density / factor
                 axes.stairs(
-                    density,
+                    densities[field].density / factor,
                     densities[field].edges * factor,
                     color=colour(number, len(curves), ordered=ordered),
                     linestyle=LINES[number % len(LINES)],
@@ -78,6 +77,5 @@ class Distributions(TableFigure):
                 )
             axes.set(xlabel=f"{field} [{name}]", ylabel=f"probability density [1/{name}]")
             set_scales(axes, self.log if any(bins.size > 1 for bins in edges) else ())
-            if axes.get_legend_handles_labels()[1]:
-                axes.legend(frameon=False)
+            add_legend(axes)
         figure.suptitle(self.title)

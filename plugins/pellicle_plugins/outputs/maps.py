@@ -110,7 +110,12 @@ class Maps(TableFigure):
             axes.set_title(title.words, fontsize="medium")
             axes.label_outer()
         if is_bool:
-            _name_colours(figure, self.field.strip())
+            from matplotlib.patches import Patch
+
+            words = words_of_name(self.field.strip())
+            patches = Patch(color="black"), Patch(color=NO_CONTACT)
+            below: dict[str, Any] = {"loc": "outside lower center", "ncols": 2}
+            figure.legend(patches, [words, f"no {words}"], fontsize="small", **below)
         else:
             add_colour_bar(all_axes[min(across, len(panels)) - 1], image, name)
         figure.suptitle(self.title)
@@ -135,17 +140,3 @@ class Maps(TableFigure):
             # matplotlib would centre a scale without range on its only value.
             low, high = min(low, 0.0), max(high, 0.0 if low else 1.0)
         return {"cmap": "viridis", "vmin": low, "vmax": high}
-
-
-def _name_colours(figure: Figure, field: str) -> None:
-    """Name black and grey below the panels of a field of truth values."""
-    from matplotlib.patches import Patch
-
-    words = words_of_name(field)
-    figure.legend(
-        [Patch(color="black"), Patch(color=NO_CONTACT)],
-        [words, f"no {words}"],
-        loc="outside lower center",
-        ncols=2,
-        fontsize="small",
-    )

@@ -35,40 +35,34 @@ def methods(configuration: Mapping[str, Any], versions: str, varied: tuple[str, 
     Values at the dotted paths ``varied`` differ between the runs of a study.
     """
     known = {i.name: i for i in inputs(configuration)}
-    grid = configuration["grid"]
-    points = " × ".join(str(n) for n in grid["points"])
-    size = " × ".join(readable(edge, "m", DIGITS) for edge in grid["size"])
-    parts = {
-        name: known[name].value
-        for name in ("kernel", "indenter", "interaction", "solver")
-        if name in known and f"{name}.type" not in varied
-    }
-    values = {
-        name: ", ".join(
+    grid, on_cells = configuration["grid"], ""
+    if not any(axis.startswith("grid") for axis in varied):
+        points = " × ".join(str(n) for n in grid["points"])
+        size = " × ".join(readable(edge, "m", DIGITS) for edge in grid["size"])
+        on_cells = f" on {points} cells of {size}"
+    described = []
+    for name in ("kernel", "indenter", "interaction"):
+        if name not in known or f"{name}.type" in varied:
+            continue
+        values = ", ".join(
             f"{i.words} {i.value}"
             for i in known.values()
             if i.name.startswith(f"{name}.")
             and i.value not in ("", "false", "False")
             and not any(f"{i.name}.".startswith(f"{axis}.") for axis in varied)
         )
-        for name in ("kernel", "indenter", "interaction")
-    }
-    described = [
-        f"{name}: {value}{f' ({values[name]})' if values[name] else ''}"
-        for name, value in parts.items()
-        if name in values
-    ]
+        described.append(f"{name}: {known[name].value}{f' ({values})' if values else ''}")
+    parts = "; ".join(described)
     words = [known[name].words if name in known else name for name in varied]
     changes = f"Varied: {', '.join(words)}. " if words else ""
     tolerance = configuration["solver"].get("tolerance")
     ending = f", to a relative tolerance of {tolerance:g}" if tolerance is not None else ""
-    solver = parts.get("solver", "several solvers")
-    domain = "" if any(axis.startswith("grid") for axis in varied) else f" of {size}"
-    cells = "" if any(axis.startswith("grid") for axis in varied) else f" on {points} cells"
+    is_one = "solver" in known and "solver.type" not in varied
+    solver = known["solver"].value if is_one else "several solvers"
     return (
         "Normal contact of a rigid indenter with a linear solid was solved by a boundary element "
-        f"method with fast Fourier transforms{cells}{domain} with {grid['boundary']} boundaries. "
-        f"{'; '.join(described)[:1].upper()}{'; '.join(described)[1:]}. "
+        f"method with fast Fourier transforms{on_cells} with {grid['boundary']} boundaries. "
+        f"{parts[:1].upper()}{parts[1:]}. "
         f"{_loading(configuration, known, varied)}{changes}Solver: {solver}{ending}. "
         f"Computed with {versions}. To cite: {CITATION}."
     )
@@ -85,12 +79,10 @@ def _loading(
     if not any(axis.startswith(f"loading.{name}") for axis in varied):
         prescription = cast(type[Prescription], registry().find("prescription", name))
         texts[0] += f" {_values_of_steps(loading[name], prescription.unit)}"
-    texts += [
-        f"{known[path].words} {known[path].value}"
-        for key in loading
-        for path in (f"loading.{key}",)
-        if key not in OPTIONS and path in known and key != name and path not in varied
-    ]
+    for key in loading:
+        path = f"loading.{key}"
+        if key not in (*OPTIONS, name) and path in known and path not in varied:
+            texts.append(f"{known[path].words} {known[path].value}")
     return f"Prescribed: {', '.join(texts)}. "
 
 

@@ -16,7 +16,7 @@ from pellicle.report.style import MARKERS, NO_CONTACT, colour
 from pellicle.results.result import Result
 from pellicle.units import axis_unit
 
-from .base import Label, TableFigure, write_csv
+from .base import Label, TableFigure, add_legend, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -83,8 +83,7 @@ class Patches(TableFigure):
         if largest:
             right.set(xscale="log", yscale="log")
         right.grid(alpha=0.3)
-        if right.get_legend_handles_labels()[1]:
-            right.legend(frameon=False)
+        add_legend(right)
         figure.suptitle(self.title)
 
 

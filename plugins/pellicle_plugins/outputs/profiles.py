@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
-from pellicle.arrays import Mask
 from pellicle.components import Runs
 from pellicle.model.expression import names_in
 from pellicle.report.lines import EDGE_CELLS, edge_cells
@@ -17,7 +16,7 @@ from pellicle.results.derived import as_array
 from pellicle.results.path import has_interaction
 from pellicle_plugins.analytic.reference import exact_line
 
-from .base import Label, Reference, XYFigure, scaled, set_scales
+from .base import Reference, XYFigure, add_legend, scaled, set_scales
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,12 +47,20 @@ class Profiles(XYFigure):
         across = _ACROSS[self.along]
         lines = [(n, run.isel({across: run.sizes[across] // 2})) for n, run in self.steps(runs)]
         curves = [(name, line, *self._columns(line)) for name, line in lines]
-        factors = self._name_axes(axes, curves) if curves else (1.0, 1.0)
+        factors = [1.0, 1.0]
+        if curves:
+            # Units that suit all curves.
+            xs, ys, line = [c[2] for c in curves], [c[3] for c in curves], lines[0][1]
+            factors[0], x_label = scaled(self.x or self.along, xs, self.x_label, line)
+            factors[1], y_label = scaled(self.y, ys, self.y_label, line)
+            axes.set(xlabel=x_label, ylabel=y_label, title=self.title)
+        shows_pressure = "pressure" in names_in(self.y)
         ordered, marked = self.is_ordered(runs), False
         for number, (name, line, x, y) in enumerate(curves):
             hue = colour(number, len(curves), ordered=ordered)
             drawn_x, drawn_y = x.values * factors[0], y.values * factors[1]
-            edge = self._edge(line)
+            contact = line["contact"].values
+            edge = edge_cells(contact & (shows_pressure and not has_interaction(line)))
             marked |= bool(edge.any())
             axes.plot(drawn_x[edge], drawn_y[edge], ".", color=hue, markersize=3)
             drawn_y, style = np.where(edge, np.nan, drawn_y), {"color": hue, "linewidth": 1.2}
@@ -75,24 +82,7 @@ class Profiles(XYFigure):
         if marked:
             axes.plot([], [], ".", color="0.4", markersize=3, label=EDGE_CELLS)
         set_scales(axes, ())
-        if axes.get_legend_handles_labels()[1]:
-            axes.legend(frameon=False, fontsize="small")
-
-    def _edge(self, line: xr.Dataset) -> Mask:
-        """Return which cells are at the edge of contact, for a pressure without a pull."""
-        contact = line["contact"].values
-        shows = "pressure" in names_in(self.y) and not has_interaction(line)
-        return edge_cells(contact) if shows else np.zeros_like(contact)
-
-    def _name_axes(
-        self, axes: Axes, curves: Sequence[tuple[Label, xr.Dataset, xr.DataArray, xr.DataArray]]
-    ) -> tuple[float, float]:
-        """Label the axes, in units that suit all curves, and return the factors to them."""
-        line = curves[0][1]
-        factor_x, x_label = scaled(self.x or self.along, [c[2] for c in curves], self.x_label, line)
-        factor_y, y_label = scaled(self.y, [c[3] for c in curves], self.y_label, line)
-        axes.set(xlabel=x_label, ylabel=y_label, title=self.title)
-        return factor_x, factor_y
+        add_legend(axes)
 
     def _columns(self, line: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
         """Return x and y along a line, each with a value for every point."""

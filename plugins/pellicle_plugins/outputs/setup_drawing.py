@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from html import escape
 from typing import Any
 
-from pellicle.config.describe import Input, inputs
+from pellicle.config.describe import inputs
 from pellicle.files import for_document
 
 from .methods import prescribed_of
@@ -38,20 +38,30 @@ def setup_drawing(configuration: Mapping[str, Any], varied: tuple[str, ...] = ()
 
     Values at the dotted paths ``varied`` differ between the runs of a study and have no number.
     """
-    inputs_by_name = {i.name: i for i in inputs(configuration)}
-    kernel, indenter = configuration["kernel"], _innermost(configuration["indenter"])
-    body = [*_solid(kernel, inputs_by_name, varied), *_surface(kernel, inputs_by_name, varied)]
+    known = {i.name: i for i in inputs(configuration)}
+
+    def named(name: str) -> str:
+        """Return words and value of an input, "(varied)" if it differs; empty if not there."""
+        if name not in known:
+            return ""
+        words = known[name].words.partition(" of ")[0]
+        return f"{words} {'(varied)' if name in varied else known[name].value}"
+
+    kernel, indenter = configuration["kernel"], configuration["indenter"]
+    while isinstance(part := indenter.get("part"), Mapping):
+        indenter = part
+    body = [*_solid(kernel, named), _text(_LEFT + 8, _BOTTOM - 6, known["kernel"].value, "start")]
+    body += _surface(kernel, named, varied)
     outline = _SHAPES.get(indenter["type"], _UNKNOWN)
     body.append(f'<path class="indenter" d="{outline}" fill="#d9dee3" stroke="#222"/>')
-    name = inputs_by_name["indenter"].value if "indenter" in inputs_by_name else indenter["type"]
-    radius = _named("indenter.radius", inputs_by_name, varied)
+    name = known["indenter"].value if "indenter" in known else indenter["type"]
+    radius = named("indenter.radius")
     body.append(_text(_CENTRE, 40, f"{name}{f', {radius}' if radius else ''}"))
     prescribed = prescribed_of(configuration).replace("_", " ")
     body += [_arrow(_RIGHT - 40, 50, _RIGHT - 40, 100), _text(_RIGHT - 40, 40, prescribed)]
     if configuration.get("interaction"):
-        body.append(
-            _text(_LEFT + 8, _TIP + 40, f"adhesion: {inputs_by_name['interaction'].value}", "start")
-        )
+        adhesion = f"adhesion: {known['interaction'].value}"
+        body.append(_text(_LEFT + 8, _TIP + 40, adhesion, "start"))
     lines = "\n".join(body)
     return (
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 520 250" '
@@ -65,13 +75,6 @@ def description(configuration: Mapping[str, Any]) -> str:
     return f"Set-up, not to scale: {values['indenter']} on {values['kernel']}."
 
 
-def _innermost(indenter: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return the indenter that is shifted, rotated or scaled."""
-    while isinstance(part := indenter.get("part"), Mapping):
-        indenter = part
-    return indenter
-
-
 def _solids(
     kernel: Mapping[str, Any], path: str = "kernel"
 ) -> Iterator[tuple[str, Mapping[str, Any]]]:
@@ -82,9 +85,7 @@ def _solids(
             yield from _solids(inner, f"{path}.{name}")
 
 
-def _solid(
-    kernel: Mapping[str, Any], inputs_by_name: Mapping[str, Input], varied: tuple[str, ...]
-) -> Iterator[str]:
+def _solid(kernel: Mapping[str, Any], named: Callable[[str], str]) -> Iterator[str]:
     layers, on_rigid = list[str](), True
     for path, solid in _solids(kernel):
         layers += [path] * ("thickness" in solid)
@@ -101,20 +102,18 @@ def _solid(
             f'y="{top:.1f}" width="{_RIGHT - _LEFT}" height="{height:.1f}" fill="{shade}"/>'
         )
         if band < len(layers):
-            label = _named(f"{layers[band]}.thickness", inputs_by_name, varied)
+            label = named(f"{layers[band]}.thickness")
             yield _text(_RIGHT - 8, top + height - 6, label, "end")
     if on_rigid:
         yield (
             f'<rect class="base" x="{_LEFT}" y="{_BOTTOM}" width="{_RIGHT - _LEFT}" height="8" '
             'fill="#777"/>'
         )
-    yield _text(_LEFT + 8, _BOTTOM - 6, inputs_by_name["kernel"].value, "start")
-    if on_rigid:
         yield _text(_CENTRE, _BOTTOM + 24, "rigid base")
 
 
 def _surface(
-    kernel: Mapping[str, Any], inputs_by_name: Mapping[str, Input], varied: tuple[str, ...]
+    kernel: Mapping[str, Any], named: Callable[[str], str], varied: tuple[str, ...]
 ) -> Iterator[str]:
     names = ("tension", "bending", "surface_stiffness")
     for path, solid in _solids(kernel):
@@ -130,17 +129,9 @@ def _surface(
     if "tension" in skin:
         yield _arrow(_LEFT + 45, _SURFACE, _LEFT - 14, _SURFACE, "tension")
         yield _arrow(_RIGHT - 45, _SURFACE, _RIGHT + 14, _SURFACE, "tension")
-    labels = [_named(f"{path}.{name}", inputs_by_name, varied) for name in skin]
+    labels = [named(f"{path}.{name}") for name in skin]
     if labels:
         yield _text(_LEFT + 8, _TIP + 22, ", ".join(labels), "start")
-
-
-def _named(name: str, inputs_by_name: Mapping[str, Input], varied: tuple[str, ...]) -> str:
-    """Return words and value of an input, "(varied)" if it differs; empty if it is not there."""
-    if name not in inputs_by_name:
-        return ""
-    words = inputs_by_name[name].words.partition(" of ")[0]
-    return f"{words} (varied)" if name in varied else f"{words} {inputs_by_name[name].value}"
 
 
 def _text(x: float, y: float, text: str, anchor: str = "middle") -> str:

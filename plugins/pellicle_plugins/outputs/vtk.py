@@ -14,7 +14,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.components import Output, Runs
 from pellicle.files import storage_errors
-from pellicle.report.vtk import array, element, file_of, rows_of, writer
+from pellicle.report.vtk import array, element, rows_of, writer
 from pellicle.results.path import has_times
 from pellicle.results.variables import FIELDS, WALL_PRESSURE
 
@@ -58,7 +58,7 @@ class Vtk(Output):
         table, path = runs.table, Path(f"{stem}.pvd")
         files = [_file(stem, number) for number in table["step"].values.tolist()]
         times = table["time"].values if has_times(table) else table["step"].values
-        with writer(path) as xml, file_of(xml, "Collection"):
+        with writer(path, "Collection") as xml:
             for time, file in zip(_growing(times.tolist()), files, strict=True):
                 with element(xml, "DataSet", timestep=repr(time), file=file.name):
                     pass
@@ -87,7 +87,7 @@ def _write_step(step: xr.Dataset, path: Path) -> None:
         )
 
     extent = f"0 {x.size - 1} 0 {y.size - 1} 0 0"
-    with writer(path) as xml, file_of(xml, "StructuredGrid", WholeExtent=extent):
+    with writer(path, "StructuredGrid", WholeExtent=extent) as xml:
         with element(xml, "FieldData"):
             for name, number in numbers.items():
                 array(xml, name, number.dtype, [number.tobytes()], NumberOfTuples="1")

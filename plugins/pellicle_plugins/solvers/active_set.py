@@ -9,7 +9,6 @@ import numpy as np
 
 from pellicle.arrays import Array, Mask
 from pellicle.components import Monitor
-from pellicle.numerics.grid_transfer import highest
 from pellicle.numerics.initial_guess import first_guess, with_force
 from pellicle.numerics.path import Start
 from pellicle.numerics.problem import Depth, Problem
@@ -19,7 +18,7 @@ from .adhesion import AdhesionSolver
 from .adhesive_response import with_zone
 from .contact_cg import SIGN_CERTAINTY, STRICT_SIGN_CERTAINTY, InnerSolution, inner_solve
 from .few_cells import MOST_CELLS, solved_on_few_cells
-from .nested_grids import coarse_solution, coarser, prolonged
+from .nested_grids import prolonged
 from .preconditioner import OnContact, Preconditioner
 from .relaxation import relaxed
 from .scaling import ScaledSolver
@@ -103,13 +102,6 @@ class _Iterate:
         """Whether bending dominates the stiffness at the size of a cell."""
         return self.on_contact.preconditioner.bends
 
-    @property
-    def pressure(self) -> Array:
-        """``trial`` without its tensile part, scaled to the prescribed force if any [Pa]."""
-        if self.trial.min() >= 0:
-            return self.trial
-        return with_force(self.problem, np.maximum(self.trial, 0))
-
 
 class ActiveSet(ScaledSolver):
     """Solver whose number of operator applications hardly grows with the grid or the tension.
@@ -151,7 +143,7 @@ class ActiveSet(ScaledSolver):
             state = _iterate(problem, preconditioner.on(start.contact), start.wall)
             if state.error <= _CLOSE * state.scale:
                 return state
-        from_coarse = self._prolonged(problem)
+        from_coarse = prolonged(self, problem)
         pressure = first_guess(problem) if from_coarse is None else from_coarse
         state = _iterate(problem, preconditioner.on(pressure > 0), pressure)
         return state if from_coarse is None else _without_pits(problem, state)
@@ -159,10 +151,14 @@ class ActiveSet(ScaledSolver):
     def step(self, problem: Problem, state: _Iterate) -> _Iterate:
         """Return the iterate after one outer iteration."""
         goal = self.tolerance / 2 * state.scale
-        if state.bends and state.progress.stagnant < _EXACT_STAGNATION:
-            pressure = self._solved_on_few_cells(problem, state, goal)
+        preconditioner, contact = state.on_contact.preconditioner, state.on_contact.contact
+        is_small = state.on_contact.cells.size <= MOST_CELLS
+        if state.bends and is_small and state.progress.stagnant < _EXACT_STAGNATION:
+            gap, _ = problem.gap(state.displacement, contact)
+            column = preconditioner.column
+            pressure = solved_on_few_cells(problem, column, contact, state.trial, gap, goal)
             if pressure is not None:
-                on_contact = state.on_contact.preconditioner.on(pressure > 0)
+                on_contact = preconditioner.on(pressure > 0)
                 return _iterate(problem, on_contact, pressure, state.history, state)
         relaxes = state.bends and state.may_relax
         # Loose solves are cheap as long as they leave fewer misclassified cells. With bending
@@ -178,7 +174,7 @@ class ActiveSet(ScaledSolver):
             reduction=_REDUCTION if loose and relaxes else 0.0,
             u_minus_f=state.u_minus_f,
         )
-        history = state.history.after(state.on_contact.contact, inner.misclassified.size)
+        history = state.history.after(contact, inner.misclassified.size)
         if not inner.misclassified.size:
             if state.bends:
                 # The same contact again, with a smaller gap, is not a cycle.
@@ -187,8 +183,8 @@ class ActiveSet(ScaledSolver):
         relaxes &= history.returns == 0 and len(history.contacts) <= _RELAXATION_STAGNATION
         if relaxes and inner.pressure.any():
             brief = inner.misclassified.size <= _FEW * state.history.fewest < np.inf
-            contact, forces = relaxed(problem, state.on_contact, inner, goal, brief=brief)
-            on_contact = state.on_contact.preconditioner.on(contact)
+            settled, forces = relaxed(problem, state.on_contact, inner, goal, brief=brief)
+            on_contact = preconditioner.on(settled)
             trial = on_contact.transferred(forces)
             if trial.sum() > 0:
                 after = _iterate(problem, on_contact, trial, history, state)
@@ -203,24 +199,15 @@ class ActiveSet(ScaledSolver):
         del inner
         return _iterate(problem, on_contact, trial, history, state)
 
-    def _solved_on_few_cells(
-        self, problem: Problem, state: _Iterate, margin: float
-    ) -> Array | None:
-        """Return the pressure by `solved_on_few_cells`, or None."""
-        on_contact = state.on_contact
-        if on_contact.cells.size > MOST_CELLS:
-            return None
-        gap, _ = problem.gap(state.displacement, on_contact.contact)
-        column = on_contact.preconditioner.column
-        return solved_on_few_cells(problem, column, on_contact.contact, state.trial, gap, margin)
-
     def residual(self, problem: Problem, state: _Iterate) -> float:
         """Return max(|gap| in contact, penetration outside) over the height range in contact."""
         return state.error / state.scale
 
     def pressure(self, state: _Iterate) -> Array:
-        """Return the pressure of an iterate."""
-        return state.pressure
+        """Return ``trial`` without its tensile part, scaled to the prescribed force if any [Pa]."""
+        if state.trial.min() >= 0:
+            return state.trial
+        return with_force(state.problem, np.maximum(state.trial, 0))
 
     def terminate(self, problem: Problem, state: _Iterate) -> Stop | None:
         """Return `Stop.STALLED` if neither error nor number of misclassified cells falls any more.
@@ -236,12 +223,25 @@ class ActiveSet(ScaledSolver):
         unit = 1 / problem.operator.unit
         operator = problem.operator.scaled(unit)
         on_contact = Preconditioner(operator).on(contact)
+        goal = self.tolerance / 2
 
         def closing(lifted: Array) -> Array:
             """Return the pressure that moves the contact from the displacement ``lifted`` to 1."""
             profile = np.where(contact, -lifted, -np.inf)
             punch = Problem(problem.grid, operator, profile, Depth(1.0))
-            return self._punched(punch, on_contact, monitor)
+            pressure, displacement = np.zeros(contact.shape), np.zeros(contact.shape)
+            error, before, iteration = 1.0, np.inf, 0
+            # Each solve leaves a gap that single precision cannot resolve, so it is repeated.
+            while goal < error < before / 2:
+                monitor(iteration, error / self.tolerance)
+                pressure = inner_solve(
+                    punch, on_contact, pressure, displacement, goal, certainty=np.inf
+                ).pressure
+                displacement = operator(pressure)
+                missed = profile[contact] + 1.0 - displacement[contact]
+                error, before = float(np.abs(missed).max()), error
+                iteration += 1
+            return pressure
 
         if not problem.law:
             return closing(np.zeros(contact.shape)) * unit
@@ -251,35 +251,7 @@ class ActiveSet(ScaledSolver):
         def following(opened: Array) -> Array:
             return acting.change(opened) / unit
 
-        return with_zone(operator, acting.zone, following, closing, self.tolerance / 2) * unit
-
-    def _punched(self, punch: Problem, on_contact: OnContact, monitor: Monitor) -> Array:
-        """Return the pressure of either sign with which the contact has no gap to `tolerance`."""
-        contact = on_contact.contact
-        goal = self.tolerance / 2
-        pressure, displacement = np.zeros(contact.shape), np.zeros(contact.shape)
-        error, before, iteration = 1.0, np.inf, 0
-        # Each solve leaves a gap that single precision cannot resolve, so it is repeated.
-        while goal < error < before / 2:
-            monitor(iteration, error / self.tolerance)
-            pressure = inner_solve(
-                punch, on_contact, pressure, displacement, goal, certainty=np.inf
-            ).pressure
-            displacement = punch.operator(pressure)
-            missed = punch.profile[contact] + 1.0 - displacement[contact]
-            error, before = float(np.abs(missed).max()), error
-            iteration += 1
-        return pressure
-
-    def _prolonged(self, problem: Problem) -> Array | None:
-        """Return the pressure [Pa] prolonged from a coarser grid, or None without a solution."""
-        coarse = coarser(problem)
-        if coarse is None:
-            return None
-        if not coarse.needs_solving:
-            # The indenter touches less than half of every coarse cell.
-            coarse = replace(coarse, profile=highest(problem.profile, coarse.grid.shape))
-        return prolonged(coarse_solution(self, coarse).pressure, problem)
+        return with_zone(operator, acting.zone, following, closing, goal) * unit
 
 
 def _without_pits(problem: Problem, state: _Iterate) -> _Iterate:

@@ -19,7 +19,7 @@ from pellicle.numerics.problem import Problem, adhesive_scale
 from pellicle.numerics.solution import Progress, State, Stop
 
 from .contact_cg import SIGN_CERTAINTY, inner_solve
-from .nested_grids import coarse_solution, coarser, prolonged
+from .nested_grids import prolonged
 from .preconditioner import OnContact, Preconditioner, edges
 from .scaling import ScaledSolver
 
@@ -59,10 +59,9 @@ _CHANGES_SHIFTED: Final = 2
 _FLOOR: Final = 0.05
 # Rounds without a smaller residual after which the solve is abandoned.
 _STAGNATION: Final = 60
-# Cells by which the contact may differ from the extrapolated one: this multiple of those that were
-# extrapolated, or this share of those along the front. Beyond, the state jumps.
+# Cells by which the contact may differ from the extrapolated one, over those extrapolated; it may
+# always differ by as many as lie along the front. Beyond, the state jumps.
 _MOST_MISSED: Final = 3.0
-_FRONT_SHARE: Final = 1.0
 # Rounds after which the residual must have been below this share of that of the extrapolated start.
 # Later it may grow again, where the state between two positions of the edge on the lattice is
 # unstable: the descent from the last state meets the same one.
@@ -98,7 +97,7 @@ class _Extrapolation:
         contact = start.ahead.contact
         front = perimeter(contact, problem.grid) / max(problem.grid.spacing)
         moved = float(np.count_nonzero(contact ^ start.contact))
-        return cls(State(*start), contact, max(_MOST_MISSED * moved, _FRONT_SHARE * front))
+        return cls(State(*start), contact, max(_MOST_MISSED * moved, front))
 
     def after(self, contact: Mask, residual: float) -> Self | None:
         """Return it after one more round; None if the state seems to jump.
@@ -152,15 +151,10 @@ class _Round:
     def contact(self) -> Mask:
         return self.on_contact.contact
 
-    @property
-    def exerted(self) -> Array:
-        """Traction that the law exerts at `gap` [Pa]."""
-        return self.attraction.traction
-
     @cached_property
     def missed(self) -> Array:
         """Traction that the law exerts minus `traction` [Pa]."""
-        return self.exerted - self.traction
+        return self.attraction.traction - self.traction
 
     @cached_property
     def on_this_contact(self) -> tuple[_Earlier, ...]:
@@ -175,9 +169,8 @@ class _Round:
         closed = np.abs(gap[contact])
         error = max(float(closed.max(initial=0.0)), -float(gap.min(initial=0.0, where=~contact)))
         # The law attracts even where the wall bears it all and there is no pressure.
-        magnitude = max(
-            float(np.abs(self.wall + self.traction).sum()), float(np.abs(self.exerted).sum())
-        )
+        exerted = float(np.abs(self.attraction.traction).sum())
+        magnitude = max(float(np.abs(self.wall + self.traction).sum()), exerted)
         missed = work = 0.0
         if magnitude:
             work = float((np.abs(self.wall[contact]) * closed).sum()) / magnitude / self.scale
@@ -233,10 +226,20 @@ class AdhesionSolver(ScaledSolver):
         if start is not None and start.is_loaded:
             traction = start.pressure - start.wall
             return self._closed(problem, preconditioner.on(start.contact), start.wall, traction)
-        pressure = self._prolonged(problem)
+        # Without the law, a depth closes cells only beyond the first touch.
+        lowest = float(problem.profile.max())
+        closes = problem.prescribed == "force" or problem.value > -lowest
+        # With the traction of the coarser grid too, the first step takes half as many applications,
+        # but may end in a state of the lattice of higher energy than that of a retraction: at
+        # N = 256 by .004 of the pull-off force.
+        pressure = prolonged(self, problem) if closes else None
         if pressure is None:
-            pressure = _first_pressure(problem)
-        contact = (pressure > 0) | _touching(problem)
+            pressure = np.zeros(problem.grid.shape)
+            if closes and problem.prescribed == "depth":
+                pressure = first_guess(replace(problem, law=None))
+        # Cells of the undeformed surface that just touch the indenter are in contact.
+        touches = problem.prescribed == "force" or problem.value == -lowest
+        contact = (pressure > 0) | (touches & (problem.profile == lowest))
         u_minus_f = problem.operator(pressure) - problem.profile
         depth = problem.depth(u_minus_f[contact] if contact.any() else np.zeros(1))
         traction = problem.attraction(u_minus_f - depth, contact).traction
@@ -254,7 +257,9 @@ class AdhesionSolver(ScaledSolver):
         wall = on_contact.transferred(wall + traction - following)
         wall[~contact] = 0.0
         after = self._closed(problem, on_contact, wall, following, state, changes)
-        if state.gain > _LEAST_GAIN and _overshoots(state, after):
+        front = perimeter(state.contact, problem.grid) / max(problem.grid.spacing)
+        rise = after.energy - state.energy
+        if state.gain > _LEAST_GAIN and rise > _RISE * (front / state.gap.size):
             return replace(state, gain=max(0.5 * state.gain, _LEAST_GAIN))
         extrapolation = state.extrapolation and state.extrapolation.after(
             after.contact, after.residual
@@ -284,21 +289,6 @@ class AdhesionSolver(ScaledSolver):
         if problem.prescribed == "force" and not state.contact.any():
             return Stop.PULLED_OFF
         return Stop.STALLED if state.progress.stagnant >= _STAGNATION else None
-
-    def _prolonged(self, problem: Problem) -> Array | None:
-        """Return the wall pressure of a coarser grid, if a cell of this closes without a law.
-
-        With the traction across the gap beside it the first step takes half as many applications,
-        but may end in a state of the lattice of higher energy than that of a retraction: at N = 256
-        by .004 of the pull-off force.
-        """
-        closes = problem.prescribed == "force" or problem.value > -float(problem.profile.max())
-        coarse = coarser(problem) if closes else None
-        if coarse is None or not coarse.needs_solving:
-            return None
-        state = coarse_solution(self, coarse).state
-        assert isinstance(state, State)
-        return prolonged(state.wall, problem)
 
     def _closed(
         self,
@@ -421,28 +411,6 @@ def _gain(before: _Round, after: _Round) -> float:
     return float(np.clip(before.gain * np.clip(best, 0.5, _FASTER), _LEAST_GAIN, _GREATEST_GAIN))
 
 
-def _overshoots(before: _Round, after: _Round) -> bool:
-    """Whether the energy has risen so much that the fronts have moved too far."""
-    grid = before.problem.grid
-    front = perimeter(before.contact, grid) / max(grid.spacing) / before.gap.size
-    return after.energy - before.energy > _RISE * front
-
-
-def _touching(problem: Problem) -> Mask:
-    """Return the cells where the undeformed surface just touches the indenter."""
-    lowest = float(problem.profile.max())
-    touches = problem.prescribed == "force" or problem.value == -lowest
-    cells: Mask = problem.profile == lowest
-    return cells & touches
-
-
-def _first_pressure(problem: Problem) -> Array:
-    """Return a pressure where indenter and undeformed surface overlap at the depth [Pa]."""
-    if problem.prescribed == "force" or problem.value <= -float(problem.profile.max()):
-        return np.zeros(problem.grid.shape)
-    return first_guess(replace(problem, law=None))
-
-
 def _with_wall_force(problem: Problem, contact: Mask, wall: Array, traction: Array) -> Array | None:
     """Return the wall pressure scaled such that force control has its force; None if it pulls."""
     if problem.prescribed == "depth":
@@ -496,7 +464,7 @@ def _with_shifted_fronts(state: _Round, traction: Array, missed: Array) -> tuple
     if not border or state.on_contact.preconditioner.is_bed:
         return np.clip(traction, -strength, 0.0), contact
     dx, dy = edges(grid)
-    exerted = state.exerted
+    exerted = state.attraction.traction
     zone = ((exerted < 0) | (missed != 0)) & ~contact
     # The gap is infinite where there is no indenter.
     gap = np.clip(np.where(contact, 0.0, state.gap), 0.0, 2 * law.cutoff())

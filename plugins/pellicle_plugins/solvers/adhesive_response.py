@@ -35,23 +35,19 @@ def with_zone(
     if not cells.size:
         return at_rest
 
-    def traction(values: Array) -> Array:
+    def pressure(values: Array) -> Array:
         field = np.zeros(zone.shape)
         field.ravel()[cells] = values
-        return field
+        return field + closing(operator(field))
 
-    def responses(values: Array) -> tuple[Array, Array]:
-        """Return pressure on contact and zone, and the traction that the law gives the zone."""
-        field = traction(values)
-        pressure = field + closing(operator(field))
-        return pressure, following(operator(pressure) - 1.0).ravel()[cells]
+    def by_the_law(pressure: Array) -> Array:
+        return following(operator(pressure) - 1.0).ravel()[cells]
 
-    constant = following(operator(at_rest) - 1.0).ravel()[cells]
+    constant = by_the_law(at_rest)
 
     def residual(values: Array) -> Array:
-        _, following = responses(values)
-        return values - (following - constant)
+        return values - (by_the_law(pressure(values)) - constant)
 
     matrix = LinearOperator((cells.size, cells.size), matvec=residual, dtype=np.float64)
     values, _ = gmres(matrix, constant, rtol=tolerance, atol=0.0, restart=_RESTART, maxiter=2)
-    return responses(values)[0]
+    return pressure(values)

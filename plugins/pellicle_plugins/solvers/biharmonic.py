@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final, Protocol
+from typing import Final
 
 import numpy as np
 import scipy.sparse
@@ -29,31 +29,13 @@ _DAMPINGS: Final = tuple(
 _NEAR: Final = 7
 # Share of the cells above which sweeps over all of them are faster than a matrix of those to relax.
 _DENSE: Final = 0.2
-# Index of all cells except those at the ends, by the number of axes.
-_INNER: Final = ((), (slice(1, -1),), (slice(1, -1), slice(1, -1)))
-
-
-class Sweeps(Protocol):
-    """Chebyshev sweeps that relax short waves beside the contact, and their transpose."""
-
-    def apply(self, field: Field) -> None:
-        """Relax a field in its place."""
-        ...
-
-    def apply_transpose(self, field: Field) -> None:
-        """Apply the transpose of `apply` to a field in its place."""
-        ...
 
 
 def sweeps_near(free: Field | Mask, stretch: tuple[float, float]) -> Sweeps:
-    """Return the sweeps beside a contact.
+    """Return Chebyshev sweeps that relax short waves beside a contact, and their transpose.
 
-    Parameters
-    ----------
-    free
-        How far each cell may move: 0 on the contact, 1 off it; periodic, of one or two axes.
-    stretch
-        The aspect ratio of the cells, see `stretch_of`.
+    Both change a field in its place. ``free`` is how far each cell may move, 0 on the contact and 1
+    off it, periodic, of one or two axes; ``stretch`` is the aspect ratio, see `stretch_of`.
     """
     weight = np.where(dilated(free < 1, cells=_NEAR), free, np.float32(0))
     if np.count_nonzero(weight) > _DENSE * weight.size:
@@ -122,6 +104,9 @@ class _DenseSweeps:
             _subtract_biharmonic(field, self._weight * field, damping, self._stretch)
 
 
+Sweeps = _SparseSweeps | _DenseSweeps
+
+
 def _stencil(axes: int, stretch: tuple[float, float]) -> dict[tuple[int, ...], float]:
     """Return the factors of h⁴ Δ² by the offset of the cell; its eigenvalues are at most 64."""
     if axes == 1:
@@ -157,14 +142,13 @@ def _subtract_biharmonic(
 
 def _laplacian(wide: Field, stretch: tuple[float, float]) -> Field:
     """Return h² Δ without the cells at the ends of each axis."""
-    inner = wide[_INNER[wide.ndim]]
     if wide.ndim == 1:
-        change = np.float32(-2) * inner
+        change = np.float32(-2) * wide[1:-1]
         change += wide[:-2]
         change += wide[2:]
         return change
     x, y = stretch
-    change = np.float32(-4 / x) * inner
+    change = np.float32(-4 / x) * wide[1:-1, 1:-1]
     change += wide[:-2, 1:-1]
     change += wide[2:, 1:-1]
     if x != y:
@@ -186,11 +170,7 @@ def wrapped(field: Field, width: int = 1) -> Field:
 
     shared(copy, row_blocks(field.shape))
     for axis in range(field.ndim):
-        wide[along(axis, 0, width)] = wide[along(axis, -2 * width, -width)]
-        wide[along(axis, -width)] = wide[along(axis, width, 2 * width)]
+        lines = np.moveaxis(wide, axis, 0)
+        lines[:width] = lines[-2 * width : -width]
+        lines[-width:] = lines[width : 2 * width]
     return wide
-
-
-def along(axis: int, start: int, stop: int | None = None, step: int = 1) -> tuple[slice, ...]:
-    """Return the index of a slice along an axis."""
-    return (slice(None),) * axis + (slice(start, stop, step),)

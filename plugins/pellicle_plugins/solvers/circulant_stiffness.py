@@ -15,12 +15,7 @@ Field = NDArray[np.float32]
 class CirculantStiffness:
     """K, the multiplication by k(q) = 1/G(q) over its greatest value, in single precision.
 
-    Parameters
-    ----------
-    operator
-        Operator with the kernel and the spacing of the cells.
-    shape
-        Number of cells of the periodic plane along x and y.
+    The periodic plane has ``shape`` cells of the size of those of ``operator``.
     """
 
     def __init__(self, operator: Operator, shape: tuple[int, int]) -> None:

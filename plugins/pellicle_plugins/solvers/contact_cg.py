@@ -73,17 +73,14 @@ def inner_solve(
     cells = preconditioner.cells
     if not cells.size:
         nothing = np.zeros(problem.grid.shape)
-        none = np.zeros(0)
-        penetrating, _ = _misclassified(
-            problem, preconditioner, nothing, none, problem.depth(none), goal
-        )
+        penetrating = np.flatnonzero(-problem.profile < problem.depth(np.zeros(0)) - goal)
         return InnerSolution(nothing, nothing, 0.0, penetrating)
     iterate = _Iterate(problem, preconditioner, pressure, displacement, u_minus_f)
     error = iterate.error
     goal = max(goal, max(_MAX_REDUCTION, reduction) * error)
     least, stagnant, iteration = np.inf, 0, 0
     misclassified: Cells | None = None
-    direction = iterate.steepest()
+    direction = iterate.directions(iterate.residual)
     descent = dot(iterate.residual, direction)
     while descent > 0 and stagnant < _STAGNATION:
         curvature = iterate.advance(direction, descent)
@@ -95,15 +92,13 @@ def inner_solve(
         if error <= goal:
             break
         if np.isfinite(certainty) and iteration >= _MIN_ITERATIONS:
-            last = certainty, direction, iterate.depth_change
-            certain, uncertain = iterate.misclassified(goal, last)
-            del last
+            certain, uncertain = iterate.misclassified(goal, certainty, direction)
             if certain.size and uncertain <= _UNCERTAIN * certain.size:
                 misclassified = certain
                 break
         else:
             iterate.update_displacement()
-        ascent = iterate.steepest()
+        ascent = iterate.directions(iterate.residual)
         before, descent = descent, dot(iterate.residual, ascent)
         # The direction was multiplied by its step length.
         direction *= curvature / before * (descent / before)
@@ -131,7 +126,7 @@ class _Iterate:
         self._problem, self._preconditioner = problem, preconditioner
         cells = self._cells = preconditioner.cells
         uniform = self._uniform = _Uniform.of(problem, cells)
-        self._directions = _Directions(problem, preconditioner, uniform)
+        self.directions = _Directions(problem, preconditioner, uniform)
         bends = preconditioner.preconditioner.bends
         self._field = np.zeros(problem.grid.shape, dtype=np.float64 if bends else np.float32)
         self.pressure = pressure.ravel()[cells]
@@ -142,11 +137,12 @@ class _Iterate:
         self._depth = problem.depth(u_minus_f)
         self.residual = np.subtract(self._depth, u_minus_f, out=u_minus_f)
         """Minus the gap on the contact [m], but for its mean under force control."""
-        self.depth_change = 0.0
-        """Change of the depth in the last iteration [m]; 0 at a given depth."""
-        self._pending: _Change | None = None
+        self._change: NDArray[Any] | None = None
+        """What the last iteration adds to the displacement, over `_factor` [m]; None once added."""
+        self._factor, self._depth_change = 1.0, 0.0
         if uniform:
-            level = uniform.level(self.residual)
+            # The uniform pressure that closes the mean gap on the contact.
+            level = float(self.residual.sum()) / uniform.curvature
             self.pressure += level
             displacement += level * uniform.displacement
             self.residual -= level * uniform.inside
@@ -154,11 +150,7 @@ class _Iterate:
     @property
     def error(self) -> float:
         """The largest gap on the contact by magnitude [m]."""
-        return self._directions.error(self.residual)
-
-    def steepest(self) -> Array:
-        """Return the preconditioned residual [Pa], the direction of steepest descent."""
-        return self._directions(self.residual)
+        return self.directions.error(self.residual)
 
     def advance(self, direction: Array, descent: float) -> float:
         """Go along a direction to the least energy, and return ⟨direction, A direction⟩.
@@ -184,31 +176,52 @@ class _Iterate:
         self.residual -= inside
         direction *= length
         self.pressure += direction
-        self.depth_change = self._directions.mean(inside)
-        self._pending = _Change(change, length * size)
+        self._depth_change = self.directions.mean(inside)
+        self._change, self._factor = change, length * size
         return curvature
 
     def update_displacement(self) -> None:
         """Add the change of the last iteration to the displacement."""
-        if self._pending:
-            self._pending.add_to(self._displacement)
-        self._pending = None
+        shared(self._add_change, row_blocks(self._displacement.shape))
+        self._change = None
+
+    def _add_change(self, rows: slice) -> None:
+        if self._change is not None:
+            change = self._change[rows]
+            change *= self._factor
+            self._displacement[rows] += change
 
     def misclassified(
-        self, margin: float, last: tuple[float, Array, float] | None = None
+        self, margin: float, certainty: float = 0.0, step: Array | None = None
     ) -> tuple[Cells, int]:
-        """Return what `_misclassified` does, after which the displacement is up to date."""
-        pending, self._pending = self._pending, None
-        return _misclassified(
-            self._problem,
-            self._preconditioner,
-            self._displacement,
-            self.pressure,
-            self._depth - self._directions.mean(self.residual),
-            margin,
-            pending,
-            last,
-        )
+        """Return flat indices of misclassified cells of certain sign, and how many are uncertain.
+
+        A cell in contact is misclassified if its pressure is tensile, any other cell if its gap is
+        below −``margin`` [m]. ``certainty`` is the sign-certainty factor, and ``step`` the last
+        change of the pressure [Pa]; without it all signs are certain. The displacement is up to
+        date afterwards.
+        """
+        profile, displacement = self._problem.profile, self._displacement
+        contact, pressure = self._preconditioner.contact, self.pressure
+        depth = self._depth - self.directions.mean(self.residual)
+        below = np.empty(contact.shape, dtype=bool)
+
+        def mark(rows: slice) -> None:
+            self._add_change(rows)
+            np.less(displacement[rows] - profile[rows], depth - margin, out=below[rows])
+            np.greater(below[rows], contact[rows], out=below[rows])
+
+        shared(mark, row_blocks(contact.shape))
+        change, self._change = self._change, None
+        tensile, penetrating = np.flatnonzero(pressure < 0), np.flatnonzero(below)
+        number = tensile.size + penetrating.size
+        if change is not None and step is not None:
+            tensile = tensile[pressure[tensile] < -certainty * np.abs(step[tensile])]
+            gap_change = np.abs(change.ravel()[penetrating] - self._depth_change)
+            gap = displacement.ravel()[penetrating] - profile.ravel()[penetrating] - depth
+            penetrating = penetrating[gap < -certainty * gap_change]
+        certain = np.concatenate([self._cells[tensile], penetrating])
+        return certain, number - certain.size
 
 
 def _scatter(values: Array, unit: float, cells: Cells, field: NDArray[Any]) -> None:
@@ -236,24 +249,6 @@ def _gathered(field: NDArray[Any], cells: Cells) -> NDArray[Any]:
     return values
 
 
-class _Change(NamedTuple):
-    """A change of the displacement that has not been added to it yet."""
-
-    field: NDArray[Any]
-    """The change over `factor`, until it is added [m]."""
-    factor: float
-
-    def add(self, displacement: Array, rows: slice) -> None:
-        """Add the change to rows of the displacement, and multiply it by `factor` in its place."""
-        change = self.field[rows]
-        change *= self.factor
-        displacement[rows] += change
-
-    def add_to(self, displacement: Array) -> None:
-        """Add the change to the displacement, and multiply it by `factor` in its place."""
-        shared(lambda rows: self.add(displacement, rows), row_blocks(displacement.shape))
-
-
 class _Uniform:
     """The uniform pressure on a contact that nearly fills its period.
 
@@ -269,14 +264,11 @@ class _Uniform:
         """Displacement under 1 Pa on the contact [m]."""
         self.inside = displacement.ravel()[cells]
         """The same on the cells of the contact [m]."""
-        self._curvature = float(self.inside.sum())
+        self.curvature = float(self.inside.sum())
 
     @classmethod
     def of(cls, problem: Problem, cells: Cells) -> _Uniform | None:
-        """Return the uniform pressure under depth control on a contact of most cells, else None.
-
-        The contact has to cover more than half of the cells, but not all.
-        """
+        """Return it under depth control on a contact of more than half of the cells, else None."""
         off = problem.profile.size - cells.size
         if (
             problem.prescribed == "force"
@@ -287,56 +279,7 @@ class _Uniform:
         outside = np.ones(problem.grid.shape)
         outside.ravel()[cells] = 0
         uniform = cls(-problem.operator(outside), cells)
-        return uniform if uniform._curvature > 0 else None
-
-    def level(self, residual: Array) -> float:
-        """Return the uniform pressure [Pa] that closes the mean gap on the contact."""
-        return float(residual.sum()) / self._curvature
-
-    def share(self, direction: Array) -> float:
-        """Return the uniform part to subtract from a direction to make it conjugate."""
-        return dot(self.inside, direction) / self._curvature
-
-
-def _misclassified(
-    problem: Problem,
-    preconditioner: OnContact,
-    displacement: Array,
-    on_contact: Array,
-    depth: float,
-    margin: float,
-    pending: _Change | None = None,
-    last: tuple[float, Array, float] | None = None,
-) -> tuple[Cells, int]:
-    """Return flat indices of misclassified cells of certain sign, and the number of uncertain ones.
-
-    A cell in contact is misclassified if its pressure in ``on_contact`` [Pa] is tensile, any other
-    cell if its gap at ``depth`` [m] is below −``margin`` [m]. The ``pending`` change is added to
-    the displacement. ``last`` is the sign-certainty factor and the last changes of pressure in
-    contact [Pa] and depth [m], to which belongs that of the displacement; without it all signs are
-    certain.
-    """
-    profile, contact = problem.profile, preconditioner.contact
-    below = np.empty(contact.shape, dtype=bool)
-
-    def mark(rows: slice) -> None:
-        if pending:
-            pending.add(displacement, rows)
-        np.less(displacement[rows] - profile[rows], depth - margin, out=below[rows])
-        np.greater(below[rows], contact[rows], out=below[rows])
-
-    shared(mark, row_blocks(contact.shape))
-    tensile, penetrating = np.flatnonzero(on_contact < 0), np.flatnonzero(below)
-    number = tensile.size + penetrating.size
-    if pending and last:
-        u, f = displacement.ravel(), profile.ravel()
-        certainty, step, depth_change = last
-        tensile = tensile[on_contact[tensile] < -certainty * np.abs(step[tensile])]
-        gap_change = np.abs(pending.field.ravel()[penetrating] - depth_change)
-        gap = u[penetrating] - f[penetrating] - depth
-        penetrating = penetrating[gap < -certainty * gap_change]
-    certain = np.concatenate([preconditioner.cells[tensile], penetrating])
-    return certain, number - certain.size
+        return uniform if uniform.curvature > 0 else None
 
 
 class _Directions:
@@ -378,7 +321,7 @@ class _Directions:
 
             shared(subtract, blocks(direction.size))
         if self._uniform:
-            direction -= self._uniform.share(direction)
+            direction -= dot(self._uniform.inside, direction) / self._uniform.curvature
         return direction
 
     def mean(self, gap: Array) -> float:

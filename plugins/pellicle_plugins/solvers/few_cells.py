@@ -30,14 +30,8 @@ def solved_on_few_cells(
     of Lawson & Hanson (1974, chapter 23): the cells under pressure are solved for by Gaussian
     elimination; the first to become tensile leaves, or else the one that penetrates deepest joins.
 
-    Parameters
-    ----------
-    column
-        Displacement [m] of all cells under 1 Pa on the first one.
-    trial
-        Pressure to start from [Pa], of either sign.
-    gap
-        Gap under that pressure [m]; cells of a gap below −``margin`` [m] may join.
+    ``column`` is the displacement [m] of all cells under 1 Pa on the first one, ``trial`` a
+    pressure of either sign [Pa] and ``gap`` its gap [m]; cells below −``margin`` [m] may join.
     """
     joined = np.flatnonzero(contact & (trial > 0))
     if not 0 < joined.size <= MOST_CELLS or 2 * joined.size > trial.size:
@@ -46,41 +40,35 @@ def solved_on_few_cells(
     cells = np.flatnonzero(may_join)
     unit = float(column[0, 0])
     system = _System(problem, column / unit, cells, unit)
-    start = with_force(problem, np.maximum(trial, 0)).ravel()[cells]
-    solution = _active_set(system, start, margin / unit)
-    if solution is None:
-        return None
-    pressure = np.zeros(trial.shape)
-    pressure.ravel()[cells] = solution
-    return pressure
-
-
-def _active_set(system: _System, pressure: Array, margin: float) -> Array | None:
-    joined = np.flatnonzero(pressure > 0)
-    remaining = _CHANGES * joined.size
-    while remaining > 0 and joined.size <= 2 * MOST_CELLS:
-        remaining -= 1
+    pressed = with_force(problem, np.maximum(trial, 0)).ravel()[cells]
+    joined = np.flatnonzero(pressed > 0)
+    for _ in range(_CHANGES * joined.size):
+        if joined.size > 2 * MOST_CELLS:
+            break
         goal = system.solve(joined)
         if goal is None:
             return None
         values, depth = goal
         if values.min(initial=1.0) > 0:
-            pressure = np.zeros_like(pressure)
-            pressure[joined] = values
-            gap = system.displacement(joined, values) - system.profile - depth
+            pressed = np.zeros_like(pressed)
+            pressed[joined] = values
+            displacement = system.matrix(slice(None), joined) @ values
+            gap = displacement - system.profile - depth
             gap[joined] = 0
             deepest = int(np.argmin(gap))
-            if gap[deepest] >= -margin:
+            if gap[deepest] >= -margin / unit:
+                pressure = np.zeros(trial.shape)
+                pressure.ravel()[cells] = pressed
                 return pressure
             joined = np.append(joined, deepest)
             continue
-        before = pressure[joined]
+        before = pressed[joined]
         tensile = np.flatnonzero(values <= 0)
         lengths = before[tensile] / (before[tensile] - values[tensile])
         length = float(lengths.min())
-        pressure[joined] = before + length * (values - before)
+        pressed[joined] = before + length * (values - before)
         leaving = tensile[lengths <= length]
-        pressure[joined[leaving]] = 0
+        pressed[joined[leaving]] = 0
         joined = np.delete(joined, leaving)
     return None
 
@@ -97,22 +85,17 @@ class _System:
         if problem.prescribed == "force":
             self._total = problem.value / problem.grid.cell_area
 
-    def _matrix(self, rows: NDArray[np.int64] | slice, columns: NDArray[np.int64]) -> Array:
+    def matrix(self, rows: NDArray[np.int64] | slice, columns: NDArray[np.int64]) -> Array:
         """Return the displacement of some cells by the pressure of others."""
         i = np.abs(self._i[rows][:, None] - self._i[columns])
         j = np.abs(self._j[rows][:, None] - self._j[columns])
         matrix: Array = self._column[i, j]
         return matrix
 
-    def displacement(self, joined: NDArray[np.int64], values: Array) -> Array:
-        """Return the displacement of all cells under the pressure on those ``joined``."""
-        displacement: Array = self._matrix(slice(None), joined) @ values
-        return displacement
-
     def solve(self, joined: NDArray[np.int64]) -> tuple[Array, float] | None:
         """Return the pressure that closes the gap on cells, and the depth; None if singular."""
         number = joined.size
-        matrix = self._matrix(joined, joined)
+        matrix = self.matrix(joined, joined)
         right = self.profile[joined]
         if self._total is None:
             right = right + self._depth

@@ -53,15 +53,9 @@ class Extension:
     The domain is periodic. On a line of cells, as on a grid one cell across, a mean is over two
     cells, and the factor is 2^(α − 1). Single precision is enough for a preconditioner.
 
-    Parameters
-    ----------
-    known
-        Bool of shape (mx, my), where the values are given.
-    orders
-        α at the length scale of each level, the finest first; both edges must be divisible by 2 as
-        often as there are levels.
-    stretch
-        The aspect ratio of the cells, see `biharmonic.stretch_of`; by default they are square.
+    ``known``, of shape (mx, my), is where the values are given; ``orders`` are α at the length
+    scale of each level, the finest first. Both edges must be divisible by 2 as often as there are
+    levels. ``stretch`` is the aspect ratio of the cells, see `biharmonic.stretch_of`.
     """
 
     def __init__(
@@ -84,10 +78,7 @@ class Extension:
             weight = coarse
 
     def apply(self, values: Field) -> Field:
-        """Return E applied to ``values``, which are 0 where not known and are overwritten.
-
-        Both arrays have the shape (mx, my).
-        """
+        """Return E applied to ``values``, which are 0 where not known and are overwritten."""
         means = [np.squeeze(values)]
         for level in self._levels:
             means.append(_sum_of_block(means[-1], level.share))
@@ -99,10 +90,7 @@ class Extension:
         return filled.reshape(self.shape)
 
     def apply_transpose(self, values: Field) -> Field:
-        """Return Eᵀ applied to ``values``, which are overwritten; meaningful where ``known``.
-
-        Both arrays have the shape (mx, my).
-        """
+        """Return Eᵀ applied to ``values``, which are overwritten; meaningful where ``known``."""
         means = [np.squeeze(values)]
         for level in self._levels:
             if level.sweeps:
@@ -127,10 +115,7 @@ class _Level:
     """Where bending dominates."""
 
     def fill(self, coarse: Field, own: Field) -> Field:
-        """Return this level from the coarser one and its own means times their weights.
-
-        The own means are overwritten.
-        """
+        """Return this level from the coarser one and its own weighted means, overwriting these."""
         if self.moments is None:
             return _interpolate(coarse, self.free, own)
         smooth = _interpolate(coarse, np.ones_like(own), np.zeros_like(own))
@@ -177,16 +162,15 @@ def _coarse_moments(weight: Field | Mask, moments: Moments | None, share: Field)
     Cells of the finest level have no ``moments``: known values are at their centres.
     """
     quarter, half = np.float32(0.25), np.float32(0.5)
-    coarse = [quarter * _sum_of_block(_alternating(weight, axis)) for axis in range(weight.ndim)]
+    coarse = []
+    for axis, number in enumerate(weight.shape):
+        signs = np.ones(number, dtype=np.float32)
+        signs[0::2] = -1
+        signed = weight * (signs[:, None] if axis < weight.ndim - 1 else signs)
+        coarse.append(quarter * _sum_of_block(signed))
     for axis, moment in enumerate(moments or ()):
         coarse[axis] += half * _sum_of_block(moment)
     return tuple(share * moment for moment in coarse)
-
-
-def _alternating(field: Field | Mask, axis: int) -> Field:
-    signs = np.ones(field.shape[axis], dtype=np.float32)
-    signs[0::2] = -1
-    return field * (signs[:, None] if axis < field.ndim - 1 else signs)
 
 
 def _slope(field: Field, axis: int) -> Field:

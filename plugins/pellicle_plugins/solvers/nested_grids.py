@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
-from pellicle.numerics.grid_transfer import prolong
+from pellicle.numerics.grid_transfer import highest, prolong
 from pellicle.numerics.problem import Problem
-from pellicle.numerics.solution import Solution
+from pellicle.numerics.solution import State
 
 from .scaling import ScaledSolver
 
@@ -21,27 +22,27 @@ _COARSE_TOLERANCE: Final = 1e-5
 _COARSEST: Final = 48
 
 
-def coarser(problem: Problem) -> Problem | None:
-    """Return the problem on a coarser grid; None if the grid is coarse or its kernel needs it."""
+def prolonged(solver: ScaledSolver, problem: Problem) -> Array | None:
+    """Return the wall pressure [Pa] of a coarser grid, by ``solver``, on that of ``problem``.
+
+    None if the grid is coarse, its kernel needs it, or nothing is in contact on the coarser one.
+    """
     if max(problem.grid.shape) <= _COARSEST:
         return None
     try:
-        return problem.coarsened()
+        coarse = problem.coarsened()
     except ConfigError:
         # A thin incompressible layer is rigid under cells much wider than its thickness.
         return None
-
-
-def coarse_solution(solver: ScaledSolver, coarse: Problem) -> Solution:
-    """Return the solution of a coarse problem from scratch, by ``solver`` at a loose tolerance."""
+    if not coarse.needs_solving:
+        if problem.law:
+            return None
+        # The indenter touches less than half of every coarse cell.
+        coarse = replace(coarse, profile=highest(problem.profile, coarse.grid.shape))
     tolerance = max(solver.tolerance, _COARSE_TOLERANCE)
     loose = solver.model_copy(update={"tolerance": tolerance})
-    return loose.solve(coarse, None, lambda iteration, residual_ratio: None)
-
-
-def prolonged(pressure: Array, problem: Problem) -> Array | None:
-    """Return a pressure of the coarser grid on the grid of ``problem`` [Pa]; None if it is 0."""
-    finer = prolong(pressure, problem.grid.shape)
+    state = loose.solve(coarse, None, lambda iteration, residual_ratio: None).state
+    finer = prolong(state.wall if isinstance(state, State) else state, problem.grid.shape)
     # A coarse cell may extend beyond the rim of the indenter.
     finer *= np.isfinite(problem.profile)
     return finer if finer.any() else None

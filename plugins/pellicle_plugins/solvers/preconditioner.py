@@ -52,8 +52,14 @@ class Preconditioner:
         else:
             self._plane = self._padded = _free_shape(grid)
         self._stiffness = CirculantStiffness(operator, self._plane)
-        levels = _levels(self._padded)
-        orders = _stiffness_orders(operator, levels + 1)
+        # How often the plane can be halved, leaving two or more whole cells per axis.
+        levels, halved = 0, [n for n in self._padded if n > 1]
+        while halved and all(n >= 4 and n % 2 == 0 for n in halved):
+            levels, halved = levels + 1, [n // 2 for n in halved]
+        # α ≥ 0 of the stiffness k ∝ q^α at the cell size of each level, the finest first.
+        q = np.pi / max(edges(grid)) * 0.5 ** np.arange(levels + 2, dtype=np.float64)
+        stiffness = 1 / operator.compliance(q)
+        orders = [max(0.0, float(order)) for order in -np.diff(np.log2(stiffness))]
         self.bends = bends(orders[0])
         """Whether bending dominates the stiffness at the size of a cell."""
         self.is_bed = orders[0] < _BED
@@ -109,12 +115,6 @@ class Preconditioner:
         """Return Eᵀ K E on ``contact``, bool of the grid's shape."""
         return OnContact(self, contact)
 
-    def _extension(self, known: Cells) -> Extension:
-        """Return E from cells of its plane, given by flat indices."""
-        mask = np.zeros(self._padded, dtype=bool)
-        mask.ravel()[known] = True
-        return Extension(mask, self._orders, self._stretch)
-
     def _on_the_plane(self, cells: Cells) -> tuple[Cells, Cells]:
         """Return flat indices on the extension's plane of ``cells``, followed by their copies.
 
@@ -135,17 +135,6 @@ class Preconditioner:
                 copies.append(indices[repeated] + down * py + right)
         return np.concatenate(copies), np.concatenate(sources)
 
-    def _stiffen(self, field: Field) -> Field:
-        """Return K applied to a field on the extension's plane, in its place.
-
-        Beyond the period it is 0.
-        """
-        mx, my = self._plane
-        self._stiffness(field[:mx, :my], out=field[:mx, :my])
-        field[mx:] = 0
-        field[:, my:] = 0
-        return field
-
 
 class OnContact:
     """Eᵀ K E on one contact, in single precision; a map between values on its cells."""
@@ -157,18 +146,22 @@ class OnContact:
         self.cells = np.flatnonzero(contact)
         """Flat indices of the cells of the contact on the grid."""
         self._indices, self._sources = preconditioner._on_the_plane(self.cells)
-        self._extension = preconditioner._extension(self._indices)
+        known = np.zeros(preconditioner._padded, dtype=bool)
+        known.ravel()[self._indices] = True
+        self._extension = Extension(known, preconditioner._orders, preconditioner._stretch)
 
     def __call__(self, residual: Array, mean: float = 0.0) -> Field:
-        """Return the residual minus ``mean``, preconditioned.
-
-        Both arrays have one value per cell of `cells`.
-        """
+        """Return the residual minus ``mean``, preconditioned; one value per cell of `cells`."""
         greatest = max(float(residual.max()) - mean, mean - float(residual.min()))
         # A power of two changes no digit, and keeps small residuals in single precision.
         size = 2.0 ** math.frexp(greatest)[1]
-        extended = self._apply((residual - mean) / size)
-        direction = self._apply_transpose(self.preconditioner._stiffen(extended))
+        field = self._apply((residual - mean) / size)
+        mx, my = self.preconditioner._plane
+        self.preconditioner._stiffness(field[:mx, :my], out=field[:mx, :my])
+        # Beyond the period K gives nothing.
+        field[mx:] = 0
+        field[:, my:] = 0
+        direction = self._apply_transpose(field)
         direction *= np.float32(size)
         return direction
 
@@ -180,7 +173,7 @@ class OnContact:
     def transferred(self, forces: Array, out: Array | None = None) -> Array:
         """Return forces [Pa] after transferring those off the contact onto it by Eᵀ.
 
-        They are in ``out``, an array in C order which may be ``forces``, or in a new one.
+        ``out`` is in C order and may be ``forces``.
 
         Eᵀ K is the inverse of the operator on the contact to second order in the error of E. So
         forces that displace the surface onto the indenter on the contact become nearly the
@@ -248,24 +241,7 @@ def _fewest(shape: tuple[int, int]) -> int:
     return min((n for n in shape if n > 1), default=1)
 
 
-def _levels(shape: tuple[int, int]) -> int:
-    """Return how often the shape can be halved, leaving two or more whole cells per axis."""
-    halved = [n for n in shape if n > 1]
-    levels = 0
-    while halved and all(n >= 4 and n % 2 == 0 for n in halved):
-        halved = [n // 2 for n in halved]
-        levels += 1
-    return levels
-
-
 def edges(grid: Grid) -> tuple[float, float]:
     """Return dx and dy [m]; for an axis of one cell, which has no waves, that of the other axis."""
     (nx, ny), (dx, dy) = grid.shape, grid.spacing
     return (dx if nx > 1 else dy, dy if ny > 1 else dx)
-
-
-def _stiffness_orders(operator: Operator, levels: int) -> list[float]:
-    """Return α ≥ 0 of the stiffness k ∝ q^α at the cell size of each level, the finest first."""
-    q = np.pi / max(edges(operator.grid)) * 0.5 ** np.arange(levels + 1, dtype=np.float64)
-    stiffness = 1 / operator.compliance(q)
-    return [max(0.0, float(order)) for order in -np.diff(np.log2(stiffness))]

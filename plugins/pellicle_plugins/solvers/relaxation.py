@@ -119,12 +119,10 @@ def _minimised(
 
 def _window(cells: Mask) -> tuple[NDArray[np.int64], ...] | None:
     """Return the index of a rectangle around ``cells`` on their periodic plane; None for all."""
-    axes = [
-        _interval(np.flatnonzero(cells.any(axis=i)), n)
-        for i, n in zip((1, 0), cells.shape, strict=True)
-    ]
-    whole = (axes[0].size, axes[1].size) == cells.shape
-    return None if whole else np.ix_(*axes)
+    rows, columns = (
+        _interval(np.flatnonzero(cells.any(axis=1 - axis)), cells.shape[axis]) for axis in (0, 1)
+    )
+    return None if (rows.size, columns.size) == cells.shape else np.ix_(rows, columns)
 
 
 def _interval(indices: NDArray[np.int64], number: int) -> NDArray[np.int64]:

@@ -25,8 +25,6 @@ class Executor(pl.Executor):
             return work(task, say)
         except Exception as error:
             return error
-        except SystemExit as error:
-            return RuntimeError(str(error))
 
 
 def _study(executor: Any, folder: Path) -> str:
@@ -64,13 +62,6 @@ def fragile(f: Any, work: Any, tasks: Any, report: Any) -> Iterator[Any]:
         yield from f(work, tasks, report)
 
 
-def leaving(f: Any, work: Any, task: Any, say: Any) -> Any:
-    try:
-        return work(task, say)
-    except Exception as error:
-        return error
-
-
 def swallowing(f: Any, work: Any, task: Any, say: Any) -> Any:
     try:
         return f(work, task, say)
@@ -93,68 +84,43 @@ def halting(f: Any, work: Any, tasks: Any, report: Any) -> Iterator[Any]:
 
 
 ITSELF = Refused("it has to yield each of the tasks that it was given, the object itself")
-CALM = Taken("the two runs of this study give no trouble")
+LOST = Refused("map() ended without 1 of 2 tasks, such as reduced modulus 10 kPa")
+AGAIN = Refused("yields reduced modulus 10 kPa twice; it has to yield each task once")
+NOTHING = Refused("with None; it has to yield it with what its work returned or raised")
+LISTED = Refused("map() returned [(RunTask(", "it has to be written with yield")
+UNSEEN = Taken("two runs that differ give no trouble, and outcomes do not say whose they are")
 BROKEN: dict[str, Any] = {
     "each_task_comes_once_with_its_outcome": [
-        Broken(
-            "leaves out a task",
-            Refused("map() ended without 1 of 2 tasks, such as reduced modulus 10 kPa"),
-            map=carries_out(lambda tasks: tasks[1:]),
-        ),
-        Broken(
-            "yields a task again",
-            Refused("yields reduced modulus 10 kPa twice; it has to yield each task once"),
-            map=carries_out(lambda tasks: [*tasks, *tasks[:1]]),
-        ),
+        Broken("leaves out a task", LOST, map=carries_out(lambda tasks: tasks[1:])),
+        Broken("again", AGAIN, map=carries_out(lambda tasks: [*tasks, *tasks[:1]])),
         Broken("yields copies", ITSELF, map=yields(lambda task, out: (replace(task), out))),
         Broken("yields outcomes alone", ITSELF, map=yields(lambda task, out: out)),
-        Broken(
-            "loses outcomes",
-            Refused("with None; it has to yield it with what its work returned or raised"),
-            map=yields(lambda task, out: (task, None)),
-        ),
-        Broken(
-            "gives outcomes to other tasks",
-            Taken("an outcome does not say whose it is: the kit alone can tell"),
-            map=crossing,
-        ),
+        Broken("loses outcomes", NOTHING, map=yields(lambda task, out: (task, None))),
+        Broken("gives outcomes to other tasks", UNSEEN, map=crossing),
     ],
-    "each_task_is_executed_once": Broken(
-        "carries tasks out twice", Taken("what is done is read again"), attempt=twice
-    ),
+    "each_task_is_executed_once": Broken("carries tasks out twice", UNSEEN, attempt=twice),
     "equal_tasks_are_two_tasks": Broken(
-        "takes equal tasks for one",
-        Taken("no two runs of a study are equal"),
-        map=carries_out(lambda tasks: list(dict.fromkeys(tasks))),
+        "takes equal tasks for one", UNSEEN, map=carries_out(lambda tasks: [*dict.fromkeys(tasks)])
     ),
-    "no_tasks_yield_nothing": Broken("needs a task", CALM, map=fragile),
+    "no_tasks_yield_nothing": Broken("needs a task", UNSEEN, map=fragile),
     "failure_is_an_outcome": [
         Broken(
             "says nothing of an exception",
-            CALM,
+            UNSEEN,
             attempt=lambda f, *given: None if isinstance(out := f(*given), ValueError) else out,
         ),
-        Broken("lets exceptions out", CALM, attempt=lambda f, work, task, say: work(task, say)),
+        Broken("lets exceptions out", UNSEEN, attempt=lambda f, work, task, say: work(task, say)),
     ],
-    "exit_is_an_outcome": Broken("lets an exit out", CALM, attempt=leaving),
     "messages_are_reported": Broken(
-        "reports everything for the first task",
-        Taken("a bar that is wrong is no wrong number"),
-        map=lambda f, work, tasks, report: (
-            (task, f.__self__.attempt(work, task, partial(report, tasks[0]))) for task in tasks
-        ),
+        "reports all for the first task",
+        UNSEEN,
+        map=lambda f, work, tasks, report: f(work, tasks, lambda _, text: report(tasks[0], text)),
     ),
-    "report_that_raises_ends_the_tasks": Broken(
-        "swallows an interruption", CALM, attempt=swallowing
-    ),
+    "report_that_raises_ends_the_tasks": Broken("swallows Ctrl-C", UNSEEN, attempt=swallowing),
     "nothing_goes_on_after_closing": [
-        Broken("goes on when it is closed", CALM, map=lingering),
-        Broken(
-            "returns a list",
-            Refused("map() returned [(RunTask(", "it has to be written with yield"),
-            map=lambda f, *given: list(f(*given)),
-        ),
+        Broken("goes on when it is closed", UNSEEN, map=lingering),
+        Broken("returns a list", LISTED, map=lambda f, *given: list(f(*given))),
     ],
-    "death_of_a_worker_is_an_outcome": Broken("halts when a worker dies", CALM, map=halting),
+    "death_of_a_worker_is_an_outcome": Broken("halts when a worker dies", UNSEEN, map=halting),
 }
 EXECUTORS = Family(Executor, {}, {"study": _study}, ("study",), BROKEN)

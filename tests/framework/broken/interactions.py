@@ -38,50 +38,32 @@ def late_traction(f: Any, gap: Any) -> Any:
 
 
 CALLS = count(1)
+GIVEN, ROUNDING = Refused("changes what it is given"), Taken("it is rounding")
+NAN, REPELS = Refused("slope(gap) has values that are NaN"), Refused("repels; it has to be ≤ 0")
 LEFT = Refused("energy(gap) is", "J/m² at the cutoff of", "m; it has to be 0 there")
 STRONGEST = Refused("traction(gap) grows from", "the attraction has to be strongest at a closed")
 NO_DERIVATIVE = Refused("traction(gap) is not −dγ/dg of energy(gap)")
 BROKEN: dict[str, Any] = {
-    "cutoff_is_a_length": Broken(
-        "acts at every gap", Refused("cutoff() is inf m"), cutoff=lambda f: np.inf
-    ),
+    "cutoff_is_a_length": Broken("far", Refused("cutoff() is inf m"), cutoff=lambda f: np.inf),
     "closed_gap_attracts": [
-        Broken(
-            "energy from the other side",
-            Refused("energy(0) is", "it has to be negative"),
-            energy=lambda f, gap: f(gap) + WORK,
-        ),
+        Broken("energy", Refused("energy(0) is 0 J/m²"), energy=lambda f, gap: f(gap) + WORK),
         Broken("strongest late", STRONGEST, traction=late_traction, energy=late_energy),
     ],
     "values_are_finite": Broken(
-        "no slope at a closed gap",
-        Refused("slope(gap) has values that are NaN"),
-        slope=lambda f, gap: np.where(gap > 0, f(gap), np.nan),
+        "no slope at a closed gap", NAN, slope=lambda f, gap: np.where(gap > 0, f(gap), np.nan)
     ),
     "values_are_vectorised": [
         Broken("mean energy", LEFT, energy=lambda f, gap: np.full_like(gap, f(gap).mean())),
         Broken("traction in a list", Taken("it is as good"), traction=lambda f, g: f(g).tolist()),
     ],
     "functions_leave_their_argument": [
-        Broken(
-            "moves", Refused("changes what it is given"), energy=lambda f, g: f(np.sqrt(g, out=g))
-        ),
-        Broken(
-            "tires", Taken("it is rounding"), traction=lambda f, g: f(g) * (1 - 1e-15 * next(CALLS))
-        ),
+        Broken("moves", GIVEN, energy=lambda f, g: f(np.sqrt(g, out=g))),
+        Broken("tires", ROUNDING, traction=lambda f, g: f(g) * (1 - 1e-15 * next(CALLS))),
     ],
     "energy_rises_to_nothing": Broken("ends early", LEFT, cutoff=lambda f: f() / 2),
     "attraction_falls_with_the_gap": [
-        Broken(
-            "pushes in the end",
-            Refused("which repels; it has to be ≤ 0"),
-            traction=lambda f, gap: f(gap) + 50 * (gap > 0.9 * RANGE),
-        ),
-        Broken(
-            "pulls more across a larger gap",
-            STRONGEST,
-            traction=lambda f, gap: f(gap) - 500 * np.exp(-(((gap - 1e-6) / 1e-8) ** 2)),
-        ),
+        Broken("pushes late", REPELS, traction=lambda f, gap: f(gap) + 50 * (gap > 0.9 * RANGE)),
+        Broken("pulls late", STRONGEST, traction=lambda f, gap: f(gap) - 500 * (gap > 0.5 * RANGE)),
     ],
     "rigid_sphere_is_pulled_by_2_pi_w_r": Broken(
         "pulls twice as much as its energy says",

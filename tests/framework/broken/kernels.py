@@ -82,70 +82,39 @@ ONCE = Taken("a run asks for each value once")
 OTHERS = Taken("this grid has no such wave")
 ANOTHER = Taken("a run cannot tell it from another material")
 AGREE = Refused("radial_primitive(r)", "compliance(q)", "they have to agree")
+DISAGREE = Refused("radial_primitive(r) grows by", "greens_function(r)", "they have to agree")
 BRANCHES = Refused("branches() returned (Branch(", "shares and times have to be positive and")
+ARRAY = Refused("kernel 'broken': compliance(q) returned a", "return an array of float64 of shape")
+MEAN = Refused("mean_compliance() returned 'infinite'", "a real number")
+GROWS = Refused("compliance(q) grows with q", "has to fall, or to tend to a constant")
+IN_PLACE = Refused("changes what it is given", "it has to work on a copy", "kernels.py, line")
 BROKEN: dict[str, Any] = {
     "compliance_is_vectorised": [
-        Broken(
-            "complex numbers", Refused("array of complex128"), compliance=lambda f, q: 1j * f(q)
-        ),
-        Broken(
-            "whole numbers",
-            Refused("compliance(q) returned an array of int64 of shape", "float64 of shape"),
-            compliance=lambda f, q: np.ceil(f(q)).astype(int),
-        ),
-        Broken(
-            "values of the transpose",
-            # What the preconditioner asks for is checked too: the solver is not blamed.
-            Refused("kernel 'broken': compliance(q) returned an array"),
-            "periodic",
-            compliance=lambda f, q: f(q).T,
-        ),
+        # What the preconditioner asks for is checked too: the solver is not blamed.
+        Broken("transpose", ARRAY, "periodic", compliance=lambda f, q: f(q).T),
+        Broken("whole numbers", ARRAY, compliance=lambda f, q: np.ceil(f(q)).astype(int)),
         Broken("values in a list", Taken("it is as good"), compliance=lambda f, q: f(q).tolist()),
         Broken("looks at all waves", ONCE, compliance=lambda f, q: f(q) * (1 + 1e-9 * q / q.max())),
-        Broken(
-            "grows until it overflows",
-            Refused("compliance(q) grows with q"),
-            "periodic",
-            compliance=lambda f, q: np.where(q > 1e8, np.inf, q * 1e-12),
-        ),
+        Broken("overflows", GROWS, "periodic", compliance=lambda f, q: 1e-12 * q**40),
     ],
     "compliance_leaves_its_argument": Broken(
-        "works in place",
-        Refused("changes what it is given", "it has to work on a copy", "kernels.py, line"),
-        compliance=lambda f, q: f(np.multiply(q, 2, out=q)),
+        "works in place", IN_PLACE, compliance=lambda f, q: f(np.multiply(q, 2, out=q))
     ),
     "compliance_is_positive_and_finite": [
-        bad("zero", 0.0),
-        bad("negative", -1e-8),
-        bad("nan", np.nan),
-        bad("infinite", np.inf),
-        Broken(
-            "nan at short waves", OTHERS, compliance=lambda f, q: np.where(q > 1e11, np.nan, f(q))
-        ),
+        *(bad(fault, value) for fault, value in (("zero", 0.0), ("nan", np.nan))),
+        hole("nan at a short wave", 1e12),
     ],
     "compliance_does_not_grow_for_short_waves": Broken(
-        "yields ever more to shorter waves",
-        Refused("compliance(q) grows with q", "has to fall, or to tend to a constant"),
-        "periodic",
-        compliance=lambda f, q: q * 1e-12,
+        "softer to shorter waves", GROWS, "periodic", compliance=lambda f, q: q * 1e-12
     ),
     "periodic_operator_is_the_compliance": [
-        Broken(
-            "masked values",
-            Refused("compliance(q) returned a masked array"),
-            compliance=lambda f, q: np.ma.masked_array(f(q), q > np.median(q)),
-        ),
+        Broken("masked", ARRAY, compliance=lambda f, q: np.ma.masked_array(f(q), q > np.median(q))),
         Broken(
             "single precision for many waves",
             Taken("seven digits are enough"),
             compliance=lambda f, q: f(q) if q.size < 300 else np.float64(np.float32(f(q))),
         ),
-        Broken(
-            "mean compliance in words",
-            Refused("mean_compliance() returned 'infinite'", "a real number"),
-            "periodic",
-            mean_compliance=lambda f: "infinite",
-        ),
+        Broken("mean in words", MEAN, "periodic", mean_compliance=lambda f: "infinite"),
     ],
     "periodic_run_converges": hole("nan at a wave of one grid", np.sqrt(2) * 2e3 * np.pi),
     "free_run_converges": hole("nan at a wave of one preconditioner", 1.5e3 * np.pi),
@@ -159,20 +128,14 @@ BROKEN: dict[str, Any] = {
         greens_function=lambda f, r: 1e-5 / r,
     ),
     "closed_form_leaves_its_argument": form(
-        "closed form works in place",
-        Refused("changes what it is given", "it has to work on a copy"),
-        greens_function=lambda f, r: f(np.multiply(r, 2, out=r)),
+        "form in place", IN_PLACE, greens_function=lambda f, r: f(np.multiply(r, 2, out=r))
     ),
     "primitive_is_the_integral_of_the_closed_form": [
         form("primitive too large", AGREE, radial_primitive=lambda f, r: 1.01 * f(r)),
         form(
             "shifted form", Taken("differences enter"), radial_primitive=lambda f, r: f(r) + 1e-12
         ),
-        form(
-            "closed form of half the value",
-            Refused("radial_primitive(r) grows by", "greens_function(r)", "they have to agree"),
-            greens_function=lambda f, r: 0.5 * f(r),
-        ),
+        form("form of half the value", DISAGREE, greens_function=lambda f, r: 0.5 * f(r)),
     ],
     "closed_form_is_the_transform_of_the_compliance": [
         form(
@@ -193,11 +156,7 @@ BROKEN: dict[str, Any] = {
         relaxing("relaxes in no time", BRANCHES, branches=lambda f: ((0.5, 0.0),)),
     ],
     "scaled_by_one_is_the_kernel": [
-        relaxing(
-            "relaxes when it is scaled",
-            ANOTHER,
-            scaled=lambda f, share: Relaxing(reduced_modulus=f(share).reduced_modulus),
-        ),
+        relaxing("relaxes on", ANOTHER, scaled=lambda f, share: Relaxing(reduced_modulus=1e4)),
         relaxing("softer when scaled by one", ANOTHER, scaled=lambda f, share: f(0.99 * share)),
     ],
     "scaled_stiffens_the_solid_alone": relaxing(

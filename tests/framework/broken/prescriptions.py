@@ -55,18 +55,13 @@ def target(fault: str, words: str, method: Any) -> Broken:
 
 
 CALLS = count(1)
+DECLARED = Refused("report() returned {", "a dict of broken, as its variables declare")
+FAILED = Refused("division by zero", "prescription 'broken' failed", error=ZeroDivisionError)
+OWN = Taken("a step asks once, and a run cannot tell what a value means")
 BROKEN: dict[str, Any] = {
     "report_is_as_declared": [
-        Broken(
-            "report that is not declared",
-            Refused("report() returned {", "a dict of broken, as its variables declare"),
-            report=lambda f, *given: f(*given) | {"other": 1.0},
-        ),
-        Broken(
-            "report in words",
-            Refused("report()['broken'] returned 'about 1 mm³'", "a real number"),
-            report=lambda f, *given: {"broken": "about 1 mm³"},
-        ),
+        Broken("not declared", DECLARED, report=lambda f, *given: f(*given) | {"other": 1.0}),
+        Broken("in words", Refused("a real number"), report=lambda *_: {"broken": "about 1 mm³"}),
         *(variable(name, "the name of another variable") for name in ("force", "status", "x")),
         *(variable(name, "not a name") for name in ("a/b", "")),
     ],
@@ -76,19 +71,10 @@ BROKEN: dict[str, Any] = {
         target("infinite depth", ".value is inf; it has to be finite", lambda *_: pl.Depth(np.inf)),
         target("pull", ".value is -1; it has to be finite and ≥ 0", lambda *_: pl.Force(-1.0)),
         target("stiff spring", ".compliance is -1", lambda *_: pl.Depth(0.0, -1.0)),
-        target("resolution", ".resolution is -1", searches(resolution=-1.0)),
         target("search for a name", "a function as measure", searches(measure="area")),
         target("search by a number", "control = Depth or Force", searches(control=float)),
-        Broken(
-            "fails",
-            Refused("division by zero", "prescription 'broken' failed", error=ZeroDivisionError),
-            target=lambda f, setting, value: value / 0,
-        ),
-        Broken(
-            "searches for another volume every time",
-            Taken("a step asks once"),
-            target=lambda f, setting, value: f(setting, value * (1 + 1e-9 * next(CALLS))),
-        ),
+        Broken("fails", FAILED, target=lambda f, setting, value: value / 0),
+        Broken("moves on", OWN, target=lambda f, _, v: f(_, v * (1 + 1e-9 * next(CALLS)))),
     ],
     "values_are_refused_in_words": Broken(
         "knows no 0", Taken("it is not zero"), target=lambda f, s, value: f(s, 1 / (1 / value))
@@ -98,9 +84,7 @@ BROKEN: dict[str, Any] = {
         Broken("searches for what falls", Marked("CONTACT_AT_EDGE"), target=falling),
     ],
     "step_has_what_is_prescribed": Broken(
-        "means twice the volume",
-        Taken("a run cannot tell what its value means"),
-        target=lambda f, setting, value: f(setting, min(0.6 * value, value)),
+        "means another volume", OWN, target=lambda f, setting, value: f(setting, 0.6 * value)
     ),
 }
 PRESCRIPTIONS = Family(Volume, {}, {"run": _run}, ("run",), BROKEN)

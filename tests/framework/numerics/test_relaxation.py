@@ -94,14 +94,6 @@ def test_path_of_straight_lines_is_exact(
     np.testing.assert_allclose(pressure, expected, rtol=0, atol=1e-11 * STIFFNESS)
 
 
-@pytest.mark.parametrize("number", [1, 2, 7, 100])
-def test_relaxation_at_a_displacement_is_exact_at_any_step(number: int) -> None:
-    """After a jump the pressure is k₀ E(t), whatever the steps."""
-    times = np.linspace(0.0, 10.0, number + 1)
-    pressure = path(press_bare, SLS, times, np.ones_like(times))
-    np.testing.assert_allclose(pressure, STIFFNESS * (0.2 + 0.8 * np.exp(-times / 2)), rtol=1e-13)
-
-
 def creep(stepper: Stepper, skin: float, number: int) -> float:
     """Return the displacement at t = 5 s under 1 Pa from t = 0, by ``number`` equal steps."""
     memory, displacement = Memory.at_rest(SLS, (1, 1)), np.zeros((1, 1))
@@ -179,10 +171,3 @@ def test_liquid_resists_a_long_step_by_its_viscosity() -> None:
     branches = tuple(Branch(0.1, 1.0) for _ in range(10))
     assert TimeStep.of(branches, 1e9).stiffness == pytest.approx(1e-9, rel=1e-12)
     assert TimeStep.of(LIQUID, 1e9).stiffness == pytest.approx((0.7 + 6.0) / 1e9, rel=1e-7)
-
-
-def test_small_shares_are_elastic() -> None:
-    """Branches of no share leave nothing behind."""
-    branches = (Branch(1e-12, 1.0),)
-    memory = Memory.at_rest(branches, (1, 1)).after(TimeStep.of(branches, 0.0), np.ones((1, 1)))
-    assert abs(left_behind(memory, TimeStep.of(branches, 1.0)).item()) < 1e-11

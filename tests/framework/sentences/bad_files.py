@@ -50,6 +50,7 @@ HUGE = {"descr": "<f8", "fortran_order": False, "shape": (10**9, 10**9)}
 BYTES = {
     "start.toml": START.encode(),
     "sticky.toml": STICKY.encode(),
+    "vary.toml": f"{START}[study.vary]\n'kernel.tension' = [0, '10 mN/m']\n".encode(),
     "syntax.toml": b"title = 'a'\n[grid]\npoints = \n",
     "key_twice.toml": b"a = 1\na = 2\n",
     "table_twice.toml": b"[grid]\na = 1\n[b]\n[grid]\nb = 2\n",

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from pellicle.errors import ConfigError
 from pellicle_plugins.analytic.hertz import ellipse, sphere
 
 R, E = 1.5e-3, 2.0e4
@@ -56,21 +55,8 @@ def test_surface_follows_the_ellipsoid(ratio: float) -> None:
     assert curvature_y == pytest.approx(1 / (2 * ratio * R), rel=1e-8)
 
 
-def test_swapped_radii_swap_the_axes() -> None:
-    """The larger semi-axis lies along the larger radius of curvature."""
-    one, two = ellipse(R, 2 * R, E, depth=1e-5), ellipse(2 * R, R, E, depth=1e-5)
-    assert one.semi_x < one.semi_y
-    assert (one.semi_x, one.semi_y, one.force) == (two.semi_y, two.semi_x, two.force)
-
-
 def test_given_force_returns_given_depth() -> None:
     """Depth → force → depth closes, for sphere and ellipse."""
     assert sphere(R, E, force=sphere(R, E, depth=1e-5).force).depth == pytest.approx(1e-5)
     force = ellipse(R, 2 * R, E, depth=1e-5).force
     assert ellipse(R, 2 * R, E, force=force).depth == pytest.approx(1e-5)
-
-
-def test_two_given_quantities_are_refused() -> None:
-    """Depth and force together are an error that names both."""
-    with pytest.raises(ConfigError, match="depth, force"):
-        sphere(R, E, depth=1e-5, force=1.0)

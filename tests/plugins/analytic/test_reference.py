@@ -11,8 +11,8 @@ import xarray as xr
 
 import pellicle as pl
 from pellicle.arrays import Array
-from pellicle_plugins.analytic.axisymmetric import indent
 from pellicle_plugins.analytic.reference import contact, exact, exact_line
+from tests.plugins.outputs.shared import bead
 
 
 @pytest.mark.parametrize(
@@ -26,12 +26,7 @@ from pellicle_plugins.analytic.reference import contact, exact, exact_line
 )
 def test_reference_of_each_prescription(prescribed: str, value: float, what: str) -> None:
     """The reference has the prescribed value, and there is none at zero."""
-    run = pl.Run(
-        grid={"points": 8, "size": "0.5 mm"},
-        kernel={"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "10 mN/m"},
-        indenter={"type": "paraboloid", "radius": "1 mm"},
-        loading={prescribed: [0.0, value]},
-    )
+    run = pl.Run(**bead(loading={prescribed: [0.0, value]}))
     result = xr.Dataset(attrs={"configuration": run.to_json()})
     assert contact(result, 1) is None
     expected = 1e-4 if prescribed == "contact_area" else value
@@ -55,14 +50,6 @@ class Quartic(pl.Indenter):
         return 32 / 3 * x**3 / self.length**3
 
 
-def test_body_of_a_stranger_has_a_reference() -> None:
-    """Depth and force without tension are those of Sneddon, 8a⁴/3L³ and 64 E* a⁵/15L³."""
-    a = 2e-4
-    solution = indent(Quartic(), 1e4, 0.0, contact_radius=a)
-    assert solution.depth == pytest.approx(8 / 3 * a**4 / 1e-9, rel=1e-10)
-    assert solution.force == pytest.approx(2 * 1e4 * 4 / 5 * 8 / 3 * a**5 / 1e-9, rel=1e-10)
-
-
 def test_run_with_a_stranger_s_body(monkeypatch: pytest.MonkeyPatch) -> None:
     """An indenter with an Abel transform has a reference in a run, whatever its type is called."""
     run = pl.Run(
@@ -75,20 +62,21 @@ def test_run_with_a_stranger_s_body(monkeypatch: pytest.MonkeyPatch) -> None:
     solution = contact(xr.Dataset(attrs={"configuration": run.to_json()}), 1)
     assert solution is not None
     assert solution.reduced_modulus == pytest.approx(1e4)
-    assert solution.depth == pytest.approx(8 / 3 * 2e-4**4 / 1e-9, rel=1e-9)
+    # Those of Sneddon, 8a⁴/3L³ and 64 E* a⁵/15L³.
+    a = 2e-4
+    assert solution.depth == pytest.approx(8 / 3 * a**4 / 1e-9, rel=1e-9)
+    assert solution.force == pytest.approx(2 * 1e4 * 4 / 5 * 8 / 3 * a**5 / 1e-9, rel=1e-9)
 
 
-def test_only_what_the_equation_gives_is_its_solution() -> None:
+@pytest.fixture(scope="module")
+def result() -> pl.Result:
+    """Return a run without tension."""
+    kernel = {"type": "half_space", "reduced_modulus": "10 kPa"}
+    return pl.run(bead(kernel=kernel, loading={"depth": "10 um"}), progress=False)
+
+
+def test_only_what_the_equation_gives_is_its_solution(result: pl.Result) -> None:
     """No simulated number passes for the semi-analytic one, and those it has are the equation's."""
-    result = pl.run(
-        {
-            "grid": {"points": 16, "size": "0.5 mm"},
-            "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
-            "indenter": {"type": "paraboloid", "radius": "1 mm"},
-            "loading": {"depth": "10 um"},
-        },
-        progress=False,
-    )
     table = exact(pl.Runs.of_run(result.dataset)).table
     radius = table["contact_radius"].item()
     assert radius == pytest.approx(1e-4, rel=1e-9)
@@ -99,17 +87,8 @@ def test_only_what_the_equation_gives_is_its_solution() -> None:
     assert not {"patches", "major_axis_angle", "iterations"} & {*map(str, table.data_vars)}
 
 
-def test_numbers_along_a_line_are_the_equation_s() -> None:
+def test_numbers_along_a_line_are_the_equation_s(result: pl.Result) -> None:
     """An expression over a semi-analytic line has the equation's numbers, no simulated ones."""
-    result = pl.run(
-        {
-            "grid": {"points": 16, "size": "0.5 mm"},
-            "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
-            "indenter": {"type": "paraboloid", "radius": "1 mm"},
-            "loading": {"depth": "10 um"},
-        },
-        progress=False,
-    )
     line = exact_line(result.dataset.isel(step=0, y=8))
     assert line["contact_radius"].item() == pytest.approx(1e-4, rel=1e-9)
     share = line["contact_area"].item() / result.grid.area

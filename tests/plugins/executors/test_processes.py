@@ -175,15 +175,6 @@ def test_killed_worker_loses_its_own_task_only() -> None:
     assert "its worker died: SIGKILL" in str(outcomes[1])
 
 
-@posix
-def test_every_worker_killed_at_once() -> None:
-    """As many deaths as there are workers leave none, and the rest is carried out all the same."""
-    jobs = [Job(1), Job(1), Job(2)]
-    outcomes = [out for _, out in processes(workers=2).map(die_if_one, jobs, silence)]
-    assert 2 in outcomes
-    assert sum(isinstance(out, pl.PellicleError) for out in outcomes) == 2
-
-
 @pytest.mark.parametrize("threads", [1, 2])
 def test_linear_algebra_is_pinned(threads: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Workers are born with the limit, whatever the parent's is."""

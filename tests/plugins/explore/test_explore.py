@@ -52,7 +52,7 @@ def start() -> pl.Run:
 
 
 @contextmanager
-def serving(fill: Callable[[Document], None]) -> Iterator[str]:
+def serving(fill: Callable[[Document], object]) -> Iterator[str]:
     """Serve a page in another thread; yield its address."""
     started: queue.Queue[tuple[str, Callable[[], object]]] = queue.Queue()
 
@@ -185,7 +185,6 @@ class Page:
     def __init__(self, run: pl.Run, laid_over: pl.Curve | None = None) -> None:
         self.document = Document()
         self.explorer = Explorer(run, laid_over, self.document)
-        self.explorer.show()
 
     def rest(self) -> None:
         """Call what the page is to call until nothing is left to be solved or shown."""
@@ -424,16 +423,6 @@ def test_slider_and_field_follow_each_other(start: pl.Run) -> None:
     assert page.saved["kernel"]["tension"] == "7 mN/m"
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [("5 mN", "N/m"), ("-1 mN/m", "≥ 0"), ("", "unit"), ("nan", "finite"), ("much", "number")],
-)
-def test_a_bad_value_says_what_is_allowed(start: pl.Run, text: str, words: str) -> None:
-    """The message is that of the quantity."""
-    with pytest.raises(ValueError, match=words):
-        changed(configuration_of(start), next(controls(start)), text)
-
-
 def test_a_measured_curve_begins_at_its_contact_point(start: pl.Run, curve: Path) -> None:
     """All rows with numbers are shown, and the contact point can be shifted."""
     laid_over = measured.read(curve)
@@ -459,14 +448,6 @@ def test_one_curve_is_laid_over(tmp_path: Path, curve: Path) -> None:
     still.write_text("position [m],force [N]\n" + "1e-6,1e-9\n" * 9, encoding="utf-8")
     with pytest.raises(ConfigError, match="give a curve that moves"):
         measured.read(still)
-
-
-def test_no_application_reads_curves(curve: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is said, and what to do."""
-    monkeypatch.setattr("pellicle.applications.entry_points", lambda **_: ())
-    monkeypatch.delitem(vars(pl), "read_curves", raising=False)
-    with pytest.raises(ConfigError, match="--curve: needs an application that reads force curves"):
-        measured.read(curve)
 
 
 def answer(address: str, path: str, **headers: str) -> http.client.HTTPResponse:
@@ -496,37 +477,31 @@ def test_nobody_enters_without_the_token_or_by_another_name(address: str) -> Non
             assert answer(address, f"{token}{path}", Host=host).status == 404, host
 
 
-HANDSHAKE = {
-    "Connection": "Upgrade",
-    "Upgrade": "websocket",
-    "Sec-WebSocket-Version": "13",
-    "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==",
-    "Sec-WebSocket-Protocol": "bokeh, e30",
-}
-
-
 @pytest.mark.parametrize(
     "origin",
     [
-        "http://example.org",
-        "null",
-        "http://127.0.0.1",
-        "http://localhost:{}",
+        *("http://example.org", "null", "http://127.0.0.1", "http://localhost:{}"),
         "http://127.0.0.1.a.org:{}",
     ],
 )
 def test_pages_of_strangers_get_no_websocket(address: str, origin: str) -> None:
     """Even with the token: another port of this machine counts as the same site."""
     parts = urlsplit(address)
-    handshake = {**HANDSHAKE, "Origin": origin.format(parts.port)}
-    assert answer(address, f"{parts.path}/ws", **handshake).status == 403
-    own = {**HANDSHAKE, "Origin": f"http://{parts.netloc}"}
+    handshake = {
+        "Connection": "Upgrade",
+        "Upgrade": "websocket",
+        "Sec-WebSocket-Version": "13",
+        "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==",
+        "Sec-WebSocket-Protocol": "bokeh, e30",
+    }
+    stranger = {**handshake, "Origin": origin.format(parts.port)}
+    assert answer(address, f"{parts.path}/ws", **stranger).status == 403
+    own = {**handshake, "Origin": f"http://{parts.netloc}"}
     assert answer(address, "/ws", **own).status == 404
 
 
 @pytest.mark.parametrize(
-    "path",
-    ["/etc/passwd", "/static/../server/server.py", "/static/%2e%2e/server/server.py"],
+    "path", ["/etc/passwd", "/static/../server/server.py", "/static/%2e%2e/server/server.py"]
 )
 def test_no_file_of_the_machine_is_served(address: str, path: str) -> None:
     """Below the token there are the scripts of bokeh alone."""
@@ -554,7 +529,7 @@ def test_a_port_that_is_taken_is_said(address: str) -> None:
 def explorer(start: pl.Run, curve: Path) -> Iterator[str]:
     """Return the address of a running explorer."""
     laid_over = measured.read(curve)
-    with serving(lambda target: Explorer(start, laid_over, target).show()) as running:
+    with serving(lambda target: Explorer(start, laid_over, target)) as running:
         yield running
 
 

@@ -15,7 +15,6 @@ import h5py
 import numpy as np
 import pytest
 import xarray as xr
-from force_map import NAMES, recordings, truth
 from numpy.typing import NDArray
 from PIL import Image
 
@@ -23,6 +22,7 @@ import pellicle as pl
 from pellicle.errors import ConfigError
 from pellicle_fit.curves.curve import Axis
 from pellicle_fit.population.images import force_maps
+from pellicle_plugins.indenters.paraboloid import Paraboloid
 from tests.plugins.fit import instruments
 from tests.plugins.fit.conftest import skip_rivals
 from tests.plugins.fit.test_many import curve, save
@@ -30,13 +30,39 @@ from tests.plugins.fit.test_population import row
 
 COLUMNS, ROWS, BROKEN, EMPTY = 4, 3, 5, 10
 OPTIONS: dict[str, Any] = {"indenter": "paraboloid", "radius": "10 um", "progress": False}
+NAMES = "reduced_modulus", "tension", "contact_height"
+
+
+def truth(columns: int, rows: int) -> dict[str, NDArray[np.float64]]:
+    """Return the images that should be found: a stiff spot, a tension that grows, a wavy height."""
+    y, x = np.meshgrid(np.arange(rows) / rows, np.arange(columns) / columns, indexing="ij")
+    spot = np.exp(-((x - 0.5) ** 2 + (y - 0.4) ** 2) / 0.04)
+    return {
+        "reduced_modulus": 5e3 * (1 + 2 * spot),
+        "tension": 2e-3 * (1 + x),
+        "contact_height": -1e-6 * np.sin(3 * x) * y,
+    }
+
+
+def recordings(columns: int, rows: int) -> list[instruments.Recording]:
+    """Return what an instrument sees at each pixel, with noise of 0.3 %."""
+    random, grid = np.random.default_rng(7), instruments.Grid(columns, rows, pitch=0.5e-6)
+    bead, depth = Paraboloid(radius=10e-6), np.linspace(-0.5e-6, 1.5e-6, 60)
+    images = [truth(columns, rows)[name].ravel().tolist() for name in NAMES]
+    result = []
+    for number, (modulus, tension, height) in enumerate(zip(*images, strict=True)):
+        force = modulus * bead.force_curve(depth, 2 * tension / modulus).force
+        noise = 0.003 * force.max() * random.standard_normal(depth.size)
+        seen = instruments.record(depth - height, force, noise, spring_constant=0.05)
+        result.append(replace(seen, place=grid.place(number), grid=grid))
+    return result
 
 
 @pytest.fixture(scope="module")
 def mapped(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the folder of a map of 4 × 3 curves, one without contact and one empty, fitted."""
     folder = tmp_path_factory.mktemp("map")
-    curves = recordings(COLUMNS, ROWS, points=60)
+    curves = recordings(COLUMNS, ROWS)
     curves[BROKEN] = replace(curves[BROKEN], force=0 * curves[BROKEN].force)
     nothing = curves[EMPTY].force[:0]
     curves[EMPTY] = replace(curves[EMPTY], force=nothing, height=nothing)
@@ -99,7 +125,7 @@ def test_killed_and_resumed(mapped: Path) -> None:
 @pytest.mark.slow
 def test_places_as_text(tmp_path: Path) -> None:
     """Places may be texts with units, in a file of afmformats or in a table of files."""
-    curves = [replace(c, place=None, grid=None) for c in recordings(3, 1, points=60)]
+    curves = [replace(c, place=None, grid=None) for c in recordings(3, 1)]
     instruments.hdf5(tmp_path / "line.h5", *curves)
     with h5py.File(tmp_path / "line.h5", "r+") as file:
         for number, x in enumerate(("0 nm", "500 nm", "1 um")):

@@ -48,21 +48,6 @@ def _solve(indenter: dict[str, Any], points: int, **loading: object) -> pl.Resul
     )
 
 
-@pytest.mark.parametrize("points", [31, 32])
-@pytest.mark.parametrize(
-    "zero",
-    [
-        {"type": "scaled", "factor": 0, "part": ROUGH},
-        {"type": "scaled", "factor": 0, "part": {"type": "paraboloid", "radius": "1 mm"}},
-    ],
-)
-def test_zero_roughness_leaves_the_sphere(points: int, zero: dict[str, Any]) -> None:
-    """A sphere with roughness of no height is the sphere, to the last bit."""
-    sphere = {"type": "sphere", "radius": "1 mm"}
-    both = pl.indenter("sum", parts=[sphere, zero])
-    assert np.array_equal(_profile(both, points), _profile(_make(sphere), points))
-
-
 def test_run_of_sphere_and_zero_roughness_is_that_of_the_sphere() -> None:
     """Force and pressure are the sphere's own, to the last bit."""
     sphere = {"type": "sphere", "radius": "1 mm"}
@@ -133,15 +118,6 @@ def test_lowest_point_is_off_by_what_cells_hide() -> None:
         assert abs(_profile(both, points) - shared).max() < bound
 
 
-def test_heights_add_up_to_a_constant() -> None:
-    """A sum has the shape of its parts' heights added."""
-    parts: list[dict[str, Any]] = [{"type": "sphere", "radius": "1 mm"}, ROUGH, QUADRIC]
-    added = np.sum([_profile(_make(part)) for part in parts], axis=0)
-    difference = _profile(pl.indenter("sum", parts=parts)) - added
-    assert np.ptp(difference) < 1e-18
-    assert difference.mean() > 0
-
-
 def test_turned_quadric_gives_the_turned_result() -> None:
     """A quadric turned by 30° gives force and area of the quadric, and its contact turned."""
     turned = {"type": "rotated", "angle": "30 degree", "part": QUADRIC}
@@ -160,13 +136,6 @@ def _axis(data: Any) -> float:
     x, y = data["x"], data["y"]
     xx, yy, xy = (float((p * entry).sum()) for entry in (x * x, y * y, x * y))
     return float(np.arctan2(2 * xy, xx - yy) / 2 % pi)
-
-
-def test_turning_by_a_right_angle_swaps_the_axes() -> None:
-    """Turned by 90°, the radii of a quadric change places."""
-    turned = pl.indenter("rotated", angle="90 degree", part=QUADRIC)
-    swapped = pl.indenter("quadric", radius_x="4 mm", radius_y="1 mm")
-    assert _profile(turned) == pytest.approx(_profile(swapped), rel=1e-12)
 
 
 def test_shift_moves_the_result() -> None:

@@ -7,6 +7,7 @@ import pickle
 import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
+from typing import Literal
 
 import h5py
 import numpy as np
@@ -65,6 +66,31 @@ def test_row_with_words_is_refused(tmp_path: Path, row: str) -> None:
         pl.indenter("heights", path=tmp_path / "a.txt", unit="1 um")
 
 
+@pytest.mark.parametrize("floats", ["raise", "warn"])
+@pytest.mark.parametrize(("scale", "unit"), [(1e30, 1e90), (1e-30, 1e-90), (1e300, 1e90)])
+def test_heights_beyond_numbers(
+    scale: float, unit: float, floats: Literal["raise", "warn"]
+) -> None:
+    """Whatever overflows, or vanishes, names the indenter and asks for its units."""
+    run = {
+        "grid": {"points": 8, "size": "1 mm", "boundary": "periodic"},
+        "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
+        "indenter": {"type": "heights", "values": scale * np.eye(8), "unit": unit},
+        "loading": {"force": "1 uN"},
+    }
+    message = "^indenter: its heights .*check the units"
+    with np.errstate(over=floats), pytest.raises(pl.ConfigError, match=message):
+        pl.run(run, progress=False)
+
+
+@pytest.mark.parametrize("begin", ["Wyko ASCII Data File Format 0 0 1", "aISO-1.0"])
+def test_text_with_a_scale_of_its_own_is_a_topography(tmp_path: Path, begin: str) -> None:
+    """Its numbers are not in the unit that is given."""
+    (tmp_path / "a.txt").write_text(f"{begin}\n1 2 3\n4 5 6\n")
+    with pytest.raises(pl.ConfigError, match=r"a scale of its own; read it as 'topography'"):
+        pl.indenter("heights", path=tmp_path / "a.txt", unit="1 um")
+
+
 def test_one_of_several_arrays(tmp_path: Path) -> None:
     """``dataset`` names the array in an HDF5 file of several."""
     with h5py.File(tmp_path / "a.h5", "w") as file:
@@ -103,16 +129,10 @@ def test_recorded_array_is_asked_for_again() -> None:
 
 
 def test_array_is_copied() -> None:
-    """Changing the array afterwards does not change the indenter."""
+    """Changing the array afterwards, or a profile, does not change the indenter."""
     values = ROUGH.copy()
     indenter = pl.indenter("heights", values=values, unit=1)
     values[:] = 0
-    assert np.array_equal(_profile(indenter), ROUGH - ROUGH.max())
-
-
-def test_profile_is_not_shared() -> None:
-    """Changing a profile does not change the next one."""
-    indenter = pl.indenter("heights", values=ROUGH, unit=1)
     _profile(indenter)[:] = -1
     assert np.array_equal(_profile(indenter), ROUGH - ROUGH.max())
 
@@ -151,12 +171,6 @@ def test_file_or_array_but_not_both(tmp_path: Path) -> None:
     for given in ({}, {"path": tmp_path / "a.npy", "values": ROUGH}):
         with pytest.raises(pl.ConfigError, match="path: give either a file or"):
             pl.indenter("heights", unit=1, **given)
-
-
-def test_other_shape() -> None:
-    """Heights that do not fit the grid are refused with both shapes."""
-    with pytest.raises(pl.ConfigError, match=r"\(8, 6\).*\(6, 8\);.*set grid\.points = \[8, 6\]"):
-        _profile(pl.indenter("heights", values=ROUGH, unit=1), (6, 8))
 
 
 def _huge_npy(path: Path) -> None:
@@ -221,14 +235,6 @@ def test_array_that_does_not_fit_the_memory(
     monkeypatch.setattr(memory, "available", lambda: 50e6)
     with pytest.raises(pl.ConfigError, match=r"2000 × 2000 values needs about 0\.072 GB, and"):
         pl.indenter("heights", path=tmp_path / "a.npy", unit=1)
-
-
-def test_hdf5_without_values(tmp_path: Path) -> None:
-    """A dataset without a shape is refused like one of another."""
-    with h5py.File(tmp_path / "a.h5", "w") as file:
-        file["z"] = h5py.Empty("f8")
-    with pytest.raises(pl.ConfigError, match=r"^path: .* is of shape \(\); give a 2-D array"):
-        pl.indenter("heights", path=tmp_path / "a.h5", unit=1)
 
 
 def test_ends_with_the_domain() -> None:

@@ -10,7 +10,10 @@ from collections.abc import Sequence
 from decimal import Decimal, localcontext
 from typing import NamedTuple
 
-Matrix = list[list[Decimal]]
+import numpy as np
+from numpy.typing import NDArray
+
+Matrix = NDArray[np.object_]
 
 _DIGITS = 150
 
@@ -40,11 +43,11 @@ def stack_compliance(
     """
     with localcontext(prec=_DIGITS):
         q = Decimal(wavenumber)
-        surface = [[Decimal(0)] * 2 for _ in range(2)]
+        surface = _matrix([0, 0], [0, 0])
         if substrate is not None:
             mu, nu = _constants(substrate)
             diagonal, coupling = (1 - nu) / (mu * q), (2 * nu - 1) / (2 * mu * q)
-            surface = [[diagonal, coupling], [coupling, diagonal]]
+            surface = _matrix([diagonal, coupling], [coupling, diagonal])
         for layer in reversed(layers):
             mu, nu = _constants(layer)
             share, twice = nu / (1 - nu), 2 * mu * q
@@ -56,11 +59,10 @@ def stack_compliance(
                 [0, 0, 1, 0],
             )
             through = _exponential(upwards, q * Decimal(layer.thickness))
-            below = [[twice * value for value in row] for row in surface]
-            above = _product(through, [*below, *_matrix([1, 0], [0, 1])])
-            quotient = _product(above[:2], _inverse(above[2:]))
-            surface = [[value / twice for value in row] for row in quotient]
-        return float(surface[1][1])
+            above = through @ np.vstack([twice * surface, _matrix([1, 0], [0, 1])])
+            (p, o), (r, s) = above[2:]
+            surface = above[:2] @ _matrix([s, -o], [-r, p]) / (p * s - o * r) / twice
+        return float(surface[1, 1])
 
 
 def _constants(solid: Layer | HalfSpace) -> tuple[Decimal, Decimal]:
@@ -73,33 +75,12 @@ def _exponential(a: Matrix, x: Decimal) -> Matrix:
     """Return exp(ax) for (a² − 1)² = 0, as a cubic polynomial in a."""
     up, down = x.exp(), (-x).exp()
     cosh, sinh = (up + down) / 2, (up - down) / 2
-    square = _product(a, a)
-    one = _matrix(*([int(i == j) for j in range(4)] for i in range(4)))
-    even = _sum(one, square, cosh - x * sinh / 2, x * sinh / 2)
-    odd = _sum(one, square, sinh - (x * cosh - sinh) / 2, (x * cosh - sinh) / 2)
-    return _sum(even, _product(a, odd), Decimal(1), Decimal(1))
+    one, square = _matrix(*np.eye(4, dtype=int).tolist()), a @ a
+    even = (cosh - x * sinh / 2) * one + x * sinh / 2 * square
+    odd = (sinh - (x * cosh - sinh) / 2) * one + (x * cosh - sinh) / 2 * square
+    value: Matrix = even + a @ odd
+    return value
 
 
 def _matrix(*rows: Sequence[Decimal | int]) -> Matrix:
-    return [[Decimal(value) for value in row] for row in rows]
-
-
-def _sum(a: Matrix, b: Matrix, factor: Decimal, other: Decimal) -> Matrix:
-    return [
-        [factor * x + other * y for x, y in zip(row, second, strict=True)]
-        for row, second in zip(a, b, strict=True)
-    ]
-
-
-def _product(a: Matrix, b: Matrix) -> Matrix:
-    columns = list(zip(*b, strict=True))
-    return [
-        [sum((x * y for x, y in zip(row, column, strict=True)), Decimal(0)) for column in columns]
-        for row in a
-    ]
-
-
-def _inverse(a: Matrix) -> Matrix:
-    (p, q), (r, s) = a
-    determinant = p * s - q * r
-    return [[s / determinant, -q / determinant], [-r / determinant, p / determinant]]
+    return np.array([[Decimal(value) for value in row] for row in rows], dtype=object)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -67,31 +66,14 @@ def test_nested_fields_can_be_set(file: Path) -> None:
     ("change", "words"),
     [
         ("layers.1.thickness=0", "kernel.layers.1.thickness: 0 is not allowed; give a value > 0 m"),
-        ("layers.0.thickness='-1 um'", "kernel.layers.0.thickness: '-1 um' is not allowed"),
-        (
-            "layers.0.thickness='1 kPa'",
-            "kernel.layers.0.thickness: '1 kPa' is a pressure; give",
-        ),
-        ("layers.0.thickness=inf", "kernel.layers.0.thickness: inf is not finite"),
-        ("layers.0.youngs_modulus='inf Pa'", "kernel.layers.0.youngs_modulus: 'inf Pa' is not"),
-        ("layers.0.youngs_modulus=nan", "kernel.layers.0.youngs_modulus: nan is not finite"),
-        ("layers.0.youngs_modulus=0", "kernel.layers.0.youngs_modulus: 0 is not allowed"),
-        ("layers.0.poissons_ratio=0.51", "kernel.layers.0.poissons_ratio: 0.51 is not allowed"),
-        ("layers.1.poissons_ratio=-1", "kernel.layers.1.poissons_ratio: -1 is not allowed"),
-        ("layers.0.modulus=1", "kernel.layers.0.modulus: is not a field here; did you mean"),
         ("layers.0.reduced_modulus=1", "kernel.layers.0: two moduli; give exactly one"),
         ("layers.0={poissons_ratio=0.5,thickness=1}", "kernel.layers.0: no modulus; give"),
-        ("layers.0={youngs_modulus=1,poissons_ratio=0}", "kernel.layers.0.thickness: is missing"),
         ("layers.2.thickness=1", "kernel.layers has no entry 2; give one of its 2"),
         ("layers=[]", "kernel.layers: [] is not allowed; give a list of 1 or more"),
-        ("layers={}", "kernel.layers: {} is not allowed; give a list"),
         ("layers=[3]", "kernel.layers.0: 3 is not allowed; give a table"),
         ("substrate='stiff'", "kernel.substrate: 'stiff' is not allowed; give \"rigid\", or a"),
-        ("substrate=1", 'kernel.substrate: 1 is not allowed; give "rigid"'),
         ("substrate={}", "kernel.substrate.poissons_ratio: is missing"),
         ("substrate.thickness=1", "kernel.substrate.thickness: is not a field here"),
-        ("substrate.poissons_ratio=0.6", "kernel.substrate.poissons_ratio: 0.6 is not allowed"),
-        ("substrat='rigid'", "kernel.substrat: is not a field here; did you mean 'substrate'?"),
     ],
 )
 def test_a_message_names_the_nested_field(file: Path, change: str, words: str) -> None:
@@ -137,12 +119,11 @@ def test_a_study_varies_a_nested_field(file: Path) -> None:
         ("substrate", {"reduced_modulus": "1 kPa"}, False),
         ("layers", [], False),
         ("layers", [{"youngs_modulus": 1, "poissons_ratio": 0.1, "thickness": 0}], False),
-        ("layers", [{"youngs_modulus": 1, "poissons_ratio": 0.1, "thickness": 1, "q": 1}], False),
         ("layers", [{"youngs_modulus": 1, "poissons_ratio": 0.1, "thickness": 1}], True),
     ],
 )
 def test_the_schema_knows_the_nested_table(path: str, value: Any, valid: bool) -> None:
     """An editor marks what a run refuses."""
-    data = copy.deepcopy(tomllib.loads(TOML))
+    data = tomllib.loads(TOML)
     data["kernel"][path] = value
     assert Draft202012Validator(pl.schema()).is_valid(data) == valid

@@ -103,21 +103,6 @@ def test_a_stiff_surface_holds_the_solid() -> None:
     np.testing.assert_allclose(free / stiff, 4 * (1 - nu) ** 2 / (3 - 4 * nu), rtol=1e-8)
 
 
-def test_surface_stiffness_only_hinders() -> None:
-    """The compliance falls as κ_s grows, for every wave, and by a tenth at the most at ν = 0.3."""
-    rows = [gurtin_murdoch(0.3, surface_stiffness=k).compliance(Q) for k in (0, 1e-3, 1, 1e3)]
-    assert (np.diff(rows, axis=0) < 0).all()
-    assert (rows[-1] > rows[0] * (3 - 4 * 0.3) / (4 * (1 - 0.3) ** 2)).all()
-
-
-def test_bending_skin_without_bending_is_a_tensed_membrane() -> None:
-    """B = 0 leaves the tension, B = 0 and τ₀ = 0 the half-space."""
-    for tension in (0.0, TENSION):
-        skin = pl.kernel("bending_skin", reduced_modulus=1e4, tension=tension, bending=0)
-        known = pl.kernel("tensed_membrane", reduced_modulus=1e4, tension=tension)
-        np.testing.assert_allclose(skin.compliance(Q), known.compliance(Q), rtol=1e-14)
-
-
 def test_bending_carries_short_waves() -> None:
     """Far above q = (E*/2B)^⅓ it is the plate alone, G = 1/B q⁴; far below the solid."""
     skin = pl.kernel("bending_skin", reduced_modulus=1e4, bending=BENDING)
@@ -130,13 +115,13 @@ def test_bending_carries_short_waves() -> None:
 def test_coated_half_space_is_what_it_is_called() -> None:
     """On a half-space, a tension makes a tensed membrane, and bending a bending skin."""
     substrate = {"type": "half_space", "reduced_modulus": 1e4}
-    for tension, bending in ((TENSION, 0.0), (TENSION, BENDING), (0.0, BENDING)):
+    for tension, bending in ((0.0, 0.0), (TENSION, 0.0), (TENSION, BENDING), (0.0, BENDING)):
         coated = pl.kernel("coated", tension=tension, bending=bending, substrate=substrate)
         skin = pl.kernel("bending_skin", reduced_modulus=1e4, tension=tension, bending=bending)
         np.testing.assert_allclose(coated.compliance(Q), skin.compliance(Q), rtol=1e-13)
-    coated = pl.kernel("coated", tension=TENSION, substrate=substrate)
-    membrane = pl.kernel("tensed_membrane", reduced_modulus=1e4, tension=TENSION)
-    np.testing.assert_allclose(coated.compliance(Q), membrane.compliance(Q), rtol=1e-13)
+        if not bending:
+            membrane = pl.kernel("tensed_membrane", reduced_modulus=1e4, tension=tension)
+            np.testing.assert_allclose(skin.compliance(Q), membrane.compliance(Q), rtol=1e-14)
 
 
 def test_coats_add_up() -> None:

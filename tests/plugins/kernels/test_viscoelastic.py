@@ -63,16 +63,10 @@ def test_scaled_half_space_keeps_its_closed_form() -> None:
 
 def test_scaled_layer_has_no_closed_form() -> None:
     """A kernel without a Green's function in closed form does not get one by being scaled."""
-    scaled = viscoelastic(solid=LAYER).scaled(0.3)
+    solid = viscoelastic(solid=LAYER)
+    scaled = solid.scaled(0.3)
     assert not isinstance(scaled, HasClosedForm)
-    np.testing.assert_allclose(
-        scaled.compliance(Q), pl.kernel("bonded_layer", **_fields(LAYER, 0.3)).compliance(Q), 1e-13
-    )
-
-
-def _fields(table: dict[str, Any], factor: float) -> dict[str, Any]:
-    fields = {name: value for name, value in table.items() if name != "type"}
-    return fields | {"youngs_modulus": factor * table["youngs_modulus"]}
+    np.testing.assert_allclose(0.3 * scaled.compliance(Q), solid.compliance(Q), rtol=1e-13)
 
 
 @pytest.mark.parametrize("scale", [1e-12, 1.0, 1e6])
@@ -113,7 +107,7 @@ def test_power_law_spans_six_decades_unless_given() -> None:
 
 def coated(**fields: Any) -> Any:
     """Return a tensed skin on a solid that relaxes."""
-    return kernel_of("coated", tension="50 mN/m", substrate=viscoelastic(**fields))
+    return pl.kernel("coated", tension="50 mN/m", substrate=viscoelastic(**fields))
 
 
 @pytest.mark.parametrize("table", [HALF_SPACE, LAYER])
@@ -124,21 +118,13 @@ def test_skin_on_a_solid_that_relaxes_is_elastic(table: dict[str, Any]) -> None:
     assert kernel.without_skin() == kernel.substrate
     stiffness = 0.05 * Q**2 + 0.3 / kernel.substrate.compliance(Q)
     np.testing.assert_allclose(1 / kernel.scaled(0.3).compliance(Q), stiffness, rtol=1e-12)
-    twice = kernel_of("coated", tension="20 mN/m", substrate=kernel)
+    twice: Any = pl.kernel("coated", tension="20 mN/m", substrate=kernel)
     assert twice.without_skin() == kernel.substrate
     np.testing.assert_allclose(
         1 / twice.scaled(0.3).compliance(Q), stiffness + 0.02 * Q**2, rtol=1e-12
     )
-
-
-def kernel_of(type_: str, **fields: Any) -> Any:
-    """Return a kernel."""
-    return pl.kernel(type_, **fields)
-
-
-def test_skin_on_an_elastic_solid_has_no_branches() -> None:
-    """An elastic substrate stays one."""
-    assert kernel_of("coated", tension="50 mN/m", substrate=LAYER).branches() == ()
+    elastic: Any = pl.kernel("coated", tension="50 mN/m", substrate=table)
+    assert elastic.branches() == ()
 
 
 class Carried:
@@ -184,18 +170,12 @@ def test_full_contact_under_a_tensed_skin_is_exact_in_time() -> None:
             "sum to 1.1",
         ),
         ({"relaxation": [{"fraction": 0.7, "time": 0}]}, "relaxation.0.time"),
-        ({"relaxation": [{"fraction": 0.7, "time": "-1 s"}]}, "relaxation.0.time"),
-        ({"relaxation": [{"fraction": -0.1, "time": 1}]}, "relaxation.0.fraction"),
-        ({"relaxation": [{"fraction": 0.1, "time": "1 m"}]}, "is a length"),
-        ({"relaxation": []}, "relaxation"),
         ({"relaxation": None}, "neither of relaxation and power_law"),
         (
             {"relaxation": RELAXATION, "power_law": {"exponent": 0.2, "time": 1}},
             "both of relaxation and power_law",
         ),
         ({"power_law": {"exponent": 0.0, "time": 1}}, "power_law.exponent"),
-        ({"power_law": {"exponent": 1.0, "time": 1}}, "power_law.exponent"),
-        ({"power_law": {"exponent": 0.2, "time": 0}}, "power_law.time"),
         ({"power_law": {"exponent": 0.2, "time": 1, "shortest": 1e4}}, "begin before it ends"),
         (
             {"power_law": {"exponent": 0.99, "time": 1, "shortest": 1e-9, "longest": 1e6}},
@@ -224,14 +204,3 @@ def test_liquid_is_allowed(fractions: tuple[float, ...]) -> None:
     """Fractions that sum to 1 in decimals are a liquid."""
     kernel = viscoelastic(relaxation=[{"fraction": f, "time": 1} for f in fractions])
     assert TimeStep.of(kernel.branches(), 1e9).stiffness == pytest.approx(1e-9)
-
-
-def test_run_without_times_is_refused() -> None:
-    """A run would show the instantaneous response as if nothing relaxed."""
-    with pytest.raises(pl.ConfigError, match=r"loading\.time: is missing"):
-        pl.Run(
-            grid={"points": 16, "size": "1 mm", "boundary": "free"},
-            kernel=coated(),
-            indenter={"type": "paraboloid", "radius": "1 mm"},
-            loading={"depth": "10 um"},
-        )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import csv
 import struct
 import zlib
 from pathlib import Path
@@ -15,14 +14,16 @@ import pytest
 from matplotlib.figure import Figure
 
 import pellicle as pl
+from pellicle.report import vtk
 from pellicle_plugins.outputs.spectrum import Spectrum, _spectra
+from tests.plugins.outputs.shared import bead, rows
 
-OUTPUTS = (
+OUTPUTS = [
     {"type": "patches", "by": "step"},
     {"type": "distributions", "by": "step", "bins": 20},
     {"type": "spectrum", "by": "step"},
     {"type": "vtk"},
-)
+]
 ROUGH: dict[str, Any] = {
     "title": "rough",
     "grid": {"points": [32, 24], "size": ["1 mm", "0.75 mm"], "boundary": "periodic"},
@@ -35,9 +36,8 @@ ROUGH: dict[str, Any] = {
         "seed": 2,
     },
     "loading": {"mean_pressure": ["50 Pa", "100 Pa"]},
-    "outputs": list(OUTPUTS),
+    "outputs": OUTPUTS,
 }
-PUNCH = {"type": "flat_punch", "radius": "0.1 mm"}
 
 Left = tuple[Path, pl.Result]
 
@@ -47,12 +47,6 @@ def left(tmp_path_factory: pytest.TempPathFactory) -> Left:
     """Return the folder of a rough contact of two steps, and its result."""
     folder = tmp_path_factory.mktemp("rough")
     return folder, pl.run(ROUGH, directory=folder, progress=False, threads=1)
-
-
-def rows(path: Path, **which: str) -> list[dict[str, str]]:
-    """Return the rows of a table that have these texts."""
-    with path.open(newline="", encoding="utf-8") as file:
-        return [row for row in csv.DictReader(file) if which.items() <= row.items()]
 
 
 def column(table: list[dict[str, str]], name: str) -> np.ndarray:
@@ -157,8 +151,6 @@ def test_vtk_holds_surface_and_fields(left: Left) -> None:
 
 def test_vtk_of_more_than_a_block() -> None:
     """What is larger than a block of the file is cut, whether or not it comes out even."""
-    from pellicle.report import vtk
-
     for cells in (vtk.BLOCK // 8, vtk.BLOCK // 8 + 5, vtk.BLOCK // 4):
         values = np.arange(cells, dtype=float)
         array = Xml.Element("DataArray", type="Float64")
@@ -167,55 +159,12 @@ def test_vtk_of_more_than_a_block() -> None:
         assert np.array_equal(decoded(array), values)
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"loading": {"depth": 0}},
-        {
-            "indenter": PUNCH,
-            "grid": {"points": [1, 8], "size": "0.4 mm", "boundary": "periodic"},
-            "loading": {"depth": 1e-6},
-        },
-    ],
-    ids=["no contact", "punch with nothing beside it, one cell across"],
-)
-def test_odd_results(changes: dict[str, Any], tmp_path: Path) -> None:
-    """Results without contact, with infinite gaps or without width are drawn and written too."""
-    outputs = [{key: entry[key] for key in entry if key != "by"} for entry in OUTPUTS]
-    pl.run({**ROUGH, **changes, "outputs": outputs}, directory=tmp_path, progress=False)
-    assert {path.name for path in tmp_path.iterdir()} == {
-        *(f"rough-{name}.{end}" for name in ("patches", "spectrum") for end in ("png", "csv")),
-        *("rough-distributions.png", "rough-distributions.csv", "rough-0001.vts", "rough.pvd"),
-        "rough.h5",
-    }
-    has_indenter = bool(rows(tmp_path / "rough-spectrum.csv", series="indenter"))
-    assert has_indenter == (changes.get("indenter") is not PUNCH)
-
-
-@pytest.mark.parametrize(
-    ("fields", "message"),
-    [
-        ({"type": "patches", "connectivity": 5}, r"outputs.0.connectivity: 5.*Known: 4, 8"),
-        ({"type": "distributions", "bins": 0}, r"outputs.0.bins: 0.*≥ 1"),
-    ],
-)
-def test_wrong_fields_are_named(fields: dict[str, Any], message: str) -> None:
-    """A field that is wrong is refused with what is allowed."""
-    with pytest.raises(pl.ConfigError, match=message):
-        pl.Run(**{**ROUGH, "outputs": [fields]})
-
-
 def grids(*points: int) -> dict[str, Any]:
     """Return a study of nested grids, on which 2 + h^1.5 is extrapolated."""
     cell = "grid.size.0 / grid.points"
-    return {
-        "grid": {"points": 16, "size": "0.4 mm"},
-        "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
-        "indenter": {"type": "paraboloid", "radius": "1 mm"},
-        "loading": {"depth": "20 um"},
-        "outputs": [{"type": "curves", "x": cell, "y": f"2 + ({cell})**1.5", "extrapolate": True}],
-        "study": {"vary": {"grid.points": list(points)}},
-    }
+    curves = {"type": "curves", "x": cell, "y": f"2 + ({cell})**1.5", "extrapolate": True}
+    plan = {"vary": {"grid.points": list(points)}}
+    return bead(loading={"depth": "20 um"}, outputs=[curves], study=plan)
 
 
 def test_curves_are_extrapolated(tmp_path: Path) -> None:

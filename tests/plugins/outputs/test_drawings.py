@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import warnings
 from pathlib import Path
 from typing import Any, Literal
 
@@ -15,44 +13,26 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli.app import app
-from pellicle.errors import ConvergenceWarning
-from tests.pictures import drawn_width, pixels
+from tests.plugins.outputs.shared import bead, rows
 
 TENSION, RADIUS = "kernel.tension", "indenter.radius"
 
 
-def study(*outputs: dict[str, Any] | pl.Output, **derived: str) -> dict[str, Any]:
+def study(*outputs: dict[str, Any] | pl.Output) -> dict[str, Any]:
     """Return a small study of two tensions, two radii and two steps."""
-    return {
-        "grid": {"points": 16, "size": "0.4 mm"},
-        "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": 0.0},
-        "indenter": {"type": "paraboloid", "radius": "1 mm"},
-        "loading": {"depth": ["10 um", "15 um"]},
-        "outputs": list(outputs),
-        "study": {
-            "vary": {TENSION: [0.0, 1.0], RADIUS: ["1 mm", "2 mm"]},
-            **({"derived": derived} if derived else {}),
-        },
-    }
+    plan = {"vary": {TENSION: [0.0, 1.0], RADIUS: ["1 mm", "2 mm"]}}
+    return bead(outputs=list(outputs), study=plan, loading={"depth": ["10 um", "15 um"]})
 
 
-def rows(path: Path) -> list[dict[str, str]]:
-    """Return the numbers that were drawn."""
-    with path.open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
-def carried(folder: Path, *outputs: dict[str, Any] | pl.Output, **derived: str) -> xr.Dataset:
+def carried(folder: Path, *outputs: dict[str, Any] | pl.Output) -> xr.Dataset:
     """Return the table of the study, its outputs left in the folder."""
-    return pl.run_study(study(*outputs, **derived), folder, progress=False, threads=1)
+    return pl.run_study(study(*outputs), folder, progress=False, threads=1)
 
 
 def test_curves_are_mean_and_range_of_the_table(tmp_path: Path) -> None:
     """One curve for each tension, its points means over the radii, with lowest and highest."""
-    table = carried(
-        tmp_path,
-        {"type": "curves", "x": "depth", "y": "force", "by": TENSION, "over": RADIUS},
-    )
+    curves = {"type": "curves", "x": "depth", "y": "force", "by": TENSION, "over": RADIUS}
+    table = carried(tmp_path, curves)
     table_rows = rows(tmp_path / "study-curves.csv")
     for name, expected in (
         ("y", table["force"].mean("indenter_radius")),
@@ -94,35 +74,11 @@ class Failing(pl.Output):
 
 def test_an_output_that_fails_keeps_no_other_from_drawing(tmp_path: Path) -> None:
     """The one that fails is named by its place among the outputs."""
+    distributions = {"type": "distributions", "by": TENSION}
     with pytest.warns(UserWarning, match=r"^outputs\.1\.type: is not what it"):
-        table = carried(
-            tmp_path,
-            {"type": "maps"},
-            Failing(),
-            {"type": "distributions", "by": TENSION},
-        )
+        table = carried(tmp_path, {"type": "maps"}, Failing(), distributions)
     assert table["converged"].all()
-    assert drawn_width(tmp_path / "study-distributions.png") > 0.3
-
-
-def test_derived_columns_build_on_each_other_and_on_constants(tmp_path: Path) -> None:
-    """A derived column may name those before it, axes and numbers of the configuration."""
-    table = carried(tmp_path, s=f"2 * {TENSION} / kernel.reduced_modulus", s_over_r=f"s / {RADIUS}")
-    np.testing.assert_allclose(table["s_over_r"][1, 0], 2 * 1.0 / 1e4 / 1e-3, rtol=1e-14)
-    np.testing.assert_allclose(table["s_over_r"][1, 1], 2 * 1.0 / 1e4 / 2e-3, rtol=1e-14)
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("kernel.tensoin * 2", r"study.derived.s: 'kernel.tensoin'.*did you mean"),
-        ("force +", r"study.derived.s: .*not arithmetic"),
-    ],
-)
-def test_wrong_derived_columns_are_known_before_running(text: str, message: str) -> None:
-    """The study is refused, with the column's name."""
-    with pytest.raises(pl.ConfigError, match=message):
-        pl.Study.from_mapping(study(s=text))
+    assert (tmp_path / "study-distributions.png").exists()
 
 
 @pytest.mark.parametrize(
@@ -167,66 +123,11 @@ def test_a_reference_that_does_not_exist_is_refused_at_once(type_: str, tmp_path
 
 def test_fields_are_reduced_for_each_run(tmp_path: Path) -> None:
     """An expression over fields gives the number of each step."""
-    carried(
-        tmp_path,
-        {"type": "curves", "x": "depth", "y": "sum(pressure)", "by": TENSION, "over": RADIUS},
-    )
-    table = carried(tmp_path)
-    spacing = 0.4e-3 / 16
-    drawn = [float(row["y"]) * spacing**2 for row in rows(tmp_path / "study-curves.csv")]
-    np.testing.assert_allclose(
-        drawn, table["force"].mean("indenter_radius").values.ravel(), rtol=1e-12
-    )
-
-
-def test_semi_analytic_twin_is_only_of_what_has_one(tmp_path: Path) -> None:
-    """An indenter that is not axisymmetric is refused by name."""
-    run = study() | {
-        "indenter": {"type": "quadric", "radius_x": "1 mm", "radius_y": "2 mm"},
-        "outputs": [{"type": "curves", "reference": "axisymmetric"}],
-    }
-    del run["study"]
-    with pytest.raises(pl.ConfigError, match=r"'quadric'.*have no axisymmetric solution"):
-        pl.run(run, directory=tmp_path, progress=False)
-
-
-def test_map_of_nothing_finite_is_empty(tmp_path: Path) -> None:
-    """An expression that is infinite or NaN everywhere is drawn as an empty panel."""
-    run = {key: value for key, value in study().items() if key != "study"}
-    nowhere = {"type": "maps", "field": "1 / (0 * depth + 0 * pressure)"}
-    pl.run(run | {"outputs": [nowhere]}, directory=tmp_path, progress=False)
-    # Right of the panel is the bar of colours.
-    assert drawn_width(tmp_path / "run-maps.png", columns=(0, 0.7)) == 0
-    assert drawn_width(tmp_path / "run-maps.png", columns=(0.7, 1)) > 0
-
-
-def test_a_single_cell_has_no_waves_to_draw(tmp_path: Path) -> None:
-    """The figure and a table of no rows are there all the same."""
-    run = {
-        "grid": {"points": 1, "size": "1 mm"},
-        "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
-        "indenter": {"type": "flat_punch", "radius": "2 mm"},
-        "loading": {"depth": "1 um"},
-        "outputs": [{"type": "spectrum"}],
-    }
-    with warnings.catch_warnings():
-        # The contact reaches the edge of the domain.
-        warnings.simplefilter("ignore", ConvergenceWarning)
-        pl.run(run, directory=tmp_path, progress=False)
-    assert rows(tmp_path / "run-spectrum.csv") == []
-    image = pixels(tmp_path / "run-spectrum.png")
-    # A frame as wide as the figure, nearly, and nothing in it.
-    assert (image.max(axis=-1) < 0.2).mean(axis=1).max() > 0.7
-    assert drawn_width(tmp_path / "run-spectrum.png", columns=(0, 0.75)) == 0
-
-
-def test_logarithmic_axes_of_nothing_positive(tmp_path: Path) -> None:
-    """Curves through runs without contact are drawn, on axes that are not logarithmic."""
-    run = {key: value for key, value in study().items() if key not in ("study", "outputs")}
-    nothing = {"loading": {"depth": [0.0, 0.0]}}
-    curves = {"type": "curves", "log": ["x", "y"]}
-    pl.run(run | nothing | {"outputs": [curves]}, directory=tmp_path, progress=False)
-    assert [float(row["y"]) for row in rows(tmp_path / "run-curves.csv")] == [0.0, 0.0]
+    curves = {"type": "curves", "x": "depth", "y": "sum(pressure)", "by": TENSION, "over": RADIUS}
+    table = carried(tmp_path, curves)
+    drawn = [float(row["y"]) * (0.4e-3 / 16) ** 2 for row in rows(tmp_path / "study-curves.csv")]
+    force = table["force"].mean("indenter_radius").values.ravel()
+    np.testing.assert_allclose(drawn, force, rtol=1e-12)
 
 
 def test_a_run_of_fewer_steps_is_drawn_at_its_last(tmp_path: Path) -> None:

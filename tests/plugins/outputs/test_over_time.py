@@ -13,7 +13,6 @@ from matplotlib.figure import Figure
 
 import pellicle as pl
 from pellicle.plotting import drawings, study_curves
-from pellicle.report.fields import profile
 from pellicle.results.path import label_of_step
 from pellicle_plugins.outputs import html_curves
 
@@ -108,17 +107,6 @@ def test_profile_is_of_the_step_of_the_map(
     label = label_of_step(result.dataset, int(chosen), result.configuration)
     assert label in picture.caption
     assert picture.by_frame[int(chosen)].source == picture.source
-
-
-def test_profile_without_contact_is_through_the_centre(result: pl.Result) -> None:
-    """A step out of contact has no greatest pressure through which its line could go."""
-    assert not result.dataset["contact_area"][-1]
-    at = []
-    for step in (0, -1):
-        figure = Figure()
-        profile(result, figure.add_subplot(), step)
-        at.append(figure.axes[0].get_xlabel().partition("\n")[0])
-    assert at[0] == at[1]
 
 
 def test_page_has_a_line_of_time(folder: Path) -> None:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 import pytest
-from matplotlib.colors import to_hex, to_rgb
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 import pellicle as pl
@@ -17,59 +15,32 @@ from pellicle.report.fields import pressure_map
 from pellicle.report.lines import edge_cells
 from pellicle.report.plotting import study_curves
 from pellicle.report.saving import save_figure
-from pellicle.report.style import OKABE_ITO, FigureStyle, colour, is_log_spaced
+from pellicle.report.style import FigureStyle, is_log_spaced
 from tests.pictures import pixels
-
-RUN: dict[str, Any] = {
-    "title": "Print",
-    "grid": {"points": 32, "size": "0.4 mm"},
-    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "10 mN/m"},
-    "indenter": {"type": "paraboloid", "radius": "1 mm"},
-    "loading": {"depth": ["5 um", "10 um"]},
-}
-DPI = 150
+from tests.plugins.outputs.shared import bead
 
 
 @pytest.fixture(scope="module")
 def table() -> Any:
     """Return the table of a study of three tensions, a factor of ten apart."""
-    study = pl.Study(run=RUN, vary={"kernel.tension": ["1 mN/m", "10 mN/m", "100 mN/m"]})
+    study = pl.Study(run=bead(), vary={"kernel.tension": ["1 mN/m", "10 mN/m", "100 mN/m"]})
     return pl.run_study(study, progress=False)
 
 
-def _written(folder: Path, **style: Any) -> Path:
-    outputs = [{"type": "figures", "formats": ["png", "svg"], "style": style}]
-    pl.run({**RUN, "outputs": outputs}, directory=folder, progress=False)
-    return folder / "print-force_depth.png"
-
-
-def _texts(path: Path) -> list[str]:
-    return [text for text in ET.parse(path).getroot().itertext() if text.strip()]
-
-
-@pytest.mark.parametrize("width", [85, 170])
-def test_width(width: int, tmp_path: Path) -> None:
-    """A figure has the width of a column of a journal, text as text, and smaller letters."""
-    path = _written(tmp_path, width=f"{width} mm")
-    assert pixels(path).shape[1] == pytest.approx(width / 25.4 * DPI, abs=1)
-    svg = path.with_suffix(".svg")
-    assert "depth [µm]" in _texts(svg)
-    assert "font-size: 8px" in svg.read_text(encoding="utf-8")
-
-
-def test_paths_in_svg(tmp_path: Path) -> None:
-    """Text becomes paths where it is not to depend on the fonts of the reader."""
-    svg = _written(tmp_path, svg_text=False).with_suffix(".svg")
-    assert "<text" not in svg.read_text(encoding="utf-8")
-
-
-def test_style_file(tmp_path: Path) -> None:
-    """A style file of matplotlib applies; width and font size go before it."""
-    file = tmp_path / "lab.mplstyle"
-    file.write_text("axes.facecolor: ff0000\nfont.size: 20\n")
-    path = _written(tmp_path, file=file, font_size=9)
-    assert (pixels(path) == (1.0, 0.0, 0.0)).all(axis=-1).mean() > 0.2
-    assert "font-size: 9px" in path.with_suffix(".svg").read_text(encoding="utf-8")
+def test_for_print(tmp_path: Path) -> None:
+    """A column of a journal wide, letters as asked for, text or paths, and colours of a style."""
+    (tmp_path / "lab.mplstyle").write_text("axes.facecolor: ff0000\nfont.size: 20\n")
+    style = {"width": "85 mm", "font_size": 9, "file": tmp_path / "lab.mplstyle"}
+    figures = {"type": "curves", "formats": ["png", "svg"], "style": style}
+    paths = {"type": "curves", "name": "paths", "formats": ["svg"], "style": {"svg_text": False}}
+    pl.run(bead(outputs=[figures, paths]), directory=tmp_path, progress=False)
+    image = pixels(tmp_path / "run-curves.png")
+    assert image.shape[1] == pytest.approx(85 / 25.4 * 150, abs=1)
+    assert (image == (1.0, 0.0, 0.0)).all(axis=-1).mean() > 0.2
+    svg = (tmp_path / "run-curves.svg").read_text(encoding="utf-8")
+    assert "font-size: 9px" in svg
+    assert "depth [µm]" in svg
+    assert "<text" not in (tmp_path / "run-paths.svg").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("content", [None, "font.size: large-ish\n", "\x80"])
@@ -87,18 +58,7 @@ def test_bad_widths(width: object) -> None:
     """Bare numbers are metres, of which no page has 85."""
     output = {"type": "figures", "style": {"width": width}}
     with pytest.raises(pl.ConfigError, match=r"style\.width"):
-        pl.Run(**RUN, outputs=[output])
-
-
-def test_colours_of_ordered_values_get_lighter() -> None:
-    """In grey too, each curve is lighter than the one before; other values have the cycle."""
-    with FigureStyle().applied():
-        greys = [
-            np.dot(to_rgb(colour(k, 6, ordered=True)), (0.299, 0.587, 0.114)) for k in range(6)
-        ]
-        assert (np.diff(greys) > 0.05).all()
-        assert [to_hex(colour(k, 7)).upper() for k in range(7)] == list(OKABE_ITO)
-    assert mpl.rcParams["axes.prop_cycle"].by_key()["color"][0] != OKABE_ITO[0]
+        pl.Run(**bead(outputs=[output]))
 
 
 def test_legend_has_colours_and_markers_of_the_lines(table: Any) -> None:
@@ -125,24 +85,20 @@ def test_legends_leave_curves_free(tmp_path: Path) -> None:
         axes = figure.add_subplot()
         x = np.linspace(0, 60, 4000)
         axes.plot(x, np.sin(x), label="a long name of a curve")
-        legends.append((axes, axes.legend(), figure))
+        legends.append((axes, axes.legend()))
 
     save_figure(draw, tmp_path / "a", ["png"])
-    axes, legend, _ = legends[0]
+    axes, legend = legends[0]
     assert legend.get_window_extent().x0 > axes.get_window_extent().x1
 
 
-def test_no_contact_is_grey_and_the_bar_is_as_high_as_the_map() -> None:
+def test_no_contact_is_grey() -> None:
     """Cells without contact are not those of the lowest pressure."""
-    figure = Figure(layout="constrained")
-    axes = figure.add_subplot()
-    pressure_map(pl.run(RUN, progress=False), axes)
-    figure.draw_without_rendering()
+    axes = Figure().add_subplot()
+    pressure_map(pl.run(bead(), progress=False), axes)
     assert to_hex(axes.get_facecolor()) == to_hex("0.93")
     shown: Any = axes.images[0].get_array()
     assert np.ma.getmaskarray(shown).mean() > 0.3
-    (bar,) = axes.child_axes
-    assert bar.get_window_extent().height == pytest.approx(axes.get_window_extent().height)
 
 
 def test_edge_cells() -> None:

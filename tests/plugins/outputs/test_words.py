@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
-from contextlib import contextmanager
-from html.parser import HTMLParser
+from html import unescape
 from pathlib import Path
 from typing import Any
 
@@ -26,11 +24,12 @@ from pellicle_fit.many import fit_sources
 from pellicle_fit.report.page import save_report
 from pellicle_plugins.outputs.base import scaled
 from tests.plugins.fit.conftest import skip_rivals
+from tests.plugins.outputs.shared import bead
 
-RUN: dict[str, Any] = {
-    "title": "Layer under a skin",
-    "grid": {"points": 16, "size": "0.4 mm"},
-    "kernel": {
+PAGES: list[dict[str, Any]] = [{"type": "figures"}, {"type": "html"}]
+LAYER = bead(
+    title="Layer under a skin",
+    kernel={
         "type": "coated",
         "tension": "30 mN/m",
         "substrate": {
@@ -40,85 +39,96 @@ RUN: dict[str, Any] = {
             "thickness": "0.1 mm",
         },
     },
-    "indenter": {"type": "paraboloid", "radius": "1 mm"},
-    "loading": {"depth": ["5 um", "10 um"], "stiffness": True},
-    "corrections": [{"type": "yastrebov"}],
-    "solver": {"type": "active_set"},
-}
-OUTPUTS: list[dict[str, Any]] = [
-    {"type": "figures"},
-    {"type": "html"},
-    {"type": "curves", "y": ["contact_area", "contact_area_yastrebov"]},
-    {"type": "curves", "name": "ratio", "y": "mean_contact_pressure / kernel.tension ** 2"},
-    {"type": "profiles", "by": "step"},
-    {"type": "profiles", "name": "product", "y": "pressure * grid.size.0 / semi_major_axis"},
-    {"type": "maps", "by": "step", "field": "gap"},
-    {"type": "patches", "by": "step"},
-    {"type": "distributions", "by": "step"},
-    {"type": "spectrum", "by": "step"},
-]
-VARIED = {
-    "kernel.tension": ["0.9 N/m", "1.1 N/m"],
-    "kernel.substrate.thickness": ["50 um", "0.1 mm"],
-    "indenter": [
-        {"type": "paraboloid", "radius": "1 mm"},
-        {"type": "cone", "half_angle": "85 degree"},
+    loading={"depth": ["5 um", "10 um"], "stiffness": True},
+    corrections=[{"type": "yastrebov"}],
+    solver={"type": "active_set"},
+    outputs=[
+        *PAGES,
+        {"type": "curves", "y": ["contact_area", "contact_area_yastrebov"]},
+        {"type": "curves", "name": "ratio", "y": "mean_contact_pressure / kernel.tension ** 2"},
+        {"type": "profiles", "by": "step"},
+        {"type": "profiles", "name": "product", "y": "pressure * grid.size.0 / semi_major_axis"},
+        {"type": "maps", "by": "step", "field": "gap"},
+        {"type": "patches", "by": "step"},
+        {"type": "distributions", "by": "step"},
+        {"type": "spectrum", "by": "step"},
     ],
+)
+STUDY = LAYER | {
+    "loading": {"depth": "10 um"},
+    "outputs": [
+        *PAGES,
+        {"type": "profiles", "by": "kernel.substrate.thickness"},
+        {"type": "maps", "by": "indenter"},
+        {"type": "distributions", "by": "kernel.tension"},
+    ],
+    "study": {
+        "vary": {
+            "kernel.tension": ["0.9 N/m", "1.1 N/m"],
+            "kernel.substrate.thickness": ["50 um", "0.1 mm"],
+            "indenter": [
+                {"type": "paraboloid", "radius": "1 mm"},
+                {"type": "cone", "half_angle": "85 degree"},
+            ],
+        }
+    },
 }
+STICKING = bead(
+    grid={"points": 24, "size": "20 um"},
+    indenter={"type": "paraboloid", "radius": "20 um"},
+    interaction={"type": "linear", "work_of_adhesion": "0.5 mJ/m^2", "range": "0.3 um"},
+    loading={"depth": {"start": "0.2 um", "stop": "0.6 um", "num": 3, "back": True}},
+    outputs=PAGES,
+)
+RELAXING = bead(
+    kernel={
+        "type": "viscoelastic",
+        "solid": {"type": "half_space", "reduced_modulus": "10 kPa"},
+        "relaxation": [{"fraction": 0.5, "time": "1 s"}],
+    },
+    loading={
+        "depth": [
+            {"to": "10 um", "time": "1 s", "num": 2},
+            {"amplitude": "1 um", "frequency": "1 Hz", "cycles": 1, "num": 8},
+        ]
+    },
+    outputs=PAGES,
+)
+WORDS = {
+    "layer": "step 2;gap [µm];contact area, Yastrebov correction;contact area [mm²]",
+    "study": "surface tension 1.1 N/m;thickness of the substrate 50 µm;indenter cone;[mm²]",
+    "sticking": "work of adhesion",
+    "relaxing": "storage stiffness K′",
+}
+"""Words of figures or pages, with their units."""
 
 
-@contextmanager
-def texts_drawn(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
-    """Collect the texts of all artists of each figure, as it is saved."""
-    drawn: list[str] = []
+@pytest.fixture
+def drawn(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Return the list to which the texts of each figure are added as it is saved."""
+    texts: list[str] = []
 
     def saved(self: Figure, *_: Any, **__: Any) -> None:
         # Ticks get their labels when they are drawn; layout and rendering take most of the time.
         self.set_layout_engine("none")
         self.draw_without_rendering()
-        drawn.extend(text.get_text() for text in self.findobj(Text))
+        texts.extend(text.get_text() for text in self.findobj(Text))
 
-    with monkeypatch.context() as patch:
-        patch.setattr(Figure, "savefig", saved)
-        yield drawn
-
-
-class Visible(HTMLParser):
-    """The text of a page that a reader sees, without code to be typed."""
-
-    def __init__(self, page: str) -> None:
-        super().__init__()
-        self.hidden: list[str] = []
-        self.texts: list[str] = []
-        self.feed(page)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Enter code, style or script."""
-        if tag in ("code", "pre", "style", "script"):
-            self.hidden.append(tag)
-
-    def handle_endtag(self, tag: str) -> None:
-        """Leave it."""
-        if self.hidden and tag == self.hidden[-1]:
-            self.hidden.pop()
-
-    def handle_data(self, data: str) -> None:
-        """Keep a text."""
-        if not self.hidden:
-            self.texts.append(data)
+    monkeypatch.setattr(Figure, "savefig", saved)
+    return texts
 
 
-def labels_of_maps(page: str) -> list[str]:
-    """Return the texts that the script of a page shows: names and labels of maps."""
-    shown = re.findall(r'<script type="application/json"[^>]*>(.*?)</script>', page, re.DOTALL)
-    scripts = [json.loads(data) for data in shown]
-    maps = [data for data in scripts if "fields" in data]
-    pictures = [picture for data in scripts for picture in data.get("pictures", ())]
-    return [
-        *(picture[text] for picture in pictures for text in ("caption", "description")),
-        *(field["name"] for data in maps for field in data["fields"]),
-        *(frame["label"] for data in maps for frame in data["frames"]),
-    ]
+def visible(page: str) -> list[str]:
+    """Return what a reader of a page sees, in maps too, without code to be typed."""
+    shown = []
+    for data in re.findall(r'(?s)<script type="application/json"[^>]*>(.*?)</script>', page):
+        data = json.loads(data)
+        pictures = data.get("pictures", ())
+        shown += [picture[key] for picture in pictures for key in ("caption", "description")]
+        shown += [field["name"] for field in data.get("fields", ())]
+        shown += [frame["label"] for frame in data.get("frames", ()) if "fields" in data]
+    hidden = r"(?s)<(code|pre|style|script)\b.*?</\1>|<[^>]*>"
+    return shown + unescape(re.sub(hidden, "\n", page)).splitlines()
 
 
 def keys(texts: list[str], configuration: dict[str, Any]) -> set[str]:
@@ -135,141 +145,58 @@ def keys(texts: list[str], configuration: dict[str, Any]) -> set[str]:
     return named | rest
 
 
-@pytest.fixture(scope="module")
-def drawn(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[list[str], Path, Path]]:
-    """Return all texts of the figures of a run and of a study, and their folders."""
-    run, study = tmp_path_factory.mktemp("run"), tmp_path_factory.mktemp("study")
-    with pytest.MonkeyPatch.context() as monkeypatch, texts_drawn(monkeypatch) as texts:
-        pl.run({**RUN, "outputs": OUTPUTS}, directory=run, progress=False, threads=1)
-        outputs = [
-            *OUTPUTS[:2],
-            {"type": "profiles", "by": "kernel.substrate.thickness"},
-            {"type": "maps", "by": "indenter"},
-            {"type": "distributions", "by": "kernel.tension"},
-        ]
-        plan = {**RUN, "outputs": outputs, "study": {"vary": VARIED}}
-        plan |= {"loading": {"depth": "10 um"}, "grid": {"points": 24, "size": "0.4 mm"}}
-        pl.run_study(plan, study, progress=False, threads=1)
-        yield texts, run, study
-
-
-@pytest.mark.slow
-def test_no_figure_has_a_key(drawn: tuple[list[str], Path, Path]) -> None:
-    """Whatever is drawn of a run or a study is in words."""
-    texts, *_ = drawn
-    assert len(texts) > 500
-    assert keys(texts, RUN) == set()
-
-
-def test_no_page_has_a_key(drawn: tuple[list[str], Path, Path]) -> None:
-    """Nor has the visible text of a page, besides the file to reproduce it."""
-    _, *folders = drawn
-    for folder in folders:
-        (path,) = folder.glob("*.html")
-        page = path.read_text(encoding="utf-8")
-        texts = [*Visible(page).texts, *labels_of_maps(page)]
-        assert "surface tension" in texts
-        assert keys(texts, RUN) == set()
-
-
-STICKING: dict[str, Any] = {
-    "grid": {"points": 24, "size": "20 um"},
-    "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
-    "indenter": {"type": "paraboloid", "radius": "20 um"},
-    "interaction": {"type": "linear", "work_of_adhesion": "0.5 mJ/m^2", "range": "0.3 um"},
-    "loading": {"depth": {"start": "0.2 um", "stop": "0.6 um", "num": 3, "back": True}},
-    "outputs": [{"type": "figures"}, {"type": "html"}],
-}
-RELAXING: dict[str, Any] = {
-    "grid": {"points": 24, "size": "20 um"},
-    "kernel": {
-        "type": "viscoelastic",
-        "solid": {"type": "half_space", "reduced_modulus": "10 kPa"},
-        "relaxation": [{"fraction": 0.5, "time": "1 s"}],
-    },
-    "indenter": {"type": "paraboloid", "radius": "20 um"},
-    "loading": {
-        "depth": [
-            {"to": "0.5 um", "time": "1 s", "num": 2},
-            {"amplitude": "50 nm", "frequency": "1 Hz", "cycles": 1, "num": 8},
-        ]
-    },
-    "outputs": [{"type": "figures"}, {"type": "html"}],
-}
-
-
 # Cells of a quick test are wide for the zone; what is drawn is not less.
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::pellicle.ConvergenceWarning")
 @pytest.mark.parametrize(
-    ("run", "word"),
-    [(STICKING, "work of adhesion"), (RELAXING, "storage stiffness K′")],
-    ids=["adhesion", "oscillation"],
+    ("name", "run"),
+    [("layer", LAYER), ("study", STUDY), ("sticking", STICKING), ("relaxing", RELAXING)],
 )
-def test_adhesion_and_time_are_in_words(run: dict[str, Any], word: str, tmp_path: Path) -> None:
-    """Figures and pages with a path that sticks, or with times and an oscillation, have no key."""
-    with pytest.MonkeyPatch.context() as monkeypatch, texts_drawn(monkeypatch) as texts:
-        pl.run(run, directory=tmp_path, progress=False, threads=1)
-    page = next(tmp_path.glob("*.html")).read_text(encoding="utf-8")
-    shown = [*Visible(page).texts, *labels_of_maps(page)]
-    assert len(texts) > 50
-    assert word in " ".join(shown)
-    assert keys([*texts, *shown], run) == set()
+def test_no_figure_or_page_has_a_key(
+    name: str, run: dict[str, Any], drawn: list[str], tmp_path: Path
+) -> None:
+    """Whatever is drawn of a run or a study, or written on its page, is in words with units."""
+    (pl.run_study if "study" in run else pl.run)(run, directory=tmp_path, progress=False, threads=1)
+    (page,) = tmp_path.glob("*.html")
+    assert len(drawn) > 50
+    drawn += visible(page.read_text(encoding="utf-8"))
+    assert keys(drawn, run) == set()
+    for word in WORDS[name].split(";"):
+        assert any(word in text for text in drawn), word
 
 
 @pytest.mark.slow
-def test_fits_and_populations_are_in_words(tmp_path: Path) -> None:
+def test_fits_and_populations_are_in_words(
+    drawn: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Nor have figures and pages of one curve, a pool and a population, nor what notebooks show."""
-    bead, random = pl.indenter("sphere", radius="5 um"), np.random.default_rng(2)
+    sphere, random = pl.indenter("sphere", radius="5 um"), np.random.default_rng(2)
     depth = np.linspace(-0.5e-6, 1.5e-6, 120)
     curves = {}
     for name, modulus in (("a", 2e3), ("b", 3e3)):
-        force = modulus * bead.force_curve(depth, 3e-6).force  # type: ignore[attr-defined]
+        force = modulus * sphere.force_curve(depth, 3e-6).force  # type: ignore[attr-defined]
         curves[name] = depth, force + 0.01 * force.max() * random.standard_normal(depth.size)
-    config = pl.FitConfig(indenter=bead, poissons_ratio=0.5)
-    one = pl.fit(*curves["a"], indenter=bead, poissons_ratio=0.5)
-    with pytest.MonkeyPatch.context() as monkeypatch:
+    config = pl.FitConfig(indenter=sphere, poissons_ratio=0.5)
+    one = pl.fit(*curves["a"], indenter=sphere, poissons_ratio=0.5)
+    with monkeypatch.context() as patch:
         # The words of rivals are those of one curve.
-        skip_rivals(monkeypatch)
+        skip_rivals(patch)
         fits = fit_sources(config, SourceStream(config.files(curves)), None, progress=False)
-        pool = pl.fit_pooled(curves, indenter=bead, poissons_ratio=0.5, progress=False)
-    shown = []
-    with pytest.MonkeyPatch.context() as monkeypatch, texts_drawn(monkeypatch) as texts:
-        for fit in (one, pool, fits):
-            page = save_report(fit, tmp_path / "fit.html", "Beads").read_text(encoding="utf-8")
-            shown += [*Visible(page).texts, *Visible(fit._repr_html_()).texts]
-    text = " ".join(shown)
-    assert len(texts) > 100
+        pool = pl.fit_pooled(curves, indenter=sphere, poissons_ratio=0.5, progress=False)
+    for fit in (one, pool, fits):
+        page = save_report(fit, tmp_path / "fit.html", "Beads").read_text(encoding="utf-8")
+        drawn += [*visible(page), *visible(fit._repr_html_())]
+    text = "\n".join(drawn)
+    assert len(drawn) > 100
     assert "2 of 2 curves were fitted. Median: Young's modulus" in text
     assert "Fit of 2 curves" in text
-    assert keys([*texts, *shown], {}) == set()
+    assert keys(drawn, {}) == set()
 
 
 def test_the_walk_finds_keys() -> None:
     """A key among the texts is found, so that the tests above can fail."""
     texts = ["kernel.tension = 1 N/m", "mean_pressure [Pa]", "surface tension 30 mN/m", "force [N]"]
-    assert keys(texts, RUN) == {"kernel.tension", "mean_pressure"}
-
-
-def test_labels_are_words_with_units(drawn: tuple[list[str], Path, Path]) -> None:
-    """Curves, panels, axes and colours are named; values along an axis are in one unit."""
-    texts, *_ = drawn
-    for text in (
-        "surface tension 0.9 N/m",
-        "surface tension 1.1 N/m",
-        "thickness of the substrate 50 µm",
-        "thickness of the substrate 100 µm",
-        "indenter cone",
-        "contact area, Yastrebov correction",
-        "contact area [mm²]",
-        "[mm²]",
-        "Yastrebov correction",
-        "mean contact pressure / surface tension²",
-        "pressure · domain size along x / major semi-axis",
-        "step 2",
-        "gap [µm]",
-    ):
-        assert text in texts or any(text in other for other in texts), text
+    assert keys(texts, LAYER) == {"kernel.tension", "mean_pressure"}
 
 
 def coordinate(values: list[float], unit: str, name: str = "odd.thing") -> xr.DataArray:

@@ -7,30 +7,34 @@ for round-off; each bound stands next to what was measured.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import cache
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
 import pytest
 
-from pellicle import ConfigError, Grid, Kernel, Problem, Solver, State, Stop
+import pellicle as pl
+from pellicle import ConfigError, Grid, Kernel, Problem, Stop
 from pellicle.numerics.problem import Depth, Force
 from pellicle.operators import Array, make_operator
-from pellicle.problem import Equilibrium, measure
-from pellicle_plugins.indenters.self_affine import SelfAffine
-from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
+from pellicle_plugins.kernels.bending_skin import BendingSkin
 from pellicle_plugins.solvers.active_set import ActiveSet, ContactHistory
 from pellicle_plugins.solvers.conjugate_gradient import ConjugateGradient
 from pellicle_plugins.solvers.contact_cg import inner_solve
 from pellicle_plugins.solvers.preconditioner import Preconditioner
+from tests.plugins.solvers.problems import (
+    BOUNDARIES,
+    Boundary,
+    Prescribed,
+    Shape,
+    Solved,
+    make,
+    paraboloid,
+    rough,
+    skin,
+    solve,
+)
 
-Boundary = Literal["free", "periodic"]
-Prescribed = Literal["depth", "force"]
-Shape = Callable[[Array, Array], Array]
-
-BOUNDARIES: list[Boundary] = ["free", "periodic"]
 TENSIONS = [0.0, 0.02, 1.0]
 TIGHT = 1e-10
 
@@ -45,104 +49,14 @@ class Graded(Kernel):
         return q**-0.5
 
 
-class Winkler(Kernel):
-    """Springs: k = 1."""
-
-    type: Literal["winkler"] = "winkler"
-
-    def compliance(self, q: Array) -> Array:
-        """Return 1."""
-        return np.ones_like(q)
+def plate(bending: float, s: float = 0.02) -> BendingSkin:
+    """Return a half-space with a skin that is tensed and stiff in bending."""
+    return BendingSkin(reduced_modulus=1.0, tension=s / 2, bending=bending)
 
 
-class Layer(Kernel):
-    """A layer on a rigid base without friction: k = (q/2)(sinh 2x + 2x)/(cosh 2x − 1), x = qh."""
-
-    type: Literal["layer"] = "layer"
-    thickness: float
-
-    def compliance(self, q: Array) -> Array:
-        """Return 1/k; numerator and denominator times 2 exp(−2x), which do not overflow."""
-        x = q * self.thickness
-        bottom = 4 * x * np.exp(-2 * x) - np.expm1(-4 * x)
-        return np.asarray(2 / q * np.expm1(-2 * x) ** 2 / bottom)
-
-
-class Plate(Kernel):
-    """Half-space with a skin that is tensed and stiff in bending: k = q/2 + s q²/2 + B q⁴."""
-
-    type: Literal["plate"] = "plate"
-    elastocapillary_length: float = 0.02
-    bending: float
-
-    def compliance(self, q: Array) -> Array:
-        """Return 1/k."""
-        return 1 / (q / 2 + self.elastocapillary_length / 2 * q**2 + self.bending * q**4)
-
-
-class Incompressible(Kernel):
-    """Layer with ν = ½ bonded to a rigid base: k = (q/2)(cosh t + t²/2 + 1)/(sinh t − t)."""
-
-    type: Literal["incompressible"] = "incompressible"
-    thickness: float
-
-    def compliance(self, q: Array) -> Array:
-        """Return 1/k with t = 2qh; sinh t − t from its series where it cancels."""
-        t = np.minimum(2 * q * self.thickness, 600)
-        u = np.minimum(t, 0.5)
-        series = u**3 / 6 * (1 + u**2 / 20 * (1 + u**2 / 42 * (1 + u**2 / 72)))
-        return 2 / q * np.where(t < 0.5, series, np.sinh(t) - t) / (np.cosh(t) + t**2 / 2 + 1)
-
-
-@dataclass(frozen=True)
-class Solved:
-    """What a solver found, and what it took."""
-
-    equilibrium: Equilibrium
-    applications: int
-    stop: Stop
-
-    @property
-    def residual(self) -> float:
-        """The largest of the fresh residuals."""
-        equilibrium = self.equilibrium
-        return max(
-            equilibrium.residual_contact,
-            equilibrium.residual_penetration,
-            equilibrium.residual_complementarity,
-            equilibrium.residual_load,
-        )
-
-
-def skin(s: float) -> TensedMembrane:
-    """Return a half-space of elastocapillary length ``s``."""
-    return TensedMembrane(reduced_modulus=1.0, tension=s / 2)
-
-
-def make(
-    points: tuple[int, int] | int,
-    boundary: Boundary,
-    kernel: Kernel,
-    shape: Shape,
-    prescribed: Prescribed,
-    value: float,
-    size: tuple[float, float] = (1.0, 1.0),
-) -> Problem:
-    """Return a problem; its profile is ``shape`` at the cell centres."""
-    grid = Grid(points=points, size=size, boundary=boundary)
-    profile = np.array(np.broadcast_to(shape(*grid.coordinates()), grid.shape))
-    control = Depth(value) if prescribed == "depth" else Force(value)
-    return Problem(grid, make_operator(kernel, grid), profile, control)
-
-
-def solve(problem: Problem, solver: Solver, start: Array | None = None) -> Solved:
-    """Return what a solver finds, measured afresh."""
-    before = problem.operator.applications
-    state = None if start is None else State(start, start, 0.0)
-    solution = solver.solve(problem, state, lambda iteration, excess: None)
-    applications = problem.operator.applications - before
-    assert solution.pressure.min() >= 0
-    return Solved(measure(problem, solution.pressure), applications, solution.stop)
+def layer(kind: str, thickness: float) -> Kernel:
+    """Return an incompressible layer of modulus 1 on a rigid base."""
+    return pl.kernel(kind, reduced_modulus=1.0, poissons_ratio=0.5, thickness=thickness)
 
 
 def active_set(problem: Problem, tolerance: float = TIGHT, start: Array | None = None) -> Solved:
@@ -166,11 +80,6 @@ def assert_agrees(problem: Problem, tolerance: float = TIGHT, pressure: float = 
     return solved
 
 
-def paraboloid(x: Array, y: Array) -> Array:
-    """Return a paraboloid of radius 1."""
-    return -(x**2 + y**2) / 2
-
-
 def sphere(x: Array, y: Array) -> Array:
     """Return a sphere of radius 0.4; nothing is beyond its equator."""
     below = 0.4**2 - x**2 - y**2
@@ -185,17 +94,6 @@ def punch(x: Array, y: Array) -> Array:
 def flat(x: Array, y: Array) -> Array:
     """Return a plane that ends where the domain does."""
     return 0.0 * x * y
-
-
-def rough(cutoff: float, seed: int = 1) -> Shape:
-    """Return a self-affine surface of rms height 0.01."""
-    return SelfAffine(rms_height=0.01, hurst=0.8, cutoff_wavelength=cutoff, seed=seed).profile
-
-
-def rms_slope(problem: Problem) -> float:
-    """Return the rms slope of a profile, by central differences."""
-    slopes = np.gradient(problem.profile, *problem.grid.spacing)
-    return float(np.sqrt(np.mean(slopes[0] ** 2 + slopes[1] ** 2)))
 
 
 # --- Small and large contacts ----------------------------------------------------------------
@@ -214,10 +112,6 @@ def test_depth_that_does_not_touch(boundary: Boundary, points: int) -> None:
     assert just.needs_solving
     equilibrium = active_set(just).equilibrium
     assert np.count_nonzero(equilibrium.contact) == 4
-    assert (
-        measure(replace(problem, control=Depth(0.999 * lowest)), np.zeros(problem.grid.shape)).force
-        == 0
-    )
 
 
 @pytest.mark.parametrize("boundary", BOUNDARIES)
@@ -252,7 +146,7 @@ def test_full_contact_on_a_periodic_boundary(s: float, excess: float) -> None:
     mean = -excess * float(shape.min())
     solved = active_set(replace(problem, control=Force(mean)), tolerance=1e-9)
     assert solved.equilibrium.contact.all()
-    np.testing.assert_allclose(solved.equilibrium.pressure, shape + mean, atol=1e-7 * mean)
+    np.testing.assert_allclose(solved.pressure, shape + mean, atol=1e-7 * mean)
     assert solved.equilibrium.depth == pytest.approx(-problem.profile.mean(), rel=1e-9)
 
 
@@ -292,28 +186,35 @@ def test_contact_everywhere_at_first() -> None:
     for s in (0.0, 0.2, 2.0, 2e3):
         problem = make((4, 3), "periodic", skin(s), lambda x, y: heights, "depth", 0.48, (4.0, 1.5))
         start = np.ones(problem.grid.shape)
-        expected = assert_agrees(problem).equilibrium.pressure
-        pressure = active_set(problem, start=start).equilibrium.pressure
+        expected = assert_agrees(problem).pressure
+        pressure = active_set(problem, start=start).pressure
         np.testing.assert_allclose(pressure, expected, atol=1e-8 * expected.max())
 
 
 # --- Shapes of the contact -------------------------------------------------------------------
 
+
+def peaks(lower: float) -> Shape:
+    """Return two peaks, of which one is lower than the other."""
+
+    def shape(x: Array, y: Array) -> Array:
+        one, other = ((x - at) ** 2 + (y - at) ** 2 for at in (0.3, -0.3))
+        return np.asarray(np.maximum(-5 * one, -5 * other - lower))
+
+    return shape
+
+
+def pillars(x: Array, y: Array) -> Array:
+    """Return pillars of one cell, which the next coarser grid does not see."""
+    every = np.logical_and.outer(np.arange(x.size) % 4 == 0, np.arange(y.size) % 4 == 0)
+    return np.where(every, paraboloid(x, y), -np.inf)
+
+
 ISLANDS: dict[str, tuple[Shape, Prescribed, float]] = {
-    "two alike": (
-        lambda x, y: np.maximum(
-            -((x - 0.3) ** 2 + (y - 0.3) ** 2) * 5, -((x + 0.3) ** 2 + (y + 0.3) ** 2) * 5
-        ),
-        "force",
-        1e-4,
-    ),
-    "two unlike": (
-        lambda x, y: np.maximum(
-            -((x - 0.3) ** 2 + (y - 0.3) ** 2) * 5, -((x + 0.3) ** 2 + (y + 0.3) ** 2) * 5 - 1e-4
-        ),
-        "force",
-        1e-4,
-    ),
+    "two alike": (peaks(0.0), "force", 1e-4),
+    "two unlike": (peaks(1e-4), "force", 1e-4),
+    "pillars at a depth": (pillars, "depth", 0.1),
+    "pillars under a force": (pillars, "force", 0.1),
     "egg box": (
         lambda x, y: 0.01 * (np.cos(8 * np.pi * x) * np.cos(8 * np.pi * y) - 1),
         "depth",
@@ -339,21 +240,6 @@ def test_islands(
     assert_agrees(make(points, boundary, skin(s), shape, prescribed, value))
 
 
-@pytest.mark.parametrize("boundary", BOUNDARIES)
-def test_two_asperities_far_apart_share_the_force(boundary: Boundary) -> None:
-    """Two equal asperities are symmetric; the higher of two takes all of a small force."""
-    alike, _, force = ISLANDS["two alike"]
-    pressure = active_set(
-        make(96, boundary, skin(0.01), alike, "force", force)
-    ).equilibrium.pressure
-    np.testing.assert_allclose(pressure, pressure[::-1, ::-1], atol=1e-8 * pressure.max())
-    unlike, _, _ = ISLANDS["two unlike"]
-    pressure = active_set(
-        make(96, boundary, skin(0.01), unlike, "force", 1e-8)
-    ).equilibrium.pressure
-    assert not pressure[:48].any()
-
-
 @pytest.mark.parametrize("s", TENSIONS)
 @pytest.mark.parametrize("points", [40, 97])
 @pytest.mark.parametrize("shape", [sphere, punch])
@@ -362,20 +248,7 @@ def test_indenter_that_ends(s: float, points: int, shape: Shape) -> None:
     for boundary in BOUNDARIES:
         for force in (0.1, 3.0):
             solved = assert_agrees(make(points, boundary, skin(s), shape, "force", force))
-            assert not solved.equilibrium.pressure[~np.isfinite(solved.equilibrium.gap)].any()
-
-
-def test_pillars_that_no_coarse_cell_holds() -> None:
-    """Pillars of one cell, which the next coarser grid does not see, are pressed all the same."""
-
-    def pillars(x: Array, y: Array) -> Array:
-        every = np.logical_and.outer(np.arange(x.size) % 4 == 0, np.arange(y.size) % 4 == 0)
-        return np.where(every, paraboloid(x, y), -np.inf)
-
-    controls: list[tuple[Prescribed, float]] = [("depth", 0.1), ("force", 0.1)]
-    for prescribed, value in controls:
-        problem = make(64, "free", skin(0.02), pillars, prescribed, value)
-        assert_agrees(problem)
+            assert not solved.pressure[~np.isfinite(solved.equilibrium.gap)].any()
 
 
 # --- Grids -----------------------------------------------------------------------------------
@@ -451,10 +324,10 @@ def test_extreme_tensions(boundary: Boundary, ratio: float) -> None:
 
 KERNELS: dict[str, tuple[Kernel, int]] = {
     "graded": (Graded(), 25),  # measured 14 … 17
-    "winkler": (Winkler(), 25),  # 12 … 15
-    "thick layer": (Layer(thickness=0.1), 30),  # 17 … 20
-    "thin layer": (Layer(thickness=0.01), 25),  # 13 … 17
-    "plate": (Plate(bending=1e-5), 28),  # 19 … 23
+    "winkler": (pl.kernel("winkler", foundation=1.0), 25),  # 12 … 15
+    "thick layer": (layer("frictionless_layer", 0.1), 30),  # 17 … 20
+    "thin layer": (layer("frictionless_layer", 0.01), 25),  # 13 … 17
+    "plate": (plate(1e-5), 28),  # 19 … 23
 }
 
 
@@ -472,7 +345,7 @@ def test_other_kernels(kernel: Kernel, most: int, points: int) -> None:
 @pytest.mark.parametrize("points", [64, 128, 256])
 def test_applications_on_a_stiff_plate(points: int) -> None:
     """A plate so stiff that the reference stalls on it costs the same on each finer grid."""
-    stiff = Plate(bending=1e-3)
+    stiff = plate(1e-3)
     controls: list[tuple[Prescribed, float]] = [("force", 1e-2), ("depth", 0.015)]
     for prescribed, value in controls:
         on_rough = make(points, "periodic", stiff, rough(16 / points), prescribed, value)
@@ -486,7 +359,7 @@ def test_applications_on_a_stiff_plate(points: int) -> None:
 def test_plates_on_cells_of_one_to_three(shape: tuple[int, int], bending: float) -> None:
     """Cells that are not square cost no more."""
     for boundary in BOUNDARIES:
-        problem = make(shape, boundary, Plate(bending=bending), rough(0.25), "force", 1e-2)
+        problem = make(shape, boundary, plate(bending), rough(0.25), "force", 1e-2)
         assert active_set(problem).applications <= 32  # 3 … 27
 
 
@@ -516,16 +389,15 @@ def test_line_contact_of_a_plate(across: float) -> None:
     """On a line of cells, whatever its size across: waves touched at their crests and all over."""
     for bending, force in ((1e-5, 1e-3), (1e-3, 1e-3), (1e-3, 3.0)):
         size = (1.0, across)
-        plate = Plate(bending=bending)
-        problem = make((256, 1), "periodic", plate, waves(6, 2), "force", force * across, size)
+        skin = plate(bending)
+        problem = make((256, 1), "periodic", skin, waves(6, 2), "force", force * across, size)
         assert active_set(problem).applications <= 6  # 3 … 5
 
 
 @pytest.mark.parametrize("seed", [13, 30, 56])
 def test_a_single_cell_in_contact_sees_what_penetrates_elsewhere(seed: int) -> None:
     """A plate that rests on its highest point first is taken to rest on another."""
-    stiff = Plate(elastocapillary_length=0.0, bending=1.0)
-    problem = make(16, "periodic", stiff, rough(1 / 6, seed), "force", 1e-2)
+    problem = make(16, "periodic", plate(1.0, s=0.0), rough(1 / 6, seed), "force", 1e-2)
     contact = assert_agrees(problem).equilibrium.contact
     assert contact.sum() == 1
     assert problem.profile[contact] == problem.profile.max()
@@ -544,32 +416,26 @@ def test_a_contact_that_all_cells_have_left_is_joined_by_what_penetrates() -> No
 
 
 def test_history_counts_contacts_that_come_back_until_fewer_are_wrong() -> None:
-    """Four contacts, of which the third is the first again."""
+    """It makes progress as long as each contact has fewer wrong cells than any before."""
     first, second = np.eye(4, dtype=bool), np.eye(4, dtype=bool)[::-1]
-    history = ContactHistory().after(first, 5).after(second, 5)
+    history = ContactHistory().after(first, 5)
+    assert history.after(second, 4).makes_progress
+    history = history.after(second, 5)
     assert history.returns == 0
-    assert history.after(first, 4).returns == 0
+    assert not history.makes_progress
+    assert history.after(first, 4).makes_progress
     again = history.after(first, 5)
     assert again.returns == 1
+    assert not again.makes_progress
     assert again.after(second, 5).returns == 1
     assert again.after(first, 5).returns == 2
-    assert again.after(~first, 4).returns == 0
-
-
-def test_history_makes_progress_until_no_fewer_are_wrong() -> None:
-    """As long as each contact has fewer wrong cells than any before."""
-    first, second = np.eye(4, dtype=bool), np.eye(4, dtype=bool)[::-1]
-    assert ContactHistory().makes_progress
-    assert ContactHistory().after(first, 5).after(second, 4).makes_progress
-    assert not ContactHistory().after(first, 5).after(second, 5).makes_progress
-    assert not ContactHistory().after(first, 5).after(first, 5).makes_progress
-    assert ContactHistory().after(first, 5).after(second, 5).after(~first, 4).makes_progress
+    assert again.after(~first, 4).makes_progress
 
 
 @pytest.mark.parametrize("boundary", BOUNDARIES)
 def test_an_inner_solve_may_end_at_a_share_of_its_error(boundary: Boundary) -> None:
     """Sooner than at its goal, once the gap has shrunk to that share of what it was."""
-    problem = make(32, boundary, Plate(bending=1e-5), paraboloid, "depth", 0.05)
+    problem = make(32, boundary, plate(1e-5), paraboloid, "depth", 0.05)
     on_contact = Preconditioner(problem.operator).on(problem.profile > -0.02)
     before = float((problem.profile + 0.05)[on_contact.contact].max())
     applications = []
@@ -602,14 +468,6 @@ def test_tolerance_near_round_off(boundary: Boundary, prescribed: Prescribed) ->
             assert solved.applications <= 3000
 
 
-def test_iteration_limit_is_told() -> None:
-    """Too few iterations end as such, with a pressure that is not negative."""
-    problem = make(33, "free", skin(0.02), paraboloid, "force", 1e-3)
-    solved = solve(problem, ActiveSet(tolerance=TIGHT, max_iterations=1))
-    assert solved.stop is Stop.ITERATION_LIMIT
-    assert solved.residual > TIGHT
-
-
 @pytest.mark.parametrize("boundary", BOUNDARIES)
 @pytest.mark.parametrize("s", TENSIONS)
 @pytest.mark.parametrize("shape", [paraboloid, rough(0.1)], ids=["paraboloid", "rough"])
@@ -626,19 +484,6 @@ def test_force_and_depth_agree(boundary: Boundary, s: float, shape: Shape) -> No
 # --- Operator applications -------------------------------------------------------------------
 
 
-def next_step(kernel: Kernel, boundary: Boundary, shape: Shape, depth: float) -> tuple[int, int]:
-    """Return the applications of a step of +5 % depth, started warm and cold, at N = 256."""
-    problem = make(256, boundary, kernel, shape, "depth", depth)
-    later = replace(problem, control=Depth(1.05 * depth))
-    before = active_set(problem, 1e-6).equilibrium.pressure
-    warm, cold = active_set(later, 1e-6, start=before), active_set(later, 1e-6)
-    highest = cold.equilibrium.pressure.max()
-    np.testing.assert_allclose(
-        warm.equilibrium.pressure, cold.equilibrium.pressure, atol=1e-3 * highest
-    )
-    return warm.applications, cold.applications
-
-
 STEPS: list[Any] = [
     pytest.param(boundary, s, shape, depth, id=f"{boundary}-{s}-{name}")
     for boundary in BOUNDARIES
@@ -652,15 +497,19 @@ def test_the_next_step_of_a_curve_costs_no_more_than_a_cold_one(
     boundary: Boundary, s: float, shape: Shape, depth: float
 ) -> None:
     """A start that is 5 % off is found to be far, which takes one application, and left."""
-    warm, cold = next_step(skin(s), boundary, shape, depth)
-    assert warm <= cold + 1
+    problem = make(256, boundary, skin(s), shape, "depth", depth)
+    later = replace(problem, control=Depth(1.05 * depth))
+    before = active_set(problem, 1e-6).pressure
+    warm, cold = active_set(later, 1e-6, start=before), active_set(later, 1e-6)
+    np.testing.assert_allclose(warm.pressure, cold.pressure, atol=1e-3 * cold.pressure.max())
+    assert warm.applications <= cold.applications + 1
 
 
 @pytest.mark.parametrize("boundary", BOUNDARIES)
 def test_a_start_at_the_solution_is_used(boundary: Boundary) -> None:
     """Started from its own solution, a step needs one application to see that it is one."""
     problem = make(128, boundary, skin(0.02), rough(0.1), "depth", 0.015)
-    solved = active_set(problem, 1e-6).equilibrium.pressure
+    solved = active_set(problem, 1e-6).pressure
     assert active_set(problem, 1e-6, start=solved).applications == 1
 
 
@@ -689,36 +538,25 @@ def test_applications_of_a_paraboloid(s: float, prescribed: Prescribed, value: f
         assert active_set(problem, 1e-8).applications <= 23  # 6 … 19; the bar is 45
 
 
-@cache
-def rough_applications(s: float) -> dict[int, int]:
-    """Return the applications by N: periodic, 1e-6, p̄ = 0.1 E* × rms slope."""
+@pytest.mark.parametrize("s", TENSIONS)
+def test_applications_of_a_rough_surface_hardly_grow(s: float) -> None:
+    """Periodic, 1e-6, p̄ = 0.1 E* × rms slope; conjugate gradients need N^0.5 to N."""
     counts = {}
     for points in (128, 256, 512):
         problem = make(points, "periodic", skin(s), rough(16 / points), "force", 1.0)
-        problem = replace(problem, control=Force(0.1 * rms_slope(problem)))
-        counts[points] = active_set(problem, 1e-6).applications
-    return counts
-
-
-@pytest.mark.parametrize("s", TENSIONS)
-def test_applications_of_a_rough_surface(s: float) -> None:
-    """On a periodic boundary to 1e-6 they stay far below the bar of 60."""
-    assert max(rough_applications(s).values()) <= 35  # 15 16 17, 18 21 22, 15 15 18
-
-
-@pytest.mark.parametrize("s", TENSIONS)
-def test_applications_of_a_rough_surface_hardly_grow(s: float) -> None:
-    """From N = 128 to 512 they grow by less than N^0.2; conjugate gradients need N^0.5 to N."""
-    counts = rough_applications(s)
+        slopes = np.hypot(*np.gradient(problem.profile, *problem.grid.spacing))
+        mean = 0.1 * float(np.sqrt(np.mean(slopes**2)))
+        solved = active_set(replace(problem, control=Force(mean)), 1e-6)
+        counts[points] = solved.applications
+    assert max(counts.values()) <= 35  # 15 16 17, 18 21 22, 15 15 18; the bar is 60
     # Measured slopes: 0.09 at s = 0; 0.145 at 0.02 L and 0.13 at L miss the goal of 0.1.
     assert np.polyfit(np.log([*counts]), np.log([*counts.values()]), 1)[0] <= 0.2
 
 
 def test_a_layer_too_thin_for_the_coarser_grid_is_solved_without_it() -> None:
     """An incompressible layer is rigid under cells much wider than its thickness."""
-    kernel = Incompressible(thickness=0.15 / 96)
+    kernel = layer("bonded_layer", 0.15 / 96)
     with pytest.raises(ConfigError, match="use more points"):
         make_operator(kernel, Grid(points=48, size=1.0))
-    problem = make(96, "free", kernel, lambda x, y: -(x**2 + y**2) / 2, "depth", 0.02)
-    equilibrium = active_set(problem, 1e-6).equilibrium
-    assert equilibrium.contact.sum() > 500
+    problem = make(96, "free", kernel, paraboloid, "depth", 0.02)
+    assert active_set(problem, 1e-6).equilibrium.contact.sum() > 500

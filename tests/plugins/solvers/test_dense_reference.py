@@ -13,7 +13,7 @@ are as much worse as A is ill-conditioned.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -23,13 +23,13 @@ from hypothesis import strategies as st
 from scipy.linalg import cholesky, solve_triangular
 from scipy.optimize import brentq, nnls
 
-from pellicle import Grid, Problem, Solution, Solver, Stop
+from pellicle import Grid, Problem, Solver, Stop
 from pellicle.numerics.problem import Depth, Force
 from pellicle.operators import Array, make_operator
-from pellicle.problem import height_scale, measure
-from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
+from pellicle.problem import height_scale
 from pellicle_plugins.solvers.active_set import ActiveSet
 from pellicle_plugins.solvers.conjugate_gradient import ConjugateGradient
+from tests.plugins.solvers.problems import skin, solve
 
 TOLERANCE = 1e-9
 # The programme's own round-off, in the same measure as the tolerance.
@@ -102,7 +102,7 @@ def problems(draw: st.DrawFn) -> Problem:
     random = np.random.default_rng(draw(st.integers(0, 2**20)))
     size = (float(points[0]), aspect * points[1])
     grid = Grid(points=points, size=size, boundary=boundary)
-    operator = make_operator(TensedMembrane(reduced_modulus=1.0, tension=tension), grid)
+    operator = make_operator(skin(2 * tension), grid)
     profile = _profile(form, grid, random)
     solid = random.uniform(size=grid.shape) >= holes
     solid.flat[random.integers(solid.size)] = True
@@ -130,11 +130,11 @@ def _profile(form: str, grid: Grid, random: np.random.Generator) -> Array:
     return np.asarray(heights - heights.max())
 
 
-def assert_solved(problem: Problem, solver: Solver | InOtherUnits) -> None:
+def assert_solved(problem: Problem, solver: Solver) -> None:
     """Assert that a solver finds what the programme finds."""
-    solution = solver.solve(problem, None, lambda iteration, excess: None)
-    assert solution.stop is Stop.DONE
-    state = measure(problem, solution.pressure)
+    solved = solve(problem, solver)
+    assert solved.stop is Stop.DONE
+    state = solved.equilibrium
     scale = height_scale(problem.profile, state.contact, state.depth)
     assert max(state.residual_contact, state.residual_penetration) <= TOLERANCE
     assert state.residual_load <= 1e-12
@@ -146,8 +146,8 @@ def assert_solved(problem: Problem, solver: Solver | InOtherUnits) -> None:
     assert np.abs(gap[expected > 0]).max() <= ROUND_OFF * stiffest
     assert gap.min() >= -ROUND_OFF * stiffest
 
-    pressure = solution.pressure[np.isfinite(problem.profile)]
-    assert pressure.sum() == pytest.approx(solution.pressure.sum(), rel=1e-15)
+    pressure = solved.pressure[np.isfinite(problem.profile)]
+    assert pressure.sum() == pytest.approx(solved.pressure.sum(), rel=1e-15)
     error = pressure - expected
     total = float(pressure.sum() + expected.sum())
     allowed = (TOLERANCE * scale + ROUND_OFF * stiffest) * total
@@ -168,62 +168,3 @@ def test_active_set(problem: Problem) -> None:
 def test_conjugate_gradient(problem: Problem) -> None:
     """On 100 random problems `conjugate_gradient` finds what the quadratic programme finds."""
     assert_solved(problem, ConjugateGradient(tolerance=TOLERANCE))
-
-
-@dataclass(frozen=True)
-class InOtherUnits:
-    """Solves a problem of unit length and modulus at other ones, and gives back its pressure."""
-
-    solver: Solver
-    length: float
-    """[m]"""
-    modulus: float
-    """[Pa]"""
-
-    def solve(self, problem: Problem, start: None, monitor: object) -> Solution:
-        """Return the pressure in units of the modulus."""
-        kernel = problem.operator.kernel
-        assert isinstance(kernel, TensedMembrane)
-        larger = kernel.model_copy(
-            update={
-                "reduced_modulus": self.modulus,
-                "tension": kernel.tension * self.modulus * self.length,
-            }
-        )
-        size = tuple(self.length * edge for edge in problem.grid.size)
-        grid = problem.grid.model_copy(update={"size": size})
-        unit = self.length
-        if isinstance(problem.control, Force):
-            unit = self.modulus * self.length**2
-        scaled = replace(
-            problem,
-            grid=grid,
-            operator=make_operator(larger, grid),
-            profile=problem.profile * self.length,
-            control=replace(problem.control, value=problem.control.value * unit),
-        )
-        solution = self.solver.solve(scaled, None, lambda iteration, residual_ratio: None)
-        return replace(solution, state=solution.pressure / self.modulus)
-
-
-UNITS = st.tuples(
-    st.floats(-15, 9).map(lambda exponent: 10.0**exponent),
-    st.floats(-6, 15).map(lambda exponent: 10.0**exponent),
-)
-
-
-@pytest.mark.slow
-@settings(max_examples=100, deadline=None, derandomize=True)
-@given(problem=problems(), units=UNITS)
-def test_active_set_on_any_length_and_modulus(problem: Problem, units: tuple[float, float]) -> None:
-    """On lengths of 1e-15 to 1e9 m and moduli of 1e-6 to 1e15 Pa it finds the same pressures."""
-    assert_solved(problem, InOtherUnits(ActiveSet(tolerance=TOLERANCE), *units))
-
-
-@settings(max_examples=40, deadline=None, derandomize=True)
-@given(problem=problems(), units=UNITS)
-def test_conjugate_gradient_on_any_length_and_modulus(
-    problem: Problem, units: tuple[float, float]
-) -> None:
-    """On lengths of 1e-15 to 1e9 m and moduli of 1e-6 to 1e15 Pa it finds the same pressures."""
-    assert_solved(problem, InOtherUnits(ConjugateGradient(tolerance=TOLERANCE), *units))

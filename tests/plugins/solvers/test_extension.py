@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pellicle import Grid, Kernel
-from pellicle.operators import make_operator
+from pellicle import Kernel
 from pellicle_plugins.kernels.bending_skin import BendingSkin
-from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
 from pellicle_plugins.solvers import biharmonic
 from pellicle_plugins.solvers import multilevel_extension as extension
 from pellicle_plugins.solvers.multilevel_extension import (
@@ -20,6 +18,7 @@ from pellicle_plugins.solvers.multilevel_extension import (
     _transposed_interpolate,
 )
 from pellicle_plugins.solvers.preconditioner import OnContact, Preconditioner
+from tests.plugins.solvers.problems import BOUNDARIES, Boundary, make, skin
 
 SINGLE = float(np.finfo(np.float32).eps)
 ORDERS = [0.0, 0.5, 1.0, 1.7, 2.0, 4.0]
@@ -100,19 +99,6 @@ def test_lone_cell_loses_by_its_order() -> None:
     np.testing.assert_allclose(lone_cell(number, [4.0] * 5), 1.0, rtol=4 * SINGLE)
 
 
-@pytest.mark.parametrize("shape", [(1, 1), (1, 4), (2, 2), (3, 5), (16, 7)])
-def test_transposed_interpolation(shape: tuple[int, int]) -> None:
-    """The matrices of the interpolation and of its transpose are each other's, to the last bit."""
-    n, m = shape
-    down = np.eye(n * m, dtype=np.float32).reshape(-1, n, m)
-    up = np.eye(4 * n * m, dtype=np.float32).reshape(-1, 2 * n, 2 * m)
-    free, own = np.ones((2 * n, 2 * m), np.float32), np.zeros((2 * n, 2 * m), np.float32)
-    interpolation = np.array([_interpolate(unit, free, own.copy()).ravel() for unit in down])
-    transposed = np.array([_transposed_interpolate(unit, free).ravel() for unit in up])
-    np.testing.assert_array_equal(interpolation, transposed.T)
-    np.testing.assert_array_equal(interpolation.sum(axis=0), 1.0)
-
-
 def test_blocks_join_without_a_seam(monkeypatch: pytest.MonkeyPatch) -> None:
     """Worked on in one block or in many, the interpolation and its transpose are the same."""
     rng = np.random.default_rng(5)
@@ -147,16 +133,12 @@ def test_sweeps_by_a_matrix_and_over_all_cells_are_the_same(
         assert (results[0] == field).any()
 
 
-def preconditioned(
-    points: tuple[int, int],
-    boundary: Literal["free", "periodic"],
-    contact: NDArray[np.bool_],
-    tension: float,
-) -> OnContact:
+def preconditioned(boundary: Boundary, contact: NDArray[np.bool_], tension: float) -> OnContact:
     """Return the preconditioner of a tensed half-space on a contact."""
-    grid = Grid(points=points, size=(1.0, 0.8 * points[1] / points[0]), boundary=boundary)
-    kernel = TensedMembrane(reduced_modulus=1.0, tension=tension)
-    return Preconditioner(make_operator(kernel, grid)).on(contact)
+    nx, ny = contact.shape
+    size = (1.0, 0.8 * ny / nx)
+    problem = make((nx, ny), boundary, skin(2 * tension), 0.0, "depth", 1.0, size)
+    return Preconditioner(problem.operator).on(contact)
 
 
 def matrix(on_contact: OnContact) -> NDArray[np.float64]:
@@ -168,37 +150,20 @@ def matrix(on_contact: OnContact) -> NDArray[np.float64]:
 SHAPES = [(8, 8), (16, 12), (7, 9), (13, 6), (15, 31), (33, 17), (40, 2), (31, 1), (1, 5)]
 
 
-@pytest.mark.parametrize("boundary", ["free", "periodic"])
+@pytest.mark.parametrize("boundary", BOUNDARIES)
 @pytest.mark.parametrize("points", SHAPES)
 def test_preconditioner_is_symmetric_and_positive(
-    points: tuple[int, int], boundary: Literal["free", "periodic"]
+    points: tuple[int, int], boundary: Boundary
 ) -> None:
     """On random contacts, full ones too, Eᵀ K E is symmetric to round-off and positive."""
     random = np.random.default_rng(11)
     for share, tension in [(0.15, 0.0), (0.5, 0.02), (1.0, 1.0)]:
         contact = random.uniform(size=points) < share
         contact[-1, -1] = True
-        dense = matrix(preconditioned(points, boundary, contact, tension))
+        dense = matrix(preconditioned(boundary, contact, tension))
         largest = np.abs(dense).max()
         np.testing.assert_allclose(dense, dense.T, atol=30 * SINGLE * largest)
         assert np.linalg.eigvalsh(dense + dense.T).min() > 0
-
-
-@pytest.mark.parametrize("points", [(97, 61), (100, 36), (127, 128)])
-@pytest.mark.parametrize("boundary", ["free", "periodic"])
-def test_preconditioner_of_large_odd_grids_is_symmetric(
-    points: tuple[int, int], boundary: Literal["free", "periodic"]
-) -> None:
-    """⟨M x, y⟩ = ⟨x, M y⟩ to single precision and ⟨M x, x⟩ > 0, whatever the number of cells."""
-    random = np.random.default_rng(5)
-    for share in (0.002, 0.2, 0.8):
-        contact = random.uniform(size=points) < share
-        on_contact = preconditioned(points, boundary, contact, tension=0.01)
-        x, y = random.normal(size=(2, on_contact.cells.size))
-        forth, back = on_contact(x), on_contact(y)
-        size = product(np.abs(forth), np.abs(y))
-        assert product(forth, y) == pytest.approx(product(x, back), abs=10 * SINGLE * size)
-        assert product(forth, x) > 0
 
 
 def test_planes_go_on_where_bending_decides() -> None:
@@ -236,8 +201,8 @@ def test_a_line_is_a_line_wherever_it_lies(order: float) -> None:
 
 def condition(kernel: Kernel, points: int | tuple[int, int]) -> float:
     """Return the ratio of the largest eigenvalue of M A to the least, on a disc, free boundary."""
-    grid = Grid(points=points, size=1.0, boundary="free")
-    operator = make_operator(kernel, grid)
+    problem = make(points, "free", kernel, 0.0, "depth", 1.0)
+    grid, operator = problem.grid, problem.operator
     on_contact = Preconditioner(operator).on(np.hypot(*grid.coordinates()) < 0.35)
     columns = []
     for cell in on_contact.cells:
@@ -252,7 +217,7 @@ def condition(kernel: Kernel, points: int | tuple[int, int]) -> float:
 @pytest.mark.parametrize("tension", [0.0, 0.05, 5.0])
 def test_preconditioner_is_nearly_the_inverse(tension: float) -> None:
     """The eigenvalues of M A on a disc spread over less than a factor of 30, ever fewer cells."""
-    assert condition(TensedMembrane(reduced_modulus=1.0, tension=tension), 24) < 30
+    assert condition(skin(2 * tension), 24) < 30
 
 
 @pytest.mark.slow

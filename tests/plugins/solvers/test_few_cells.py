@@ -2,47 +2,44 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
-from pellicle import Depth, Force, Grid, Problem, Stop
-from pellicle.operators import make_operator
+from pellicle import Problem, Stop
+from pellicle.arrays import Array
 from pellicle.problem import measure
 from pellicle_plugins.kernels.bending_skin import BendingSkin
 from pellicle_plugins.solvers import active_set, few_cells
 from pellicle_plugins.solvers.active_set import ActiveSet
 from pellicle_plugins.solvers.few_cells import solved_on_few_cells
+from tests.plugins.solvers.problems import BOUNDARIES, Boundary, Prescribed, make, solve
 
-Array = NDArray[np.float64]
+KERNEL = BendingSkin(reduced_modulus=1.0, bending=0.005)
+
+
+def waves(x: Array, y: Array) -> Array:
+    """Return random waves on a domain of 1.5 × 1."""
+    random = np.random.default_rng(2)
+    heights = np.zeros((x.size, y.size))
+    for _ in range(12):
+        i, j = random.integers(-3, 4, size=2)
+        phase = 2 * np.pi * (i * x / 1.5 + j * y)
+        heights += random.normal() * np.cos(phase + random.uniform(0, 7))
+    return np.asarray(heights - heights.max())
 
 
 def rough_plate(
-    boundary: Literal["free", "periodic"],
-    control: Depth | Force,
-    points: tuple[int, int] = (24, 20),
+    boundary: Boundary, prescribed: Prescribed, value: float, points: tuple[int, int] = (24, 20)
 ) -> Problem:
-    """Return a plate on random waves, cells longer along x, which it touches with few cells."""
-    grid = Grid(points=points, size=(1.5, 1.0), boundary=boundary)
-    random = np.random.default_rng(2)
-    x, y = grid.coordinates()
-    profile = np.zeros(points)
-    for _ in range(12):
-        i, j = random.integers(-3, 4, size=2)
-        profile += random.normal() * np.cos(
-            2 * np.pi * (i * x / 1.5 + j * y) + random.uniform(0, 7)
-        )
-    kernel = BendingSkin(reduced_modulus=1.0, bending=0.005)
-    return Problem(grid, make_operator(kernel, grid), profile - profile.max(), control)
+    """Return a plate, cells longer along x, that touches random waves with few cells."""
+    return make(points, boundary, KERNEL, waves, prescribed, value, (1.5, 1.0))
 
 
-@pytest.mark.parametrize("boundary", ["free", "periodic"])
-@pytest.mark.parametrize("control", [Depth(1.0), Depth(3.0), Force(2.0)])
-def test_solution_is_exact(boundary: Literal["free", "periodic"], control: Depth | Force) -> None:
+@pytest.mark.parametrize("boundary", BOUNDARIES)
+@pytest.mark.parametrize(("prescribed", "value"), [("depth", 1.0), ("depth", 3.0), ("force", 2.0)])
+def test_solution_is_exact(boundary: Boundary, prescribed: Prescribed, value: float) -> None:
     """From any start on all cells: no pull, no gap under pressure, no penetration, the force."""
-    problem = rough_plate(boundary, control)
+    problem = rough_plate(boundary, prescribed, value)
     unit = np.zeros(problem.grid.shape)
     unit[0, 0] = 1
     column = problem.operator(unit)
@@ -59,17 +56,15 @@ def test_solution_is_exact(boundary: Literal["free", "periodic"], control: Depth
         assert pressure.min() == 0
         assert 2 < np.count_nonzero(pressure) < 60
         assert max(state.residual_contact, state.residual_penetration) < 1e-9
-        if isinstance(control, Force):
-            assert pressure.sum() * problem.grid.cell_area == pytest.approx(
-                control.value, rel=1e-12
-            )
+        if prescribed == "force":
+            assert state.force == pytest.approx(value, rel=1e-12)
         results.append(pressure)
     np.testing.assert_allclose(results[0], results[1], atol=1e-6 * results[0].max())
 
 
 def test_too_many_cells_are_left_to_others() -> None:
     """A contact above the limit, one of no pressure and one of most of the plane are not solved."""
-    problem = rough_plate("periodic", Force(2.0))
+    problem = rough_plate("periodic", "force", 2.0)
     shape = problem.grid.shape
     column, gap = np.ones(shape), np.zeros(shape)
     few = np.zeros(shape, dtype=bool)
@@ -82,18 +77,15 @@ def test_too_many_cells_are_left_to_others() -> None:
     assert solved_on_few_cells(problem, column, few, -few.astype(np.float64), gap, 0.0) is None
 
 
-@pytest.mark.parametrize("boundary", ["free", "periodic"])
+@pytest.mark.parametrize("boundary", BOUNDARIES)
 def test_it_takes_fewer_applications_and_gives_the_same(
-    boundary: Literal["free", "periodic"], monkeypatch: pytest.MonkeyPatch
+    boundary: Boundary, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A plate on few cells takes a handful of applications, to the same tractions."""
-    results, applications = [], []
-    for most in (few_cells.MOST_CELLS, 0):
-        monkeypatch.setattr(active_set, "MOST_CELLS", most)
-        problem = rough_plate(boundary, Force(8.0), (96, 80))
-        solution = ActiveSet(tolerance=1e-9).solve(problem, None, lambda *_: None)
-        assert solution.stop is Stop.DONE
-        results.append(solution.pressure)
-        applications.append(problem.operator.applications)
-    assert applications[0] <= 8 < applications[1]
-    np.testing.assert_allclose(results[0], results[1], atol=1e-4 * results[1].max())
+    solver, problem = ActiveSet(tolerance=1e-9), rough_plate(boundary, "force", 8.0, (96, 80))
+    exact = solve(problem, solver)
+    monkeypatch.setattr(active_set, "MOST_CELLS", 0)
+    usual = solve(problem, solver)
+    assert exact.stop is usual.stop is Stop.DONE
+    assert exact.applications <= 8 < usual.applications
+    np.testing.assert_allclose(exact.pressure, usual.pressure, atol=1e-4 * usual.pressure.max())

@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pellicle import Grid, Kernel
-from pellicle.numerics.problem import Force, Problem
-from pellicle.operators import make_operator
+from pellicle import Grid, Problem
 from pellicle_plugins.kernels.bending_skin import BendingSkin
-from pellicle_plugins.kernels.half_space import HalfSpace
-from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
 from pellicle_plugins.solvers.contact_cg import _Directions
 from pellicle_plugins.solvers.preconditioner import (
     OnContact,
@@ -22,20 +16,20 @@ from pellicle_plugins.solvers.preconditioner import (
     _halvings,
     _round_up,
 )
+from tests.plugins.solvers.problems import BOUNDARIES, Boundary, make, skin
 
 Array = NDArray[np.float64]
 SHAPE = (20, 24)
-SIZE = (1.0, 1.2)
 KERNELS = {
-    "half-space": HalfSpace(reduced_modulus=1.0),
-    "tension": TensedMembrane(reduced_modulus=1.0, tension=10.0),
+    "half-space": skin(0.0),
+    "tension": skin(20.0),
     "bending": BendingSkin(reduced_modulus=1.0, bending=1e3),
 }
 
 
-def grid(boundary: Literal["free", "periodic"]) -> Grid:
-    """Return 20 × 24 square cells."""
-    return Grid(points=SHAPE, size=SIZE, boundary=boundary)
+def problem(kernel: str, boundary: Boundary) -> Problem:
+    """Return a flat punch on 20 × 24 square cells under a force."""
+    return make(SHAPE, boundary, KERNELS[kernel], 0.0, "force", 1.0, (1.0, 1.2))
 
 
 def island() -> NDArray[np.bool_]:
@@ -45,13 +39,13 @@ def island() -> NDArray[np.bool_]:
     return contact & (np.random.default_rng(3).uniform(size=SHAPE) < 0.9)
 
 
-@pytest.mark.parametrize("boundary", ["free", "periodic"])
-@pytest.mark.parametrize("kernel", KERNELS.values(), ids=KERNELS)
-def test_forces_on_the_contact_stay(kernel: Kernel, boundary: Literal["free", "periodic"]) -> None:
+@pytest.mark.parametrize("boundary", BOUNDARIES)
+@pytest.mark.parametrize("kernel", KERNELS)
+def test_forces_on_the_contact_stay(kernel: str, boundary: Boundary) -> None:
     """To the last digit, and nothing is left off the contact."""
     contact = island()
     forces = np.where(contact, np.random.default_rng(1).standard_normal(SHAPE), 0.0)
-    on_contact = Preconditioner(make_operator(kernel, grid(boundary))).on(contact)
+    on_contact = Preconditioner(problem(kernel, boundary).operator).on(contact)
     np.testing.assert_array_equal(on_contact.transferred(forces), forces)
     forces[0, 0] = 1.0
     assert not on_contact.transferred(forces)[~contact].any()
@@ -62,7 +56,7 @@ def test_a_skin_that_bends_keeps_the_force() -> None:
     random = np.random.default_rng(2)
     contact = random.uniform(size=SHAPE) < 0.3
     forces = random.uniform(-1e5, 2e5, size=SHAPE)
-    operator = make_operator(KERNELS["bending"], grid("periodic"))
+    operator = problem("bending", "periodic").operator
     moved = Preconditioner(operator).on(contact).transferred(forces)
     assert moved.sum() == pytest.approx(forces.sum(), rel=1e-5)
 
@@ -75,7 +69,7 @@ def test_pressure_of_cells_that_leave(kernel: str, share: float) -> None:
 
     ``share`` bounds the energy norm of the error over that of dropping what the cells bore.
     """
-    operator = make_operator(KERNELS[kernel], grid("periodic"))
+    operator = problem(kernel, "periodic").operator
     units = np.eye(SHAPE[0] * SHAPE[1]).reshape(-1, *SHAPE)
     compliance = np.array([operator(unit).ravel() for unit in units])
     x, y = operator.grid.coordinates()
@@ -111,7 +105,7 @@ def test_a_lift_serves_on_a_contact_that_has_changed_little(
         return original(self, residual, mean)
 
     monkeypatch.setattr(OnContact, "__call__", counted)
-    preconditioner = Preconditioner(make_operator(KERNELS["tension"], grid("free")))
+    preconditioner = Preconditioner(problem("tension", "free").operator)
     contact = island()
     changed, other = contact.copy(), ~contact
     changed[9, 8:12] ^= True
@@ -124,16 +118,15 @@ def test_a_lift_serves_on_a_contact_that_has_changed_little(
     assert 0.9 < lifts[1][(contact & changed)[changed]].sum() / lifts[1].sum() <= 1 + 1e-12
 
 
-@pytest.mark.parametrize("boundary", ["free", "periodic"])
-def test_directions_under_a_force_are_symmetric(boundary: Literal["free", "periodic"]) -> None:
+@pytest.mark.parametrize("boundary", BOUNDARIES)
+def test_directions_under_a_force_are_symmetric(boundary: Boundary) -> None:
     """With the lift of another contact too: P M Pᵀ is symmetric, of no net force, and positive."""
-    operator = make_operator(KERNELS["tension"], grid(boundary))
-    problem = Problem(grid(boundary), operator, np.zeros(SHAPE), Force(1.0))
-    preconditioner = Preconditioner(operator)
+    punch = problem("tension", boundary)
+    preconditioner = Preconditioner(punch.operator)
     contact = island()
     preconditioner.lift(preconditioner.on(contact))
     contact[9, 8:12] ^= True
-    directions = _Directions(problem, preconditioner.on(contact), None)
+    directions = _Directions(punch, preconditioner.on(contact), None)
     residuals = np.random.default_rng(4).standard_normal((12, np.count_nonzero(contact)))
     outcomes = np.array([directions(residual) for residual in residuals])
     products = residuals @ outcomes.T

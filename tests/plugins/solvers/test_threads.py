@@ -6,26 +6,29 @@ import numpy as np
 import pytest
 import scipy.fft
 
-import pellicle as pl
-from pellicle.numerics.operators import make_operator
-from pellicle.numerics.problem import Depth, Force, Problem
+from pellicle_plugins.solvers.active_set import ActiveSet
 from pellicle_plugins.solvers.multilevel_extension import Extension
+from tests.plugins.solvers.problems import (
+    BOUNDARIES,
+    Boundary,
+    Prescribed,
+    make,
+    rough,
+    skin,
+    solve,
+)
 
 
-@pytest.mark.parametrize("boundary", ["periodic", "free"])
-def test_solutions_have_the_same_bits(boundary: str) -> None:
+@pytest.mark.parametrize("boundary", BOUNDARIES)
+def test_solutions_have_the_same_bits(boundary: Boundary) -> None:
     """Grids large enough that threads share every pass; 600 points end in a shorter block."""
-    grid = pl.Grid(points=600 if boundary == "periodic" else 512, size=1.0, boundary=boundary)
-    kernel = pl.kernel("tensed_membrane", reduced_modulus=1.0, tension=0.01)
-    rough = pl.indenter("self_affine", rms_height=0.01, hurst=0.8, cutoff_wavelength=0.05, seed=1)
-    profile = rough.profile(*grid.coordinates())
-    control = Force(0.02) if boundary == "periodic" else Depth(0.02)
-    problem = Problem(grid, make_operator(kernel, grid), profile, control)
-    solver = pl.solver("active_set", tolerance=1e-6)
+    prescribed: Prescribed = "force" if boundary == "periodic" else "depth"
+    points = 600 if boundary == "periodic" else 512
+    problem = make(points, boundary, skin(0.02), rough(0.05), prescribed, 0.02)
     pressures = []
     for threads in (1, 2, 3):
         with scipy.fft.set_workers(threads):
-            pressures.append(solver.solve(problem, None, lambda *_: None).pressure)
+            pressures.append(solve(problem, ActiveSet(tolerance=1e-6)).pressure)
     assert 0.001 < (pressures[0] > 0).mean() < 0.9
     np.testing.assert_array_equal(pressures[1], pressures[0])
     np.testing.assert_array_equal(pressures[2], pressures[0])

@@ -13,13 +13,7 @@ _ROUNDING = 1e-12
 
 
 def corrected_area(correction: AreaCorrection, contact: Mask, grid: Grid) -> float:
-    """Return the corrected area of contact [m²].
-
-    Raises
-    ------
-    PluginError
-        The area is not a number between 0 and the area of the domain, or not 0 without contact.
-    """
+    """Return the corrected area of contact [m²]."""
     method = correction.periodic_area if grid.boundary == "periodic" else correction.area
     call = f"{method.__name__}(contact, spacing)"
     with errors_attributed_to(correction):

@@ -18,24 +18,13 @@ _ROUNDING = 1e-12
 
 
 def profile_of(indenter: Indenter, grid: Grid) -> Array:
-    """Return the profile f ≤ 0 [m] of an indenter on a grid, read-only.
-
-    Raises
-    ------
-    ConfigError
-        The indenter cannot be put on this grid, or has heights that are positive or NaN.
-    PluginError
-        The profile is not an array of the grid's shape, or is not near 0 anywhere.
-    """
+    """Return the profile f ≤ 0 [m] of an indenter on a grid, read-only."""
     x, y = (read_only(points) for points in grid.coordinates())
     try:
-        with errors_attributed_to(indenter), np.errstate(over="raise"):
-            value = indenter.profile(x, y)
-            footprint = indenter.footprint
+        with errors_attributed_to(indenter):
+            value, footprint = indenter.profile(x, y), indenter.footprint
     except ConfigError as error:
         raise error.within("indenter") from None
-    except (OverflowError, FloatingPointError):
-        raise _beyond_numbers("overflow") from None
     profile = real_array(indenter, "profile(x, y)", value, grid.shape)
     name = component_name(indenter)
     if footprint not in get_args(Footprint):
@@ -60,7 +49,11 @@ def profile_of(indenter: Indenter, grid: Grid) -> Array:
         )
     height = -float(profile.min(where=np.isfinite(profile), initial=0.0))
     if height and not 1 / LARGEST < height < LARGEST:
-        raise _beyond_numbers(f"reach {height:g} m")
+        raise ConfigError(
+            f"its heights on this grid reach {height:g} m, and squares of them are beyond the "
+            "numbers that a computer has; check the units of its lengths",
+            "indenter",
+        )
     highest = float(profile.max())
     rounding = _ROUNDING * max(grid.size)
     if highest < -rounding and highest < -(hidden := _hidden_height(profile, footprint)):
@@ -70,14 +63,6 @@ def profile_of(indenter: Indenter, grid: Grid) -> Array:
             "point"
         )
     return read_only(np.ascontiguousarray(profile))
-
-
-def _beyond_numbers(predicate: str) -> ConfigError:
-    return ConfigError(
-        f"its heights on this grid {predicate}, and squares of them are beyond the numbers that a "
-        "computer has; check the units of its lengths",
-        "indenter",
-    )
 
 
 def _hidden_height(profile: Array, footprint: Footprint) -> float:

@@ -14,14 +14,7 @@ _ROUNDING = 1e-12
 
 
 def branches_of(kernel: Kernel) -> tuple[Branch, ...]:
-    """Return the branches of a kernel that relaxes; none of one that is elastic.
-
-    Raises
-    ------
-    PluginError
-        The branches are not pairs of a positive share and a positive finite time, or their shares
-        sum to more than 1.
-    """
+    """Return the branches of a kernel that relaxes; none of one that is elastic."""
     if not isinstance(kernel, HasRelaxation):
         return ()
     with errors_attributed_to(kernel):

@@ -10,13 +10,7 @@ from pellicle.errors import PluginError, shown
 
 
 def files_of(output: Output, runs: Runs, stem: Path) -> tuple[Path, ...]:
-    """Let an output write its files for a run or study with the given stem; return their paths.
-
-    Raises
-    ------
-    PluginError
-        As for `require_files`.
-    """
+    """Let an output write its files for a run or study with the given stem; return their paths."""
     with errors_attributed_to(output):
         files = output.write(runs, stem_of(output, stem))
     require_files(output, files, stem)
@@ -24,13 +18,7 @@ def files_of(output: Output, runs: Runs, stem: Path) -> tuple[Path, ...]:
 
 
 def require_files(output: Output, files: object, stem: Path) -> None:
-    """Refuse the value that write() of an output returned unless it lists files of its own stem.
-
-    Raises
-    ------
-    PluginError
-        The value is not a tuple of paths that begin with the stem of the output.
-    """
+    """Refuse the value that write() of an output returned unless it lists files of its own stem."""
     own = stem_of(output, stem)
     call = f"{component_name(output)}: write(runs, stem) returned"
     if not isinstance(files, (tuple, list)) or not all(isinstance(path, Path) for path in files):

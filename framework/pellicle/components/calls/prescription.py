@@ -18,11 +18,6 @@ def check_value(prescription: Prescription, setting: Setting, value: float, fiel
     """Let a prescription check a prescribed value; its errors name ``field``.
 
     If an error names a field already, it keeps that one.
-
-    Raises
-    ------
-    ConfigError
-        The value is not allowed in this setting.
     """
     try:
         with errors_attributed_to(prescription):
@@ -33,13 +28,7 @@ def check_value(prescription: Prescription, setting: Setting, value: float, fiel
 
 
 def check_variables(prescription: Prescription) -> None:
-    """Refuse variables that would replace others of a result, or have no valid name in Python.
-
-    Raises
-    ------
-    PluginError
-        The message names the first such variable.
-    """
+    """Refuse variables that would replace others of a result, or have no valid name in Python."""
     reserved = {*VARIABLES, *COORDINATES}
     for variable in prescription.variables:
         name = variable.name
@@ -52,13 +41,7 @@ def check_variables(prescription: Prescription) -> None:
 
 
 def target_of(prescription: Prescription, setting: Setting, value: float) -> Depth | Force | Search:
-    """Return the depth, the force or the search for a prescribed value.
-
-    Raises
-    ------
-    PluginError
-        The target is of another type, or its numbers are not finite.
-    """
+    """Return the depth, the force or the search for a prescribed value."""
     with errors_attributed_to(prescription):
         target = prescription.target(setting, value)
     call, name = f"target(setting, {value:g})", component_name(prescription)
@@ -67,7 +50,17 @@ def target_of(prescription: Prescription, setting: Setting, value: float) -> Dep
             f"{name}: {call} returned {shown(target)}; it has to return a pellicle.Depth, Force "
             "or Search"
         )
-    _check_numbers(prescription, setting, target, call)
+    for field in ("value", "compliance", "goal", "resolution", "width", "guess"):
+        number = getattr(target, field, None)
+        if number is None:
+            continue
+        number = real_number(prescription, f"{call}.{field}", number)
+        signed = field in ("goal", "guess") or (
+            field == "value" and (isinstance(target, Depth) or setting.law is not None)
+        )
+        if not np.isfinite(number) or (number < 0 and not signed):
+            allowed = "finite" if signed else "finite and ≥ 0"
+            raise PluginError(f"{name}: {call}.{field} is {number:g}; it has to be {allowed}")
     if not isinstance(target, Search):
         return target
     quantity = target.measure
@@ -83,34 +76,8 @@ def target_of(prescription: Prescription, setting: Setting, value: float) -> Dep
     return replace(target, measure=measure)
 
 
-def _check_numbers(
-    prescription: Prescription, setting: Setting, target: Depth | Force | Search, call: str
-) -> None:
-    """Refuse a target whose numbers are not finite, or negative where they have no sign."""
-    for field in ("value", "compliance", "goal", "resolution", "width", "guess"):
-        number = getattr(target, field, None)
-        if number is None:
-            continue
-        number = real_number(prescription, f"{call}.{field}", number)
-        signed = field in ("goal", "guess") or (
-            field == "value" and (isinstance(target, Depth) or setting.law is not None)
-        )
-        if not np.isfinite(number) or (number < 0 and not signed):
-            allowed = "finite" if signed else "finite and ≥ 0"
-            raise PluginError(
-                f"{component_name(prescription)}: {call}.{field} is {number:g}; it has to be "
-                f"{allowed}"
-            )
-
-
 def report_of(prescription: Prescription, setting: Setting, step: Equilibrium) -> dict[str, float]:
-    """Return the variables that a prescription adds to a step.
-
-    Raises
-    ------
-    PluginError
-        The values are not numbers, or are not those that the prescription declares.
-    """
+    """Return the variables that a prescription adds to a step."""
     with errors_attributed_to(prescription):
         report = prescription.report(setting, step)
     declared = {v.name for v in prescription.variables if v.kind != "residual"}

@@ -23,13 +23,7 @@ from pellicle.numerics.solution import Solution, State, Stop
 
 
 def check_solver(solver: Solver, problem: Problem) -> None:
-    """Let a solver refuse a problem.
-
-    Raises
-    ------
-    ConfigError
-        The solver cannot solve the problem.
-    """
+    """Let a solver refuse a problem."""
     with errors_attributed_to(solver):
         reason = solver.refuses(problem)
     if reason:
@@ -42,45 +36,27 @@ def solution_of(
     """Return the solution of a load step, with a copy of its pressure.
 
     A negative or non-finite pressure is accepted here; the status of the step reports it.
-
-    Raises
-    ------
-    ConfigError
-        The solver refuses the problem.
-    PluginError
-        The solver does not return a `Solution` of the grid's shape, or changes the problem.
     """
     check_solver(solver, problem)
     adheres = problem.law is not None
     sticks = adheres and start is not None and start.is_loaded
     if not problem.needs_solving and not sticks:
-        return _solution_without_load(problem)
-    value = _solve(solver, problem, start, monitor)
+        nothing = np.zeros(problem.grid.shape)
+        if not adheres:
+            return Solution(nothing, 0, Stop.DONE)
+        stop = Stop.DONE if problem.prescribed == "depth" else Stop.PULLED_OFF
+        return Solution(State(nothing, nothing, problem.depth(np.zeros(1))), 0, stop)
+    view, parts = _read_only_problem(problem), problem.operator.parts()
+    fields = dict(vars(view))
+    with errors_attributed_to(solver):
+        value = solver.solve(view, None if start is None else _read_only_state(start), monitor)
+    _require_unchanged(solver, "solve()", fields, dict(vars(view)), "problem")
+    _require_unchanged(solver, "solve()", parts, problem.operator.parts(), "problem.operator")
     state = _checked_state(solver, problem, value)
     jumped = bool(value.jumped) or (adheres and _in_contact(state) != _in_contact(start))
     return Solution(
         state, int(value.iterations), value.stop, jumped, adheres and bool(value.extrapolated)
     )
-
-
-def _solution_without_load(problem: Problem) -> Solution:
-    """Return the solution of a step at which nothing touches."""
-    nothing = np.zeros(problem.grid.shape)
-    if problem.law is None:
-        return Solution(nothing, 0, Stop.DONE)
-    stop = Stop.DONE if problem.prescribed == "depth" else Stop.PULLED_OFF
-    return Solution(State(nothing, nothing, problem.depth(np.zeros(1))), 0, stop)
-
-
-def _solve(solver: Solver, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
-    """Return what a solver returns for a problem that it cannot change."""
-    view = _read_only_problem(problem)
-    fields, parts = dict(vars(view)), problem.operator.parts()
-    with errors_attributed_to(solver):
-        value = solver.solve(view, None if start is None else _read_only_state(start), monitor)
-    _require_unchanged(solver, "solve()", fields, dict(vars(view)), "problem")
-    _require_unchanged(solver, "solve()", parts, problem.operator.parts(), "problem.operator")
-    return value
 
 
 def _checked_state(solver: Solver, problem: Problem, value: object) -> State | Array:
@@ -115,13 +91,7 @@ def _in_contact(state: State | Array | None) -> bool:
 
 
 def response_of(solver: Solver, problem: Problem, state: State, monitor: Monitor) -> Array:
-    """Return dp/dδ [Pa/m] with the contact of ``state`` fixed.
-
-    Raises
-    ------
-    PluginError
-        The result is not an array of the grid's shape, or not 0 off the contact.
-    """
+    """Return dp/dδ [Pa/m] with the contact of ``state`` fixed."""
     view, parts = _read_only_problem(problem), problem.operator.parts()
     with errors_attributed_to(solver):
         value = solver.response(view, _read_only_state(state), monitor)
