@@ -12,7 +12,7 @@ from pellicle.errors import ConfigError
 from pellicle.hookspecs import RegisterCommand, hookimpl
 
 from .exits import INTERRUPTED
-from .printing import echo, print_json, print_table, print_warning
+from .printing import echo, print_json, print_table
 from .results import (
     exit_by_convergence,
     exit_by_status,
@@ -21,6 +21,7 @@ from .results import (
     print_steps,
     print_study_json,
 )
+from .scales import warn_of_scales
 
 if TYPE_CHECKING:
     from pellicle.config.run import Run
@@ -72,12 +73,10 @@ def run(
 
     Exit code 0 only if every step converged.
     """
-    from pellicle.config.scales import doubtful_scales
     from pellicle.config.study import Study, from_toml
 
     configuration = from_toml(file, set_ or ())
-    for _, doubt in doubtful_scales(configuration):
-        print_warning(doubt)
+    warn_of_scales(configuration)
     folder = directory or Path(file.stem)
     display = _Display(quiet, si, json)
     if dry_run:
