@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 import sys
+import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import redirect_stdout
 from dataclasses import dataclass
@@ -24,6 +25,9 @@ REMEDY = f"uninstall one, or name its distribution in {DISABLE}"
 """What to do where several plugins claim one name."""
 _OWN = "pellicle"
 Loaded = TypeVar("Loaded")
+# Standard output is the process's: of two threads that redirect it at once the second would restore
+# what the first has redirected.
+_loading = threading.RLock()
 
 
 @dataclass(frozen=True)
@@ -87,7 +91,7 @@ def isolated(entry: EntryPoint, load: Callable[[], Loaded]) -> Loaded | Broken:
     standard error: commands print JSON to standard output.
     """
     try:
-        with redirect_stdout(sys.stderr):
+        with _loading, redirect_stdout(sys.stderr):
             return load()
     except (Exception, SystemExit) as error:
         kind = "" if isinstance(error, PluginError) else f"{type(error).__name__}: "

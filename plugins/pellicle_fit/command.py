@@ -79,12 +79,6 @@ def fit(
     sensitivity: Annotated[
         str | None, typer.Option(help='Deflection over the signal in volts: "50 nm/V".')
     ] = None,
-    speed: Annotated[
-        list[str] | None,
-        typer.Option(
-            help='Speed where a file holds no time: "2 um/s"; repeat it to give one for each file.'
-        ),
-    ] = None,
     columns: Annotated[
         str | None,
         typer.Option(
@@ -99,44 +93,14 @@ def fit(
     compare: Annotated[
         bool, typer.Option("--compare", help="Compare what else can bend the curve, in full.")
     ] = False,
-    contact_points: Annotated[
-        bool,
-        typer.Option("--contact-points", help="With --pool: intervals of contact points, too."),
-    ] = False,
-    accept: Annotated[
-        list[str] | None,
-        typer.Option(help='Rule for the curves of a population: --accept "r_squared > 0.95".'),
-    ] = None,
-    accepted: Annotated[
-        Path | None, typer.Option(help="File that names the only curves that can be accepted.")
-    ] = None,
-    rejected: Annotated[
-        Path | None, typer.Option(help="File that names curves that are rejected.")
-    ] = None,
-    group_by: Annotated[
-        str | None,
-        typer.Option(help='Column of a table of files, or a pattern of names: "{group}_*.csv".'),
-    ] = None,
-    executor: Annotated[
-        str | None,
-        typer.Option(help="Executor of many fits and of runs: serial, processes, dask."),
-    ] = None,
-    kernel: Annotated[
-        str | None, typer.Option(help="Type of the solid, if it is not a half-space: coated, …")
-    ] = None,
     set_: Annotated[
         list[str] | None,
         typer.Option(
             "--set",
             metavar="KEY=VALUE",
-            help='Any other value: --set indenter.radius_x="5 um", --set executor.type=processes',
+            help='Any other value, by its key in a configuration: --set indenter.radius_x="5 um", '
+            "--set executor=processes, --set kernel=coated.",
         ),
-    ] = None,
-    grid_points: Annotated[
-        int | None, typer.Option(help="Cells along each edge of simulated contacts.")
-    ] = None,
-    cache: Annotated[
-        Path | None, typer.Option(help="Folder that keeps simulated force curves.")
     ] = None,
     directory: Annotated[
         Path | None,
@@ -192,19 +156,9 @@ def fit(
         segment=segment,
         spring_constant=spring_constant,
         sensitivity=sensitivity,
-        speed=speed[0] if speed and len(speed) == 1 else speed or None,
         columns=columns,
         pool=pool or None,
         compare=compare or None,
-        contact_points=contact_points or None,
-        accept=tuple(accept) if accept else None,
-        accepted=accepted and accepted.absolute(),
-        rejected=rejected and rejected.absolute(),
-        group_by=group_by,
-        executor=executor,
-        kernel=kernel,
-        grid_points=grid_points,
-        cache=cache,
     )
     result, name, title = _fit(config, directory, quiet=quiet)
     if json:
@@ -220,9 +174,9 @@ def fit(
     written = _write(result, name, title, directory, report=report)
     if not quiet:
         if isinstance(result, ManyFits) and result.resumed:
-            echo(f"{result.resumed} of {len(result.rows)} fits were done before", err=json)
+            echo(f"{result.resumed} of {len(result.rows)} fits were done before")
         for path in written:
-            echo(f"wrote {path}", err=json)
+            echo(f"wrote {path}")
     if isinstance(result, ManyFits) and result.failed:
         echo(f"{result.failed} of {len(result.rows)} curves could not be fitted", err=True)
         raise typer.Exit(NOT_CONVERGED)

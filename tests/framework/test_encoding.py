@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 from pathlib import Path
 
@@ -12,7 +11,6 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli.app import app
-from pellicle.cli.encoding import encode_readably
 from pellicle.files import read_text
 from pellicle.model.toml import read_toml
 from pellicle_fit.curves.readers import read as read_curves
@@ -62,23 +60,6 @@ def test_json_is_ascii(encoding: str, words: list[str]) -> None:
     assert printed.exit_code == 0, printed.exception
     assert printed.stdout_bytes.isascii()
     assert json.loads(printed.stdout_bytes) == json.loads(CliRunner().invoke(app, words).stdout)
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("Δτ₀ = 2 µm", "Deltatau0 = 2 um"),
-        ("3 m² × 10⁻³", "3 m^2 x 10^-^3"),
-        ("≤ ½ … “a”", '<= 1/2 ... "a"'),
-        ("é 接触 \ud800 \udcff", "e ?? ? ?"),
-    ],
-)
-def test_signs_are_replaced_by_what_reads_like_them(text: str, expected: str) -> None:
-    """Greek letters get their names, powers a caret, accents are dropped; the rest is '?'."""
-    stream = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
-    encode_readably(stream)
-    print(text, end="", file=stream, flush=True)
-    assert stream.detach().getvalue().decode() == expected
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-32", "cp1252"])

@@ -8,6 +8,7 @@ import traceback
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, nullcontext
+from io import TextIOWrapper
 from typing import Annotated, Any
 
 import typer
@@ -18,7 +19,6 @@ from pellicle.commands import commands, errors_attributed_to, load_command, type
 from pellicle.errors import PellicleError, PluginError
 from pellicle.origins import Broken
 
-from .encoding import encode_readably
 from .exits import BAD_INPUT, CRASHED, INTERRUPTED
 from .printing import echo, only_json, print_warning
 
@@ -31,7 +31,6 @@ def _named_by_use(parameters: list[Any]) -> list[Any]:
     """Replace the types of Python that help texts show by names of values; flags have none."""
     for parameter in parameters:
         if parameter.param_type_name == "argument":
-            # Earlier versions of typer show the metavar of an argument alone.
             parameter.display_type_rich = lambda ctx: None
         elif parameter.metavar is None:
             is_flag = getattr(parameter, "is_flag", False)
@@ -46,7 +45,7 @@ class _Command(TyperCommand):
         return _named_by_use(super().get_params(ctx))
 
     def invoke(self, ctx: Any) -> Any:
-        quiet = only_json() if ctx.params.get("json") else nullcontext()
+        quiet = only_json() if ctx.params.get("json", self.name == "schema") else nullcontext()
         with errors_attributed_to(str(self.name)), quiet:
             return super().invoke(ctx)
 
@@ -82,7 +81,7 @@ def _misuse(error: Any) -> str:
     """Return in one line what is wrong with the words on a command line, as typer found it."""
     message = str(error.format_message())
     if getattr(error, "param", None) is not None and error.message:
-        # Later versions of typer check values with pydantic.
+        # typer checks values with pydantic.
         details: list[Any] = getattr(error.__cause__, "errors", list)()
         reason = error.message.rstrip(".")
         if details and (cause := details[0].get("ctx", {}).get("error")):
@@ -123,7 +122,9 @@ class _Group(TyperGroup):
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
         for stream in (sys.stdout, sys.stderr):
-            encode_readably(stream)
+            if isinstance(stream, TextIOWrapper):
+                # What a code page lacks is a question mark, not an error.
+                stream.reconfigure(errors="replace")
         try:
             return super().main(*args, **kwargs)
         except Exception:
@@ -142,10 +143,6 @@ class _Group(TyperGroup):
                 echo(f"error: {line}", err=True)
             raise typer.Exit(BAD_INPUT) from None
         except BrokenPipeError:
-            raise typer.Exit(BAD_INPUT) from None
-        except SystemExit as error:
-            # Commands end by typer.Exit. The code of a component could be that of success.
-            echo(f"error: a component calls sys.exit({error.code!r})", err=True)
             raise typer.Exit(BAD_INPUT) from None
         except Exception as error:
             # A call of a component adds a note that names the component at fault.

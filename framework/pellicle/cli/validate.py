@@ -8,15 +8,13 @@ import typer
 
 from pellicle.errors import PluginError
 
-from .printing import echo, print_columns, print_json, terminal_width
+from .printing import echo, print_columns, print_json
 
 if TYPE_CHECKING:
     from pellicle.components import Case
     from pellicle.runs.validation import Verdict
 
 _DIGITS = 8
-_WIDE = 160
-"""Characters on a line from which on the sources fit beside the numbers."""
 
 
 def validate(
@@ -54,13 +52,7 @@ def validate(
             ("allowed", [f"{verdict.case.tolerance:.0e}" for verdict in done]),
             ("verdict", ["ok" if verdict.passed else "FAILED" for verdict in done]),
         ]
-        width = terminal_width()
-        if width is None or width >= _WIDE:
-            print_columns([names, *numbers, sources])
-        else:
-            print_columns([names, *numbers])
-            echo()
-            print_columns([names, sources])
+        print_columns([names, *numbers, sources])
         echo(_summary(done))
     raise typer.Exit(0 if passed else 1)
 

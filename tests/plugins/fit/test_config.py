@@ -37,7 +37,7 @@ FILE = f'{BODY}\n[indenter]\ntype = "sphere"\nradius = "5 um"\n'
 ARGUMENTS = (
     *("--indenter", "sphere", "--radius", "5 um", "--poissons-ratio", "0.4"),
     *("--fix", "tension=5 mN/m", "--baseline", "offset", "--spring-constant", "0.5 N/m"),
-    *("--set", "executor.type=processes", "--set", "executor.workers=1", "--grid-points", "32"),
+    *("--set", "executor.type=processes", "--set", "executor.workers=1", "--set", "grid_points=32"),
 )
 
 

@@ -382,8 +382,8 @@ def test_retract_on_request() -> None:
         (("curve.csv", *OPTIONS, "--segment", "all"), "not allowed"),
         (("curve.csv", *OPTIONS, "--poissons-ratio", "0.7"), "≤ 0.5"),
         (("curve.csv", *OPTIONS, "--set", "grid.points=9"), "grid: is not a field here"),
-        (("curve.csv", *OPTIONS, "--kernel", "winkler"), "kernel: 'winkler' has no field"),
-        (("curve.csv", *OPTIONS, "--kernel", "bonded_layer"), "put it under a skin"),
+        (("curve.csv", *OPTIONS, "--set", "kernel=winkler"), "kernel: 'winkler' has no field"),
+        (("curve.csv", *OPTIONS, "--set", "kernel=bonded_layer"), "put it under a skin"),
     ],
 )
 def test_bad_options(cli: Cli, arguments: tuple[str, ...], words: str) -> None:

@@ -282,7 +282,7 @@ def test_command(measured: dict[str, tuple[Array, Array]], cli: Callable[..., Re
         np.savetxt(f"{number}.csv", rows, delimiter=",", header=header, comments="")
     radii = [text for radius in RADII for text in ("--radius", f"{radius * 1e6:g} um")]
     arguments = ("0.csv", "1.csv", "-i", "paraboloid", *radii, "--pool", "-o", "out", "--report")
-    shown = cli(*arguments, "--contact-points").stdout
+    shown = cli(*arguments, "--set", "contact_points=true").stdout
     assert "the curves agree" in shown
     assert "95 % of contact point" in shown
     entries = json.loads(Path("out/pool.json").read_text(encoding="utf-8"))

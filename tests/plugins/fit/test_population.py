@@ -198,8 +198,8 @@ def test_files(cli: Cli, tmp_path: Path) -> None:
     save(tmp_path / "day" / "c.csv", position, 0 * force)
     Path("bad.txt").write_text("b_2.csv, slipped\n")
     arguments = ("day/soft/*.csv", "day/*.csv", *FIXED, "-o", "out", "--quiet")
-    rules = ("--group-by", "{group}_*.csv", "--rejected", "bad.txt", "--report")
-    result = cli(*arguments, *rules, "--accept", "reduced_modulus < 15 kPa", code=1)
+    rules = ("--set", "group_by={group}_*.csv", "--set", "rejected=bad.txt", "--report")
+    result = cli(*arguments, *rules, "--set", "accept=reduced_modulus < 15 kPa", code=1)
     assert result.stdout == ""
     assert "1 fitted curve was rejected" in result.stderr
     with Path("out/fits.csv").open(encoding="utf-8", newline="") as file:
@@ -232,7 +232,7 @@ def test_files(cli: Cli, tmp_path: Path) -> None:
         assert refusal.exit_code == 2
         assert "a table that pellicle fit wrote" in refusal.stderr
     # Another choice costs no fit.
-    notes = cli(*arguments, "--accept", "r_squared > 2", code=1).stderr
+    notes = cli(*arguments, "--set", "accept=r_squared > 2", code=1).stderr
     assert "none of 5 curves was accepted" in notes
     content = json.loads(Path("out/fits.json").read_text(encoding="utf-8"))
     assert "r_squared is 0.99" in content["curves"][0]["reason"]
