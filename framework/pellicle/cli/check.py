@@ -13,8 +13,7 @@ import typer
 from pellicle.errors import ConfigError
 
 from .exits import NOT_CONVERGED
-from .printing import echo, print_json, print_table
-from .scales import warn_of_scales
+from .printing import echo, print_json, print_table, print_warning
 
 if TYPE_CHECKING:
     from pellicle.config.run import Run
@@ -41,11 +40,13 @@ def check(
     json: Annotated[bool, typer.Option("--json", help="Print JSON, in SI.")] = False,
 ) -> None:
     """Check a run or a study, and estimate its errors and memory from coarser grids."""
+    from pellicle.config.scales import doubtful_scales
     from pellicle.config.study import Study, from_toml
 
     allowed = _allowed(error.strip())
     configuration = from_toml(file, set_ or ())
-    warn_of_scales(configuration)
+    for doubt in doubtful_scales(configuration).values():
+        print_warning(doubt)
     if isinstance(configuration, Study):
         _check_study(configuration, allowed, json=json)
     else:

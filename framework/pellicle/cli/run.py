@@ -12,7 +12,7 @@ from pellicle.errors import ConfigError
 from pellicle.hookspecs import RegisterCommand, hookimpl
 
 from .exits import INTERRUPTED
-from .printing import echo, print_json, print_table
+from .printing import echo, print_json, print_table, print_warning
 from .results import (
     exit_by_convergence,
     exit_by_status,
@@ -21,7 +21,6 @@ from .results import (
     print_steps,
     print_study_json,
 )
-from .scales import warn_of_scales
 
 if TYPE_CHECKING:
     from pellicle.config.run import Run
@@ -73,10 +72,12 @@ def run(
 
     Exit code 0 only if every step converged.
     """
+    from pellicle.config.scales import doubtful_scales
     from pellicle.config.study import Study, from_toml
 
     configuration = from_toml(file, set_ or ())
-    warn_of_scales(configuration)
+    for doubt in doubtful_scales(configuration).values():
+        print_warning(doubt)
     folder = directory or Path(file.stem)
     display = _Display(quiet, si, json)
     if dry_run:

@@ -12,6 +12,7 @@ from pellicle.model.paths import walk
 from pellicle.units import Quantity, printed, quantity_of, readable
 
 from .run import Run
+from .study import Study
 
 _LARGE = 1.0
 """Edge of a domain [m] beyond which a solid of a modulus above `_STIFF` is doubted."""
@@ -25,8 +26,23 @@ _STICKY = 10.0
 """Largest plausible displacement by adhesion over the domain."""
 
 
-def doubtful_scales(run: Run) -> Iterator[tuple[str, str]]:
-    """Yield path and message of each value out of scale with the others of a run."""
+def doubtful_scales(configuration: Run | Study) -> dict[str, str]:
+    """Return, by path, a message on each value out of scale with the others of its run.
+
+    Of the runs of a study the first that has such a value is quoted.
+    """
+    if isinstance(configuration, Study):
+        runs = [point.run for point in configuration.points]
+    else:
+        runs = [configuration]
+    doubts: dict[str, str] = {}
+    for run in runs:
+        for path, message in _doubts(run):
+            doubts.setdefault(path, message)
+    return doubts
+
+
+def _doubts(run: Run) -> Iterator[tuple[str, str]]:
     size = max(run.grid.size)
     domain = f"on a domain of {readable(size, 'm', 3)}"
     values = list(_values(run))
