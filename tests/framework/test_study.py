@@ -186,11 +186,14 @@ def test_overwrite_begins_anew(tmp_path: Path) -> None:
     assert len(Counting.solved) == table["force"].size
 
 
-def test_failing_run_stops_no_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("overwrite", [False, True])
+def test_failing_run_stops_no_other(
+    overwrite: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A run that fails has its reason in the table, and is all that is tried again."""
     break_at(monkeypatch, 0.5, 1e-5)
     with pytest.warns(pl.ConvergenceWarning, match="of 3 runs 1 failed; see status"):
-        table = carry_out(study({TENSION: [0.0, 0.5, 1.0]}), tmp_path)
+        table = carry_out(study({TENSION: [0.0, 0.5, 1.0]}), tmp_path, overwrite=overwrite)
     bad = table.sel({TENSION: 0.5})
     assert bad["status"].values.tolist() == [
         "converged",

@@ -51,6 +51,13 @@ def write(dataset: xr.Dataset, path: Path) -> None:
             segment.unlink()
 
 
+def remove(path: Path) -> None:
+    """Remove a result, if there is one, with its segments."""
+    with storage_errors(path):
+        for part in (*_segments(path), path):
+            part.unlink(missing_ok=True)
+
+
 def append(dataset: xr.Dataset, path: Path) -> None:
     """Add the steps of ``dataset`` to the result that `write` began."""
     first, *segments = _parts(path)

@@ -29,20 +29,20 @@ class Journal:
         """The file."""
         return self.stem.with_name(f"{self.stem.name}.h5")
 
-    def numbers(self) -> xr.Dataset | None:
+    def finished(self) -> xr.Dataset | None:
         """Return the numbers of the steps in the file; None if it is not a file of this run."""
         with storage_errors(self.path):
             exists = self.path.exists()
         if self.overwrite or not exists:
             return None
-        numbers = storage.scalars(self.path)
-        if numbers.attrs.get("identity") != self.identity:
+        steps = storage.scalars(self.path)
+        if steps.attrs.get("identity") != self.identity:
             return None
-        storage.require_consecutive(numbers, self.path)
-        return numbers
+        storage.require_consecutive(steps, self.path)
+        return steps
 
     def resume(self) -> list[xr.Dataset]:
-        """Return the steps that an earlier process finished, one by one."""
+        """Return the steps that an earlier process finished, each a dataset of its own."""
         check_writable(self.path)
         if self.overwrite or not self.path.exists():
             return []

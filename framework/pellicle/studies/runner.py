@@ -72,7 +72,7 @@ class RunTask:
     def stored(self) -> tuple[xr.Dataset | None, str]:
         """Return the numbers of the steps in its file, if any, and why it cannot be used, if so."""
         try:
-            return self.journal.numbers(), ""
+            return self.journal.finished(), ""
         except StorageError as error:
             return None, str(error)
 
@@ -192,11 +192,12 @@ def _execute(
             rows.recall(storage.table(path))
         except StorageError as error:
             raise StorageError(f"{error}; {storage.REPLACING}") from None
-    unfinished = {
-        task.index: task
-        for task in tasks(study, directory, overwrite=overwrite)
-        if _collect(task, rows) < task.steps
-    }
+    runs_of_study = tasks(study, directory)
+    if overwrite:
+        # Otherwise an interruption would leave results of before among the new ones.
+        for task in runs_of_study:
+            storage.remove(task.journal.path)
+    unfinished = {task.index: task for task in runs_of_study if _collect(task, rows) < task.steps}
     resumed = len(study.points) - len(unfinished)
     files = _Writer(directory)
     files.write(rows)

@@ -107,7 +107,7 @@ BROKEN: dict[str, Any] = {
         gives("in a row", Refused("shape (120,)", "(12, 10)"), state=lambda s: s.pressure.ravel()),
         gives("ends without reason", Refused("stop None", "pellicle.Stop"), stop=lambda s: None),
         harms("hidden operator", CHANGES, lambda p: object.__setattr__(p, "operator", None)),
-        harms("softens the operator", READ_ONLY, lambda p: p.operator._symbol["D"].fill(1.0)),
+        harms("softens the operator", READ_ONLY, lambda p: p.operator._symbol.double.fill(1.0)),
         harms("symbol", CHANGES, lambda p: setattr(p.operator._symbol, "double", 1.0)),
         harms("lowers the profile", READ_ONLY, lambda problem: np.copyto(problem.profile, -1.0)),
     ],
