@@ -10,7 +10,7 @@ import numpy as np
 import pint
 import pytest
 
-from pellicle.units import Quantity
+from pellicle.units import Quantity, one
 
 UREG: pint.UnitRegistry[float] = pint.UnitRegistry()
 TENSION = Quantity("N/m", at_least=0)
@@ -144,6 +144,7 @@ def test_no_angle(unit: str) -> None:
         "yd⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹",
         "Pa" + " " * 1_000_000 + "(",
         "m*" * 100_000 + "m",
+        "m" + (" " * 9 + "m") * 9 + "(",
         "(" * 5000 + "Pa" + ")" * 5000,
         "Pa;Pa",
     ],
@@ -153,6 +154,8 @@ def test_unit_that_would_never_end(unit: str) -> None:
     with pytest.raises(ValueError, match="has an unknown unit") as caught:
         Quantity("Pa")(f"1 {unit}")
     assert len(str(caught.value)) < 250
+    with pytest.raises(ValueError, match="has an unknown unit"):
+        one(unit)
 
 
 @pytest.mark.parametrize(

@@ -69,9 +69,11 @@ def split(text: str) -> tuple[float, str] | None:
 
 def one(unit: str) -> Any:
     """Return 1 of a unit as a pint quantity in SI, whose arithmetic keeps dimensions."""
-    if len(unit) <= _LONGEST_UNIT and _UNIT.fullmatch(unit):
+    # Runs of blanks can be divided among the parts of the pattern in more ways than can be tried.
+    spaced = " ".join(unit.split())
+    if len(spaced) <= _LONGEST_UNIT and _UNIT.fullmatch(spaced):
         try:
-            return pint_registry().Quantity(1.0, unit).to_base_units()
+            return pint_registry().Quantity(1.0, spaced).to_base_units()
         except Exception:
             # pint raises a dozen unrelated types (syntax, token, attribute errors) for bad units.
             pass
@@ -79,9 +81,10 @@ def one(unit: str) -> Any:
 
 
 def si_unit(value: Any) -> str:
-    """Return the SI unit of a pint quantity as datasets write it; ``"1"`` for a pure number.
+    """Return the SI unit of a pint quantity as datasets write it.
 
-    A unit without a name of its own is a product of N, m and s.
+    A unit without a name of its own is a product of N, m and s, and ``"1"`` if it is none, as that
+    of a pure number.
     """
     dimensions: Mapping[str, float] = getattr(value, "dimensionality", {})
     if not dimensions or not all(map(math.isfinite, dimensions.values())):
@@ -92,7 +95,7 @@ def si_unit(value: Any) -> str:
     mass, length, time = (dimensions.get(f"[{name}]", 0) for name in ("mass", "length", "time"))
     powers = {"N": mass, "m": length - mass, "s": time + 2 * mass}
     parts = (f"{n}**{power:g}" if power != 1 else n for n, power in powers.items() if power)
-    return (named_unit or "*".join(parts)).replace("m**2", "m2")
+    return re.sub(r"m\*\*2(?![\d.])", "m2", named_unit or "*".join(parts))
 
 
 # pint takes half a millisecond for a conversion, and a study has thousands of values.
