@@ -53,14 +53,11 @@ def excess_radius(kernel: Kernel, spacing: float) -> float:
 
     It is 0.115 n h, where h is the spacing and n = −d ln G / d ln q over the octave around the
     shortest wave of the grid, q = π/h, kept between 0 and 2. The formula is empirical. Flat punches
-    of nine radii, 13 to 19 cells, are as stiff as exact ones that are smaller by, in cells,
-
-    - 0.00 ± 0.02 on springs, n = 0,
-    - 0.115 ± 0.007 on a half-space, n = 1,
-    - 0.19 ± 0.01 if tension sets in at the size of a cell, s = h/π, n = 1.5; the formula has 0.17,
-    - 0.24 ± 0.01 under strong tension, n = 2; the formula has 0.23,
-    - 0.32 ± 0.01 to 0.12 ± 0.06 with a bending stiffness B, for (2B/E*)^⅓ from half a cell to more
-      than the radius of the punch (from two grids); the formula has 0.23.
+    of nine radii, 13 to 19 cells, are as stiff as exact ones that are smaller by 0.115 ± 0.007
+    cells on a half-space, n = 1; by 0.19 ± 0.01 if tension sets in at the size of a cell, n = 1.5
+    (formula 0.17); by 0.24 ± 0.01 under strong tension, n = 2 (formula 0.23). With a bending
+    stiffness B (formula 0.23) it is 0.32 ± 0.01 if (2B/E*)^⅓ is half a cell, and 0.12 ± 0.06 if it
+    is more than the radius.
     """
     shortest = pi / spacing
     compliance = kernel.compliance(shortest * np.array([sqrt(0.5), sqrt(2.0)]))

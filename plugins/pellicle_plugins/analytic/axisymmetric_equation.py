@@ -63,10 +63,7 @@ class PanelSolution:
         return force, delta
 
     def pressure(self, t: Array) -> Array:
-        """Return p / E* at positions 0 ≤ t ≤ 1, shape (m,).
-
-        Under a pointed indenter, where p is infinite at t = 0, t must be positive.
-        """
+        """Return p / E* at positions 0 ≤ t ≤ 1, but t > 0 under a pointed indenter, shape (m,)."""
         inside = points_at(t)
         # The limit from inside is taken: at η = 0 the interval of integration would be empty.
         targets = Points(inside.psi, np.maximum(inside.eta, 1e-100))

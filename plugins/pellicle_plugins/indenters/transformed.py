@@ -27,10 +27,7 @@ class Transformed(Indenter):
     ]
 
     moves: ClassVar[bool] = True
-    """Whether it shifts or turns the part, which must then be defined beyond the domain.
-
-    `Scaled` does neither.
-    """
+    """Whether it moves its part, which must then reach beyond the domain; `Scaled` does not."""
 
     @property
     def footprint(self) -> Footprint:

@@ -206,14 +206,11 @@ def _status(
 
 
 def _steepest_slopes(path: xr.Dataset) -> Array:
-    """Return the largest slope of the indenter in the contact of each load step, shape (step,).
-
-    It is infinite once the contact reaches the cells beside the end of the indenter.
-    """
+    """Return the largest slope of the indenter in the contact of each load step, shape (step,)."""
     last = path.isel(step=-1)
     profile = last["displacement"].values - last["depth"].item() - last["gap"].values
     spacing = Result(path).grid.spacing
-    # Where the indenter ends the profile is −inf.
+    # Where the indenter ends the profile is −inf, and in the cells beside that the slope is inf.
     with np.errstate(invalid="ignore"):
         slope = np.hypot(*np.gradient(profile, *spacing))
     contacts = path["contact"].values
