@@ -1,8 +1,10 @@
 """The one-dimensional equation of axisymmetric contact under surface tension.
 
 The Abel transform reduces the contact to ∫_{−a}^{a} φ(t) K(x − t) dt = E* (δ − h(x)),
-K(z) = ∫₀^∞ cos(qz) / (1 + s q) dq, s = 2τ₀/E*, with P = π ∫ φ and φ(±a) = 0.  Its
-derivative in x, with χ = −φ', does not contain the depth:
+K(z) = ∫₀^∞ cos(qz) / (1 + s q) dq, s = 2τ₀/E*, with P = π ∫ φ and φ(±a) = 0 (after Kim &
+Gouldstone 2008 and Long et al. 2017).  Here h is not the profile f but, as in
+``HasAbelTransform``, h(x) = −x ∫₀^x f'(r) / sqrt(x² − r²) dr.  The derivative of the
+equation in x, with χ = −φ', does not contain the depth:
 
     ∫₀^a χ(t) [K(x − t) − K(x + t)] dt = E* h'(x),
 
@@ -21,14 +23,15 @@ from pellicle.arrays import Array
 
 from .abel_transform import HasAbelTransform
 from .panels import Panel, Points, graded, joined, points_at
-from .product_integration import Kernel, clustering, collocation, weights
+from .product_integration import IntegralKernel, clustering, collocation, weights
 from .tension_kernel import auxiliary_g, primitive
 
 LEVELS = ((12, 1e-3), (16, 3e-4), (22, 1e-4))
 """Gauss points per panel, and size of the finest panel over that of the edge layer."""
-NEGLIGIBLE = 1e-12
+_NEGLIGIBLE = 1e-12
 """s/a below which tension is neglected, which changes force and depth by less than 1e-11."""
 _CHUNK = 2048
+"""Positions at which the pressure is computed at once, to bound the memory."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +42,7 @@ class PanelSolution:
     y: Array
     power: int
     ratio: float
+    """s/a; 0 without tension."""
 
     def moments(self) -> tuple[float, float]:
         """Return P / (E* a²) and δ / a."""
@@ -59,7 +63,7 @@ class PanelSolution:
         return force, delta
 
     def pressure(self, t: Array) -> Array:
-        """Return p / E* at positions 0 ≤ t ≤ 1, shape (m,)."""
+        """Return p / E* at positions 0 ≤ t ≤ 1, but t > 0 under a pointed indenter, shape (m,)."""
         inside = points_at(t)
         # The limit from inside is taken: at η = 0 the interval of integration would be empty.
         targets = Points(inside.psi, np.maximum(inside.eta, 1e-100))
@@ -78,27 +82,31 @@ class PanelSolution:
 def solve(indenter: HasAbelTransform, a: float, ratio: float, level: int) -> PanelSolution:
     """Solve for a contact radius a [m], s/a = ratio (zero included), on a mesh level."""
     order, finest = LEVELS[level]
-    # Under tension a corner at the apex makes χ ~ 1/t; a smooth apex has χ ~ t.
-    power = (-1 if ratio else 0) if indenter.pointed else 1
+    # At a smooth apex χ ~ t; at a corner χ ~ 1/t under tension and is finite without.
+    corner = -1 if ratio else 0
+    power = corner if indenter.pointed else 1
+    # At the edge 1 − t ≈ η²/2, so that a layer s/a wide in t is √(2s/a) wide in η.
     layer = min(1.0, ratio) if ratio else 1.0
     panels = graded(order, finest * np.sqrt(layer), finest * layer if indenter.pointed else 1.0)
     nodes = joined(panels)
     slope = indenter.abel_slope(a * nodes.t)
     if not ratio:
+        # K is then π times the delta function, so that χ = E* h'/π; and dt = sin η dψ.
         y: Array = slope / np.pi * np.sin(nodes.eta) / nodes.t**power
     else:
-        matrix = collocation(panels, influence(ratio, power), clustering(ratio), -1)
+        matrix = collocation(panels, influence(ratio, power), clustering(ratio), parity=-1)
         y = np.asarray(np.linalg.solve(matrix, slope), dtype=np.float64)
     return PanelSolution(panels, y.reshape(len(panels), order), power, ratio)
 
 
-def influence(ratio: float, power: int) -> Kernel:
+def influence(ratio: float, power: int) -> IntegralKernel:
     """Return the kernel K(x − t) of the equation at s/a = ratio, times t^power."""
 
     def kernel(distance: Array, source: Points, target: Points) -> Array:
         value = auxiliary_g(distance / ratio)
         if power < 0:
-            # Cancels between a panel and its mirror image, each of which would diverge at the apex.
+            # This term cancels between a panel and its mirror image; without it, the integral
+            # over each would diverge at the apex.
             value = value - auxiliary_g(target.t / ratio)
         weighted: Array = value / ratio * np.abs(source.t) ** power
         return weighted
@@ -108,4 +116,4 @@ def influence(ratio: float, power: int) -> Kernel:
 
 def without_negligible(ratio: float) -> float:
     """Return s/a, or exactly 0 if tension is negligible."""
-    return ratio if ratio > NEGLIGIBLE else 0.0
+    return ratio if ratio > _NEGLIGIBLE else 0.0

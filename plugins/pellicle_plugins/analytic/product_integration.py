@@ -12,7 +12,7 @@ from pellicle.arrays import Array
 
 from .panels import Panel, Points, gauss, joined
 
-Kernel = Callable[[Array, Points, Points], Array]
+IntegralKernel = Callable[[Array, Points, Points], Array]
 
 
 @lru_cache(maxsize=16)
@@ -44,7 +44,7 @@ def _chord(target: Points, source: Points, separation: Array) -> Array:
 
 
 def weights(
-    panel: Panel, targets: Points, kernel: Kernel, above: bool = False, power: int = 6
+    panel: Panel, targets: Points, kernel: IntegralKernel, above: bool = False, power: int = 6
 ) -> Array:
     """Return the weights of ∫ y(ψ) kernel(|t − x|, t, x) dψ over one panel, shape (m, order).
 
@@ -92,7 +92,7 @@ def weights(
     return out
 
 
-def collocation(panels: list[Panel], kernel: Kernel, power: int, parity: int) -> Array:
+def collocation(panels: list[Panel], kernel: IntegralKernel, power: int, parity: int) -> Array:
     """Return the matrix (n, n) of an integral over [−1, 1], collocated at the nodes of [0, 1].
 
     ``parity`` is 1 if the unknown is even, −1 if it is odd.

@@ -11,7 +11,7 @@ from pellicle.arrays import Array
 from pellicle.components import Footprint, FromRegistry, Indenter
 from pellicle.errors import ConfigError
 
-from .transformed import profile_of
+from .transformed import profile_of_part
 
 
 class Sum(Indenter):
@@ -52,7 +52,7 @@ class Sum(Indenter):
         smooth, rough = np.zeros(shape), np.zeros(shape)
         hidden = 0.0
         for index, part in enumerate(self.parts):
-            profile = profile_of(part, x, y, f"parts.{index}")
+            profile = profile_of_part(part, x, y, f"parts.{index}")
             if part.footprint == "domain":
                 rough += profile
                 hidden -= float(profile.max())

@@ -15,7 +15,7 @@ from pellicle.units import Quantity
 
 
 class Transformed(Indenter):
-    """An indenter that transforms one other."""
+    """Base class of the indenters that change one other, their ``part``."""
 
     part: Annotated[
         Indenter,
@@ -27,7 +27,7 @@ class Transformed(Indenter):
     ]
 
     moves: ClassVar[bool] = True
-    """Whether it shifts or turns the part, which must then be defined beyond the domain."""
+    """Whether it moves its part, which must then reach beyond the domain; `Scaled` does not."""
 
     @property
     def footprint(self) -> Footprint:
@@ -35,7 +35,7 @@ class Transformed(Indenter):
         return self.part.footprint
 
     @model_validator(mode="after")
-    def _unbounded(self) -> Self:
+    def _moved_part_is_unbounded(self) -> Self:
         if self.moves and self.part.footprint == "domain":
             raise ConfigError(
                 "ends where the domain does and would leave a part of it empty; move the other "
@@ -58,7 +58,7 @@ class Shifted(Transformed):
 
     def profile(self, x: Array, y: Array) -> Array:
         """Return f(x − x₀, y − y₀) [m]."""
-        return profile_of(self.part, x - self.x, y - self.y, "part")
+        return profile_of_part(self.part, x - self.x, y - self.y, "part")
 
 
 class Rotated(Transformed):
@@ -74,7 +74,7 @@ class Rotated(Transformed):
     def profile(self, x: Array, y: Array) -> Array:
         """Return f(x cos α + y sin α, y cos α − x sin α) [m]."""
         c, s = cos(self.angle), sin(self.angle)
-        return profile_of(self.part, c * x + s * y, c * y - s * x, "part")
+        return profile_of_part(self.part, c * x + s * y, c * y - s * x, "part")
 
 
 class Scaled(Transformed):
@@ -92,12 +92,12 @@ class Scaled(Transformed):
 
     def profile(self, x: Array, y: Array) -> Array:
         """Return factor · f [m], or −inf where f is −inf."""
-        profile = profile_of(self.part, x, y, "part")
+        profile = profile_of_part(self.part, x, y, "part")
         # −inf · 0 would be NaN.
         return np.multiply(profile, self.factor, out=profile.copy(), where=np.isfinite(profile))
 
 
-def profile_of(part: Indenter, x: Array, y: Array, field: str) -> Array:
+def profile_of_part(part: Indenter, x: Array, y: Array, field: str) -> Array:
     """Return the profile [m] of the part in ``field``; its errors name that field."""
     try:
         return part.profile(x, y)

@@ -11,12 +11,13 @@ import numpy as np
 from pydantic import Field
 
 from pellicle import analysis
+from pellicle.arrays import Array
 from pellicle.components import Runs
 from pellicle.errors import ConfigError
 from pellicle.report.style import colour, sparse_marker
 from pellicle.results.result import Result
 from pellicle.units import Quantity, axis_unit
-from pellicle_plugins.analytic.adhesive_path import curve_of, steepest_slopes
+from pellicle_plugins.analytic.adhesive_path import curve_of
 
 from .base import Label, TableFigure, set_scales, write_csv
 
@@ -180,7 +181,7 @@ def _status(
     """Return which points are not on the path, not resolved, or steeper than the theory allows."""
     spacing = max(Result(path).grid.spacing)
     steps = np.argsort(path["contact_radius"].values)
-    slopes = path["contact_radius"].values[steps], steepest_slopes(path)[steps]
+    slopes = path["contact_radius"].values[steps], _steepest_slopes(path)[steps]
     missing, coarse, steep = [], [], []
     for mark, contact in points.items():
         radius = float(contact.contact_radius)
@@ -202,6 +203,18 @@ def _status(
         f"slope of the indenter at the rim: {', '.join(steep)}; {theory}": steep,
     }
     return "; ".join(text for text, marks in problems.items() if marks) or "computed"
+
+
+def _steepest_slopes(path: xr.Dataset) -> Array:
+    """Return the largest slope of the indenter in the contact of each load step, shape (step,)."""
+    last = path.isel(step=-1)
+    profile = last["displacement"].values - last["depth"].item() - last["gap"].values
+    spacing = Result(path).grid.spacing
+    # Where the indenter ends the profile is −inf, and in the cells beside that the slope is inf.
+    with np.errstate(invalid="ignore"):
+        slope = np.hypot(*np.gradient(profile, *spacing))
+    contacts = path["contact"].values
+    return np.array([np.nanmax(slope[contact], initial=0.0) for contact in contacts])
 
 
 def _refuse(run: xr.Dataset) -> None:
