@@ -448,6 +448,20 @@ def test_left_overs_of_the_dead_are_swept(tmp_path: Path) -> None:
     assert all(path.exists() for path in kept)
 
 
+def test_left_overs_of_others_may_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A half-written file that may not be removed, as in a shared folder, is no error."""
+    other = tmp_path / f".a.h5.{files._host()}.1.part"
+    other.touch()
+
+    def refuse(path: Path, missing_ok: bool = False) -> None:
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr(files, "_alive", lambda pid: False)
+    monkeypatch.setattr(Path, "unlink", refuse)
+    files.check_writable(tmp_path / "b.h5")
+    assert other.exists()
+
+
 class Listing(pl.Output):
     """Names each run that it is called for."""
 
