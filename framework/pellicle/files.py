@@ -1,4 +1,4 @@
-"""Write files atomically, and read texts in the usual encodings."""
+"""Write files atomically, read texts in the usual encodings, and fit texts for documents."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import codecs
 import json
 import os
 import re
+import socket
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -20,7 +22,7 @@ _MARKS = {
     codecs.BOM_UTF16_LE: "utf-16",
     codecs.BOM_UTF16_BE: "utf-16",
 }
-# Neither XML nor HTML allows these control characters; both allow line feeds and tabs.
+# XML refuses these characters, but for 0x7F to 0x9F, which are errors in HTML.
 _NOT_IN_DOCUMENTS = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 
 
@@ -42,7 +44,7 @@ def read_text(path: Path) -> str:
     except UnicodeDecodeError:
         if encoding is not None:
             raise
-        # Instruments write µ, ° and ² in code page 1252, which accepts other one-byte encodings.
+        # Instruments write µ, ° and ² in code page 1252; other one-byte encodings mostly pass, too.
         text = content.decode("cp1252")
     if "\0" in text:
         raise ValueError("it holds bytes that are not text")
@@ -50,12 +52,10 @@ def read_text(path: Path) -> str:
 
 
 def check_writable(path: Path) -> None:
-    """Check before computing that a file can be written at ``path``.
+    """Check before computing that a file can be written at ``path``, and make its folder.
 
-    Partial files of dead processes in its folder are removed.
+    Partial files of dead processes in this folder are removed.
     """
-    import tempfile
-
     with storage_errors(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=path.parent):
@@ -63,7 +63,9 @@ def check_writable(path: Path) -> None:
         for part in path.parent.glob(".*.part"):
             owner = re.search(r"\.([^.]+)\.(\d+)\.part$", part.name)
             if owner and owner[1] == _host() and not _alive(int(owner[2])):
-                part.unlink(missing_ok=True)
+                # In a shared folder the file of another user stays.
+                with suppress(OSError):
+                    part.unlink()
 
 
 @contextmanager
@@ -93,8 +95,6 @@ def atomic_write(path: Path) -> Iterator[Path]:
 
 
 def _host() -> str:
-    import socket
-
     return socket.gethostname().replace(".", "-")
 
 
@@ -108,8 +108,8 @@ def _alive(pid: int) -> bool:
         return False
     except PermissionError:
         pass
-    # A worker of a killed process is dead but has its number until the first process of the
-    # system, which in a container may never do so, asks for its exit code.
+    # A zombie, such as a worker of a killed process, keeps its number until its exit code is
+    # asked for; the first process of a container may never do so.
     with suppress(OSError):
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     return True

@@ -1,7 +1,12 @@
 """Every registered component keeps the contract of its family, by the kit that strangers use."""
 
+import math
+
+import pytest
+
 from pellicle import testing
 from pellicle.components import FAMILIES, Component
+from pellicle.testing.rules import require_close
 
 
 def test_keeps_its_contract(component: Component) -> None:
@@ -12,3 +17,13 @@ def test_keeps_its_contract(component: Component) -> None:
 def test_each_family_has_a_check() -> None:
     """The kit has a function for each family, named after it, and no others."""
     assert set(testing.__all__) == {f"check_{family}" for family in FAMILIES}
+
+
+def test_infinite_values_agree_with_their_equals_only() -> None:
+    """Infinity is close to itself, and to no number, however large the allowed share."""
+    require_close([math.inf, -math.inf, 1.0], [math.inf, -math.inf, 1.0], "the gap", relative=0.1)
+    for actual, expected in ((1.0, math.inf), (-math.inf, math.inf), (math.inf, 1.0)):
+        with pytest.raises(AssertionError, match=f"the gap is {actual:g}.*expected {expected:g}"):
+            require_close([actual], [expected], "the gap", relative=0.1)
+    with pytest.raises(AssertionError, match="the gap is nan"):
+        require_close([math.nan], [math.nan], "the gap")

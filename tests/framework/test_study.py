@@ -22,8 +22,9 @@ from pellicle import files, memory
 from pellicle.cli.app import app
 from pellicle.components import Monitor
 from pellicle.results import storage
+from pellicle.results.dimensions import with_paths
 from pellicle.studies import runner as study_module
-from pellicle.studies.summary import failures
+from pellicle.studies.summary import failures, reasons
 from pellicle.studies.table import StudyTable, write
 from pellicle_plugins.executors.processes import Processes
 from pellicle_plugins.executors.serial import Serial
@@ -224,6 +225,19 @@ def test_unconverged_run(tmp_path: Path) -> None:
         again = carry_out(study({TENSION: [0.0, 1.0]}, loading=deep), tmp_path)
     same_numbers(again, table)
     assert Counting.solved == []
+
+
+def test_a_failure_after_an_unconverged_step_has_its_reason(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A run that did not converge and later failed is told with both reasons."""
+    break_at(monkeypatch, 0.0, 7e-5)
+    deep = {"depth": ["5 um", "60 um", "70 um"]}
+    with pytest.warns(pl.ConvergenceWarning, match="of 1 runs 1 failed, 1 did not converge"):
+        table = carry_out(study({TENSION: [0.0]}, loading=deep))
+    edge, failure = reasons(with_paths(table))
+    assert "reaches the edge" in edge
+    assert "failed: ZeroDivisionError: struck by lightning" in failure
 
 
 def test_runs_of_unequal_length() -> None:
@@ -435,6 +449,20 @@ def test_left_overs_of_the_dead_are_swept(tmp_path: Path) -> None:
     dead.wait()
     assert not gone.exists()
     assert all(path.exists() for path in kept)
+
+
+def test_left_overs_of_others_may_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A half-written file that may not be removed, as in a shared folder, is no error."""
+    other = tmp_path / f".a.h5.{files._host()}.1.part"
+    other.touch()
+
+    def refuse(path: Path, missing_ok: bool = False) -> None:
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr(files, "_alive", lambda pid: False)
+    monkeypatch.setattr(Path, "unlink", refuse)
+    files.check_writable(tmp_path / "b.h5")
+    assert other.exists()
 
 
 class Listing(pl.Output):

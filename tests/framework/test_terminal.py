@@ -27,7 +27,7 @@ from pellicle.cli.printing import print_columns
 from pellicle.components import FAMILIES, Case
 from pellicle.config.explain import explanations
 from pellicle.runs import validation
-from pellicle.runs.validation import Verdict
+from pellicle.runs.validation import CheckedCase
 from pellicle_fit.config import FitConfig
 
 RUN: dict[str, Any] = {
@@ -236,11 +236,11 @@ def test_validate_ends_with_what_it_covers(
 ) -> None:
     """Its last line counts the cases and names the kernels that none is about."""
 
-    def verdicts() -> Iterator[Verdict]:
+    def verdicts() -> Iterator[CheckedCase]:
         for number in range(2):
             kernel = {"kernel": {"type": "half_space"}}
             case = Case(f"case {number}", kernel, lambda _: 0.0, 2e-7, "m²", 1e-3, "Hertz 1882")
-            yield Verdict(case, 3e-7 if number < wrong else 2e-7, True)
+            yield CheckedCase(case, 3e-7 if number < wrong else 2e-7, True)
 
     monkeypatch.setattr(validation, "validate", verdicts)
     shown = cli("validate", code=int(wrong > 0), COLUMNS="120").stdout

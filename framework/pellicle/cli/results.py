@@ -119,10 +119,10 @@ def _columns(data: xr.Dataset, names: Sequence[str], si: bool) -> list[tuple[str
 
 def print_runs(table: xr.Dataset, *, si: bool = False) -> None:
     """Print parameters, last step and verdict of each run of a study, and its path."""
-    from pellicle.studies.summary import columns, paths
+    from pellicle.studies.summary import columns, path_columns
 
     print_columns(columns(table, si=si))
-    print_columns(paths(table, si=si), "path")
+    print_columns(path_columns(table, si=si), "path")
 
 
 def print_result_json(result: Result, files: Sequence[Path] = ()) -> None:

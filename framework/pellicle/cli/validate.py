@@ -12,7 +12,7 @@ from .printing import echo, print_columns, print_json
 
 if TYPE_CHECKING:
     from pellicle.components import Case
-    from pellicle.runs.validation import Verdict
+    from pellicle.runs.validation import CheckedCase
 
 _DIGITS = 8
 
@@ -50,14 +50,14 @@ def validate(
             ("computed", [_value(v.computed, v.case) for v in done]),
             ("error", [f"{verdict.error:.1e}" for verdict in done]),
             ("allowed", [f"{verdict.case.tolerance:.0e}" for verdict in done]),
-            ("verdict", ["ok" if verdict.passed else "FAILED" for verdict in done]),
+            ("verdict", ["ok" if v.passed else f"FAILED {v.problem}".strip() for v in done]),
         ]
         print_columns([names, *numbers, sources])
         echo(_summary(done))
     raise typer.Exit(0 if passed else 1)
 
 
-def _summary(done: list[Verdict]) -> str:
+def _summary(done: list[CheckedCase]) -> str:
     """Return how many cases passed, and the kernels of which no case exists."""
     from pellicle.plugins import registry
 

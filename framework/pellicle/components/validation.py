@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
+from pellicle.errors import ConfigError
 from pellicle.results.result import Result
 
 
@@ -20,13 +21,17 @@ class Case:
     computed: Callable[[Result], float]
     """Function that returns the computed quantity from the result, SI."""
     expected: float
-    """Its true value, SI."""
+    """Its true value, SI; not 0, as the error is relative."""
     unit: str
     """Unit of both values, for the table."""
     tolerance: float
     """Allowed relative error."""
     source: str
     """Source of the true value: author, year."""
+
+    def __post_init__(self) -> None:
+        if not self.expected:
+            raise ConfigError("0 has no relative error; compare another quantity", "expected")
 
 
 Suite = Callable[[], Iterable[Case]]

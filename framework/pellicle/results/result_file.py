@@ -30,10 +30,10 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
         raise StorageError(f"{path}: {reason}")
     import h5py
 
-    with _readable(path):
+    with readable(path):
         # Before HDF5 parses the file, which for a changed byte can end the process.
         is_sealed = checksum.verify(path)
-    with _readable(path), h5py.File(path) as file:
+    with readable(path), h5py.File(path) as file:
         attributes = netcdf.attributes(file)
         version = attributes.get("schema_version")
         if version is None or not {"configuration", "versions"} <= attributes.keys():
@@ -78,7 +78,7 @@ def attributes_of(file: h5py.File) -> dict[str, Any]:
 
 
 @contextmanager
-def _readable(path: Path) -> Iterator[None]:
+def readable(path: Path) -> Iterator[None]:
     """Turn exceptions that a damaged file causes into a StorageError that names the remedy."""
     try:
         yield

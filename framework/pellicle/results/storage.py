@@ -24,7 +24,7 @@ from pellicle.files import atomic_write, storage_errors
 
 from . import checksum, netcdf
 from .result_file import SCHEMA_VERSION as SCHEMA_VERSION
-from .result_file import attributes_of, content
+from .result_file import attributes_of, content, readable
 from .result_file import opened as opened
 
 if TYPE_CHECKING:
@@ -203,18 +203,18 @@ def _join(path: Path, segments: Sequence[Path], *more: xr.Dataset) -> None:
 
     size = path.stat().st_size
     added = [*(segment.stat().st_size for segment in segments), *(steps.nbytes for steps in more)]
+    # Without room BytesIO would copy the content whenever HDF5 writes beyond its end.
+    grown = io.BytesIO(bytes(size + sum(added) + _SMALL))
+    with readable(path), path.open("rb") as old, grown.getbuffer() as buffer:
+        old.readinto(buffer[:size])
+    with h5py.File(grown, "r+") as file:
+        names = [name for name in file if file[name].maxshape[:1] == (None,)]
+        for segment in segments:
+            with opened(segment) as source:
+                _extend(file, {name: source[name] for name in names})
+        for steps in more:
+            _extend(file, {name: steps[name].values for name in names})
     with atomic_write(path) as part:
-        # Without room BytesIO would copy the content whenever HDF5 writes beyond its end.
-        grown = io.BytesIO(bytes(size + sum(added) + _SMALL))
-        with path.open("rb") as old, grown.getbuffer() as buffer:
-            old.readinto(buffer[:size])
-        with h5py.File(grown, "r+") as file:
-            names = [name for name in file if file[name].maxshape[:1] == (None,)]
-            for segment in segments:
-                with opened(segment) as source:
-                    _extend(file, {name: source[name] for name in names})
-            for steps in more:
-                _extend(file, {name: steps[name].values for name in names})
         _save(grown, part)
     with storage_errors(path):
         for segment in _segments(path):

@@ -3,25 +3,27 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from itertools import chain
+from itertools import chain, groupby
 
 from pellicle.components import Case
 from pellicle.config.run import Run
 from pellicle.plugins import registry
-from pellicle.results.result import Result
 
 from .runner import solve
 
 
 @dataclass(frozen=True)
-class Verdict:
+class CheckedCase:
     """A case with the computed value."""
 
     case: Case
     computed: float
     converged: bool
+    problem: str = ""
+    """Why there is no computed value, which is NaN then."""
 
     @property
     def error(self) -> float:
@@ -34,23 +36,25 @@ class Verdict:
         return self.converged and self.error <= self.case.tolerance
 
 
-def validate(cases: Iterable[Case] | None = None) -> Iterator[Verdict]:
-    """Yield a verdict on each case; by default on all registered cases.
+def validate(cases: Iterable[Case] | None = None) -> Iterator[CheckedCase]:
+    """Yield each case with its computed value; by default all registered cases.
 
-    Cases that share a configuration share its run.
+    Cases in a row that share a configuration share its run.
 
     Raises
     ------
     ConfigError, PluginError
         A case cannot be run.
     """
-    solved: dict[str, Result] = {}
     if cases is None:
         cases = chain.from_iterable(suite() for suite in registry().suites)
-    for case in cases:
-        key = json.dumps(case.configuration, sort_keys=True)
-        if key not in solved:
-            # Only the latest run is kept: cases that share one are registered in a row.
-            solved = {key: solve(Run(**case.configuration))}
-        result = solved[key]
-        yield Verdict(case, case.computed(result), result.converged)
+    for _, group in groupby(cases, lambda case: json.dumps(case.configuration, sort_keys=True)):
+        sharing = list(group)
+        result = solve(Run(**sharing[0].configuration))
+        for case in sharing:
+            try:
+                computed, problem = float(case.computed(result)), ""
+            # Whatever a plugin's function raises, the other cases are checked.
+            except Exception as error:
+                computed, problem = math.nan, f"{type(error).__name__}: {error}"
+            yield CheckedCase(case, computed, result.converged, problem)

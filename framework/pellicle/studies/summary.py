@@ -27,11 +27,9 @@ _FAILURES = {
     "not run": "were not finished",
 }
 """Phrases for messages such as "3 did not converge", by verdict."""
-_EVENTS = (
-    *("pull_off", "pull_off_accuracy", "detach", "jump_in", "dissipated_energy"),
-    *("storage_stiffness", "loss_stiffness", "phase", "cycle_dissipation"),
-)
-_SHORT = 8
+_OF_PATHS = ["pull_off", "pull_off_accuracy", "detach", "jump_in", "dissipated_energy"]
+_OF_CYCLES = ["storage_stiffness", "loss_stiffness", "phase", "cycle_dissipation"]
+_LEAST_LETTERS = 8
 Columns = list[tuple[str, list[str]]]
 """Head and cells of each column."""
 _REASONS = {
@@ -72,16 +70,16 @@ def columns(table: xr.Dataset, *, si: bool = False) -> Columns:
     ]
 
 
-def paths(table: xr.Dataset, *, si: bool = False) -> Columns:
+def path_columns(table: xr.Dataset, *, si: bool = False) -> Columns:
     """Return the main numbers of the whole path of each run; no columns where it has none."""
     per_run = [n for n in _derived(table) if n in table and "step" not in table[n].dims]
-    names = [n for n in (*_EVENTS, *per_run) if n in table]
+    names = [n for n in (*_OF_PATHS, *_OF_CYCLES, *per_run) if n in table]
     runs = list(runs_of(table))
-    columns = [("run", list(map(str, range(1, len(runs) + 1))))]
+    shown = [("run", list(map(str, range(1, len(runs) + 1))))]
     for name in names:
         column = wording(table[name], si=si)
-        columns.append((column.head, [column.number(run[name].item()) for run in runs]))
-    return columns if names else []
+        shown.append((column.head, [column.number(run[name].item()) for run in runs]))
+    return shown if names else []
 
 
 def _derived(table: xr.Dataset) -> list[str]:
@@ -100,9 +98,9 @@ def run_names(table: xr.Dataset) -> list[str]:
 
 
 def short_files(table: xr.Dataset) -> list[str]:
-    """Return the names of the files of runs, each cut as far as they differ, to eight letters."""
+    """Return the names of the files of runs, cut after the letters that differ, but at least 8."""
     names = [str(run["run"].item()) for run in runs_of(table)]
-    lengths = range(_SHORT, max(map(len, names), default=_SHORT) + 1)
+    lengths = range(_LEAST_LETTERS, max(map(len, names), default=_LEAST_LETTERS) + 1)
     least = next((n for n in lengths if len({name[:n] for name in names}) == len({*names})), None)
     return [f"{name[:least]}…" if least and least < len(name) else name for name in names]
 
@@ -117,17 +115,17 @@ def progress_of(run: xr.Dataset) -> tuple[int, int, str]:
 
 
 def reasons(table: xr.Dataset) -> Iterator[str]:
-    """Yield the runs that failed or did not converge, with the first bad status of each.
+    """Yield the runs that did not converge or failed, with the first status of either kind.
 
     Runs of equal status are one text, which names the first.
     """
     groups: dict[str, list[str]] = {}
-    names = zip(run_names(table), short_files(table), strict=True)
-    for (name, file), run in zip(names, runs_of(table), strict=True):
-        statuses = _statuses(run)[0]
-        bad = next((n for n, status in enumerate(statuses) if not status.converged), None)
-        if bad is not None and statuses[bad] != Status.NOT_RUN:
-            message = str(run["status"].values[bad])
+    for name, file, run in zip(run_names(table), short_files(table), runs_of(table), strict=True):
+        firsts: dict[str, str] = {}
+        for status, message in zip(_statuses(run)[0], run["status"].values, strict=False):
+            if not status.converged and status != Status.NOT_RUN:
+                firsts.setdefault(status.verdict, str(message))
+        for message in firsts.values():
             groups.setdefault(message, []).append(f"{name} (file {file})")
     for message, runs in groups.items():
         yield f"{first_of(runs)}: {message}"
@@ -142,8 +140,8 @@ def failures(table: xr.Dataset) -> str:
     """Return a phrase on runs that failed, did not converge or were not finished, if any."""
     verdicts = [{status.verdict for status in statuses} for statuses in _statuses(table)]
     counts = {verdict: sum(verdict in run for run in verdicts) for verdict in _FAILURES}
-    parts = [f"{count} {_FAILURES[verdict]}" for verdict, count in counts.items() if count]
-    return f"of {len(verdicts)} runs {', '.join(parts)}" if parts else ""
+    phrases = [f"{count} {_FAILURES[verdict]}" for verdict, count in counts.items() if count]
+    return f"of {len(verdicts)} runs {', '.join(phrases)}" if phrases else ""
 
 
 def caveats(table: xr.Dataset) -> Iterator[str]:
@@ -151,25 +149,29 @@ def caveats(table: xr.Dataset) -> Iterator[str]:
 
     Of a small domain it is the step that needs the largest one.
     """
-    codes, messages = (_by_run(table, name) for name in ("status_code", "status"))
-    having: dict[str, list[tuple[int, str]]] = {}
-    for run, step in zip(*np.nonzero(codes), strict=True):
-        for status, message in statuses_of(codes[run, step], messages[run, step]):
-            if reason := _REASONS.get(status):
-                having.setdefault(reason, []).append((int(run), f"step {step + 1}: {message}"))
-    if BEYOND_THEORY in table:
-        texts = table[BEYOND_THEORY].values.ravel()
-        having[_BEYOND] = [(run, text) for run, text in enumerate(texts) if text]
-    if not having:
+    if not (found := _caveats_by_phrase(table)):
         return
     names, files = run_names(table), short_files(table)
-    for reason in (*dict.fromkeys(_REASONS.values()), _BEYOND):
-        if steps := having.get(reason):
-            run, message = max(steps, key=lambda step: _least_size(step[1]))
-            yield (
-                f"of {len(codes)} runs, in {len({number for number, _ in steps})} {reason}; "
-                f"{names[run]} (file {files[run]}), {message}"
-            )
+    for reason, places in found.items():
+        run, message = max(places, key=lambda place: _least_size(place[1]))
+        yield (
+            f"of {len(names)} runs, in {len({number for number, _ in places})} {reason}; "
+            f"{names[run]} (file {files[run]}), {message}"
+        )
+
+
+def _caveats_by_phrase(table: xr.Dataset) -> dict[str, list[tuple[int, str]]]:
+    """Return the index of the run and the message of each caveat, by its phrase."""
+    found: dict[str, list[tuple[int, str]]] = {phrase: [] for phrase in _REASONS.values()}
+    codes, messages = (_by_run(table, name) for name in ("status_code", "status"))
+    for run, step in zip(*np.nonzero(codes), strict=True):
+        for status, message in statuses_of(codes[run, step], messages[run, step]):
+            if status in _REASONS:
+                found[_REASONS[status]].append((int(run), f"step {step + 1}: {message}"))
+    if BEYOND_THEORY in table:
+        texts = table[BEYOND_THEORY].values.ravel()
+        found[_BEYOND] = [(run, text) for run, text in enumerate(texts) if text]
+    return {phrase: places for phrase, places in found.items() if places}
 
 
 def _least_size(message: str) -> float:

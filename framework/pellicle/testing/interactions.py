@@ -117,7 +117,7 @@ def values_are_finite(interaction: Interaction) -> None:
 def values_are_vectorised(interaction: Interaction) -> None:
     """Each function of the gap is a float array of its shape; a value depends on its gap only."""
     for name, law, function in _functions(interaction):
-        require_vectorised(function, _gaps(law, 24), name, absolute=_ROUNDING)
+        require_vectorised(function, _gaps(law, 24), name, of_largest=_ROUNDING)
 
 
 def functions_leave_their_argument(interaction: Interaction) -> None:

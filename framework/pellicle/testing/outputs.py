@@ -61,7 +61,7 @@ def _dataset() -> xr.Dataset:
     return solve(_run()).dataset
 
 
-def _runs(output: Output, steps: xr.Dataset) -> Runs:
+def _as_run_or_study(output: Output, steps: xr.Dataset) -> Runs:
     """Return a run of some steps, as a study of that run if the output shows studies only."""
     configuration = _run().to_json()
     runs = Runs.of_run(steps, configuration)
@@ -84,7 +84,7 @@ def _write(output: Output, stem: Path, steps: xr.Dataset) -> tuple[Path, ...]:
     own = stem_of(output, stem)
     for index in range(steps.sizes["step"]):
         output.step(steps.isel(step=slice(index, index + 1)), own)
-    return output.write(_runs(output, steps), own)
+    return output.write(_as_run_or_study(output, steps), own)
 
 
 def _contents(folder: Path) -> dict[str, bytes]:
@@ -94,6 +94,13 @@ def _contents(folder: Path) -> dict[str, bytes]:
         for path in folder.rglob("*")
         if path.is_file()
     }
+
+
+def _written(output: Output, steps: xr.Dataset) -> dict[str, bytes]:
+    """Return the content of each file that the output writes for some steps."""
+    with _stem() as stem:
+        _write(output, stem, steps)
+        return _contents(stem.parent)
 
 
 def leaves_its_data_as_they_are(output: Output) -> None:
@@ -107,6 +114,8 @@ def leaves_its_data_as_they_are(output: Output) -> None:
 def leaves_the_files_it_returns(output: Output) -> None:
     """A run, also if interrupted and repeated, has the files of write(), with its `suffixes`."""
     with _stem() as stem:
+        own = stem_of(output, stem).name
+        # Interrupted after each step, the run is repeated with the same stem.
         for steps in range(1, _STEPS + 1):
             files = _write(output, stem, _dataset().isel(step=slice(steps)))
             require_files(output, files, stem)
@@ -117,7 +126,6 @@ def leaves_the_files_it_returns(output: Output) -> None:
                 f"after {steps} of {_STEPS} steps write() returns {sorted(names)}, but the folder "
                 f"has {sorted(contents)}",
             )
-            own = stem_of(output, stem).name
             for name, content in contents.items():
                 require(bool(content), f"{name} is empty")
                 require(
@@ -131,24 +139,19 @@ def loses_no_step(output: Output) -> None:
     if output.scope != "run":
         return
     whole = _dataset()
-    contents = _files(output, whole)
+    contents, again = _written(output, whole), _written(output, whole)
     # A file with a date or a random name differs between two equal runs, and proves nothing.
-    again = _files(output, whole)
-    steady = {name for name, content in again.items() if content == contents[name]}
+    steady = {name for name, content in again.items() if content == contents.get(name)}
+    if not steady:
+        return
     for lost in range(_STEPS):
-        other = whole.where(whole["step"] != lost + 1, whole.isel(step=(lost + 1) % _STEPS))
-        other = other.transpose(*whole.dims).astype({n: v.dtype for n, v in whole.items()})
-        changed = _files(output, other)
+        # The numbers of another step stand in its place.
+        indices = [index if index != lost else (lost + 1) % _STEPS for index in range(_STEPS)]
+        changed = _written(output, whole.isel(step=indices).assign_coords(step=whole["step"]))
         require(
-            not steady or any(changed.get(name) != contents[name] for name in steady),
+            any(changed.get(name) != contents[name] for name in steady),
             f"step {lost + 1} of {_STEPS} leaves no trace in {sorted(contents)}",
         )
-
-
-def _files(output: Output, steps: xr.Dataset) -> dict[str, bytes]:
-    with _stem() as stem:
-        _write(output, stem, steps)
-        return _contents(stem.parent)
 
 
 def works_in_a_run(output: Output) -> None:
@@ -158,8 +161,8 @@ def works_in_a_run(output: Output) -> None:
     with _stem() as stem:
         run = _run().model_copy(update={"outputs": (output,)})
         journal, bar = Journal(stem, run.identity), RunProgress(_STEPS, False)
-        files = execute(run, journal, (output,), bar).files
-        require(all(path.is_file() for path in files), f"files {files}")
+        for path in execute(run, journal, (output,), bar).files:
+            require(path.is_file(), f"{path} is missing")
 
 
 def works_in_a_study(output: Output) -> None:
@@ -169,5 +172,6 @@ def works_in_a_study(output: Output) -> None:
         study = Study.from_mapping(run | {"study": {"vary": {_VARIED: [0.1, 0.2]}}})
         result = studies.execute(study, Path(folder))
         statuses = {*result.table["status"].values.ravel()}
-        require(all(path.is_file() for path in result.files), f"files {result.files}")
+        for path in result.files:
+            require(path.is_file(), f"{path} is missing")
         require(bool(result.table["converged"].all()), f"the runs end as {statuses}")

@@ -1,4 +1,4 @@
-"""Check a contract rule by rule, with one message for the first broken rule."""
+"""Check a contract rule by rule up to the first broken rule; requirements on arrays."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def keep(rules: Iterable[Rule], component: Any, *arguments: Any) -> None:
 
 
 def require(holds: bool | np.bool_, message: str) -> None:
-    """Raise AssertionError with a message unless a condition holds."""
+    """Raise AssertionError with a message unless a condition holds, under ``python -O`` too."""
     if not holds:
         raise AssertionError(message)
 
@@ -63,17 +63,19 @@ def require_close(
         actual.shape == expected.shape,
         f"{name} is of shape {actual.shape}; expected {expected.shape}",
     )
-    # A value that is not finite differs from every other.
-    differs = ~(np.abs(actual - expected) <= absolute + relative * np.abs(expected))
+    with np.errstate(invalid="ignore"):
+        error = np.abs(actual - expected)
+        allowed = absolute + relative * np.abs(expected)
+    # A share of an infinite value would allow any difference.
+    differs = ~((actual == expected) | (np.isfinite(error) & (error <= allowed)))
     if not differs.any():
         return
-    error = np.where(differs, np.abs(actual - expected), -1.0)
-    at = np.unravel_index(np.argmax(np.nan_to_num(error, nan=np.inf)), error.shape)
+    size = np.where(differs, np.nan_to_num(error, nan=np.inf), -1.0)
+    at = np.unravel_index(np.argmax(size), size.shape)
     where = f" at index {tuple(map(int, at))}" if at else ""
-    allowed = absolute + relative * abs(float(expected[at]))
     raise AssertionError(
         f"{name} is {float(actual[at]):.10g}{where}; expected {float(expected[at]):.10g} within "
-        f"{allowed:.1e}; {int(differs.sum())} of {differs.size} values differ"
+        f"{float(allowed[at]):.1e}; {int(differs.sum())} of {differs.size} values differ"
     )
 
 
@@ -83,10 +85,10 @@ def require_vectorised(
     name: str,
     *,
     relative: float = 0.0,
-    absolute: float = 0.0,
+    of_largest: float = 0.0,
 ) -> None:
-    """Require an array of floats, each of which depends on its own one of 24 arguments only."""
-    single = [np.ravel(function(argument[i : i + 1].copy()))[0] for i in range(24)]
+    """Require an array of 24 floats, each of which depends on its own argument only."""
+    single = [np.ravel(function(value.copy()))[0] for value in np.split(argument, argument.size)]
     for shape in ((24,), (4, 6), (2, 3, 4)):
         values = function(argument.reshape(shape).copy())
         require(
@@ -98,12 +100,12 @@ def require_vectorised(
             np.reshape(single, shape),
             f"{name} for an argument of shape {shape}",
             relative=relative,
-            absolute=absolute * float(np.abs(single).max()),
+            absolute=of_largest * float(np.abs(single).max()),
         )
 
 
 def require_pure(function: Callable[[Array], Array], argument: Array, name: str) -> None:
-    """Require that a function leaves its argument, and returns the same in a second call."""
+    """Require that a function leaves its argument unchanged and, called again, returns the same."""
     passed = argument.copy()
     first = np.array(function(passed))
     require_close(passed, argument, f"after {name}, its argument")
