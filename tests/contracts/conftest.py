@@ -12,17 +12,24 @@ from pellicle.components import FAMILIES, Component
 from pellicle.plugins import registry
 from tests.contracts.examples import EXAMPLES
 
+PROCESSES = "processes", "dask"
+"""Executors whose workers take seconds to start."""
+
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Run a test once for each example of the family it asks for."""
     for name in ({"component"} | FAMILIES.keys()) & set(metafunc.fixturenames):
         pairs = [
-            (family, type_)
+            pytest.param(
+                (family, type_),
+                marks=pytest.mark.slow if type_ in PROCESSES else (),
+                id=f"{family}.{type_}",
+            )
             for family, members in EXAMPLES.items()
             for type_ in members
             if name in ("component", family)
         ]
-        metafunc.parametrize(name, pairs, ids=[".".join(pair) for pair in pairs], indirect=True)
+        metafunc.parametrize(name, pairs, indirect=True)
 
 
 def _make(request: pytest.FixtureRequest) -> Component:

@@ -78,6 +78,7 @@ def test_a_domain_far_wider_than_the_contact_is_told() -> None:
     assert advise(periodic, 0.01).size is None
 
 
+@pytest.mark.slow
 def test_a_contact_at_the_edge_is_told_with_a_domain_that_holds_it(tmp_path: Path) -> None:
     """`check` refuses what `run` refuses; both name a size in which every step is solved."""
     loading = {"depth": [DEPTH / 2, 3 * DEPTH, 8 * DEPTH]}

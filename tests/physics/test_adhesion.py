@@ -126,7 +126,7 @@ def test_a_jump_of_one_asperity_is_named() -> None:
     assert np.nansum(path["jump_energy"].values) == pytest.approx(lost, rel=0.02)
 
 
-@pytest.mark.parametrize("length", [0.3, 3.0])
+@pytest.mark.parametrize("length", [0.3, pytest.param(3.0, marks=pytest.mark.slow)])
 def test_pull_off_on_few_cells_is_within_its_error(length: float) -> None:
     """On four cells the force is off by a tenth, which two wider zones alone do not see."""
     end = theory(length).instability()

@@ -135,7 +135,7 @@ def test_small_sphere_contact_is_a_paraboloid() -> None:
 
 
 @pytest.mark.parametrize("indenter", INDENTERS, ids=lambda i: type(i).__name__)
-@pytest.mark.parametrize("tension", [0.0, 0.3])
+@pytest.mark.parametrize("tension", [0.0, pytest.param(0.3, marks=pytest.mark.slow)])
 def test_given_depth_or_force_finds_the_radius(indenter: HasAbelTransform, tension: float) -> None:
     """Radius → depth or force → radius closes."""
     contact = indent(indenter, E, tension, contact_radius=3e-4)

@@ -366,6 +366,7 @@ def test_only_a_whole_interval_is_implausible(factor: float, words: str) -> None
     assert any(f"the modulus is open (it is below {bound})" in text for text in result.warnings)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_rivals")
 def test_no_interval_is_narrower_than_its_bound() -> None:
     """Near the end of a tension, and where a model is far from linear, no bound is given."""

@@ -154,6 +154,7 @@ def test_slopes_and_bound_are_those_of_all_points(fit: pl.PooledFit) -> None:
     assert [deviations[p] for p in pool.parameters] == pytest.approx(bound, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_ends_are_where_the_profile_has_risen(fit: pl.PooledFit) -> None:
     """At each end the least χ² is up by the stated rise, and no start finds less."""
     random = np.random.default_rng(3)
@@ -191,6 +192,7 @@ def test_contact_points_are_sought_if_asked(measured: dict[str, tuple[Array, Arr
         assert width == pytest.approx(np.sqrt(with_points.rise), rel=0.05)
 
 
+@pytest.mark.slow
 def test_what_is_said(fit: pl.PooledFit) -> None:
     """Tension is needed, the curves agree, and each has its own contact point and noise."""
     assert "tension is needed" in fit.comparison
@@ -203,6 +205,7 @@ def test_what_is_said(fit: pl.PooledFit) -> None:
     assert [sample["model"]["indenter"]["radius"] for sample in entries] == list(RADII)
 
 
+@pytest.mark.slow
 def test_curves_without_times_have_one_speed(fit: pl.PooledFit) -> None:
     """The approaches of a small and of a large bead do not take the same time."""
     speeds = [float(np.median(member.history.velocity)) for member in fit.pool.members]

@@ -159,6 +159,7 @@ def test_bare_numbers_are_drawn(x: str, places: int, tmp_path: Path) -> None:
     assert (tmp_path / "run-maps.png").exists()
 
 
+@pytest.mark.slow
 def test_control_characters_in_a_title_do_no_harm(tmp_path: Path) -> None:
     """SVG is XML, pages hold what HTML allows, results are kept, and no terminal is told."""
     outputs = [{"type": "figures", "formats": ["svg"]}, {"type": "html"}]
