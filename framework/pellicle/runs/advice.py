@@ -235,8 +235,8 @@ def _is_smooth(run: Run, grid: Grid, contact: Mask) -> bool:
     return not (contact.any(axis=0) & binary_dilation(beside, np.ones((3, 3)))).any()
 
 
-def _coarser(grid: Grid, shares: Sequence[float] = _SHARES) -> list[Grid]:
-    scale = min(1.0, 2 * _MOST / max(grid.points)) if shares == _SHARES else 1.0
+def _coarser(grid: Grid, shares: Sequence[float] = _SHARES, most: float = 2 * _MOST) -> list[Grid]:
+    scale = min(1.0, most / max(grid.points))
     sizes = [[round(n * scale * share) if n > 1 else 1 for n in grid.points] for share in shares]
     if min(map(max, sizes)) < _FEWEST:
         raise ConfigError(
@@ -255,7 +255,7 @@ def _resolving(run: Run) -> list[Grid]:
             profile_of(run.indenter, grids[0])
             break
         except ConfigError:
-            grids = _coarser(run.grid, shares)
+            grids = _coarser(run.grid, shares, math.inf)
     return grids
 
 
