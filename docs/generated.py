@@ -14,9 +14,9 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic.fields import FieldInfo
 
 import pellicle as pl
-from pellicle.model import Model
-from pellicle.results.variables import VARIABLES, Variable
+from pellicle.schema import Model
 from pellicle.units import Quantity, quantity_of, readable
+from pellicle.variables import VARIABLES, Variable
 
 _HEADINGS = {
     "kernel": "Kernels",

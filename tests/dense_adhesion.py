@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array, Mask
-from pellicle.numerics.gap_law import GapLaw
-from pellicle.numerics.problem import Problem
+from pellicle.contact.law import GapLaw
+from pellicle.contact.problem import Problem
 
 # Share of the old traction that a round keeps, so that a step of the descent is small.
 _KEPT = 0.5

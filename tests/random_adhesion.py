@@ -8,7 +8,7 @@ import numpy as np
 
 import pellicle as pl
 from pellicle.arrays import Array
-from pellicle.numerics.problem import Depth, Force
+from pellicle.contact.problem import Depth, Force
 from pellicle.runs.compose import compose
 from tests.dense_adhesion import DenseContact
 

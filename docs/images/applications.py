@@ -11,10 +11,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import pellicle as pl
-from pellicle.operators import make_operator
-from pellicle.plotting import save_figure
-from pellicle.problem import Problem
-from pellicle.report.style import MARKERS
+from pellicle.contact import Problem
+from pellicle.show import save_figure
+from pellicle.show.style import MARKERS
+from pellicle.surface import make_operator
 
 POINTS = {"conjugate_gradient": (64, 128, 256, 512), "active_set": (64, 128, 256, 512, 1024)}
 TENSIONS = {0.0: "no tension", 0.02: "s = 0.02 L", 1.0: "s = L"}

@@ -17,13 +17,11 @@ PACKAGE = ROOT / "framework" / "pellicle"
 WAY = {
     "config": "1  a run file becomes a Run",
     "runs": "2  a Run becomes load steps, solved in turn",
-    "numerics": "3  a Problem is solved, and measured afresh",
+    "contact": "3  a Problem is solved, and measured afresh",
     "results": "4  a step becomes a dataset, and lies on disk",
-    "report": "5  figures and pages",
+    "show": "5  figures and pages",
 }
 """What happens to a value in the folders that it passes."""
-THIN = {"operators", "page", "plotting", "problem", "result", "storage"}
-"""Modules that only repeat, for plugins, what a folder holds."""
 
 
 def layers() -> list[list[str]]:
@@ -32,10 +30,7 @@ def layers() -> list[list[str]]:
     linter = project["tool"]["importlinter"]
     return [
         [package for package in linter["root_packages"] if package != PACKAGE.name],
-        *(
-            [module for module in layer.split(" | ") if module not in THIN]
-            for layer in linter["contracts"][0]["layers"]
-        ),
+        *(layer.split(" | ") for layer in linter["contracts"][0]["layers"]),
     ]
 
 

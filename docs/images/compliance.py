@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 
 import pellicle as pl
 from pellicle.arrays import Array
-from pellicle.plotting import save_figure
-from pellicle.report.style import MARKERS
+from pellicle.show import save_figure
+from pellicle.show.style import MARKERS
 
 MODULUS = 10e3
 TENSIONS = 0.0, 0.1, 1.0

@@ -11,10 +11,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import pellicle as pl
-from pellicle.plotting import save_figure
-from pellicle.report.lines import EDGE_CELLS, edge_cells
-from pellicle.report.style import OKABE_ITO
-from pellicle_plugins.analytic.axisymmetric import indent
+from pellicle.show import save_figure
+from pellicle.show.lines import EDGE_CELLS, edge_cells
+from pellicle.show.style import OKABE_ITO
+from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 
 RADIUS, MODULUS, DEPTH = 1e-3, 10e3, 50e-6

@@ -1,8 +1,8 @@
 """Make the reference tables anew: ``python docs/reference-data/reference_tables.py [folder]``.
 
-Every table is computed by the closed theory in ``pellicle_plugins.analytic``, none by the contact
-solver, which tests hold to these tables.  The column ``error`` bounds the relative error of the
-values in its row.
+Every table is computed by the closed theory in ``pellicle_plugins.axisymmetric``, none by the
+contact solver, which tests hold to these tables.  The column ``error`` bounds the relative error
+of the values in its row.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from scipy.special import beta
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
-from pellicle.numerics.influence import cell_coefficients
-from pellicle_plugins.analytic.adhesion import Adhesion
-from pellicle_plugins.analytic.axisymmetric import indent
-from pellicle_plugins.analytic.cone import cone
-from pellicle_plugins.analytic.hertz import sphere
-from pellicle_plugins.analytic.layer_equation import HalfSpace as HalfSpaceEquation
-from pellicle_plugins.analytic.layer_equation import half_space, moments
-from pellicle_plugins.analytic.tensed_punch import punch
+from pellicle.surface.influence import cell_coefficients
+from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
+from pellicle_plugins.axisymmetric.indentation import indent
+from pellicle_plugins.axisymmetric.layer_equation import HalfSpace as HalfSpaceEquation
+from pellicle_plugins.axisymmetric.layer_equation import half_space, moments
+from pellicle_plugins.axisymmetric.tensed_punch import punch
+from pellicle_plugins.closed_forms.hertz import sphere
+from pellicle_plugins.closed_forms.sneddon import cone
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from pellicle_plugins.kernels.half_space import HalfSpace

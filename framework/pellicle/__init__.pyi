@@ -31,10 +31,14 @@ from .components import Runs as Runs
 from .components import Search as Search
 from .components import Setting as Setting
 from .components import Solver as Solver
-from .config.json_schema import schema as schema
+from .config.json_schema import json_schema as json_schema
 from .config.loading import Loading as Loading
 from .config.run import Run as Run
 from .config.study import Study as Study
+from .contact.problem import Problem as Problem
+from .contact.solution import Solution as Solution
+from .contact.solution import State as State
+from .contact.solution import Stop as Stop
 from .errors import ConfigError as ConfigError
 from .errors import ConvergenceError as ConvergenceError
 from .errors import ConvergenceWarning as ConvergenceWarning
@@ -48,11 +52,6 @@ from .factories import solver as solver
 from .grid import Grid as Grid
 from .hookspecs import RegisterCommand as RegisterCommand
 from .hookspecs import hookimpl as hookimpl
-from .numerics.operators import displacement as displacement
-from .numerics.problem import Problem as Problem
-from .numerics.solution import Solution as Solution
-from .numerics.solution import State as State
-from .numerics.solution import Stop as Stop
 from .plugins import registry as registry
 from .results.result import Result as Result
 from .results.result import load as load
@@ -60,4 +59,5 @@ from .results.status import Status as Status
 from .runs.runner import run as run
 from .runs.validation import validate as validate
 from .studies.runner import run_study as run_study
+from .surface.operators import displacement as displacement
 from .version import __version__ as __version__

@@ -14,7 +14,7 @@ from scipy.fft import fftfreq, rfftfreq
 
 from .arrays import Array
 from .checks import whole_number
-from .model.base import Model
+from .schema.model import Model
 from .units import Length
 
 Boundary = Literal["free", "periodic"]

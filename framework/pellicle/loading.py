@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Final, cast
 from pydantic_core import core_schema
 
 from .errors import ConfigError, all_problems, shown
-from .model.legs import KINDS, Leg, json_schema, legs_of
-from .model.ranges import RANGE, SPACINGS, ranged
+from .schema.legs import KINDS, Leg, json_schema, legs_of
+from .schema.ranges import RANGE, SPACINGS, ranged
 from .units import Quantity
 
 if TYPE_CHECKING:

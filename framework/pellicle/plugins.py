@@ -19,12 +19,12 @@ from . import hookspecs
 from .components import FAMILIES, Component, Prescription, Suite
 from .errors import ConfigError, PellicleError, PluginError, shown
 from .loading import OPTIONS
-from .model.messages import nearest
 from .origins import COMMAND, REMEDY, claimed_by, in_order, isolated
 from .origins import DISABLE as DISABLE
 from .origins import GROUP as GROUP
 from .origins import Broken as Broken
 from .origins import Origin as Origin
+from .schema.messages import nearest
 from .units import quantity_of
 
 AnyComponent = TypeVar("AnyComponent", bound=Component)

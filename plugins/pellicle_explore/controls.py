@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 import pellicle as pl
-from pellicle.model import replaced, walk
+from pellicle.schema import replaced, walk
 from pellicle.units import Quantity, quantity_of
 
 

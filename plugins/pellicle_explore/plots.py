@@ -11,7 +11,8 @@ from bokeh.plotting import figure
 
 import pellicle as pl
 from pellicle.arrays import Array
-from pellicle.plotting import axis_unit, edge_cells
+from pellicle.show import edge_cells
+from pellicle.units import axis_unit
 
 from .measured import touch
 from .solving import Frame

@@ -27,7 +27,7 @@ from pellicle.components import (
     Indenter,
 )
 from pellicle.errors import ConfigError, shown
-from pellicle.model import (
+from pellicle.schema import (
     FromFile,
     InputPath,
     nearest,

@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellicle import registry, storage
+from pellicle import registry, results
 from pellicle.batch import BatchProgress, locked, mapped
 from pellicle.components import Component, Say
 from pellicle.errors import PellicleError
 from pellicle.files import atomic_write, check_writable, write_json
-from pellicle.result import header
+from pellicle.results import header
 
 from .config import FitConfig
 from .curves.sources import Curves, Source, SourceStream
@@ -353,7 +353,7 @@ def _write(
     }
     dataset = table(fits.rows).assign_attrs(attributes)
     hdf5, text, groups = (directory / f"fits{end}" for end in (".h5", ".csv", "-groups.csv"))
-    storage.write(dataset.assign_attrs(command="fit"), hdf5)
+    results.write(dataset.assign_attrs(command="fit"), hdf5)
     columns = ["curve", *dataset.data_vars]
     heads = [*(header(str(name), dataset[name]) for name in columns), *attributes]
     cells = zip(*(dataset[name].values.tolist() for name in columns), strict=True)

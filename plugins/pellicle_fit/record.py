@@ -14,7 +14,7 @@ from pellicle import registry
 from pellicle.components import Component
 from pellicle.config.provenance import versions
 from pellicle.errors import ConfigError, StorageError
-from pellicle.model import walk
+from pellicle.schema import walk
 
 from .config import FitConfig
 from .curves.curve import Curve

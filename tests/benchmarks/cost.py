@@ -35,10 +35,9 @@ import scipy.fft
 from tables import in_process, print_head, print_row
 
 import pellicle as pl
-from pellicle.numerics import operators
-from pellicle.operators import make_operator
-from pellicle.problem import Problem
-from pellicle.problem import measure as measure_pressure
+from pellicle.contact import Problem
+from pellicle.contact import measure as measure_pressure
+from pellicle.surface import make_operator, operators
 from pellicle_plugins.solvers import circulant_stiffness
 
 

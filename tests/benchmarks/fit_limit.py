@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from scipy.special import ndtr, ndtri
 from tables import print_head, print_row
 
-from pellicle.plotting import save_figure
+from pellicle.show import save_figure
 from pellicle_fit.models.force_model import tension_model
 from pellicle_fit.parameters import (
     CONTACT_POINT,

@@ -37,7 +37,7 @@ from pellicle_fit.statistics.pooled_likelihood import Pool
 from pellicle_fit.statistics.profile import chi_squared_threshold
 from pellicle_fit.statistics.rival import Rival
 from pellicle_fit.statistics.rivals import rivals
-from pellicle_plugins.analytic.adhesion import Adhesion
+from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 
 BEAD = Paraboloid(radius=RADIUS)

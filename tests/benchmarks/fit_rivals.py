@@ -30,7 +30,7 @@ from pellicle_fit.models.force_model import tension_model
 from pellicle_fit.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from pellicle_fit.pooled import pool_sources
 from pellicle_fit.statistics.likelihood import Likelihood
-from pellicle_plugins.analytic.adhesion import Adhesion
+from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
 
 Array = NDArray[np.float64]
 Force = Callable[[Array, Array, float], Array]

@@ -21,11 +21,10 @@ import scipy.fft
 from tables import print_head, print_row
 
 import pellicle as pl
-from pellicle.numerics.initial_guess import with_force
-from pellicle.numerics.path import PathPoint, start_of
-from pellicle.operators import Array
-from pellicle.problem import Problem, height_scale, measure
-from pellicle.result import State
+from pellicle.arrays import Array
+from pellicle.contact import Problem, State, height_scale, measure
+from pellicle.contact.initial_guess import with_force
+from pellicle.contact.start import PathPoint, start_of
 from pellicle_plugins.solvers.contact_cg import inner_solve
 from pellicle_plugins.solvers.preconditioner import Preconditioner
 

@@ -1,7 +1,7 @@
 """Pellicle and its peers on identical surfaces, at an accuracy measured by pellicle.
 
 Each row is a process of its own: one code presses a self-affine surface under a given force. What
-it returns is judged by `pellicle.problem.measure`; its own tolerance starts at a value found by
+it returns is judged by `pellicle.contact.measure`; its own tolerance starts at a value found by
 trial and is halved, eight times at most, until complementarity is under ``--target``. Seconds are
 those from heights to pressure, plans and kernels included, imports not, after a small problem to
 warm up. Iterations are as each code counts them, applications those of the operator; of nested
@@ -37,9 +37,9 @@ import scipy.fft
 from tables import in_process, print_head, print_row
 
 import pellicle as pl
-from pellicle.operators import make_operator
-from pellicle.problem import Problem
-from pellicle.problem import measure as judge
+from pellicle.contact import Problem
+from pellicle.contact import measure as judge
+from pellicle.surface import make_operator
 
 RMS_HEIGHT = 0.01  # in L; the edge L and the reduced modulus E* are 1
 LOAD = 0.1  # mean pressure over E* × rms slope

@@ -8,7 +8,7 @@ from pydantic import create_model
 
 import pellicle as pl
 from pellicle.components import FAMILIES, Component, FromRegistry
-from pellicle.config.json_schema import json_schema
+from pellicle.config.json_schema import model_schema
 from pellicle.plugins import registry
 
 
@@ -18,7 +18,7 @@ def schemas() -> dict[str, jsonschema.Draft202012Validator]:
 
     def validator(family: str, base: Any) -> jsonschema.Draft202012Validator:
         table = create_model(family, it=(Annotated[base, FromRegistry()], ...))
-        return jsonschema.Draft202012Validator(json_schema(table))
+        return jsonschema.Draft202012Validator(model_schema(table))
 
     return {
         family: validator(family, base)
@@ -46,7 +46,7 @@ def test_every_component_has_an_example(examples: dict[str, dict[str, Any]]) -> 
 
 def test_schema_of_a_run_is_a_schema() -> None:
     """The schema that editors get is one."""
-    jsonschema.Draft202012Validator.check_schema(pl.schema())
+    jsonschema.Draft202012Validator.check_schema(pl.json_schema())
 
 
 def test_schema_takes_what_the_component_takes(

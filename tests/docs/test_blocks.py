@@ -22,7 +22,7 @@ from typer.testing import CliRunner
 import pellicle as pl
 from pellicle.cli.app import app
 from pellicle.components import AreaCorrection, Executor, Indenter, Kernel, Output, Solver
-from pellicle.model import ranges as axes
+from pellicle.schema import ranges as axes
 from tests.docs.blocks import DOCS, PAGES, ROOT, Block, blocks
 from tests.shared_fits import share_fits
 

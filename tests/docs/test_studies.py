@@ -14,8 +14,8 @@ from typer.testing import CliRunner
 
 from pellicle.cli.app import app
 from pellicle.config.study import from_toml
-from pellicle_plugins.analytic.adhesion import Adhesion
-from pellicle_plugins.analytic.axisymmetric import indent
+from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
+from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from tests.docs.blocks import ROOT
 

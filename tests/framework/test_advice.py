@@ -14,8 +14,8 @@ import pellicle as pl
 from pellicle.cli.app import app
 from pellicle.errors import ConfigError
 from pellicle.runs.advice import advise
-from pellicle_plugins.analytic.abel_transform import HasAbelTransform
-from pellicle_plugins.analytic.axisymmetric import indent
+from pellicle_plugins.axisymmetric.abel_transform import HasAbelTransform
+from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 

@@ -18,7 +18,7 @@ from pellicle.analysis import (
     perimeter,
     spectrum,
 )
-from pellicle_plugins.analytic import hertz
+from pellicle_plugins.closed_forms import hertz
 
 HALF_SPACE = {"type": "half_space", "reduced_modulus": "10 kPa"}
 ROUGH: dict[str, Any] = {

@@ -18,8 +18,8 @@ from typer.testing import CliRunner
 import pellicle as pl
 from pellicle.cli.app import app
 from pellicle.components import AreaCorrection, Output
-from pellicle.model import get
 from pellicle.plugins import registry
+from pellicle.schema import get
 
 BASE: dict[str, Any] = {
     "grid": {"points": 16, "size": "1 mm"},
@@ -47,7 +47,7 @@ VARIANTS: list[dict[str, Any]] = [
 @cache
 def validator() -> Draft202012Validator:
     """Return the validator of the JSON schema of a run file."""
-    return Draft202012Validator(pl.schema())
+    return Draft202012Validator(pl.json_schema())
 
 
 @pytest.fixture
@@ -209,7 +209,7 @@ STARTER: dict[str, Any] = tomllib.loads(
 
 def test_schema_is_one() -> None:
     """The JSON schema is itself valid and accepts the starter file."""
-    Draft202012Validator.check_schema(pl.schema())
+    Draft202012Validator.check_schema(pl.json_schema())
     validator().validate(STARTER)
 
 
@@ -261,4 +261,4 @@ def test_library_raises_config_error(make: Any) -> None:
 def test_schema_command_is_the_library_s() -> None:
     """``pellicle schema`` prints what `schema` returns."""
     result = CliRunner().invoke(app, ["schema"])
-    assert json.loads(result.stdout) == json.loads(json.dumps(pl.schema()))
+    assert json.loads(result.stdout) == json.loads(json.dumps(pl.json_schema()))

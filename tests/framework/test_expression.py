@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pellicle import ConfigError
-from pellicle.model.expression import evaluate, names_in
+from pellicle.schema.expression import evaluate, names_in
 
 NAMES = {"kernel.tension": 0.5, "kernel.reduced_modulus": 1e4, "depth": 3.0, "grid.size.0": 2.0}
 

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from scipy.integrate import quad
 
 from pellicle import ConfigError, Grid, displacement
-from pellicle.numerics.hankel import ACCURACY, Tabulated
-from pellicle.numerics.influence import cell_coefficients
-from pellicle.operators import make_operator
-from pellicle.problem import Depth, Problem
+from pellicle.contact import Depth, Problem
+from pellicle.surface import make_operator
+from pellicle.surface.hankel import ACCURACY, Tabulated
+from pellicle.surface.influence import cell_coefficients
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
 
 Array = NDArray[np.float64]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pellicle.numerics.influence import cell_coefficients
+from pellicle.surface.influence import cell_coefficients
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
 from tests.physics.tables import reference_rows
 

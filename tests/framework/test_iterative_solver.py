@@ -11,8 +11,8 @@ import pytest
 import pellicle as pl
 from pellicle import Grid, IterativeSolver, Problem, Solution, Solver, State, Stop
 from pellicle.arrays import Array
-from pellicle.numerics.solution import Progress
-from pellicle.operators import make_operator
+from pellicle.contact.solution import Progress
+from pellicle.surface import make_operator
 from pellicle_plugins.kernels.half_space import HalfSpace
 
 

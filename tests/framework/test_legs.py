@@ -86,7 +86,7 @@ def test_a_run_with_legs_is_one_in_every_form() -> None:
     assert pickle.loads(pickle.dumps(run)) == run
     assert pl.Run(**{name: getattr(run, name) for name in run.model_fields_set}) == run
     configuration = json.loads(run.to_json())
-    validator = Draft202012Validator(pl.schema())
+    validator = Draft202012Validator(pl.json_schema())
     validator.validate(configuration)
     validator.validate({**configuration, "loading": {"depth": LEGS}})
     configuration["loading"]["depth"][1]["frequency"] = 1.0

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from pellicle.model import InputPath, Model, paths_relative_to
+from pellicle.schema import InputPath, Model, paths_relative_to
 
 
 class Reader(Model):

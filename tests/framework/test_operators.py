@@ -8,7 +8,7 @@ import scipy.fft
 from numpy.typing import NDArray
 
 from pellicle import Grid
-from pellicle.operators import make_operator
+from pellicle.surface import make_operator
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
 
 

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 import pellicle as pl
 from pellicle.analysis import Oscillation, oscillations
 from pellicle.cli.app import app
-from pellicle.results.variables import names_of
+from pellicle.variables import names_of
 from tests.physics.tables import coated, half_space, heights, relaxing
 
 K = 3.0 + 0.4j

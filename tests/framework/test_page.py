@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 
 from pellicle import Grid
-from pellicle.report.maps import Field, Maps, frame, side
-from pellicle.report.page import (
+from pellicle.show.html import (
     Block,
     Cell,
     Code,
@@ -25,6 +24,7 @@ from pellicle.report.page import (
     Text,
     page,
 )
+from pellicle.show.maps import Field, Maps, frame, side
 
 EVIL = "</script><script>alert(1)</script> \"quoted\" 'so' <!-- & µ 接触 {{ 7 * 7 }}"
 GRID = Grid(points=(10, 7), size=("1 mm", "0.7 mm"))

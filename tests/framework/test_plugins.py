@@ -18,7 +18,7 @@ from pellicle import ConfigError, Kernel, PluginError, Run
 from pellicle.cli.app import app
 from pellicle.components import FAMILIES
 from pellicle.config.explain import explanations, words_by_kind
-from pellicle.config.json_schema import json_schema
+from pellicle.config.json_schema import model_schema
 from pellicle.plugins import GROUP, Broken, Origin, Registry, load, registry
 
 BUILT_INS = tuple(entry_points(group=GROUP, name="kernel.half_space"))
@@ -168,7 +168,7 @@ EFFECT = '''
 from typing import Annotated, Literal
 from pydantic import Field
 from pellicle.components import Component, FromRegistry
-from pellicle.model import Model
+from pellicle.schema import Model
 from pellicle.units import Quantity
 
 class Effect(Component):
@@ -216,11 +216,11 @@ def test_a_plugin_may_bring_a_family(plugin: Plugin, install: Callable[..., Regi
     assert str(raised.value) == (
         "rivals.0.type: 'drif' is not an effect; did you mean 'drift'? Known: drift"
     )
-    schema = json_schema(stranger.Fit)
+    schema = model_schema(stranger.Fit)
     Draft202012Validator(schema).validate({"rivals": [{"type": "drift", "rate": "1 nm/s"}]})
     assert not Draft202012Validator(schema).is_valid({"rivals": [{"type": "drift"}]})
     assert schema["$defs"].keys() == {"Drift"}
-    assert "Drift" not in json_schema(Run)["$defs"]
+    assert "Drift" not in model_schema(Run)["$defs"]
     assert words_by_kind({})["effect"] == ["drift"]
     (family,) = explanations("effects", {})
     assert (family.text, [row.name for row in family.fields]) == ("What bends a curve.", ["drift"])

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle.numerics.grid_checks import error_of_cells, warn_of_cells
-from pellicle.operators import make_operator
+from pellicle.surface import make_operator
+from pellicle.surface.grid_checks import error_of_cells, warn_of_cells
 
 THICK = 10e-6
 

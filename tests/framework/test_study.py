@@ -21,7 +21,7 @@ import pellicle as pl
 from pellicle import files, memory
 from pellicle.cli.app import app
 from pellicle.components import Monitor
-from pellicle.results import storage
+from pellicle.results import StoredRuns, storage
 from pellicle.results.dimensions import with_paths
 from pellicle.studies import runner as study_module
 from pellicle.studies.summary import failures, reasons
@@ -132,7 +132,7 @@ def test_a_parameter_is_selected_by_a_name_or_its_path(tmp_path: Path) -> None:
     with xr.open_dataset(tmp_path / "study.h5", engine="h5netcdf") as stored:
         assert stored["force"].dims == table["force"].dims
         assert stored.sel(kernel_tension=1.0).sizes == {"indenter_radius": 2, "step": 3}
-    assert pl.Runs.of_study(table, tmp_path).table["force"].dims == (TENSION, RADIUS, "step")
+    assert StoredRuns.of_study(table, tmp_path).table["force"].dims == (TENSION, RADIUS, "step")
 
 
 def test_nothing_stays_without_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,8 +13,8 @@ import pytest
 
 import pellicle as pl
 from pellicle.config.study import Study
-from pellicle.model import replaced
 from pellicle.results.derived import names
+from pellicle.schema import replaced
 from pellicle.studies.table import StudyTable
 
 RUN: dict[str, Any] = {
@@ -184,7 +184,7 @@ def test_round_trips() -> None:
         assert other.dimensions == plan.dimensions
         assert other.derived == plan.derived
         assert other.executor == plan.executor
-    jsonschema.validate(json.loads(plan.to_json()), pl.schema())
+    jsonschema.validate(json.loads(plan.to_json()), pl.json_schema())
 
 
 def test_a_study_is_no_run_and_a_run_no_study(tmp_path: Path) -> None:

@@ -24,8 +24,8 @@ COATED: dict[str, Any] = {
 @pytest.fixture(scope="module")
 def schema() -> Draft202012Validator:
     """Return what checks a file by the schema."""
-    Draft202012Validator.check_schema(pl.schema())
-    return Draft202012Validator(pl.schema())
+    Draft202012Validator.check_schema(pl.json_schema())
+    return Draft202012Validator(pl.json_schema())
 
 
 def without(path: str) -> dict[str, Any]:

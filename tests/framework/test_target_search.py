@@ -10,10 +10,10 @@ import pytest
 
 import pellicle as pl
 from pellicle.components import Solver
-from pellicle.numerics.solution import State
-from pellicle.operators import make_operator
-from pellicle.problem import Problem
+from pellicle.contact import Problem
+from pellicle.contact.solution import State
 from pellicle.runs.target_search import Reached, reach
+from pellicle.surface import make_operator
 
 GRID = pl.Grid(points=11, size=11.0, boundary="periodic")
 

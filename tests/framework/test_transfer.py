@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from pellicle import Depth, Force, Grid, Problem
-from pellicle.numerics.grid_transfer import highest, prolong, restrict
-from pellicle.operators import make_operator
+from pellicle.surface import make_operator
+from pellicle.surface.grid_transfer import highest, prolong, restrict
 from pellicle_plugins.kernels.half_space import HalfSpace
 
 # Fine shape, coarse shape: halves, odd, primes, one cell, and numbers that share no factor.

@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 import pellicle as pl
-from pellicle_plugins.analytic.dugdale import dugdale_contact
+from pellicle_plugins.closed_forms.maugis import dugdale_contact
 from tests.adhesive_paths import (
     FORCE,
     JKR,

@@ -15,9 +15,9 @@ import xarray as xr
 
 import pellicle as pl
 from pellicle.components import Setting
-from pellicle.numerics.front import Traction, same_patches, shifted
-from pellicle.numerics.path import PathPoint, Start, start_of
-from pellicle.numerics.problem import Depth
+from pellicle.contact.front import Traction, same_patches, shifted
+from pellicle.contact.problem import Depth
+from pellicle.contact.start import PathPoint, Start, start_of
 from pellicle.results.step import Steps
 from pellicle.runs import steps
 from pellicle.runs.compose import compose

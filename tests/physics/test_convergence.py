@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pellicle_plugins.analytic.axisymmetric import indent
+from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from tests.physics.tables import paraboloid, tensed
 from tests.physics.tables import step as solved

@@ -12,9 +12,9 @@ from scipy.optimize import brentq
 
 import pellicle as pl
 from pellicle.components.calls import solution_of
-from pellicle.operators import make_operator
-from pellicle.problem import Problem, measure
-from pellicle_plugins.analytic.axisymmetric import indent
+from pellicle.contact import Problem, measure
+from pellicle.surface import make_operator
+from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from tests.physics.tables import ROUGH, Table, half_space, paraboloid, steps, tensed
 

@@ -10,8 +10,8 @@ import pytest
 
 import pellicle as pl
 from pellicle.arrays import Array
-from pellicle.numerics.outside import PlaneOperator
 from pellicle.runs.relaxation import Relaxation
+from pellicle.surface.outside import PlaneOperator
 from tests.physics.tables import (
     coated,
     half_space,

@@ -9,10 +9,10 @@ import pytest
 import xarray as xr
 from scipy.optimize import brentq
 
-from pellicle_plugins.analytic.cone import cone
-from pellicle_plugins.analytic.flat_punch import flat_punch
-from pellicle_plugins.analytic.hertz import ellipse, sphere
-from pellicle_plugins.analytic.westergaard import wavy
+from pellicle_plugins.closed_forms.boussinesq import flat_punch
+from pellicle_plugins.closed_forms.hertz import ellipse, sphere
+from pellicle_plugins.closed_forms.sneddon import cone
+from pellicle_plugins.closed_forms.westergaard import wavy
 from tests.physics.tables import half_space, heights, paraboloid
 from tests.physics.tables import step as solved
 

@@ -13,7 +13,7 @@ from .ellipse import Ellipse, ellipse
 from .extrapolation import Extrapolation, extrapolate
 from .oscillation import Oscillation, oscillations
 from .patches import Patches, coordination, patches
-from .path import Leg, PathSummary, legs, path_summary
+from .path_summary import Leg, PathSummary, legs, path_summary
 from .perimeter import perimeter
 from .spectrum import Spectrum, spectrum
 

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pellicle.arrays import Array
+from pellicle.contact.labels import Labels as Labels
+from pellicle.contact.labels import labelled
 from pellicle.grid import Grid
-from pellicle.numerics.labels import Labels as Labels
-from pellicle.numerics.labels import labelled
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy as np
 
 from pellicle.arrays import Array, Mask
+from pellicle.contact.equilibrium import Equilibrium
 from pellicle.grid import Grid
-from pellicle.numerics.equilibrium import Equilibrium
-from pellicle.numerics.sharing import blocks
+from pellicle.surface.sharing import blocks
 
 # Relative change of G(q) q² over a decade below which it is the limit of short waves.
 _CONSTANT = 0.05

@@ -87,7 +87,7 @@ def _misuse(error: Any) -> str:
         if details and (cause := details[0].get("ctx", {}).get("error")):
             reason = str(cause)
         elif details:
-            from pellicle.model.messages import refusal
+            from pellicle.schema.messages import refusal
 
             reason = refusal(details[0])
         message = f"{error.param.opts[0]}: {reason}"

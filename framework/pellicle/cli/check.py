@@ -40,7 +40,7 @@ def check(
     json: Annotated[bool, typer.Option("--json", help="Print JSON, in SI.")] = False,
 ) -> None:
     """Check a run or a study, and estimate its errors and memory from coarser grids."""
-    from pellicle.config.scales import doubtful_scales
+    from pellicle.config.doubtful_scales import doubtful_scales
     from pellicle.config.study import Study, from_toml
 
     allowed = _allowed(error.strip())

@@ -36,8 +36,8 @@ def plot(
     ] = None,
 ) -> None:
     """Draw the figures of a result or of a study."""
-    from pellicle.report.plotting import save_figures, save_study_figures
     from pellicle.results.result import file_of_run, load
+    from pellicle.show.plotting import save_figures, save_study_figures
     from pellicle.studies.runner import is_table, read
 
     chosen = [str(format_) for format_ in formats or [Format.PNG]]

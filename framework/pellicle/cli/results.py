@@ -30,7 +30,7 @@ def print_steps(result: Result, *, si: bool = False) -> None:
     """Print a row for each step."""
     from pellicle.results.result import caveats_of
     from pellicle.results.status import Status
-    from pellicle.results.variables import names_of
+    from pellicle.variables import names_of
 
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
@@ -62,7 +62,7 @@ def print_steps(result: Result, *, si: bool = False) -> None:
 def print_contact(result: Result, *, si: bool = False) -> None:
     """Print the shape of the contact at each step, and of the zone around it."""
     from pellicle.results.shape import means_something
-    from pellicle.results.variables import names_of
+    from pellicle.variables import names_of
 
     data = result.dataset
     # Files of earlier versions lack some.
@@ -74,8 +74,8 @@ def print_contact(result: Result, *, si: bool = False) -> None:
 
 def print_path(result: Result, *, si: bool = False) -> None:
     """Print the events on the path and its work, where there is an interaction."""
-    from pellicle.results.variables import VARIABLES, names_of
     from pellicle.units import DIGITS, Scale, printed, readable
+    from pellicle.variables import VARIABLES, names_of
 
     def value(number: float, unit: str) -> str:
         text = Scale(1.0, printed(unit)).text(number, 6) if si else readable(number, unit, DIGITS)
@@ -94,8 +94,8 @@ def print_path(result: Result, *, si: bool = False) -> None:
 
 def print_oscillations(result: Result, *, si: bool = False) -> None:
     """Print a row for each oscillation on the path."""
-    from pellicle.results.variables import names_of
     from pellicle.results.wording import wording_of
+    from pellicle.variables import names_of
 
     if oscillations := result.oscillations:
         columns = []

@@ -72,7 +72,7 @@ def run(
 
     Exit code 0 only if every step converged.
     """
-    from pellicle.config.scales import doubtful_scales
+    from pellicle.config.doubtful_scales import doubtful_scales
     from pellicle.config.study import Study, from_toml
 
     configuration = from_toml(file, set_ or ())

@@ -23,9 +23,9 @@ def schema(
 
     With COMMAND, that of the file which the command takes.
     """
-    from pellicle.config.json_schema import schema as make_schema
+    from pellicle import json_schema as make_schema
     from pellicle.config.run import Run
-    from pellicle.model.messages import nearest
+    from pellicle.schema.messages import nearest
 
     models = file_models()
     if command is not None and command not in models:

@@ -6,10 +6,10 @@ its objects can be pickled to workers. A concrete component declares
 ``type: Literal["name"] = "name"``.
 """
 
-from pellicle.numerics.problem import Depth as Depth
-from pellicle.numerics.problem import Force as Force
-from pellicle.numerics.relaxation import Branch as Branch
-from pellicle.results.variables import Variable as Variable
+from pellicle.contact.problem import Depth as Depth
+from pellicle.contact.problem import Force as Force
+from pellicle.contact.time_step import Branch as Branch
+from pellicle.variables import Variable as Variable
 
 from .base import Component as Component
 from .correction import AreaCorrection as AreaCorrection

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from pellicle.model.base import Model
-from pellicle.results.variables import words_of_name
+from pellicle.schema.model import Model
+from pellicle.variables import words_of_name
 
 
 class Component(Model):

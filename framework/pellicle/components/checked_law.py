@@ -14,9 +14,9 @@ from pellicle.checks import (
     real_array,
     real_number,
 )
+from pellicle.contact.law import GapLaw, Law
 from pellicle.errors import ConfigError, PluginError
 from pellicle.grid import Grid
-from pellicle.numerics.gap_law import GapLaw, Law
 from pellicle.units import LARGEST
 
 from .interaction import Interaction

@@ -8,8 +8,8 @@ from typing import ClassVar
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle.contact.law import GapLaw
 from pellicle.grid import Grid
-from pellicle.numerics.gap_law import GapLaw
 
 from .base import Component
 from .kernel import Kernel

@@ -6,7 +6,7 @@ from abc import abstractmethod
 from typing import ClassVar, Protocol, runtime_checkable
 
 from pellicle.arrays import Array
-from pellicle.numerics.relaxation import Branch
+from pellicle.contact.time_step import Branch
 
 from .base import Component
 
@@ -14,10 +14,10 @@ from .base import Component
 class Kernel(Component):
     """The displacement of the surface under pressure: û(q) = G(q) p̂(q).
 
-    Only G(q) is required. On free boundaries the closed form (`pellicle.operators.HasClosedForm`),
+    Only G(q) is required. On free boundaries the closed form (`pellicle.surface.HasClosedForm`),
     ``greens_function(r)`` [m/N] and ``radial_primitive(r)`` [m³/N], is used if the kernel has one;
     otherwise it is tabulated from G(q). On periodic boundaries a uniform pressure causes no
-    displacement unless the kernel also has `pellicle.operators.HasMeanCompliance`.
+    displacement unless the kernel also has `pellicle.surface.HasMeanCompliance`.
     """
 
     family: ClassVar[str] = "kernel"

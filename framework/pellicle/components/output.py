@@ -3,20 +3,63 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
 from pellicle.checks import component_name
 from pellicle.errors import ConfigError, PluginError, shown
-from pellicle.results.runs import Runs as Runs
 
 from .base import Component
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+class Runs(Protocol):
+    """A run or a study: a table of numbers, and the fields of each run, read when needed."""
+
+    @property
+    def table(self) -> xr.Dataset:
+        """Numbers of each run and step, over ``step`` and, in a study, over its axes.
+
+        The variable ``run`` names the runs; numbers of missing steps are NaN. Where there is an
+        interaction, variables of kind ``path`` have one value for each run.
+        """
+
+    @property
+    def configuration(self) -> str:
+        """The run or study as JSON in SI, with paths as they were given."""
+
+    @property
+    def axes(self) -> tuple[str, ...] | None:
+        """The dimensions of a study; None for a run."""
+
+    def open(self, name: str = "") -> xr.Dataset:
+        """Return all numbers and fields of a run, given its name in the table of a study.
+
+        Raises
+        ------
+        StorageError
+            The file of the run does not exist or cannot be read.
+        """
+
+    def datasets(self) -> Iterator[tuple[tuple[int, ...], xr.Dataset | None]]:
+        """Yield the index in the table and the dataset of each run; None for a missing file."""
+
+    def column(self, text: str) -> xr.DataArray:
+        """Return the value of an expression for each step; fields in it have to be reduced.
+
+        Raises
+        ------
+        ConfigError
+            The text is not arithmetic, or names an unknown variable.
+        """
+
+    def from_each(self, function: Callable[[xr.Dataset], Any]) -> xr.DataArray:
+        """Return the values of ``function`` for all steps of all runs; NaN for missing runs."""
 
 
 class Output(Component):

@@ -10,16 +10,16 @@ from typing import ClassVar
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle.contact.equilibrium import Equilibrium
+from pellicle.contact.initial_guess import overlap_pressure
+from pellicle.contact.law import Law
+from pellicle.contact.problem import Depth, Force, Problem
+from pellicle.contact.solution import State
+from pellicle.contact.start import PathPoint, start_of
 from pellicle.grid import Grid
-from pellicle.numerics.equilibrium import Equilibrium
-from pellicle.numerics.gap_law import Law
-from pellicle.numerics.initial_guess import overlap_pressure
-from pellicle.numerics.operators import Operator
-from pellicle.numerics.path import PathPoint, start_of
-from pellicle.numerics.problem import Depth, Force, Problem
-from pellicle.numerics.solution import State
-from pellicle.results.variables import Variable
+from pellicle.surface.operators import Operator
 from pellicle.units import Quantity
+from pellicle.variables import Variable
 
 from .base import Component
 from .indenter import Footprint
@@ -58,7 +58,7 @@ class Setting:
         return Problem(self.grid, self.operator, profile, control, law=self.law, left=self.left)
 
     def start(self, problem: Problem) -> State | None:
-        """Return the start of a solve of ``problem``; see `pellicle.numerics.path.start_of`."""
+        """Return the start of a solve of ``problem``; see `pellicle.contact.start.start_of`."""
         return start_of(problem, self.state, self.path)
 
     def force_at(self, depth: float) -> float:

@@ -11,10 +11,10 @@ import numpy as np
 from pydantic import Field
 
 from pellicle.arrays import Array
+from pellicle.contact.equilibrium import round_off
+from pellicle.contact.problem import Problem
+from pellicle.contact.solution import Progress, Solution, State, Stop
 from pellicle.grid import Grid
-from pellicle.numerics.equilibrium import round_off
-from pellicle.numerics.problem import Problem
-from pellicle.numerics.solution import Progress, Solution, State, Stop
 from pellicle.units import Quantity
 
 from .base import Component

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pellicle.errors import ConfigError
-from pellicle.results.result import Result
+
+if TYPE_CHECKING:
+    from pellicle.results import Result
 
 
 @dataclass(frozen=True)

@@ -11,16 +11,16 @@ import numpy as np
 
 from pellicle.components import Component
 from pellicle.components.base import words_of_type
-from pellicle.model.base import Model
-from pellicle.model.input_path import PORTABLE
-from pellicle.model.paths import get, walk
-from pellicle.model.ranges import Values
-from pellicle.results.variables import WORDS, WORDS_OF_VALUES
+from pellicle.schema.input_path import PORTABLE
+from pellicle.schema.model import Model
+from pellicle.schema.paths import get, walk
+from pellicle.schema.ranges import Values
 from pellicle.units import DIGITS, quantity_of, readable
+from pellicle.variables import WORDS, WORDS_OF_VALUES
 
 from .points import short
 from .run import Run
-from .wording import field_words, words_at
+from .words import field_words, words_at
 
 
 class Coordinate(NamedTuple):

@@ -10,18 +10,11 @@ from pydantic.fields import FieldInfo
 
 from pellicle.components.base import words_of_type
 from pellicle.plugins import Origin
-from pellicle.results.variables import words_of_name
 from pellicle.units import quantity_of, readable
+from pellicle.variables import words_of_name
 
 from .run import Run
-from .wording import (
-    field_words,
-    fields_of_leg,
-    model_in,
-    model_of_table,
-    registered,
-    words_at,
-)
+from .words import field_words, fields_of_leg, model_in, model_of_table, registered, words_at
 
 
 class Input(NamedTuple):

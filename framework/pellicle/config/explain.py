@@ -18,14 +18,14 @@ from pellicle.components import Component, Prescription
 from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import Grid
 from pellicle.loading import OPTIONS
-from pellicle.model.messages import similar
 from pellicle.plugins import Registered, registry
+from pellicle.schema.messages import similar
 from pellicle.units import quantity_of, readable
 
 from .loading import Loading, loading_model
 from .run import Run
 from .study import Study
-from .wording import model_in
+from .words import model_in
 
 _EXAMPLES: Mapping[type[BaseModel], tuple[str, Mapping[str, Any]]] = {
     Grid: ("grid", {"points": 256, "size": "0.4 mm", "boundary": "free"}),

@@ -22,7 +22,7 @@ _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _IN_PART = "InPart"
 
 
-def json_schema(model: type[BaseModel]) -> dict[str, Any]:
+def model_schema(model: type[BaseModel]) -> dict[str, Any]:
     """Return the JSON schema of a model whose fields take any installed component.
 
     It holds the families that the model refers to, itself or by components of another family. In
@@ -85,15 +85,15 @@ def _filled(schema: Any, choices: dict[str, list[dict[str, Any]]]) -> Any:
     return filled | {"oneOf": choice}
 
 
-def schema(model: type[BaseModel] = Run) -> dict[str, Any]:
+def json_schema(model: type[BaseModel] = Run) -> dict[str, Any]:
     """Return the JSON schema of a run or study file, or of the file of another model.
 
     It has all installed components. A study file may leave out varied fields, so only the type of a
     component is required there.
     """
     if model is not Run:
-        return {"$schema": _DIALECT, **json_schema(model)}
-    run, study = json_schema(Run), json_schema(Study)
+        return {"$schema": _DIALECT, **model_schema(model)}
+    run, study = model_schema(Run), model_schema(Study)
     definitions = run.pop("$defs") | study.pop("$defs")
     study["properties"].pop("run")
     study["required"] = []

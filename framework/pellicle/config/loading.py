@@ -16,10 +16,10 @@ from pydantic.fields import FieldInfo
 from pellicle.components import Prescription
 from pellicle.errors import ConfigError, Problem
 from pellicle.loading import OPTIONS, LoadSteps
-from pellicle.model.base import Model
-from pellicle.model.legs import Leg, Sample, sampled
-from pellicle.model.messages import nearest
 from pellicle.plugins import registry
+from pellicle.schema.legs import Leg, Sample, sampled
+from pellicle.schema.messages import nearest
+from pellicle.schema.model import Model
 from pellicle.units import Quantity
 
 # Messages name these first.

@@ -9,9 +9,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from pellicle.errors import ConfigError, Problem, first_of, shown
-from pellicle.model.base import Model
-from pellicle.model.paths import get, replaced
-from pellicle.model.ranges import Axes
+from pellicle.schema.model import Model
+from pellicle.schema.paths import get, replaced
+from pellicle.schema.ranges import Axes
 from pellicle.units import split
 
 from .run import Run

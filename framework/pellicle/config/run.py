@@ -41,11 +41,11 @@ from pellicle.components.output import ResultFile, refuse_shared_files
 from pellicle.errors import ConfigError
 from pellicle.files import is_file
 from pellicle.grid import Grid, grid_of_run
-from pellicle.model.from_file import FromFile
-from pellicle.model.html import summary
-from pellicle.model.paths import get, replaced, walk
 from pellicle.plugins import registry
-from pellicle.results.variables import VARIABLES, Variable, corrected_area, corrected_fraction
+from pellicle.schema.from_file import FromFile
+from pellicle.schema.notebook import summary
+from pellicle.schema.paths import get, replaced, walk
+from pellicle.variables import VARIABLES, Variable, corrected_area, corrected_fraction
 
 from .loading import Loading, refuse_pulls
 

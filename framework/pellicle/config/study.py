@@ -16,19 +16,19 @@ from pydantic import BeforeValidator, Field, model_validator
 from pellicle.components import Executor, FromRegistry
 from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError, Problem, all_problems, shown
-from pellicle.model.expression import CONSTANTS, FUNCTIONS, evaluate, names_in
-from pellicle.model.from_file import FromFile, read
-from pellicle.model.html import summary
-from pellicle.model.input_path import paths_relative_to
-from pellicle.model.paths import get, python_names
-from pellicle.model.ranges import Axes, expand
 from pellicle.results.derived import constants
-from pellicle.results.variables import BEYOND_THEORY, FIELDS, VARIABLES
+from pellicle.schema.expression import CONSTANTS, FUNCTIONS, evaluate, names_in
+from pellicle.schema.from_file import FromFile, read
+from pellicle.schema.input_path import paths_relative_to
+from pellicle.schema.notebook import summary
+from pellicle.schema.paths import get, python_names
+from pellicle.schema.ranges import Axes, expand
+from pellicle.variables import BEYOND_THEORY, FIELDS, VARIABLES
 
 from .coordinates import Coordinate, as_json, coordinate, tell_apart
 from .points import Point, points_of
 from .run import Run
-from .wording import words_at
+from .words import words_at
 
 DEFAULT_EXECUTOR = "serial"
 _MOST = 100_000

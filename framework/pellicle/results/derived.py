@@ -9,8 +9,8 @@ from operator import methodcaller
 from typing import TYPE_CHECKING, Any
 
 from pellicle.errors import ConfigError
-from pellicle.model.expression import evaluate, names_in
-from pellicle.model.paths import walk
+from pellicle.schema.expression import evaluate, names_in
+from pellicle.schema.paths import walk
 from pellicle.units import one, si_unit
 
 if TYPE_CHECKING:
@@ -108,3 +108,9 @@ def as_array(text: str, data: xr.Dataset) -> xr.DataArray:
 
     value = evaluate(text, names(data))
     return value if isinstance(value, xr.DataArray) else xr.DataArray(value)
+
+
+def header(name: str, variable: xr.DataArray) -> str:
+    """Return the header of a variable's column in a file: its name and SI unit."""
+    unit = variable.attrs.get("units", "1")
+    return name if unit == "1" else f"{name} [{unit}]"

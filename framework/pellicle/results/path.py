@@ -12,9 +12,9 @@ import numpy as np
 from pellicle.analysis import Oscillation, oscillations, path_summary
 from pellicle.loading import OPTIONS
 from pellicle.units import DIGITS, readable
+from pellicle.variables import VARIABLES
 
 from .dimensions import parts
-from .variables import VARIABLES
 from .wording import wording
 
 if TYPE_CHECKING:

@@ -11,41 +11,35 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellicle.errors import ConfigError, StorageError, shown
-from pellicle.model.expression import evaluate, names_in
+from pellicle.schema.expression import evaluate, names_in
+from pellicle.variables import FIELDS, WALL_PRESSURE
 
 from . import storage
 from .derived import CELLS, REDUCTIONS, as_array, names
 from .dimensions import with_paths
 from .path import with_path
-from .variables import FIELDS, WALL_PRESSURE
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
 @dataclass(frozen=True)
-class Runs:
-    """A run or a study: a table of numbers, and the fields of each run, read when needed."""
+class StoredRuns:
+    """What outputs are given, `pellicle.Runs`, from the datasets of its runs."""
 
     table: xr.Dataset
-    """Numbers of each run and step, over ``step`` and, in a study, over its axes.
-
-    The variable ``run`` names the runs; numbers of missing steps are NaN. Where there is an
-    interaction, variables of kind ``path`` have one value for each run.
-    """
     source: Callable[[str], xr.Dataset]
     """Function that returns the dataset of a run by name, or raises StorageError."""
     configuration: str = "{}"
-    """The run or study as JSON in SI, with paths as they were given."""
 
     @classmethod
-    def of_run(cls, dataset: xr.Dataset, configuration: str = "{}") -> Runs:
+    def of_run(cls, dataset: xr.Dataset, configuration: str = "{}") -> StoredRuns:
         """Return a single run, given its result."""
         table = with_path(dataset.drop_dims(CELLS)).assign(run=((), ""))
         return cls(table, lambda _: dataset, configuration)
 
     @classmethod
-    def of_study(cls, table: xr.Dataset, directory: Path, configuration: str = "{}") -> Runs:
+    def of_study(cls, table: xr.Dataset, directory: Path, configuration: str = "{}") -> StoredRuns:
         """Return the runs of the study whose folder is ``directory``."""
         return cls(
             with_paths(table),
@@ -60,13 +54,7 @@ class Runs:
         return None if axes is None else tuple(json.loads(axes))
 
     def open(self, name: str = "") -> xr.Dataset:
-        """Return all numbers and fields of a run, given its name in the table of a study.
-
-        Raises
-        ------
-        StorageError
-            The file of the run does not exist or cannot be read.
-        """
+        """Return all numbers and fields of a run."""
         return self.source(name)
 
     def datasets(self) -> Iterator[tuple[tuple[int, ...], xr.Dataset | None]]:
@@ -78,13 +66,7 @@ class Runs:
                 yield index, None
 
     def column(self, text: str) -> xr.DataArray:
-        """Return the value of an expression for each step; fields in it have to be reduced.
-
-        Raises
-        ------
-        ConfigError
-            The text is not arithmetic, or names an unknown variable.
-        """
+        """Return the value of an expression for each step."""
         if names_in(text) & {*FIELDS, WALL_PRESSURE, *CELLS}:
             return self.from_each(lambda run: _by_step(text, run))
         return as_array(text, self.table)

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from pellicle.variables import CORRECTED_FRACTION
+
 from .derived import FIRST_RUN
-from .variables import CORRECTED_FRACTION
 
 if TYPE_CHECKING:
     import xarray as xr

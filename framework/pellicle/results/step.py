@@ -9,13 +9,13 @@ import xarray as xr
 
 from pellicle.analysis import ellipse, patches, perimeter
 from pellicle.arrays import Array
+from pellicle.contact.equilibrium import Equilibrium
+from pellicle.contact.solution import State
+from pellicle.contact.start import PathPoint
 from pellicle.grid import Grid
-from pellicle.numerics.equilibrium import Equilibrium
-from pellicle.numerics.path import PathPoint
-from pellicle.numerics.solution import State
+from pellicle.variables import VARIABLES, Variable
 
 from . import storage
-from .variables import VARIABLES, Variable
 
 
 def step_dataset(

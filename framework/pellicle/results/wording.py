@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 from pellicle.arrays import Array
 from pellicle.units import DIGITS, NOTHING, Scale, axis_unit, printed
-
-from .variables import VARIABLES, WORDS, WORDS_OF_VALUES, words_of_name
+from pellicle.variables import VARIABLES, WORDS, WORDS_OF_VALUES, words_of_name
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -12,11 +12,11 @@ from pellicle.components import Force, Monitor, Setting, Solver
 from pellicle.components.calls import solution_of
 from pellicle.components.checked_law import law_of
 from pellicle.config.run import Run
-from pellicle.numerics.equilibrium import Equilibrium, equilibrium_of
-from pellicle.numerics.labels import labelled
-from pellicle.numerics.path import PathPoint
-from pellicle.numerics.problem import Depth
-from pellicle.numerics.solution import State, Stop
+from pellicle.contact.equilibrium import Equilibrium, equilibrium_of
+from pellicle.contact.labels import labelled
+from pellicle.contact.problem import Depth
+from pellicle.contact.solution import State, Stop
+from pellicle.contact.start import PathPoint
 
 # Widths of two zones over that of the step, for the limit of no width.
 _WIDER: Final = (1.5, 3.0)

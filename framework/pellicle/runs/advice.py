@@ -16,8 +16,8 @@ from pellicle.components.calls import profile_of
 from pellicle.config.run import Run
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid
-from pellicle.model.paths import walk
 from pellicle.results.status import Status
+from pellicle.schema.paths import walk
 
 from .runner import solve
 

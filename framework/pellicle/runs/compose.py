@@ -15,8 +15,8 @@ from pellicle.components.calls import (
 from pellicle.components.checked_law import law_of
 from pellicle.config.run import Run
 from pellicle.errors import ConfigError
-from pellicle.numerics.grid_checks import warn_of_cells, warn_of_period
-from pellicle.numerics.operators import make_operator
+from pellicle.surface.grid_checks import warn_of_cells, warn_of_period
+from pellicle.surface.operators import make_operator
 
 from .relaxation import warn_of_relaxation
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 from pellicle.components import Monitor, Setting, Solver
 from pellicle.components.calls import solution_of
-from pellicle.numerics.equilibrium import Equilibrium, equilibrium_of
-from pellicle.numerics.problem import Problem
-from pellicle.numerics.solution import Solution, Stop
+from pellicle.contact.equilibrium import Equilibrium, equilibrium_of
+from pellicle.contact.problem import Problem
+from pellicle.contact.solution import Solution, Stop
 
 from .adhesion import leaves_path
 

@@ -15,10 +15,7 @@ from pellicle.checks import errors_attributed_to
 from pellicle.components import HasRelaxation, HasTimeSpan, Kernel, Setting
 from pellicle.components.calls import branches_of
 from pellicle.config.run import Run
-from pellicle.grid import Grid
-from pellicle.numerics.kernel_calls import mean_compliance
-from pellicle.numerics.outside import PlaneOperator
-from pellicle.numerics.relaxation import (
+from pellicle.contact.time_step import (
     Memory,
     TimeStep,
     left_behind,
@@ -26,6 +23,9 @@ from pellicle.numerics.relaxation import (
     stiffness_after,
     strain_under_skin,
 )
+from pellicle.grid import Grid
+from pellicle.surface.kernel_calls import mean_compliance
+from pellicle.surface.outside import PlaneOperator
 
 # Equal steps whose times differ by rounding share their operators.
 _DIGITS: Final = 12

@@ -25,6 +25,7 @@ from pellicle.errors import ConfigError, ConvergenceWarning
 from pellicle.grid import Grid
 from pellicle.plugins import registry
 from pellicle.results.result import Result
+from pellicle.results.runs import StoredRuns
 from pellicle.results.step import Steps
 
 from .compose import compose
@@ -139,7 +140,7 @@ def execute(
     files: tuple[Path, ...] = ()
 
     def runs() -> Runs:
-        return Runs.of_run(read_only_dataset(result.dataset), run.to_json(portable=True))
+        return StoredRuns.of_run(read_only_dataset(result.dataset), run.to_json(portable=True))
 
     with scipy.fft.set_workers(threads or default_threads(run.grid)), bar, ExitStack() as stack:
         try:

@@ -21,12 +21,12 @@ from pellicle.components.calls import (
 )
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
-from pellicle.numerics.contact_stiffness import Stiffness, measure_stiffness
-from pellicle.numerics.equilibrium import Equilibrium
-from pellicle.numerics.solution import Stop
+from pellicle.contact.equilibrium import Equilibrium
+from pellicle.contact.solution import Stop
+from pellicle.contact.stiffness import Stiffness, measure_stiffness
 from pellicle.results.step import Steps, step_dataset
-from pellicle.results.variables import Variable, corrected_fraction
-from pellicle.results.variables import corrected_area as area_variable
+from pellicle.variables import Variable, corrected_fraction
+from pellicle.variables import corrected_area as area_variable
 
 from .adhesion import asperity_jumped, force_limit, greatest_pull, jump_energy
 from .following import followed

@@ -15,9 +15,9 @@ import numpy as np
 
 from pellicle.components import Monitor, Solver
 from pellicle.components.prescription import Search, Setting
-from pellicle.numerics.equilibrium import Equilibrium
-from pellicle.numerics.problem import Depth
-from pellicle.numerics.solution import Solution, Stop
+from pellicle.contact.equilibrium import Equilibrium
+from pellicle.contact.problem import Depth
+from pellicle.contact.solution import Solution, Stop
 
 from .following import followed
 

@@ -9,9 +9,9 @@ import numpy as np
 from pellicle.analysis.steepness import rim_slope, steepest
 from pellicle.components.prescription import Search
 from pellicle.config.run import Run
-from pellicle.numerics.contact_stiffness import Stiffness
-from pellicle.numerics.equilibrium import Equilibrium
-from pellicle.numerics.solution import Stop
+from pellicle.contact.equilibrium import Equilibrium
+from pellicle.contact.solution import Stop
+from pellicle.contact.stiffness import Stiffness
 from pellicle.results.status import Status, with_caveats
 from pellicle.units import DIGITS, readable
 

@@ -10,7 +10,8 @@ from pellicle.components import Runs
 from pellicle.config.study import Study
 from pellicle.errors import ConfigError
 from pellicle.results.derived import CELLS, derive
-from pellicle.results.variables import FIELDS, VARIABLES, WALL_PRESSURE
+from pellicle.results.runs import StoredRuns
+from pellicle.variables import FIELDS, VARIABLES, WALL_PRESSURE
 
 from .table import StudyTable
 
@@ -51,4 +52,4 @@ def _planned(study: Study) -> Runs:
         row = row.assign_coords(dict(zip(CELLS, sides, strict=True)))
         return row.assign_attrs(configuration=run.to_json())
 
-    return Runs(derive(table, study.derived, {}), last_step, study.to_json(portable=True))
+    return StoredRuns(derive(table, study.derived, {}), last_step, study.to_json(portable=True))

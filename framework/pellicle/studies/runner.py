@@ -21,7 +21,7 @@ import xarray as xr
 from pellicle import memory
 from pellicle.batch import BatchProgress, locked, mapped
 from pellicle.checks import checked_threads, read_only_dataset
-from pellicle.components import Executor, Output, Runs, Say
+from pellicle.components import Executor, Output, Say
 from pellicle.config.run import Run
 from pellicle.config.study import DEFAULT_EXECUTOR, Study
 from pellicle.errors import ConfigError, ConvergenceWarning, PluginError, StorageError
@@ -29,11 +29,12 @@ from pellicle.files import check_writable, is_file, is_folder
 from pellicle.plugins import registry
 from pellicle.results import storage
 from pellicle.results.dimensions import with_paths, with_python_names
+from pellicle.results.runs import StoredRuns
 from pellicle.results.status import Status
-from pellicle.results.variables import BEYOND_THEORY
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.progress import ProgressReporter
+from pellicle.variables import BEYOND_THEORY
 
 from . import table
 from .planned import check_outputs
@@ -221,8 +222,10 @@ def _execute(
         files.write(rows, at_once=isinstance(outcome, StorageError))
         return verdict, verdict != "converged"
 
-    def runs() -> Runs:
-        return Runs.of_study(read_only_dataset(whole), directory, study.to_json(portable=True))
+    def runs() -> StoredRuns:
+        return StoredRuns.of_study(
+            read_only_dataset(whole), directory, study.to_json(portable=True)
+        )
 
     def written(write: Callable[[], tuple[Path, ...]]) -> tuple[Path, ...]:
         try:

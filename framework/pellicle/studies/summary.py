@@ -14,9 +14,9 @@ from pellicle.errors import first_of
 from pellicle.results.dimensions import parts
 from pellicle.results.shape import means_something
 from pellicle.results.status import Status, statuses_of
-from pellicle.results.variables import BEYOND_THEORY, names_of
 from pellicle.results.wording import Wording, wording
 from pellicle.units.conversion import factor_to_si, split
+from pellicle.variables import BEYOND_THEORY, names_of
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -15,11 +15,11 @@ from pellicle.config.provenance import now_with
 from pellicle.config.study import Study
 from pellicle.files import atomic_write, for_document
 from pellicle.results import storage
-from pellicle.results.derived import FIRST_RUN, VARYING, derive
+from pellicle.results.derived import FIRST_RUN, VARYING, derive, header
 from pellicle.results.dimensions import with_python_names
 from pellicle.results.path import with_path
 from pellicle.results.status import Status
-from pellicle.results.variables import BEYOND_THEORY, VARIABLES, header
+from pellicle.variables import BEYOND_THEORY, VARIABLES
 
 _TEXTS = "status_code", "status"
 

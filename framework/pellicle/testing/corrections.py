@@ -10,7 +10,7 @@ from pellicle.components import AreaCorrection
 
 from .component import check
 from .rules import require, require_close, rules_of
-from .runs import solved
+from .small_runs import solved
 
 _SPACING = (2e-6, 3e-6)
 _CELL = _SPACING[0] * _SPACING[1]

@@ -18,7 +18,7 @@ from pellicle.components import Executor, Say
 
 from .component import check
 from .rules import require, rules_of
-from .runs import ignore
+from .small_runs import ignore
 
 _TASKS = 7
 _DURATION = 0.1

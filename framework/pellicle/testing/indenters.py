@@ -14,7 +14,7 @@ from pellicle.grid import Grid
 
 from .component import check
 from .rules import require, require_close, rules_of
-from .runs import solved
+from .small_runs import solved
 
 
 def check_indenter(indenter: Indenter, grid: Grid | None = None) -> None:

@@ -9,13 +9,13 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.components import Interaction, Kernel
 from pellicle.components.checked_law import law_of
+from pellicle.contact.law import GapLaw
 from pellicle.grid import Grid
-from pellicle.numerics.gap_law import GapLaw
 from pellicle.plugins import registry
 
 from .component import check
 from .rules import require, require_close, require_pure, require_vectorised, rules_of
-from .runs import solved
+from .small_runs import solved
 
 _ROUNDING = 1e-12
 # Energy left at the cutoff, over the work of adhesion.

@@ -12,12 +12,12 @@ from pellicle.checks import read_only
 from pellicle.components import HasRelaxation, Kernel
 from pellicle.components.calls import branches_of
 from pellicle.grid import Grid
-from pellicle.numerics.kernel_calls import HasClosedForm, mean_compliance
-from pellicle.numerics.operators import displacement
+from pellicle.surface.kernel_calls import HasClosedForm, mean_compliance
+from pellicle.surface.operators import displacement
 
 from .component import check
 from .rules import require, require_close, require_pure, require_vectorised, rules_of
-from .runs import solved
+from .small_runs import solved
 
 _WIDTH = 1e-4
 """Width w of the Gaussian pressure exp(−r²/2w²) [m]."""

@@ -20,6 +20,7 @@ from pellicle.components.output import stem_of
 from pellicle.config.run import Run
 from pellicle.config.study import Study
 from pellicle.results.derived import FIRST_RUN
+from pellicle.results.runs import StoredRuns
 from pellicle.runs.journal import Journal
 from pellicle.runs.progress import RunProgress
 from pellicle.runs.runner import execute, solve
@@ -27,7 +28,7 @@ from pellicle.studies import runner as studies
 
 from .component import check
 from .rules import require, rules_of
-from .runs import PARABOLOID
+from .small_runs import PARABOLOID
 
 _STEPS = 2
 _VARIED = "kernel.tension"
@@ -64,7 +65,7 @@ def _dataset() -> xr.Dataset:
 def _as_run_or_study(output: Output, steps: xr.Dataset) -> Runs:
     """Return a run of some steps, as a study of that run if the output shows studies only."""
     configuration = _run().to_json()
-    runs = Runs.of_run(steps, configuration)
+    runs = StoredRuns.of_run(steps, configuration)
     if output.scope != "study":
         return runs
     attributes = {"axes": json.dumps({_VARIED: [_VARIED]}), FIRST_RUN: configuration}

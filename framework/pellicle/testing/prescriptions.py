@@ -15,15 +15,15 @@ from pellicle.components.calls import (
     target_of,
 )
 from pellicle.config.run import Run
+from pellicle.contact.equilibrium import Equilibrium, measure
 from pellicle.errors import ConfigError
-from pellicle.numerics.equilibrium import Equilibrium, measure
 from pellicle.results.step import step_dataset
 from pellicle.runs.compose import compose
 from pellicle.runs.target_search import reach
 
 from .component import check
 from .rules import require, require_close, rules_of
-from .runs import HALF_SPACE, ROUGH, ignore
+from .small_runs import HALF_SPACE, ROUGH, ignore
 
 # A contact area of whole cells misses its value by more than other quantities do.
 _NEAR = 0.05

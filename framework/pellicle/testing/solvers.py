@@ -11,15 +11,15 @@ import xarray as xr
 from pellicle.components import IterativeSolver, Solver
 from pellicle.components.calls import solution_of
 from pellicle.config.run import Run
-from pellicle.numerics.contact_stiffness import measure_stiffness
-from pellicle.numerics.equilibrium import measure
-from pellicle.numerics.operators import make_operator
-from pellicle.numerics.problem import Depth, Force, Problem
-from pellicle.numerics.solution import State, Stop
+from pellicle.contact.equilibrium import measure
+from pellicle.contact.problem import Depth, Force, Problem
+from pellicle.contact.solution import State, Stop
+from pellicle.contact.stiffness import measure_stiffness
+from pellicle.surface.operators import make_operator
 
 from .component import check
 from .rules import require, require_close, rules_of
-from .runs import PARABOLOID, ROUGH, ignore, solved
+from .small_runs import PARABOLOID, ROUGH, ignore, solved
 
 _SKIN = {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 1.0}
 _SMOOTH: dict[str, Any] = {

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from pellicle.arrays import Array, Mask
 from pellicle.errors import ConfigError, shown
-from pellicle.model import Model
+from pellicle.schema import Model
 from pellicle.units import Quantity
 
 from .cleaning import grows

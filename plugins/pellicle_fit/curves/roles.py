@@ -9,7 +9,7 @@ from typing import Annotated, NamedTuple
 from pydantic import BeforeValidator, Field
 
 from pellicle.errors import ConfigError, shown
-from pellicle.model import nearest
+from pellicle.schema import nearest
 from pellicle.units import Quantity
 
 EXAMPLE = "position [um],force [nN]"

@@ -10,7 +10,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError, StorageError, shown
-from pellicle.model import read_mat
+from pellicle.schema import read_mat
 
 from .columns import Channel
 from .roles import NAMES, role_of

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import platformdirs
 
-from pellicle import Grid, Study, registry, run_study, storage
+from pellicle import Grid, Study, registry, results, run_study
 from pellicle.arrays import Array
 from pellicle.components import Executor, Indenter
 from pellicle.errors import ConfigError, ConvergenceError, ConvergenceWarning
@@ -224,7 +224,7 @@ def _table(study: Study, cache: Path, progress: bool) -> xr.Dataset:
     runs = [point.run.identity for point in study.points]
     folder = cache / hashlib.sha256("".join(runs).encode()).hexdigest()[:16]
     if (folder / "study.h5").exists() and not (folder / "runs").exists():
-        return storage.table(folder / "study.h5")
+        return results.table(folder / "study.h5")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error", ConvergenceWarning)

@@ -11,7 +11,7 @@ from pydantic.fields import FieldInfo
 from pellicle import registry
 from pellicle.components import Component, Kernel
 from pellicle.errors import ConfigError, shown
-from pellicle.model import Model, get, replaced, walk
+from pellicle.schema import Model, get, replaced, walk
 from pellicle.units import Quantity, quantity_of
 
 DEFAULT_KERNEL = "tensed_membrane"

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from pellicle.errors import ConfigError, shown
-from pellicle.model import evaluate, names_in, nearest
+from pellicle.schema import evaluate, names_in, nearest
 from pellicle.units import one, readable, split
 from pellicle_fit import parameters
 from pellicle_fit.parameters import Parameter

@@ -11,7 +11,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.files import for_document
-from pellicle.plotting import save_pages
+from pellicle.show import save_pages
 from pellicle.units import axis_unit, decimal, readable
 from pellicle_fit.many import FITTED, ManyFits
 from pellicle_fit.population.judgement import Row

@@ -13,8 +13,8 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
-from pellicle.plotting import LINES
-from pellicle.plotting import save_figure as save_drawing
+from pellicle.show import LINES
+from pellicle.show import save_figure as save_drawing
 from pellicle.units import axis_unit
 from pellicle_fit.many import ManyFits
 from pellicle_fit.one_curve import Fit

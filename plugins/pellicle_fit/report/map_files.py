@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellicle.files import atomic_write
-from pellicle.plotting import save_figure
-from pellicle.result import header
+from pellicle.results import header
+from pellicle.show import save_figure
 from pellicle.units import axis_unit
 from pellicle_fit.population.images import CONTACT_HEIGHT
 

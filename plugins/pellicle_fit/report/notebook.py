@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from io import BytesIO
 
-from pellicle.page import summary
-from pellicle.plotting import FigureStyle
+from pellicle.schema import summary
+from pellicle.show import FigureStyle
 from pellicle.units import decimal
 from pellicle_fit.many import ManyFits
 from pellicle_fit.result import FitResult

@@ -12,9 +12,8 @@ import numpy as np
 
 from pellicle.config.describe import inputs
 from pellicle.files import atomic_write, json_text
-from pellicle.page import Block, Cell, Code, Column, Notice, Picture, Section, Table, Text
-from pellicle.page import page as render
-from pellicle.plotting import svg
+from pellicle.show import Block, Cell, Code, Column, Notice, Picture, Section, Table, Text, svg
+from pellicle.show import page as render
 from pellicle.units import axis_unit, decimal, readable
 from pellicle_fit.many import FITTED, ManyFits
 from pellicle_fit.one_curve import Fit

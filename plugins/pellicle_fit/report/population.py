@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from pathlib import Path
 
-from pellicle.plotting import save_figure
+from pellicle.show import save_figure
 from pellicle_fit.many import ManyFits
 
 from . import distributions

@@ -15,8 +15,8 @@ from pellicle.arrays import Array
 from pellicle.errors import ConfigError
 from pellicle.files import read_text
 from pellicle.grid import shape_of_run
-from pellicle.model.input_path import InputPath
-from pellicle.model.matlab import read_mat
+from pellicle.schema.input_path import InputPath
+from pellicle.schema.matlab import read_mat
 
 from .file_checks import require_content, require_file, require_memory
 from .from_heights import FromHeights, HeightUnit

@@ -10,10 +10,10 @@ from pydantic import Field
 from pellicle.arrays import Array
 from pellicle.components import ForceCurve
 from pellicle.units import Length
-from pellicle_plugins.analytic import master_curves
-from pellicle_plugins.analytic.layer_curves import Profile, smooth_profile
+from pellicle_plugins.axisymmetric import master_curves
+from pellicle_plugins.axisymmetric.layer_curves import Profile, smooth_profile
 
-from .axisymmetric import Axisymmetric
+from .of_revolution import Axisymmetric
 from .sphere import Sphere
 
 

@@ -14,7 +14,7 @@ from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
 from pellicle.grid import pair
-from pellicle.model.input_path import InputPath
+from pellicle.schema.input_path import InputPath
 from pellicle.units import Length, Quantity, readable
 
 from .file_checks import require_memory

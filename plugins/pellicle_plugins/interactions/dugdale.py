@@ -10,8 +10,8 @@ from pydantic import ConfigDict
 
 from pellicle.arrays import Array
 from pellicle.components import Kernel
+from pellicle.contact.law import GapLaw
 from pellicle.grid import Grid
-from pellicle.numerics.gap_law import GapLaw
 
 from .adhesive import Adhesive
 from .zone import zone_width

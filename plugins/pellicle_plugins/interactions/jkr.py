@@ -9,8 +9,8 @@ from pydantic import ConfigDict, Field, PrivateAttr
 
 from pellicle.arrays import Array
 from pellicle.components import Interaction, Kernel
+from pellicle.contact.law import GapLaw
 from pellicle.grid import Grid
-from pellicle.numerics.gap_law import GapLaw
 from pellicle.units import WorkOfAdhesion
 
 from .linear import Linear

@@ -7,7 +7,7 @@ from typing import Annotated, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from pellicle.components import Kernel
-from pellicle.model import Model
+from pellicle.schema import Model
 from pellicle.units import Modulus, PoissonsRatio
 
 

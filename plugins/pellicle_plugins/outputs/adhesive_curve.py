@@ -14,10 +14,10 @@ from pellicle import analysis
 from pellicle.arrays import Array
 from pellicle.components import Runs
 from pellicle.errors import ConfigError
-from pellicle.report.style import colour, sparse_marker
 from pellicle.results.result import Result
+from pellicle.show.style import colour, sparse_marker
 from pellicle.units import Quantity, axis_unit
-from pellicle_plugins.analytic.adhesive_path import curve_of
+from pellicle_plugins.validation.adhesive_path import curve_of
 
 from .base import Label, TableFigure, set_scales, write_csv
 

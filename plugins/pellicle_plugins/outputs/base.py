@@ -16,20 +16,20 @@ from pydantic import Field
 
 from pellicle.components import Output, Runs
 from pellicle.config.run import Run
-from pellicle.config.wording import words_at
+from pellicle.config.words import words_at
 from pellicle.errors import ConfigError, StorageError
 from pellicle.files import storage_errors
-from pellicle.model.expression import evaluate, formula
-from pellicle.model.messages import nearest
-from pellicle.report.fields import extent, without_round_off
-from pellicle.report.saving import SIZE, save_figure
-from pellicle.report.style import FigureStyle, is_ordered
 from pellicle.results.derived import FIRST_RUN, names
 from pellicle.results.result import Result
-from pellicle.results.variables import words_of_name
 from pellicle.results.wording import wording
+from pellicle.schema.expression import evaluate, formula
+from pellicle.schema.messages import nearest
+from pellicle.show.fields import extent, without_round_off
+from pellicle.show.saving import SIZE, save_figure
+from pellicle.show.style import FigureStyle, is_ordered
 from pellicle.units import DIGITS, axis_unit, readable
-from pellicle_plugins.analytic.reference import require_solution
+from pellicle.variables import words_of_name
+from pellicle_plugins.validation.reference import require_solution
 
 if TYPE_CHECKING:
     import xarray as xr

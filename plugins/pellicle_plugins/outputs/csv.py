@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pellicle.components import Output, Runs
 from pellicle.files import storage_errors
-from pellicle.results.variables import header
+from pellicle.results import header
 
 if TYPE_CHECKING:
     import xarray as xr

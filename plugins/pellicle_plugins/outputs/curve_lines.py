@@ -10,7 +10,7 @@ import numpy as np
 
 from pellicle.analysis import Leg, extrapolate
 from pellicle.arrays import Array
-from pellicle.report.legs import RETRACTION, draw_legs
+from pellicle.show.leg_styles import RETRACTION, draw_legs
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

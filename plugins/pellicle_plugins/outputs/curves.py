@@ -12,15 +12,15 @@ from pydantic import BeforeValidator, Field, model_validator
 from pellicle.analysis import Leg, legs
 from pellicle.components import Runs
 from pellicle.errors import ConfigError
-from pellicle.model.base import Model
-from pellicle.model.expression import names_in
-from pellicle.report.legs import MOST_LEGS, RETRACTION
-from pellicle.report.style import LINES, MARKERS, colour, is_log_spaced
 from pellicle.results.path import has_interaction, has_path, has_times
-from pellicle.results.variables import FIELDS, WALL_PRESSURE
 from pellicle.results.wording import wording
+from pellicle.schema.expression import names_in
+from pellicle.schema.model import Model
+from pellicle.show.leg_styles import MOST_LEGS, RETRACTION
+from pellicle.show.style import LINES, MARKERS, colour, is_log_spaced
 from pellicle.units import printed
-from pellicle_plugins.analytic.reference import exact
+from pellicle.variables import FIELDS, WALL_PRESSURE
+from pellicle_plugins.validation.reference import exact
 
 from .base import (
     Log,

@@ -10,8 +10,8 @@ from pydantic import Field
 
 from pellicle import analysis
 from pellicle.components import Runs
-from pellicle.report.style import LINES, colour
 from pellicle.results.path import has_interaction
+from pellicle.show.style import LINES, colour
 from pellicle.units import axis_unit
 
 from .base import Label, Log, TableFigure, add_legend, set_scales, write_csv

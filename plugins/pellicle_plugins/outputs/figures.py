@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import ClassVar, Literal
 
 from pellicle.components import Output, Runs
-from pellicle.report.plotting import FIGURES, STUDY_FIGURES, TIME, save_figures, save_study_figures
-from pellicle.report.style import FigureStyle
 from pellicle.results.result import Result
+from pellicle.show.plotting import FIGURES, STUDY_FIGURES, TIME, save_figures, save_study_figures
+from pellicle.show.style import FigureStyle
 
 from .base import Formats, StyleField
 

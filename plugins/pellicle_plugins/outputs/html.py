@@ -18,18 +18,18 @@ from pellicle.components import Output, Runs
 from pellicle.config.describe import inputs
 from pellicle.errors import StorageError
 from pellicle.files import atomic_write
-from pellicle.report.fields import DIVERGING, default_step, draws_contact, without_round_off
-from pellicle.report.maps import Field as MapField
-from pellicle.report.maps import Frame, Maps, frame, side
-from pellicle.report.page import Code, Notice, Picture, Section, Text, page
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction, label_of_step, prescribed_variable
 from pellicle.results.result import Result, first_message
-from pellicle.results.variables import FIELDS as RESULT_FIELDS
-from pellicle.results.variables import WALL_PRESSURE
 from pellicle.results.wording import wording
+from pellicle.show.fields import DIVERGING, default_step, draws_contact, without_round_off
+from pellicle.show.html import Code, Notice, Picture, Section, Text, page
+from pellicle.show.maps import Field as MapField
+from pellicle.show.maps import Frame, Maps, frame, side
 from pellicle.studies.summary import caveats, failures, progress_of, reasons, run_names, runs_of
+from pellicle.variables import FIELDS as RESULT_FIELDS
+from pellicle.variables import WALL_PRESSURE
 
 from .html_curves import curves_of_run, curves_of_study
 from .html_tables import (

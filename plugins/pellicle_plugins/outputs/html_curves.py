@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pellicle.report.fields import profile
-from pellicle.report.page import Picture
-from pellicle.report.plotting import TIME, drawings, study_drawings
-from pellicle.report.saving import svg
 from pellicle.results.path import label_of_step
 from pellicle.results.result import Result
 from pellicle.results.wording import wording
+from pellicle.show.fields import profile
+from pellicle.show.html import Picture
+from pellicle.show.plotting import TIME, drawings, study_drawings
+from pellicle.show.saving import svg
 
 from .html_tables import names_of_numbers
 

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellicle.config.describe import Input, inputs
-from pellicle.report.page import Cell, Column, Table
 from pellicle.results.result import Result
 from pellicle.results.shape import means_something
 from pellicle.results.status import Status
-from pellicle.results.variables import VARIABLES, names_of
 from pellicle.results.wording import Wording, wording, wording_of
+from pellicle.show.html import Cell, Column, Table
 from pellicle.studies.summary import progress_of, short_files
 from pellicle.units import DIGITS, readable
+from pellicle.variables import VARIABLES, names_of
 
 if TYPE_CHECKING:
     import xarray as xr

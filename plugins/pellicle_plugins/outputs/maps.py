@@ -11,12 +11,12 @@ import numpy as np
 from pydantic import Field
 
 from pellicle.components import Runs
-from pellicle.model.expression import names_in
-from pellicle.report.fields import diverging, outline_contact
-from pellicle.report.style import NO_CONTACT, add_colour_bar
 from pellicle.results.derived import as_array
 from pellicle.results.path import has_interaction
-from pellicle.results.variables import WALL_PRESSURE, words_of_name
+from pellicle.schema.expression import names_in
+from pellicle.show.fields import diverging, outline_contact
+from pellicle.show.style import NO_CONTACT, add_colour_bar
+from pellicle.variables import WALL_PRESSURE, words_of_name
 
 from .base import Label, TableFigure, scaled, show_field
 

@@ -10,10 +10,10 @@ from pellicle.config.describe import Input, inputs
 from pellicle.config.loading import prescribed_in
 from pellicle.errors import ConfigError
 from pellicle.loading import OPTIONS
-from pellicle.model.legs import number_of_steps
 from pellicle.plugins import registry
-from pellicle.results.variables import words_of_name
+from pellicle.schema.legs import number_of_steps
 from pellicle.units import DIGITS, axis_unit, readable
+from pellicle.variables import words_of_name
 from pellicle.version import CITATION
 
 _FEW = 5

@@ -11,8 +11,8 @@ from pydantic import Field
 
 from pellicle import analysis
 from pellicle.components import Runs
-from pellicle.report.style import MARKERS, NO_CONTACT, colour
 from pellicle.results.result import Result
+from pellicle.show.style import MARKERS, NO_CONTACT, colour
 from pellicle.units import axis_unit
 
 from .base import Label, TableFigure, add_legend, show_field, write_csv

@@ -9,12 +9,12 @@ import numpy as np
 from pydantic import Field
 
 from pellicle.components import Runs
-from pellicle.model.expression import names_in
-from pellicle.report.lines import EDGE_CELLS, edge_cells
-from pellicle.report.style import LINES, MARKERS, colour
 from pellicle.results.derived import as_array
 from pellicle.results.path import has_interaction
-from pellicle_plugins.analytic.reference import exact_line
+from pellicle.schema.expression import names_in
+from pellicle.show.lines import EDGE_CELLS, edge_cells
+from pellicle.show.style import LINES, MARKERS, colour
+from pellicle_plugins.validation.reference import exact_line
 
 from .base import Reference, XYFigure, add_legend, scaled, set_scales
 

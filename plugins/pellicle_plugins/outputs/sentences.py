@@ -11,9 +11,9 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.results.path import has_interaction, has_times, label_of_step, prescribed_variable
 from pellicle.results.shape import has_one_shape
-from pellicle.results.variables import VARIABLES
 from pellicle.results.wording import wording
 from pellicle.units import readable
+from pellicle.variables import VARIABLES
 
 if TYPE_CHECKING:
     import xarray as xr

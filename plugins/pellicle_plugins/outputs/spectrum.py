@@ -9,8 +9,8 @@ import numpy as np
 
 from pellicle import analysis
 from pellicle.components import Runs
-from pellicle.report.style import colour, sparse_marker
 from pellicle.results.result import Result
+from pellicle.show.style import colour, sparse_marker
 
 from .base import Label, TableFigure, write_csv
 

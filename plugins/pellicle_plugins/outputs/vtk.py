@@ -14,9 +14,9 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.components import Output, Runs
 from pellicle.files import storage_errors
-from pellicle.report.vtk import array, element, rows_of, writer
 from pellicle.results.path import has_times
-from pellicle.results.variables import FIELDS, WALL_PRESSURE
+from pellicle.show.vtk import array, element, rows_of, writer
+from pellicle.variables import FIELDS, WALL_PRESSURE
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -7,9 +7,9 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from pellicle.components import Depth, Prescription, Setting
-from pellicle.numerics.equilibrium import Equilibrium
-from pellicle.results.variables import Variable
+from pellicle.contact.equilibrium import Equilibrium
 from pellicle.units import Quantity
+from pellicle.variables import Variable
 
 
 class BaseDisplacement(Prescription):

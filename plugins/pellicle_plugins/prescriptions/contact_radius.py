@@ -8,8 +8,8 @@ import numpy as np
 
 from pellicle.components import Force, Prescription, Search, Setting
 from pellicle.errors import ConfigError
-from pellicle.results.variables import Variable
 from pellicle.units import readable
+from pellicle.variables import Variable
 
 from .contact_area import RESIDUAL, area_search, unreachable
 

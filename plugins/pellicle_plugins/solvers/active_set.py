@@ -9,10 +9,10 @@ import numpy as np
 
 from pellicle.arrays import Array, Mask
 from pellicle.components import Monitor
-from pellicle.numerics.initial_guess import first_guess, with_force
-from pellicle.numerics.path import Start
-from pellicle.numerics.problem import Depth, Problem
-from pellicle.numerics.solution import Progress, Solution, State, Stop
+from pellicle.contact.initial_guess import first_guess, with_force
+from pellicle.contact.problem import Depth, Problem
+from pellicle.contact.solution import Progress, Solution, State, Stop
+from pellicle.contact.start import Start
 
 from .adhesion import AdhesionSolver
 from .adhesive_response import with_zone

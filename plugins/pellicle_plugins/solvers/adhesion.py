@@ -11,12 +11,12 @@ import scipy.fft
 
 from pellicle.analysis import perimeter
 from pellicle.arrays import Array, Mask
+from pellicle.contact.attraction import Attraction
+from pellicle.contact.initial_guess import first_guess
+from pellicle.contact.problem import Problem, adhesive_scale
+from pellicle.contact.solution import Progress, State, Stop
+from pellicle.contact.start import Start
 from pellicle.grid import Grid
-from pellicle.numerics.attraction import Attraction
-from pellicle.numerics.initial_guess import first_guess
-from pellicle.numerics.path import Start
-from pellicle.numerics.problem import Problem, adhesive_scale
-from pellicle.numerics.solution import Progress, State, Stop
 
 from .contact_cg import SIGN_CERTAINTY, inner_solve
 from .nested_grids import prolonged

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle.grid import Grid
-from pellicle.numerics.convolution import convolve
-from pellicle.numerics.operators import Operator
+from pellicle.surface.convolution import convolve
+from pellicle.surface.operators import Operator
 
 Field = NDArray[np.float32]
 

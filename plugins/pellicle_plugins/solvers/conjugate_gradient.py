@@ -8,10 +8,10 @@ from typing import Final, Literal
 import numpy as np
 
 from pellicle.arrays import Array, Mask
+from pellicle.contact.initial_guess import dot, first_guess, with_force
+from pellicle.contact.problem import Problem
+from pellicle.contact.solution import State
 from pellicle.grid import Grid
-from pellicle.numerics.initial_guess import dot, first_guess, with_force
-from pellicle.numerics.problem import Problem
-from pellicle.numerics.solution import State
 
 from .scaling import ScaledSolver
 

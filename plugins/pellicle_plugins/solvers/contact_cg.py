@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array, Cells
-from pellicle.numerics.initial_guess import dot
-from pellicle.numerics.problem import Problem
-from pellicle.numerics.sharing import blocks, row_blocks, shared
+from pellicle.contact.initial_guess import dot
+from pellicle.contact.problem import Problem
+from pellicle.surface.sharing import blocks, row_blocks, shared
 
 from .preconditioner import OnContact
 

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array, Cells, Mask
-from pellicle.numerics.dilation import dilated
-from pellicle.numerics.initial_guess import with_force
-from pellicle.numerics.problem import Problem
+from pellicle.contact.dilation import dilated
+from pellicle.contact.initial_guess import with_force
+from pellicle.contact.problem import Problem
 
 # Cells in contact up to which this takes less time than local relaxation.
 MOST_CELLS: Final = 160

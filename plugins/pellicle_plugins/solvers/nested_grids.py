@@ -8,10 +8,10 @@ from typing import Final
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle.contact.problem import Problem
+from pellicle.contact.solution import State
 from pellicle.errors import ConfigError
-from pellicle.numerics.grid_transfer import highest, prolong
-from pellicle.numerics.problem import Problem
-from pellicle.numerics.solution import State
+from pellicle.surface.grid_transfer import highest, prolong
 
 from .scaling import ScaledSolver
 

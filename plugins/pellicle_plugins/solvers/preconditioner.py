@@ -11,7 +11,7 @@ import scipy.fft
 
 from pellicle.arrays import Array, Cells, Mask
 from pellicle.grid import Grid
-from pellicle.numerics.operators import Operator
+from pellicle.surface.operators import Operator
 
 from .biharmonic import stretch_of
 from .circulant_stiffness import CirculantStiffness, Field

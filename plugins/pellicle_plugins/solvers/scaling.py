@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from pellicle.components import IterativeSolver, Monitor
-from pellicle.numerics.path import Start
-from pellicle.numerics.problem import Problem
-from pellicle.numerics.solution import Solution, State
+from pellicle.contact.problem import Problem
+from pellicle.contact.solution import Solution, State
+from pellicle.contact.start import Start
 
 # Units are 2^±900 at most, so that 2^100 times a unit is still a number.
 _MAX_EXPONENT = 900

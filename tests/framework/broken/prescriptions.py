@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 import pellicle as pl
-from pellicle.results.variables import Variable
+from pellicle.variables import Variable
 from tests.framework.broken.catalogue import Broken, Family, Marked, Refused, Taken, base, run
 
 GapVolume: Any = base("prescription", "gap_volume")

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from pellicle.arrays import Array
+from pellicle.contact.attraction import Attraction, attraction
+from pellicle.contact.law import Law
 from pellicle.grid import Boundary, Grid
-from pellicle.numerics.attraction import Attraction, attraction
-from pellicle.numerics.gap_law import Law
 from pellicle_plugins.interactions.jkr import Joined
 from pellicle_plugins.interactions.linear import Linear
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from pellicle.arrays import Mask
+from pellicle.contact.dilation import dilated
 from pellicle.grid import Boundary
-from pellicle.numerics.dilation import dilated
 
 
 def boxes(mask: Mask, boundary: Boundary, cells: int) -> Mask:

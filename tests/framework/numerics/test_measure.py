@@ -9,10 +9,10 @@ import pytest
 
 from pellicle import Grid
 from pellicle.arrays import Array
-from pellicle.numerics.contact_stiffness import measure_stiffness
-from pellicle.numerics.equilibrium import measure
-from pellicle.numerics.operators import make_operator
-from pellicle.numerics.problem import Depth, Force, Problem
+from pellicle.contact.equilibrium import measure
+from pellicle.contact.problem import Depth, Force, Problem
+from pellicle.contact.stiffness import measure_stiffness
+from pellicle.surface.operators import make_operator
 from pellicle_plugins.kernels.winkler import Winkler
 
 FOUNDATION, RADIUS, DEPTH = 2e8, 1e-3, 4e-6

@@ -11,7 +11,7 @@ import pytest
 
 from pellicle.arrays import Array
 from pellicle.components import Branch
-from pellicle.numerics.relaxation import (
+from pellicle.contact.time_step import (
     Memory,
     TimeStep,
     left_behind,

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from pellicle.errors import ConfigError
-from pellicle_plugins.analytic.abel_transform import HasAbelTransform
-from pellicle_plugins.analytic.adhesion import Adhesion, punch_pull_off
-from pellicle_plugins.analytic.axisymmetric import indent
-from pellicle_plugins.analytic.radius_curves import radius_curves
-from pellicle_plugins.analytic.tensed_punch import punch
+from pellicle_plugins.axisymmetric.abel_transform import HasAbelTransform
+from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion, punch_pull_off
+from pellicle_plugins.axisymmetric.indentation import indent
+from pellicle_plugins.axisymmetric.radius_curves import radius_curves
+from pellicle_plugins.axisymmetric.tensed_punch import punch
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from pellicle_plugins.indenters.sphere import Sphere

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle_plugins.analytic.adhesive_path import excess_radius
-from pellicle_plugins.analytic.tensed_punch import punch
+from pellicle_plugins.axisymmetric.tensed_punch import punch
+from pellicle_plugins.validation.adhesive_path import excess_radius
 
 POINTS, SIZE = 64, 4.0
 SPACING = SIZE / POINTS

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from pellicle.errors import ConfigError
-from pellicle_plugins.analytic.abel_transform import HasAbelTransform
-from pellicle_plugins.analytic.axisymmetric import AxisymmetricContact, indent
-from pellicle_plugins.analytic.cone import cone
-from pellicle_plugins.analytic.hertz import sphere
-from pellicle_plugins.analytic.tensed_punch import punch
+from pellicle_plugins.axisymmetric.abel_transform import HasAbelTransform
+from pellicle_plugins.axisymmetric.indentation import AxisymmetricContact, indent
+from pellicle_plugins.axisymmetric.tensed_punch import punch
+from pellicle_plugins.closed_forms.hertz import sphere
+from pellicle_plugins.closed_forms.sneddon import cone
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from pellicle_plugins.indenters.sphere import Sphere

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from pellicle_plugins.analytic.cone import cone
-from pellicle_plugins.analytic.flat_punch import flat_punch
+from pellicle_plugins.closed_forms.boussinesq import flat_punch
+from pellicle_plugins.closed_forms.sneddon import cone
 
 E = 3.0e4
 

@@ -5,8 +5,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from pellicle_plugins.analytic.adhesion import Adhesion
-from pellicle_plugins.analytic.dugdale import (
+from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
+from pellicle_plugins.closed_forms.maugis import (
     DugdaleContact,
     dugdale_contact,
     rigid_limit,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pellicle_plugins.analytic.hertz import ellipse, sphere
+from pellicle_plugins.closed_forms.hertz import ellipse, sphere
 
 R, E = 1.5e-3, 2.0e4
 

@@ -9,8 +9,8 @@ import pytest
 from numpy.typing import NDArray
 
 import pellicle as pl
-from pellicle_plugins.analytic import layer_curves
-from pellicle_plugins.analytic.layer_equation import half_space, moments
+from pellicle_plugins.axisymmetric import layer_curves
+from pellicle_plugins.axisymmetric.layer_equation import half_space, moments
 from tests.layered_contact import layered_contact, tensed_layer_contact
 
 Array = NDArray[np.float64]

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle.components import HasForceCurve
-from pellicle_plugins.analytic.axisymmetric import indent
-from pellicle_plugins.analytic.tensed_punch import punch
+from pellicle_plugins.axisymmetric.indentation import indent
+from pellicle_plugins.axisymmetric.tensed_punch import punch
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from pellicle_plugins.indenters.sphere import Sphere

@@ -11,7 +11,8 @@ import xarray as xr
 
 import pellicle as pl
 from pellicle.arrays import Array
-from pellicle_plugins.analytic.reference import contact, exact, exact_line
+from pellicle.results import StoredRuns
+from pellicle_plugins.validation.reference import contact, exact, exact_line
 from tests.plugins.outputs.shared import bead
 
 
@@ -77,7 +78,7 @@ def result() -> pl.Result:
 
 def test_only_what_the_equation_gives_is_its_solution(result: pl.Result) -> None:
     """No simulated number passes for the semi-analytic one, and those it has are the equation's."""
-    table = exact(pl.Runs.of_run(result.dataset)).table
+    table = exact(StoredRuns.of_run(result.dataset)).table
     radius = table["contact_radius"].item()
     assert radius == pytest.approx(1e-4, rel=1e-9)
     assert radius != result.dataset["contact_radius"].item()

@@ -38,7 +38,7 @@ from pellicle_fit.statistics.pooled_likelihood import Pool
 from pellicle_fit.statistics.rival import Rival
 from pellicle_fit.statistics.rivals import MARGIN, NONE, TENSED
 from pellicle_fit.verdict import decision, judge
-from pellicle_plugins.analytic.adhesion import Adhesion
+from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from pellicle_plugins.indenters.sphere import Sphere

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle.operators import mean_compliance
+from pellicle.surface import mean_compliance
 from tests.plugins.kernels.elastic_stack import HalfSpace, Layer, stack_compliance
 
 RATIOS = [-0.99, -0.5, 0.0, 0.3, 0.49, 0.4999999, 0.5]

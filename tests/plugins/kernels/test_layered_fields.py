@@ -105,7 +105,7 @@ def test_a_study_varies_a_nested_field(file: Path) -> None:
     study = data | {"study": {"vary": axis}}
     tables = [point.run.kernel.model_dump() for point in pl.Study.from_mapping(study).points]
     assert [table["layers"][0]["thickness"] for table in tables] == [1e-6, 1e-5]
-    schema = Draft202012Validator(pl.schema())
+    schema = Draft202012Validator(pl.json_schema())
     schema.validate(study)
     assert not schema.is_valid(data)
 
@@ -126,4 +126,4 @@ def test_the_schema_knows_the_nested_table(path: str, value: Any, valid: bool) -
     """An editor marks what a run refuses."""
     data = tomllib.loads(TOML)
     data["kernel"][path] = value
-    assert Draft202012Validator(pl.schema()).is_valid(data) == valid
+    assert Draft202012Validator(pl.json_schema()).is_valid(data) == valid

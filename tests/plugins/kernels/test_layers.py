@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 
 import pellicle as pl
-from pellicle.operators import mean_compliance
+from pellicle.surface import mean_compliance
 
 MODULUS, THICKNESS = 3e4, 2e-4
 RATIOS = [-0.5, 0.0, 0.3, 0.49, 0.5]

@@ -11,7 +11,7 @@ import pytest
 from scipy.linalg import null_space
 
 import pellicle as pl
-from pellicle.operators import mean_compliance
+from pellicle.surface import mean_compliance
 
 YOUNGS, TENSION, BENDING, SURFACE = 9e3, 0.5, 2e-10, 1.5
 Q = np.geomspace(1.0, 1e9, 60)

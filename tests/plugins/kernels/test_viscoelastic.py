@@ -10,13 +10,8 @@ import pytest
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.components import Branch
-from pellicle.numerics.relaxation import (
-    Memory,
-    TimeStep,
-    left_behind_under_skin,
-    strain_under_skin,
-)
-from pellicle.operators import HasClosedForm, make_operator, mean_compliance
+from pellicle.contact.time_step import Memory, TimeStep, left_behind_under_skin, strain_under_skin
+from pellicle.surface import HasClosedForm, make_operator, mean_compliance
 from pellicle_plugins.kernels.power_law import power_law_series
 
 HALF_SPACE = {"type": "half_space", "reduced_modulus": "10 kPa"}

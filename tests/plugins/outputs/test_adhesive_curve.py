@@ -10,6 +10,7 @@ import pytest
 
 import pellicle as pl
 from pellicle.errors import ConfigError
+from pellicle.results import StoredRuns
 from pellicle_plugins.outputs.adhesive_curve import AdhesiveCurve
 from tests.plugins.outputs.shared import bead, rows
 
@@ -123,4 +124,4 @@ def test_a_path_with_adhesion_is_refused() -> None:
     sticky = result.assign_attrs(configuration=json.dumps(configuration))
     output = AdhesiveCurve(work_of_adhesion=WORK)
     with pytest.raises(ConfigError, match="interaction"):
-        output.write(pl.components.Runs.of_run(sticky), Path("unwritten"))
+        output.write(StoredRuns.of_run(sticky), Path("unwritten"))

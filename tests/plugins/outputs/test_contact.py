@@ -14,7 +14,8 @@ import pytest
 from matplotlib.figure import Figure
 
 import pellicle as pl
-from pellicle.report import vtk
+from pellicle.results import StoredRuns
+from pellicle.show import vtk
 from pellicle_plugins.outputs.spectrum import Spectrum, _spectra
 from tests.plugins.outputs.shared import bead, rows
 
@@ -100,7 +101,7 @@ def test_round_off_does_not_set_the_scale_of_a_spectrum(left: Left) -> None:
     """Beyond its shortest wave the indenter has round-off alone, which is not drawn."""
     _, result = left
     output = Spectrum()
-    steps = output.steps(pl.Runs.of_run(result.dataset))
+    steps = output.steps(StoredRuns.of_run(result.dataset))
     curves = [(name, _spectra(step)) for name, step in steps]
     axes = Figure().add_subplot()
     output._fill(axes, curves, False)

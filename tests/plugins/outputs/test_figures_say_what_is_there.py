@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli.app import app
-from pellicle.plotting import profile, without_round_off
+from pellicle.show import profile, without_round_off
 from tests.pictures import pixels
 from tests.plugins.outputs.shared import bead, rows
 

@@ -11,8 +11,8 @@ import pytest
 from matplotlib.figure import Figure
 
 import pellicle as pl
-from pellicle.plotting import drawings, study_curves
 from pellicle.results.path import label_of_step
+from pellicle.show import drawings, study_curves
 from pellicle_plugins.outputs import html_curves
 from tests.plugins.outputs.shared import bead
 

@@ -18,9 +18,9 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli.app import app
-from pellicle.report.fields import default_step
-from pellicle.results.variables import VARIABLES, names_of
+from pellicle.show.fields import default_step
 from pellicle.units import readable
+from pellicle.variables import VARIABLES, names_of
 from tests.pictures import pixels
 from tests.plugins.outputs.shared import rows
 

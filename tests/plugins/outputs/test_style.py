@@ -11,11 +11,11 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 import pellicle as pl
-from pellicle.report.fields import pressure_map
-from pellicle.report.lines import edge_cells
-from pellicle.report.plotting import study_curves
-from pellicle.report.saving import save_figure
-from pellicle.report.style import FigureStyle, is_log_spaced
+from pellicle.show.fields import pressure_map
+from pellicle.show.lines import edge_cells
+from pellicle.show.plotting import study_curves
+from pellicle.show.saving import save_figure
+from pellicle.show.style import FigureStyle, is_log_spaced
 from tests.pictures import pixels
 from tests.plugins.outputs.shared import bead
 

@@ -16,9 +16,9 @@ from matplotlib.text import Text
 
 import pellicle as pl
 from pellicle.config.coordinates import Coordinate, tell_apart
-from pellicle.model.paths import walk
-from pellicle.results.variables import VARIABLES
 from pellicle.results.wording import wording
+from pellicle.schema.paths import walk
+from pellicle.variables import VARIABLES
 from pellicle_fit.curves.sources import SourceStream
 from pellicle_fit.many import fit_sources
 from pellicle_fit.report.page import save_report

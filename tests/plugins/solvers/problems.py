@@ -10,9 +10,9 @@ import numpy as np
 
 from pellicle import Grid, Kernel, Problem, Solver, State, Stop
 from pellicle.arrays import Array
-from pellicle.numerics.equilibrium import Equilibrium, measure
-from pellicle.numerics.operators import make_operator
-from pellicle.numerics.problem import Depth, Force
+from pellicle.contact.equilibrium import Equilibrium, measure
+from pellicle.contact.problem import Depth, Force
+from pellicle.surface.operators import make_operator
 from pellicle_plugins.indenters.self_affine import SelfAffine
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
 

@@ -15,8 +15,9 @@ import pytest
 
 import pellicle as pl
 from pellicle import ConfigError, Grid, Kernel, Problem, Stop
-from pellicle.numerics.problem import Depth, Force
-from pellicle.operators import Array, make_operator
+from pellicle.arrays import Array
+from pellicle.contact.problem import Depth, Force
+from pellicle.surface import make_operator
 from pellicle_plugins.kernels.bending_skin import BendingSkin
 from pellicle_plugins.solvers.active_set import ActiveSet, ContactHistory
 from pellicle_plugins.solvers.conjugate_gradient import ConjugateGradient

@@ -24,9 +24,10 @@ from scipy.linalg import cholesky, solve_triangular
 from scipy.optimize import brentq, nnls
 
 from pellicle import Grid, Problem, Solver, Stop
-from pellicle.numerics.problem import Depth, Force
-from pellicle.operators import Array, make_operator
-from pellicle.problem import height_scale
+from pellicle.arrays import Array
+from pellicle.contact import height_scale
+from pellicle.contact.problem import Depth, Force
+from pellicle.surface import make_operator
 from pellicle_plugins.solvers.active_set import ActiveSet
 from pellicle_plugins.solvers.conjugate_gradient import ConjugateGradient
 from tests.plugins.solvers.problems import skin, solve

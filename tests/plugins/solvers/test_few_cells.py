@@ -7,7 +7,7 @@ import pytest
 
 from pellicle import Problem, Stop
 from pellicle.arrays import Array
-from pellicle.problem import measure
+from pellicle.contact import measure
 from pellicle_plugins.kernels.bending_skin import BendingSkin
 from pellicle_plugins.solvers import active_set, few_cells
 from pellicle_plugins.solvers.active_set import ActiveSet

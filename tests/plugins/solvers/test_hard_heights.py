@@ -12,8 +12,8 @@ import pytest
 
 import pellicle as pl
 from pellicle import Force, Kernel, Problem, Stop
-from pellicle.operators import Array
-from pellicle.problem import height_scale, round_off
+from pellicle.arrays import Array
+from pellicle.contact import height_scale, round_off
 from pellicle_plugins.solvers.active_set import ActiveSet
 from pellicle_plugins.solvers.conjugate_gradient import ConjugateGradient
 from tests.plugins.solvers.problems import make, solve

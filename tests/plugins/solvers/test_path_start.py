@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle.numerics.path import PathPoint, Start, start_of
-from pellicle.numerics.problem import Depth, Force
+from pellicle.contact.problem import Depth, Force
+from pellicle.contact.start import PathPoint, Start, start_of
 from pellicle_plugins.solvers.active_set import ActiveSet
 from tests.plugins.solvers.problems import Shape, make, rough, skin, solve
 

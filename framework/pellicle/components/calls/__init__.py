@@ -1,7 +1,7 @@
 """Calls of components: one function for each method that the framework calls.
 
 Arguments of components are read-only. Returned values are checked against the contract, at a cost
-far below that of the call. `pellicle.operators` calls kernels in the same way.
+far below that of the call. `pellicle.surface` calls kernels in the same way.
 """
 
 from .correction import corrected_area

@@ -6,8 +6,8 @@ import math
 
 from pellicle.checks import component_name, errors_attributed_to, real_number
 from pellicle.components.kernel import HasRelaxation, Kernel
+from pellicle.contact.time_step import Branch
 from pellicle.errors import PluginError, shown
-from pellicle.numerics.relaxation import Branch
 
 # Rounding error of a sum of shares.
 _ROUNDING = 1e-12

@@ -8,10 +8,10 @@ import numpy as np
 
 from pellicle.checks import component_name, errors_attributed_to, real_number
 from pellicle.components.prescription import Prescription, Search, Setting
+from pellicle.contact.equilibrium import Equilibrium
+from pellicle.contact.problem import Depth, Force
 from pellicle.errors import ConfigError, PluginError, shown
-from pellicle.numerics.equilibrium import Equilibrium
-from pellicle.numerics.problem import Depth, Force
-from pellicle.results.variables import COORDINATES, VARIABLES
+from pellicle.variables import COORDINATES, VARIABLES
 
 
 def check_value(prescription: Prescription, setting: Setting, value: float, field: str) -> None:

@@ -16,10 +16,10 @@ from pellicle.checks import (
     real_number,
 )
 from pellicle.components.solver import Monitor, Solver
+from pellicle.contact.problem import Problem
+from pellicle.contact.solution import Solution, State, Stop
+from pellicle.contact.start import Start
 from pellicle.errors import ConfigError, PluginError, shown
-from pellicle.numerics.path import Start
-from pellicle.numerics.problem import Problem
-from pellicle.numerics.solution import Solution, State, Stop
 
 
 def check_solver(solver: Solver, problem: Problem) -> None:

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from pellicle.model import FromFile
+from pellicle.schema import FromFile
 from pellicle.units import Length, Modulus
 
 

@@ -1,0 +1,95 @@
+"""Values of a run whose ratios are so large that a unit is more likely to be missing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import suppress
+
+import numpy as np
+
+from pellicle.schema.paths import walk
+from pellicle.units import Quantity, printed, quantity_of, readable
+
+from .run import Run
+from .study import Study
+
+_LARGE = 1.0
+"""Edge of a domain [m] beyond which a solid of a modulus above `_STIFF` is doubted."""
+_STIFF = 100.0
+"""Modulus [Pa] below which all values may be numbers without dimension."""
+_LENGTHS = 1e4
+"""Largest plausible ratio of a length of the indenter and the domain."""
+_ELASTOCAPILLARY = 20.0
+"""Largest plausible ratio of tension over modulus and the domain."""
+_STICKY = 10.0
+"""Largest plausible displacement by adhesion over the domain."""
+
+
+def doubtful_scales(configuration: Run | Study) -> dict[str, str]:
+    """Return, by path, a message on each value out of scale with the others of its run.
+
+    Of the runs of a study the first that has such a value is quoted.
+    """
+    if isinstance(configuration, Study):
+        runs = [point.run for point in configuration.points]
+    else:
+        runs = [configuration]
+    doubts: dict[str, str] = {}
+    for run in runs:
+        for path, message in _doubts(run):
+            doubts.setdefault(path, message)
+    return doubts
+
+
+def _doubts(run: Run) -> Iterator[tuple[str, str]]:
+    size = max(run.grid.size)
+    domain = f"on a domain of {readable(size, 'm', 3)}"
+    values = list(_values(run))
+    moduli = [value for path, value, unit in values if path[:7] == "kernel." and unit == "Pa"]
+    # Displacement by a pressure, both over the whole domain, over its size [1/Pa].
+    softness = 0.0
+    # A kernel that cannot be evaluated is refused when the run is composed.
+    with suppress(Exception), np.errstate(all="ignore"):
+        longest = np.array([2 * math.pi / size])
+        softness = float(np.asarray(run.kernel.compliance(longest))[0]) / size
+    if size > _LARGE and max(moduli, default=0.0) > _STIFF:
+        yield _doubt("grid.size", size, "m")
+    for path, value, unit in values:
+        part = path.partition(".")[0]
+        if part == "indenter" and unit == "m" and value > _LENGTHS * size:
+            yield _doubt(path, value, unit, domain)
+        if part == "kernel" and path.endswith("tension") and moduli:
+            length = value / max(moduli)
+            if length > _ELASTOCAPILLARY * size:
+                over = f"over the modulus {readable(length, 'm', 3)}"
+                yield _doubt(path, value, unit, f"{over}, {domain}")
+        if part == "interaction" and unit == "J/m**2" and value * softness > _STICKY * size:
+            yield _doubt(path, value, unit, "which displaces this solid by more than the domain")
+        if part == "loading":
+            reached = {"m": value / size, "N": value / size**2 * softness, "Pa": value * softness}
+            if reached.get(unit, 0.0) > 1.0:
+                yield _doubt(path, value, unit, domain)
+
+
+def _values(run: Run) -> Iterator[tuple[str, float, str]]:
+    """Yield path, largest size and unit of the numbers of a run that are not 0."""
+    for path, value, field in walk(run):
+        if path.startswith("loading.") or path[-1].isdecimal():
+            continue
+        quantity = quantity_of(field) if field else None
+        several = value if isinstance(value, (tuple, list)) else [value]
+        largest = max((abs(v) for v in several if isinstance(v, float)), default=0.0)
+        if quantity and largest > 0:
+            yield path, largest, quantity.unit
+    loading = run.loading
+    yield f"loading.{loading.prescribed}", max(map(abs, loading.values)), loading.prescription.unit
+
+
+def _doubt(path: str, value: float, unit: str, reason: str = "") -> tuple[str, str]:
+    given, usual = f"{value:g}", str(Quantity(unit).example).partition(" ")[2]
+    because = f", {reason}" if reason else ""
+    return path, (
+        f"{path} is {given} {printed(unit)}{because}; a number without a unit is in SI: "
+        f"give one, such as '{given} {usual}', if that is not meant"
+    )

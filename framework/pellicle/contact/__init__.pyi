@@ -1,0 +1,23 @@
+__all__: list[str]
+
+from .attraction import Attraction as Attraction
+from .dilation import dilated as dilated
+from .equilibrium import Equilibrium as Equilibrium
+from .equilibrium import measure as measure
+from .equilibrium import round_off as round_off
+from .initial_guess import dot as dot
+from .initial_guess import first_guess as first_guess
+from .initial_guess import with_force as with_force
+from .law import GapLaw as GapLaw
+from .problem import Depth as Depth
+from .problem import Force as Force
+from .problem import Problem as Problem
+from .problem import adhesive_scale as adhesive_scale
+from .problem import height_scale as height_scale
+from .solution import Progress as Progress
+from .solution import Solution as Solution
+from .solution import State as State
+from .solution import Stop as Stop
+from .start import Start as Start
+from .stiffness import Stiffness as Stiffness
+from .stiffness import measure_stiffness as measure_stiffness

@@ -1,1 +1,0 @@
-"""The elastic response of the surface and the problem of one load step."""

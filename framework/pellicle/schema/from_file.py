@@ -1,0 +1,116 @@
+"""Models that can be read from a file, such as a run or a study."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any, Self
+
+import tomli_w
+
+from pellicle.errors import ConfigError, shown
+
+from .input_path import PORTABLE, paths_relative_to
+from .model import Model
+from .paths import replaced
+from .toml import parse_override, read_toml
+
+
+class FromFile(Model):
+    """A model that is read from TOML, JSON or a mapping, and written as TOML or JSON."""
+
+    def __init__(self, /, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ConfigError:
+            from pellicle.commands import refuse_file_of_another
+
+            refuse_file_of_another(type(self), data.keys())
+            raise
+
+    @classmethod
+    def of(cls, configuration: Self | Mapping[str, Any] | str | Path) -> Self:
+        """Return the object itself, or the one that a mapping or a TOML file describes."""
+        if isinstance(configuration, Mapping):
+            return cls.from_mapping(configuration)
+        if isinstance(configuration, (str, Path)):
+            return cls.from_toml(configuration)
+        if not isinstance(configuration, cls):
+            raise ConfigError(
+                f"{shown(configuration)} is not a {cls.__name__}; give one, a table of its fields "
+                "or the path of a TOML file"
+            )
+        return configuration
+
+    @classmethod
+    def from_mapping(cls, data: Mapping[str, Any]) -> Self:
+        """Return the object that a mapping in the form of its file describes."""
+        return cls(**data)
+
+    @classmethod
+    def from_toml(cls, path: str | Path, overrides: Iterable[str] = ()) -> Self:
+        """Return the object that a TOML file describes.
+
+        Parameters
+        ----------
+        path
+            The file; relative paths in it are relative to its folder.
+        overrides
+            Texts such as ``'kernel.tension="5 mN/m"'`` that replace values of the file.
+
+        Raises
+        ------
+        ConfigError
+            The file cannot be read or used; the message names all its problems.
+        PluginError
+            A component named in the file is broken.
+        """
+        data = read(path, overrides)
+        with paths_relative_to(Path(path).parent):
+            return cls.from_mapping(data)
+
+    @classmethod
+    def from_json(cls, text: str) -> Self:
+        """Return the object that a JSON text describes, such as `to_json` returns.
+
+        Raises
+        ------
+        ConfigError
+            The text is not JSON, or does not describe such an object.
+        """
+        try:
+            data = json.loads(text)
+        except json.JSONDecodeError as error:
+            raise ConfigError(f"not JSON: {error}") from None
+        if not isinstance(data, dict):
+            raise ConfigError(f"not a JSON object; give one like {cls.__name__}.to_json() returns")
+        return cls.from_mapping(data)
+
+    def to_json(self, *, portable: bool = False) -> str:
+        """Return the whole configuration as JSON, defaults included, in SI floats.
+
+        Paths of input files are absolute or, if ``portable``, the names of the files alone: such a
+        text can be passed on with the files and does not reveal their folder.
+        """
+        return self.model_dump_json(exclude_none=True, context=PORTABLE if portable else None)
+
+    def to_toml(self) -> str:
+        """Return the whole configuration as TOML; see `to_json`."""
+        return tomli_w.dumps(json.loads(self.to_json()))
+
+
+def read(path: str | Path, overrides: Iterable[str] = ()) -> dict[str, Any]:
+    """Return the content of a TOML file after applying the overrides of ``--set``."""
+    return overridden(read_toml(Path(path)), overrides)
+
+
+def overridden(data: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:
+    """Return a configuration after applying overrides such as ``"a.b=1"``."""
+    for text in overrides:
+        key, value = parse_override(text)
+        try:
+            data = replaced(data, key, value)
+        except ConfigError as error:
+            raise ConfigError(f"--set {text!r}: {error}") from None
+    return data

@@ -1,0 +1,102 @@
+"""Values in nested models, tables and lists by their dotted path.
+
+Entries of lists count from 0, as in ``grid.size.0``; a key of a table may itself contain dots.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from pydantic.fields import FieldInfo
+
+from pellicle.errors import ConfigError, shown
+
+from .model import Model
+
+
+def get(at: Any, path: str) -> Any:
+    """Return the value at a path, or None if the path does not exist."""
+    names = path.split(".")
+    while names and at is not None:
+        name, names = _head(at, names)
+        if isinstance(at, Mapping):
+            at = at.get(name)
+        elif isinstance(at, (list, tuple)):
+            at = at[int(name)] if name.isdecimal() and int(name) < len(at) else None
+        else:
+            at = getattr(at, name, None) if isinstance(at, Model) else None
+    return at
+
+
+def walk(
+    at: Any, path: str = "", field: FieldInfo | None = None
+) -> Iterator[tuple[str, Any, FieldInfo | None]]:
+    """Yield path, value and field of each value below ``at``, outer ones before inner ones.
+
+    Entries of a list have the field of the list; those of a table have none.
+    """
+    inner: list[tuple[str, Any, FieldInfo | None]]
+    if isinstance(at, Model):
+        inner = [(name, getattr(at, name), info) for name, info in at.described_fields.items()]
+    elif isinstance(at, Mapping):
+        inner = [(str(name), value, None) for name, value in at.items()]
+    elif isinstance(at, (list, tuple)):
+        inner = [(str(index), value, field) for index, value in enumerate(at)]
+    else:
+        return
+    for name, value, info in inner:
+        yield f"{path}{name}", value, info
+        yield from walk(value, f"{path}{name}.", info)
+
+
+def python_names(paths: Iterable[str]) -> dict[str, str]:
+    """Return a name for each path that Python can write: ``kernel_tension``.
+
+    Where two paths would have one name, a dot becomes two underscores.
+    """
+    paths = list(paths)
+    plain = [path.replace(".", "_") for path in paths]
+    return {
+        path: name if plain.count(name) == 1 else path.replace(".", "__")
+        for path, name in zip(paths, plain, strict=True)
+    }
+
+
+def replaced(data: Any, path: str, value: object) -> Any:
+    """Return a copy of a configuration with ``value`` at a path; missing tables are created.
+
+    The copy of a model is a table of the fields that were set.
+
+    Raises
+    ------
+    ConfigError
+        The path leads into a value that is not a table, or beyond the end of a list.
+    """
+    return _replaced(data, path.split("."), value, "")
+
+
+def _replaced(at: Any, names: list[str], value: object, path: str) -> Any:
+    if not names:
+        return value
+    if isinstance(at, Model):
+        set_ = at.model_fields_set | {"type"}
+        at = {name: getattr(at, name) for name in at.described_fields if name in set_}
+    name, rest = _head(at, names)
+    if isinstance(at, Mapping):
+        return {**at, name: _replaced(at.get(name, {}), rest, value, f"{path}{name}.")}
+    whole = path.removesuffix(".")
+    if not isinstance(at, (list, tuple)):
+        raise ConfigError(f"{whole} = {shown(at)} is not a table; replace it as a whole: {whole}")
+    if not name.isdecimal() or int(name) >= len(at):
+        raise ConfigError(f"{whole} has no entry {name}; give one of its {len(at)}, counted from 0")
+    index = int(name)
+    inner = _replaced(at[index], rest, value, f"{path}{index}.")
+    return [*at[:index], inner, *at[index + 1 :]]
+
+
+def _head(at: Any, names: list[str]) -> tuple[str, list[str]]:
+    """Return the first name of a path in ``at``, the longest that is a key of it, and the rest."""
+    lengths = range(len(names), 1, -1) if isinstance(at, Mapping) else ()
+    count = next((n for n in lengths if ".".join(names[:n]) in at), 1)
+    return ".".join(names[:count]), names[count:]

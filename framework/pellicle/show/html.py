@@ -1,0 +1,184 @@
+"""A self-contained web page of text, tables, pictures, and maps that can be zoomed.
+
+Every text is shown literally, markup included. The page loads nothing: style, script, pictures and
+the values of the maps are in it, and it forbids the browser to fetch anything else.
+"""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from pellicle.files import for_document
+
+from .maps import Maps
+
+if TYPE_CHECKING:
+    from jinja2 import Template
+
+
+@dataclass(frozen=True)
+class Text:
+    """A paragraph."""
+
+    kind: ClassVar[str] = "text"
+    text: str
+    lead: bool = False
+    """Whether it stands out as the result."""
+
+
+@dataclass(frozen=True)
+class Notice:
+    """A sentence that stands out."""
+
+    kind: ClassVar[str] = "notice"
+    text: str
+    good: bool
+    details: Sequence[str] = ()
+    """Lines below it."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """The head of a column."""
+
+    name: str
+    unit: str = ""
+    meaning: str = ""
+    """Shown while the pointer rests on the head."""
+    words: bool = False
+    """Whether its cells are words, not numbers."""
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A cell of a table with a link or a mark."""
+
+    text: str
+    frame: int | None = None
+    """Index of the frame of the page's first maps that a click shows."""
+    bad: bool = False
+    whole: str = ""
+    """The text in full, if it is shortened; shown while the pointer rests on the cell."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of texts under heads; a click on a head sorts them."""
+
+    kind: ClassVar[str] = "table"
+    caption: str
+    columns: Sequence[Column]
+    rows: Sequence[Sequence[str | Cell]]
+
+    @property
+    def cells(self) -> list[list[Cell]]:
+        """The rows, every cell a `Cell`."""
+        return [[c if isinstance(c, Cell) else Cell(c) for c in row] for row in self.rows]
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A static drawing."""
+
+    kind: ClassVar[str] = "picture"
+    svg: bytes
+    caption: str
+    description: str
+    """Text for readers who cannot see the drawing."""
+    marks: Sequence[Sequence[tuple[float, float]]] = ()
+    """Points for each frame of the page's first maps, as shares of width and height from top left;
+    those of the frame that is shown are marked."""
+    wide: bool = False
+    """Whether it has the whole width of the page."""
+    by_frame: Sequence[Picture] = ()
+    """Pictures that take its place while a frame of the page's first maps is shown, one for each;
+    it may be one picture for several frames."""
+
+    @property
+    def alternatives(self) -> dict[str, Any]:
+        """The distinct pictures of `by_frame`, and the number of that for each frame."""
+        distinct = list({id(picture): picture for picture in self.by_frame}.values())
+        numbers = {id(picture): number for number, picture in enumerate(distinct)}
+        return {
+            "pictures": [
+                {"source": p.source, "caption": p.caption, "description": p.description}
+                for p in distinct
+            ],
+            "frames": [numbers[id(picture)] for picture in self.by_frame],
+        }
+
+    @property
+    def source(self) -> str:
+        """The drawing as a ``data:`` address, which keeps its ids apart from those of the page."""
+        return f"data:image/svg+xml;base64,{base64.b64encode(self.svg).decode()}"
+
+
+@dataclass(frozen=True)
+class Code:
+    """Text to be typed or saved literally."""
+
+    kind: ClassVar[str] = "code"
+    text: str
+    caption: str = ""
+    file: str = ""
+    """Name under which a click saves it."""
+
+    @property
+    def source(self) -> str:
+        """The text as a ``data:`` address."""
+        return (
+            f"data:text/plain;charset=utf-8;base64,{base64.b64encode(self.text.encode()).decode()}"
+        )
+
+
+Block = Text | Notice | Table | Picture | Code | Maps
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading and the blocks below it."""
+
+    title: str
+    blocks: Sequence[Block]
+
+
+def page(title: str, sections: Sequence[Section], subtitle: str = "") -> str:
+    """Return a page as HTML.
+
+    Parameters
+    ----------
+    title, subtitle
+        Heading, and the line below it.
+    sections
+        In order; a section without blocks is left out.
+    """
+    return _template().render(
+        title=title,
+        subtitle=subtitle,
+        sections=[section for section in sections if section.blocks],
+        style=_part("page.css"),
+        script=_part("page.js"),
+    )
+
+
+def _part(name: str) -> str:
+    return files("pellicle.show").joinpath(name).read_text(encoding="utf-8")
+
+
+@cache
+def _template() -> Template:
+    from jinja2 import Environment, StrictUndefined
+
+    environment = Environment(
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        finalize=lambda value: for_document(value) if type(value) is str else value,
+    )
+    return environment.from_string(_part("page.html"))

@@ -1,1 +1,0 @@
-"""Closed-form and semi-analytic solutions to which numerical results are compared."""

@@ -1,0 +1,205 @@
+"""Adhesive contact of a rigid axisymmetric indenter with a half-space under surface tension.
+
+With force F₁, depth δ₁ and stiffness k of the contact without adhesion of the same radius a, the
+adhesive contact is that contact and a flat punch of radius a retracted by D:
+
+    F = F₁ − kD,  δ = δ₁ − D,  D = √(4πa w / k′),  k′ = dk/da,
+
+where the energy release rate k′D²/(4πa) equals the work of adhesion w.  Without tension k = 2E*a:
+the theory of Johnson, Kendall & Roberts (1971) for a paraboloid, of Maugis & Barquins (1981) for a
+cone and of Kendall (1971) for a flat punch.  Where tension dominates (s ≫ a) the slope of the
+surface jumps by √(2w/τ₀) at the rim, as under a drop (Hui, Liu, Salez, Raphaël & Jagota 2015).
+The theory assumes small slopes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import exp, inf, log, pi, sqrt
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pellicle.analysis import AdhesiveContact
+from pellicle.arrays import Array
+from pellicle.errors import ConfigError
+from pellicle_plugins.closed_forms.arguments import not_negative, positive
+
+from .abel_transform import HasAbelTransform
+from .radius_curves import RadiusCurves, radius_at, radius_curves, xi_at
+from .tensed_punch import punch
+
+_STEP = 0.5
+_END = 1e-6
+"""Share of the profile's radius that stays free of contact."""
+
+
+@dataclass(frozen=True)
+class Adhesion:
+    """Adhesive contact of an indenter of revolution, on the whole curve of equilibria.
+
+    Without tension, forces and depths have relative errors below 1e-9, and with it below 1e-8. The
+    radius of an instability under tension has one below 5e-6, and so has what depends on it to
+    first order: the force at a fixed depth.
+    """
+
+    indenter: HasAbelTransform
+    """A paraboloid, sphere or cone component, or any other object with this transform."""
+    reduced_modulus: float
+    """E* = E / (1 − ν²) [Pa]."""
+    tension: float
+    """τ₀ [N/m], zero included."""
+    work_of_adhesion: float
+    """w [J/m²]."""
+
+    def __post_init__(self) -> None:
+        positive(reduced_modulus=self.reduced_modulus, work_of_adhesion=self.work_of_adhesion)
+        not_negative(tension=self.tension)
+
+    def equilibrium(self, contact_radius: ArrayLike) -> AdhesiveContact:
+        """Return the equilibrium, stable or not, at contact radii > 0 [m] of any shape."""
+        radius = np.asarray(contact_radius, dtype=float)
+        limit = self.indenter.contact_radius_limit
+        if not np.all((radius > 0) & (radius < limit)):
+            raise ConfigError(
+                f"must be positive and less than {limit} m, got {contact_radius!r}",
+                "contact_radius",
+            )
+        return self._equilibrium(xi_at(self.indenter, radius))
+
+    def instability(self, spring_constant: float = 0.0) -> AdhesiveContact:
+        """Return the last stable equilibrium of a retraction, where dF/dδ = −k_c.
+
+        k_c = ``spring_constant`` [N/m] is that of what holds the indenter.  0 is a dead load:
+        pull-off, the lowest force.  ``math.inf`` is a fixed depth: the lowest depth.  For a cone
+        whose flank is steeper than the surface at its rim, cot α ≥ √(2w/τ₀), all is 0: its contact
+        shrinks to nothing without being pulled.
+        """
+        if not spring_constant >= 0:
+            raise ConfigError(f"must not be negative, got {spring_constant!r}", "spring_constant")
+        apex_slope = 2 / pi * float(self.indenter.abel_slope(np.zeros(1))[0])
+        if self.indenter.pointed and apex_slope >= self._rim_slope:
+            return AdhesiveContact(*np.zeros(3))
+        per_modulus = spring_constant / self.reduced_modulus
+
+        def slope(xi: float) -> float:
+            force, depth = self._slopes(xi)
+            return depth if per_modulus == inf else force + per_modulus * depth
+
+        return self._equilibrium(np.array(_rising_root(slope, self._guess(), self._last)))
+
+    def at_depth(self, depth: float) -> AdhesiveContact:
+        """Return the equilibrium at a depth [m] that is stable if the depth is fixed."""
+        return self._stable(depth, "depth", inf)
+
+    def at_force(self, force: float) -> AdhesiveContact:
+        """Return the equilibrium at a force [N] that is stable under a dead load."""
+        return self._stable(force, "force", 0.0)
+
+    def _stable(self, value: float, quantity: str, spring_constant: float) -> AdhesiveContact:
+        """Return the equilibrium with a value of depth or force above that of the instability."""
+        end = self.instability(spring_constant)
+        lowest = float(getattr(end, quantity))
+        if not value > lowest:
+            raise ConfigError(f"must be above {lowest:g}, the lowest, got {value!r}", quantity)
+
+        def excess(xi: float) -> float:
+            return float(getattr(self._equilibrium(np.array(xi)), quantity)) - value
+
+        start = xi_at(self.indenter, end.contact_radius) if end.contact_radius else self._guess()
+        return self._equilibrium(np.array(_rising_root(excess, float(start), self._last)))
+
+    @property
+    def _rim_slope(self) -> float:
+        """√(2w/τ₀), the jump of the surface's slope at the rim; infinite without tension."""
+        return sqrt(2 * self.work_of_adhesion / self.tension) if self.tension else inf
+
+    @property
+    def _last(self) -> float:
+        """The largest ξ."""
+        limit = self.indenter.contact_radius_limit
+        return inf if limit == inf else float(xi_at(self.indenter, np.array(limit * (1 - _END))))
+
+    def _guess(self) -> float:
+        """Return ξ near pull-off: the indenter is as steep at the rim as adhesion lifts it."""
+        scale = 2 * pi * self.work_of_adhesion / self.reduced_modulus
+
+        def excess(xi: float) -> float:
+            radius = radius_at(self.indenter, np.array([xi]))
+            rim = min(sqrt(scale / float(radius[0])), self._rim_slope)
+            return 2 / pi * float(self.indenter.abel_slope(radius)[0]) - rim
+
+        return _rising_root(excess, log(scale), self._last)
+
+    def _curves(self, xi: Array) -> tuple[RadiusCurves, Array]:
+        """Return the contact without adhesion and the retraction D [m], each of shape (n,)."""
+        hard = radius_curves(self.indenter, 2 * self.tension / self.reduced_modulus, xi)
+        # k′ = (k/a) (d log k / dξ) / (d log a / dξ).
+        area_rate = 4 * pi * self.work_of_adhesion / self.reduced_modulus * hard.radius**2
+        retraction = np.sqrt(
+            area_rate * hard.radius_slope / (hard.stiffness * hard.stiffness_slope)
+        )
+        return hard, retraction
+
+    def _equilibrium(self, xi: Array) -> AdhesiveContact:
+        hard, retraction = self._curves(xi.ravel())
+        depth = hard.depth - retraction
+        force = self.reduced_modulus * (hard.force - hard.stiffness * retraction)
+        return AdhesiveContact(
+            *(values.reshape(xi.shape) for values in (hard.radius, depth, force))
+        )
+
+    def _slopes(self, xi: float) -> tuple[float, float]:
+        """Return d(F/E*)/dξ [m²] and dδ/dξ [m]."""
+        hard, retraction = self._curves(np.array([xi]))
+        # 1 − radius_slope = a/L falls out of d log(1 − a/L) / dξ.
+        rate = (
+            3 * hard.radius_slope
+            - 1
+            - hard.stiffness_slope
+            - hard.stiffness_curvature / hard.stiffness_slope
+        ) / 2
+        punch_force = hard.stiffness * retraction
+        force = hard.force * hard.force_slope - punch_force * (hard.stiffness_slope + rate)
+        depth = hard.depth * hard.depth_slope - retraction * rate
+        return float(force[0]), float(depth[0])
+
+
+def punch_pull_off(
+    radius: float, reduced_modulus: float, tension: float, work_of_adhesion: float
+) -> AdhesiveContact:
+    """Return the last equilibrium of a flat punch, the same for a dead load and a fixed depth.
+
+    Its contact opens all at once, at D = √(4πa w / k′); without tension F = −√(8πE*w a³)
+    (Kendall 1971).  The radius a is in m, E* = E / (1 − ν²) in Pa, τ₀ in N/m and w in J/m².
+    """
+    positive(work_of_adhesion=work_of_adhesion)
+    contact = punch(radius, reduced_modulus, tension, depth=1.0)
+    slope = 2 * reduced_modulus
+    if contact.ring_force:
+        # The line load N at the rim has the energy release rate N² / 2τ₀.
+        slope = contact.ring_force**2 / (2 * pi * radius * tension)
+    retraction = sqrt(4 * pi * radius * work_of_adhesion / slope)
+    return AdhesiveContact(
+        np.array(radius), np.array(-retraction), np.array(-contact.force * retraction)
+    )
+
+
+def _rising_root(function: Callable[[float], float], start: float, last: float) -> float:
+    """Return where a function of ξ goes from negative to positive, below ``last``."""
+    # Outputs import this module, but most of them do not need scipy.optimize.
+    from scipy.optimize import brentq
+
+    low = high = start
+    while function(high) < 0:
+        low, high = high, high + _STEP
+        if high > last:
+            raise ConfigError(
+                f"spreads the contact over the whole profile, {exp(last):g} m wide",
+                "work_of_adhesion",
+            )
+    if low == high:
+        while function(low) > 0:
+            low, high = low - _STEP, low
+    return low if low == high else float(brentq(function, low, high, xtol=1e-13, rtol=1e-14))

@@ -1,0 +1,1 @@
+"""Contacts with a solution in closed form, named by their authors."""

@@ -1,0 +1,1 @@
+"""What results of runs are compared with."""

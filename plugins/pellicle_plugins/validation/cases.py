@@ -1,0 +1,166 @@
+"""Validation cases with known results: closed forms and the axisymmetric integral equation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from math import pi, radians
+from typing import Any
+
+import numpy as np
+
+from pellicle import hookimpl
+from pellicle.components import Case, Suite
+from pellicle.results.result import Result
+from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
+from pellicle_plugins.axisymmetric.indentation import indent
+from pellicle_plugins.closed_forms import hertz
+from pellicle_plugins.closed_forms.boussinesq import flat_punch
+from pellicle_plugins.closed_forms.full_contact import pressure_amplitude
+from pellicle_plugins.closed_forms.sneddon import cone
+from pellicle_plugins.indenters.paraboloid import Paraboloid
+
+from .adhesive_path import curve_of
+
+_MODULUS = 10e3
+_RADIUS = 1e-3
+_DEPTH = 50e-6
+_TENSION = 1.0
+_WORK = 50e-3
+
+
+def closed_forms() -> Iterator[Case]:
+    """Yield every case; cases that share a run follow each other."""
+    for make in (_hertz, _ellipse, _cone, _flat_punch, _tensed_paraboloid, _adhesion, _sine):
+        yield from make()
+
+
+def _hertz() -> Iterator[Case]:
+    true = hertz.sphere(_RADIUS, _MODULUS, depth=_DEPTH)
+    paraboloid = {"type": "paraboloid", "radius": _RADIUS}
+    expected = true.force, pi * true.semi_x**2, true.peak_pressure
+    return _cases("Hertz paraboloid", "Hertz 1882", paraboloid, 3 * true.semi_x, *expected)
+
+
+def _ellipse() -> Iterator[Case]:
+    true = hertz.ellipse(_RADIUS, 2 * _RADIUS, _MODULUS, depth=_DEPTH)
+    quadric = {"type": "quadric", "radius_x": _RADIUS, "radius_y": 2 * _RADIUS}
+    expected = true.force, pi * true.semi_x * true.semi_y
+    return _cases("Hertz ellipse", "Hertz 1882", quadric, 3 * true.semi_y, *expected)
+
+
+def _cone() -> Iterator[Case]:
+    true = cone(radians(70), _MODULUS, depth=_DEPTH)
+    tip = {"type": "cone", "half_angle": radians(70)}
+    expected = true.force, pi * true.contact_radius**2
+    return _cases("cone", "Sneddon 1965", tip, 3 * true.contact_radius, *expected)
+
+
+def _flat_punch() -> Iterator[Case]:
+    radius = 0.1 * _RADIUS
+    true = flat_punch(radius, _MODULUS, depth=_DEPTH)
+    end = {"type": "flat_punch", "radius": radius}
+    return _cases("flat punch", "Sneddon 1965", end, 2.2 * radius, true.force, tolerance=1e-2)
+
+
+def _tensed_paraboloid() -> Iterator[Case]:
+    true = indent(Paraboloid(radius=_RADIUS), _MODULUS, _TENSION, depth=_DEPTH)
+    paraboloid = {"type": "paraboloid", "radius": _RADIUS}
+    source, size = "integral equation, after Long et al. 2017", 2.6 * true.contact_radius
+    expected = true.force, pi * true.contact_radius**2, float(true.pressure(np.array(0.0)))
+    return _cases("tensed paraboloid", source, paraboloid, size, *expected, tension=_TENSION)
+
+
+def _adhesion() -> Iterator[Case]:
+    paraboloid = Paraboloid(radius=_RADIUS)
+    for name, tension, source in (
+        ("adhesive paraboloid", 0.0, "Johnson, Kendall & Roberts 1971"),
+        ("adhesive tensed paraboloid", _TENSION, "integral equation and superposition"),
+    ):
+        theory = Adhesion(paraboloid, _MODULUS, tension, _WORK)
+        pull_off, unloaded = theory.instability(), theory.at_force(0.0)
+        low, high = 0.5 * float(pull_off.contact_radius), 1.1 * float(unloaded.contact_radius)
+        start, stop = (
+            indent(paraboloid, _MODULUS, tension, contact_radius=a).depth for a in (low, high)
+        )
+        configuration = {
+            "grid": {"points": 128, "size": 2.6 * high},
+            "kernel": _kernel(tension),
+            "indenter": {"type": "paraboloid", "radius": _RADIUS},
+            "loading": {"depth": {"start": start, "stop": stop, "num": 10}, "stiffness": True},
+        }
+        for quantity, expected, unit, computed in (
+            ("pull-off", pull_off.force, "N", _pull_off),
+            ("contact radius without load", unloaded.contact_radius, "m", _unloaded_radius),
+        ):
+            row = f"{name}: {quantity}"
+            yield Case(row, configuration, computed, float(expected), unit, 1e-2, source)
+
+
+def _sine() -> Iterator[Case]:
+    wavelength, amplitude, points = 1e-3, 1e-6, 64
+    wave = np.cos(2 * pi * (np.arange(points) + 0.5) / points)
+    true = pressure_amplitude(amplitude, wavelength, _MODULUS, _TENSION)
+    heights = np.repeat(amplitude * wave[:, None], points, axis=1).tolist()
+    yield Case(
+        name="full contact of a sine, tension: pressure amplitude",
+        configuration={
+            "grid": {"points": points, "size": wavelength, "boundary": "periodic"},
+            "kernel": _kernel(_TENSION),
+            "indenter": {"type": "heights", "values": heights, "unit": 1.0},
+            "loading": {"mean_pressure": 2 * true},
+            "solver": {"type": "conjugate_gradient", "tolerance": 1e-12},
+        },
+        computed=lambda result: float(
+            2 * np.mean(result.dataset["pressure"][-1].values * wave[:, None])
+        ),
+        expected=true,
+        unit="Pa",
+        tolerance=1e-10,
+        source="(E*/2)(q + s q²)Δ",
+    )
+
+
+def _cases(
+    name: str,
+    source: str,
+    indenter: dict[str, Any],
+    size: float,
+    *expected: float,
+    tension: float = 0.0,
+    tolerance: float = 1e-3,
+) -> Iterator[Case]:
+    """Yield the cases of one run: force, to a tolerance, and if given area and pressure."""
+    configuration = {
+        "grid": {"points": 256, "size": size},
+        "kernel": _kernel(tension),
+        "indenter": indenter,
+        "loading": {"depth": _DEPTH},
+        "corrections": [{"type": "yastrebov"}],
+    }
+    quantities: list[tuple[str, str, float, Callable[[Result], float]]] = [
+        ("force", "N", tolerance, lambda r: float(r.dataset["force"][-1])),
+        ("corrected area", "m²", 5e-3, lambda r: float(r.dataset["contact_area_yastrebov"][-1])),
+        ("highest pressure", "Pa", 5e-3, lambda r: float(r.dataset["pressure"][-1].max())),
+    ]
+    for value, (quantity, unit, allowed, computed) in zip(expected, quantities, strict=False):
+        yield Case(f"{name}: {quantity}", configuration, computed, value, unit, allowed, source)
+
+
+def _kernel(tension: float) -> dict[str, Any]:
+    if tension:
+        return {"type": "tensed_membrane", "reduced_modulus": _MODULUS, "tension": tension}
+    return {"type": "half_space", "reduced_modulus": _MODULUS}
+
+
+def _pull_off(result: Result) -> float:
+    return float(curve_of(result.dataset, _WORK).instability().force)
+
+
+def _unloaded_radius(result: Result) -> float:
+    return float(curve_of(result.dataset, _WORK).at_zero_load().contact_radius)
+
+
+@hookimpl
+def register_validations(register: Callable[[Suite], None]) -> None:
+    """Register the suite."""
+    register(closed_forms)
