@@ -14,9 +14,9 @@ from scipy.ndimage import binary_dilation
 from pellicle.arrays import Array, Mask
 from pellicle.components.calls import profile_of
 from pellicle.config.run import Run
+from pellicle.contact.caveats import Status
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid
-from pellicle.results.status import Status
 from pellicle.schema.paths import walk
 
 from .runner import solve
