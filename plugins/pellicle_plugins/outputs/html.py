@@ -264,15 +264,10 @@ def _status(result: Result) -> Notice:
     count = "The load step" if done == 1 else f"All {done} load steps"
     bad = f"{len(failed)} of {done} load steps did not converge: do not rely on them."
     sentences.append(bad if failed else f"{count} converged.")
-    if coarse := result.coarse():
-        sentences.append(f"In {len(coarse)} of {done} the cells are too coarse for the contact.")
-    details = [f"Step {step}: {message}" for step, message in (*failed, *coarse)]
-    if steep := result.steep():
-        sentences.append(f"In {len(steep)} of {done} slopes in contact are beyond the theory.")
-        details.append(f"S{first_message(steep)[1:]}")
-    if cramped := result.cramped():
-        sentences.append(f"In {len(cramped)} of {done} the domain is small for this solid.")
-        details.append(f"S{first_message(cramped[::-1])[1:]}")
+    details = [f"Step {step}: {message}" for step, message in failed]
+    for phrase, steps in result.caveats_by_phrase().items():
+        sentences.append(f"In {len(steps)} of {done} {phrase}.")
+        details.append(f"S{first_message(steps)[1:]}")
     for subject, message in result.beyond_theory().items():
         sentences.append(f"{subject[0].upper()}{subject[1:]}.")
         details.append(f"S{message[1:]}")
