@@ -15,13 +15,14 @@ import xarray as xr
 
 import pellicle as pl
 from pellicle.components import Setting
+from pellicle.contact.finished_step import end_of
 from pellicle.contact.front import Traction, same_patches, shifted
 from pellicle.contact.problem import Depth
 from pellicle.contact.start import PathPoint, Start, start_of
 from pellicle.results.step import Steps
-from pellicle.runs import steps
 from pellicle.runs.compose import compose
 from pellicle.runs.following import followed
+from pellicle.runs.terms import adhesion
 from pellicle_plugins.solvers.active_set import ActiveSet
 from tests.adhesive_paths import FORCE, JKR, PARABOLOID, half_space, solved
 
@@ -40,7 +41,7 @@ def from_last_state_alone(self: Setting, problem: pl.Problem) -> pl.State | None
 def path(extrapolated: bool, depths: tuple[float, ...], length: float = 1.0) -> xr.Dataset:
     """Return a path of 64 x 64 cells, with or without extrapolated starts, and no error of it."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(steps, "force_limit", lambda *_: None)
+        patch.setattr(adhesion, "_force_limit", lambda *_: {})
         if not extrapolated:
             patch.setattr(Setting, "start", from_last_state_alone)
         return solved(64, length, depths)
@@ -113,7 +114,7 @@ def _points(name: str, at: int, value: bool) -> int:
     for index in range(3):
         step = run.isel(step=[index])
         done.append(step.assign({name: ("step", [value])}) if index == at else step)
-    return len(done.path)
+    return len(end_of(done.path))
 
 
 class Case:

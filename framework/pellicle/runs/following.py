@@ -10,7 +10,7 @@ from pellicle.contact.equilibrium import Equilibrium, equilibrium_of
 from pellicle.contact.problem import Problem
 from pellicle.contact.solution import Solution, Stop
 
-from .adhesion import leaves_path
+from .jumps import leaves_path
 
 
 def followed(

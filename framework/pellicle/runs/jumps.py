@@ -1,101 +1,23 @@
-"""Numbers of an adhesive step besides its solution: limit of the force, greatest pull, jumps."""
+"""Jumps of an adhesive contact on its path: patches that come or go, and energy that is lost."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
-from pellicle.components import Force, Monitor, Setting, Solver
-from pellicle.components.calls import solution_of
-from pellicle.components.checked_law import law_of
-from pellicle.config.run import Run
-from pellicle.contact.equilibrium import Equilibrium, equilibrium_of
+from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.labels import labelled
-from pellicle.contact.problem import Depth
-from pellicle.contact.solution import State, Stop
+from pellicle.contact.solution import State
 from pellicle.contact.start import PathPoint
 
-# Widths of two zones over that of the step, for the limit of no width.
-_WIDER: Final = (1.5, 3.0)
-# Weight of the force of the step beside those of wider zones, in which the place of the edge on the
-# cells changes forces by half as much.
-_WEIGHT: Final = 0.5
-# Relative error of a pulled contact's force, times the cells in its radius: the largest of
-# paraboloids at pull-off with 3 to 12 cells, at s/a₀ = 0, 0.3 and 3.
-_CELLS_ERROR: Final = 0.55
-# Halvings of the interval of forces in which the contact is lost.
-_HALVINGS: Final = 6
 # Share of |ΔF Δδ|/2 by which the trapezoidal rule may miss the work of a step without a jump. It
 # is 1/3 for F ∝ √(δ − δ₀), the steepest that a force falls before it jumps.
 _MISSED: Final = 0.5
 # Share of |F Δδ| that does not count as a jump: the change of the energy with the place of the edge
 # on the cells, 0.005 at two cells in the zone.
 _UNCERTAIN: Final = 0.01
-
-
-def force_limit(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> tuple[float, float] | None:
-    """Return the force [N] for no width of the zone, and the error [N] of that of the step.
-
-    The step is solved again at its depth with two wider zones. The forces differ from that of no
-    zone in proportion to its width, so a line through all three gives the limit (Richardson 1911).
-    The error is the larger of those that the two narrower and the two wider zones give: they differ
-    because the edge lies on cells, and because the widest may reach over half of a small contact.
-    The widest zones of a contact of few cells say too little, so it is at least a share of a pull.
-    Both are NaN if the contact is lost or no solution is found with a wider zone; the result is
-    None if the interaction has no such limit.
-    """
-    sticky = run.interaction
-    laws = [law for factor in _WIDER if (law := sticky.wider(factor))] if sticky else []
-    if not laws:
-        return None
-    if not equilibrium.contact.any():
-        return equilibrium.force, 0.0
-    forces = [equilibrium.force]
-    wider = equilibrium
-    for law in laws:
-        problem = replace(
-            equilibrium.problem,
-            law=law_of(law, run.kernel, run.grid),
-            control=Depth(equilibrium.depth),
-        )
-        solution = solution_of(run.solver, problem, wider.state, monitor)
-        wider = equilibrium_of(problem, solution)
-        if not (wider.contact.any() and wider.residual <= run.solver.tolerance):
-            return float("nan"), float("nan")
-        forces.append(wider.force)
-    widths = np.array([1.0, *_WIDER])
-    weights = np.where(widths > 1, 1.0, _WEIGHT)
-    _, limit = np.polyfit(widths, forces, 1, w=weights)
-    slopes = np.diff(forces) / np.diff(widths)
-    limits = forces[:-1] - slopes * widths[:-1]
-    cells = np.sqrt(np.count_nonzero(equilibrium.contact) / np.pi)
-    least = _CELLS_ERROR / cells * max(-equilibrium.force, 0.0)
-    return float(limit), max(least, float(np.abs(limits - equilibrium.force).max()))
-
-
-def greatest_pull(
-    setting: Setting, solver: Solver, force: float, monitor: Monitor
-) -> tuple[float, float]:
-    """Return two forces [N] between which the contact of the last state is lost.
-
-    The first is carried, the second is not; ``force`` is one that is not. Both are equal if there
-    is no contact that could carry one.
-    """
-    state = setting.state
-    if state is None or not state.contact.any():
-        return force, force
-    carried, lost = float(state.pressure.sum()) * setting.grid.cell_area, force
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (carried + lost)
-        solution = solution_of(solver, setting.problem(Force(middle)), state, monitor)
-        if solution.stop is Stop.PULLED_OFF:
-            lost = middle
-        else:
-            carried = middle
-    return carried, lost
 
 
 def asperity_jumped(before: State | None, equilibrium: Equilibrium) -> bool:
