@@ -39,10 +39,7 @@ def adhesion(run: Run, step: LoadStep, here: Surroundings) -> LoadStep:
     """Add jumps, the limit of the force, and whether zone and slopes are those of the theory."""
     setting, equilibrium, jumped_as_whole = here.setting, step.equilibrium, step.jumped
     if step.effort.stop is Stop.PULLED_OFF:
-        applied = setting.operator.applications
         step = step.having({}, [_pulled_off(step, here)])
-        used = step.effort.applications + setting.operator.applications - applied
-        step = replace(step, effort=step.effort._replace(applications=used))
     lost = jump_energy(setting.path, equilibrium, run.solver.tolerance)
     jumped = jumped_as_whole or lost > 0 or asperity_jumped(setting.state, equilibrium)
     limit = _force_limit(run, equilibrium, here.solve)
