@@ -537,6 +537,7 @@ def explorer(start: pl.Run, curve: Path) -> Iterator[str]:
         yield running
 
 
+@pytest.mark.slow
 def test_sliders_change_the_curves(
     explorer: str,
     browser: Chrome,

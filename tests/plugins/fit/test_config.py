@@ -145,6 +145,7 @@ def test_radius_of_each_file(cli: Cli) -> None:
     assert [curve["model"]["indenter"]["radius"] for curve in curves] == [5e-6, 20e-6]
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_many_fits_keep_the_configuration(tmp_path: Path) -> None:
     """The table of many curves holds the configuration once."""
     measure(tmp_path / "a.csv")
