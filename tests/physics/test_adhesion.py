@@ -100,6 +100,7 @@ def test_a_cell_that_just_touches_is_solved(seed: int, averaged: bool) -> None:
     assert path["status_code"].values[3] == "COARSE"
 
 
+@pytest.mark.slow
 def test_a_jump_of_one_asperity_is_named() -> None:
     """Of two bumps the lower one jumps in after and off before the other; the sum is the loss."""
     x = (np.arange(40) + 0.5) / 10 - 2
@@ -311,7 +312,15 @@ def test_force_is_the_slope_of_the_energy(interaction: dict[str, Any], length: f
     assert (energy[1] - energy[3]) / 0.02 == pytest.approx(force[2], rel=1e-3)
 
 
-@pytest.mark.parametrize(("interaction", "length"), [*zip(LAWS, (1.0, 0.0) * 2, strict=True)])
+@pytest.mark.parametrize(
+    ("interaction", "length"),
+    [
+        pytest.param(LAWS[0], 1.0, marks=pytest.mark.slow),
+        (LAWS[1], 0.0),
+        (LAWS[2], 1.0),
+        pytest.param(LAWS[3], 0.0, marks=pytest.mark.slow),
+    ],
+)
 def test_stiffness_is_the_slope_of_the_path(interaction: dict[str, Any], length: float) -> None:
     """dF/dδ with contact fixed and zone following is that of neighbouring steps, to 1e-3."""
     depths = [0.5, 0.3001, 0.3, 0.2999]

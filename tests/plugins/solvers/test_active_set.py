@@ -333,7 +333,7 @@ KERNELS: dict[str, tuple[Kernel, int]] = {
 
 
 @pytest.mark.parametrize(("kernel", "most"), KERNELS.values(), ids=KERNELS.keys())
-@pytest.mark.parametrize("points", [64, 128])
+@pytest.mark.parametrize("points", [64, pytest.param(128, marks=pytest.mark.slow)])
 def test_other_kernels(kernel: Kernel, most: int, points: int) -> None:
     """Kernels of other orders, given by their compliance alone."""
     controls: list[tuple[Prescribed, float]] = [("force", 1e-2), ("depth", 0.015)]
