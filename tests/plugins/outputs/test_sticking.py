@@ -50,12 +50,8 @@ OUTPUTS: list[dict[str, Any]] = [
 ]
 EVERYTHING: list[dict[str, Any]] = [
     *OUTPUTS,
-    {"type": "csv"},
-    {"type": "figures"},
     {"type": "curves", "name": "log", "x": "contact_area", "y": "depth", "log": ["x", "y"]},
-    {"type": "profiles"},
-    {"type": "patches", "by": "step"},
-    {"type": "spectrum"},
+    *({"type": name} for name in ("csv", "figures", "profiles", "patches", "spectrum")),
 ]
 STUDY: dict[str, Any] = {
     **BEAD,
