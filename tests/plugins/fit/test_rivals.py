@@ -452,16 +452,6 @@ def test_retraction_whose_jump_is_not_seen() -> None:
 
 
 @pytest.mark.slow
-def test_tension_that_adhesion_hides() -> None:
-    """Where adhesion leads, the tension beside it is compared, in the short form too."""
-    random = np.random.default_rng([7, 13, *b"tension and adhesion"])
-    solid = Sample(KINDS["tension and adhesion"](random), random)
-    fit = fitted(solid, solid.measured(path()))
-    assert fit.rivals is not None
-    assert "tension+adhesion" in [tie.rival.code for tie in fit.rivals.tied]
-
-
-@pytest.mark.slow
 def test_noise_of_1_over_f_is_neither_tension_nor_drift() -> None:
     """A tenth of tests/benchmarks/fit_rivals.py: no claim, and intervals that hold."""
     results = list(fit_rivals.outcomes("1/f noise", 4, 11, follow=False))
