@@ -41,9 +41,10 @@ class GapVolume(Prescription):
     def target(self, setting: Setting, value: float) -> Search:
         """Return the search for the force with this volume of the gap."""
         return Search(
-            -value,
-            lambda step: -_volume(step),
+            value,
+            _volume,
             control=Depth if setting.law else Force,
+            increasing=False,
             resolution=1e-6 * (value or _at_first_touch(setting)),
             quantity="gap volume",
             unit="m**3",
