@@ -77,7 +77,7 @@ class Search:
 
     goal: float
     measure: Callable[[Equilibrium], float]
-    """The quantity; it must not fall as the control grows."""
+    """The quantity; it has to grow with the control, or to fall if not `increasing`."""
     control: type[Depth] | type[Force] = Force
     resolution: float = 0.0
     """Difference from the goal up to which the goal counts as met."""
@@ -89,6 +89,8 @@ class Search:
     """Name of the quantity in messages."""
     unit: str = ""
     """SI unit of the quantity in messages."""
+    increasing: bool = True
+    """Whether the quantity grows with the control; False if it falls."""
 
 
 class Prescription(Component):

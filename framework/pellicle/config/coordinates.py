@@ -129,5 +129,4 @@ def _single(value: Any, given: Any) -> Any:
 def units_of(run: Run) -> dict[str, str]:
     """Return the SI unit of each field with one, by dotted path."""
     quantities = {path: quantity_of(field) for path, _, field in walk(run) if field}
-    # Attributes of datasets write m2 for m**2 of pint.
-    return {path: q.unit.replace("m**2", "m2") for path, q in quantities.items() if q}
+    return {path: quantity.unit for path, quantity in quantities.items() if quantity}

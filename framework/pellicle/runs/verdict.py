@@ -160,8 +160,7 @@ def _not_met(step: Reached, search: Search) -> tuple[Status, str]:
     near, far = Status.NEAREST, Status.NOT_REACHED
     if search.quantity == "contact area":
         near, far = Status.NEAREST_AREA, Status.AREA
-    # A quantity that falls as the control grows is measured by its negative.
-    below, above = sorted(map(abs, step.between))
+    below, above = step.between
     words = {
         "quantity": search.quantity,
         "measure": step.missed,
