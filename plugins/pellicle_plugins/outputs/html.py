@@ -13,7 +13,7 @@ import numpy as np
 import tomli_w
 from pydantic import Field
 
-from pellicle import Grid
+from pellicle import Grid, Run
 from pellicle.components import Output, Runs
 from pellicle.config.describe import inputs
 from pellicle.errors import StorageError
@@ -135,7 +135,7 @@ class Html(Output):
             Section("Maps", [maps]),
             Section("Curves", curves_of_run(result, chosen, maps.begin)),
             Section("Numbers", numbers),
-            Section("Inputs", [input_table(list(inputs(configuration)))]),
+            Section("Inputs", [input_table(list(inputs(configuration, Run)))]),
         ]
 
     def _sections_of_study(
@@ -170,7 +170,7 @@ class Html(Output):
             Section("Maps", [maps] if frames else []),
             Section("Curves", curves_of_study(table)),
             Section("Numbers", numbers),
-            Section("Inputs", [input_table(inputs_of_study(table, list(inputs(first_run))))]),
+            Section("Inputs", [input_table(inputs_of_study(table, list(inputs(first_run, Run))))]),
         ]
 
     def _maps_of_steps(self, result: Result) -> tuple[Maps, list[int]]:

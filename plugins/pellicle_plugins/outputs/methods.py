@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, cast
 
+from pellicle import Run
 from pellicle.components import Prescription
 from pellicle.config.describe import Input, inputs
 from pellicle.loading import OPTIONS
@@ -26,7 +27,7 @@ def methods(
     ``attributes`` are those of the result, or of the table of the study. Values at the dotted paths
     ``varied`` differ between the runs of a study.
     """
-    known = {i.name: i for i in inputs(configuration)}
+    known = {i.name: i for i in inputs(configuration, Run)}
     grid, on_cells = configuration["grid"], ""
     if not any(axis.startswith("grid") for axis in varied):
         points = " × ".join(str(n) for n in grid["points"])

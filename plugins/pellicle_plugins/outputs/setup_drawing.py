@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from html import escape
 from typing import Any
 
+from pellicle import Run
 from pellicle.config.describe import inputs
 from pellicle.files import for_document
 
@@ -39,7 +40,7 @@ def setup_drawing(
     The load steps give ``prescribed``. Values at the dotted paths ``varied`` differ between the
     runs of a study and have no number.
     """
-    known = {i.name: i for i in inputs(configuration)}
+    known = {i.name: i for i in inputs(configuration, Run)}
 
     def named(name: str) -> str:
         """Return words and value of an input, "(varied)" if it differs; empty if not there."""
@@ -72,7 +73,7 @@ def setup_drawing(
 
 def description(configuration: Mapping[str, Any]) -> str:
     """Return the set-up in words, for readers who cannot see the drawing."""
-    values = {i.name: i.value for i in inputs(configuration)}
+    values = {i.name: i.value for i in inputs(configuration, Run)}
     return f"Set-up, not to scale: {values['indenter']} on {values['kernel']}."
 
 
