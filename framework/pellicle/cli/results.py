@@ -28,6 +28,7 @@ def print_origin(data: xr.Dataset) -> None:
 
 def print_steps(result: Result, *, si: bool = False) -> None:
     """Print a row for each step."""
+    from pellicle.results.path import prescribed_variable
     from pellicle.results.result import caveats_of
     from pellicle.results.status import Status
     from pellicle.variables import names_of
@@ -35,9 +36,8 @@ def print_steps(result: Result, *, si: bool = False) -> None:
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
     printed_names = {"time", "depth", "force", *areas, *names_of("other")}
-    loading = [name for name in result.configuration["loading"] if name in data]
-    requested = [name for name in (*loading, "stiffness") if name in {*data} - printed_names]
-    requested = [*dict.fromkeys(reversed(requested))][::-1]
+    named = prescribed_variable(data), "stiffness"
+    requested = [name for name in named if name in {*data} - printed_names]
     time = ["time"] if "time" in data else []
     names = [*time, "depth", "force", *areas, *requested, "iterations"]
     coarse = dict(result.coarse())

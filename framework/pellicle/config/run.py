@@ -47,6 +47,7 @@ from pellicle.schema.notebook import summary
 from pellicle.schema.paths import get, replaced, walk
 from pellicle.variables import VARIABLES, Variable, corrected_area, corrected_fraction
 
+from .describe import inputs
 from .loading import Loading, refuse_pulls
 
 DEFAULT_SOLVER = "active_set"
@@ -212,9 +213,7 @@ class Run(FromFile):
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: every value with its unit and meaning."""
-        from .describe import inputs
-
-        values = list(inputs(json.loads(self.to_json())))
+        values = list(inputs(json.loads(self.to_json()), Run))
         types = {i.name: i.value for i in values}
         rows = [
             (i.part, "type" if i.words == i.part else i.words, i.value, i.meaning)

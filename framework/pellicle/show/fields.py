@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.components import Solver
 from pellicle.contact.problem import height_scale
 from pellicle.results.path import has_interaction, has_times, label_of_step
 from pellicle.results.result import Result
+from pellicle.results.shape import is_periodic
 from pellicle.units import axis_unit
 
 from .lines import EDGE_CELLS, edge_cells
@@ -33,17 +32,16 @@ def without_round_off(step: xr.Dataset) -> xr.Dataset:
     The tolerance is ``solver.tolerance`` times the length that scales the residuals of the step;
     otherwise full contact would be drawn as a landscape of femtometres.
     """
-    configuration = json.loads(step.attrs.get("configuration", "{}"))
-    solver = configuration.get("solver", {})
-    tolerance = float(solver.get("tolerance", Solver.model_fields["tolerance"].default))
     gap, depth = step["gap"].values, float(step["depth"])
     # A step that failed may have infinite values of both signs.
     with np.errstate(invalid="ignore"):
         profile = step["displacement"].values - depth - gap
         # A layer far thicker than its period sinks by much more than the heights.
-        if configuration.get("grid", {}).get("boundary") == "periodic":
+        if is_periodic(step):
             depth -= float(step["displacement"].mean())
-    closed = np.abs(gap) <= tolerance * height_scale(profile, step["contact"].values, depth)
+    closed = np.abs(gap) <= step.attrs["tolerance"] * height_scale(
+        profile, step["contact"].values, depth
+    )
     return step.assign(gap=(step["gap"].dims, np.where(closed, 0.0, gap), step["gap"].attrs))
 
 
@@ -174,7 +172,7 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
 
 def _caption(result: Result, step: int) -> str:
     """Return the title of a figure of one load step."""
-    caption = label_of_step(result.dataset, step, result.configuration)
+    caption = label_of_step(result.dataset, step)
     title = result.dataset.attrs.get("title", "")
     if not bool(result.dataset["converged"][step]):
         caption += ", NOT CONVERGED"

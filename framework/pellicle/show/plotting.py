@@ -21,7 +21,7 @@ from pellicle.variables import CONTACT_AREA, CORRECTED_AREA
 from .fields import pressure_map, profile
 from .leg_styles import MOST_LEGS, draw_legs, name_legs
 from .saving import save_figure
-from .style import MARKERS, FigureStyle, colour, is_log_spaced, is_ordered
+from .style import MARKERS, FigureStyle, colour, is_log_spaced, is_ordered, is_seed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -156,7 +156,7 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     against = ("time" if has_times(table) else "depth") if over_steps else along
     # Values of the first of the others have colours of their own; seeds are only repetitions.
     rest = [d for d in dimensions if d != along]
-    compared = sorted(rest, key=lambda d: d.endswith("seed") or table.sizes[d] == 1)[:1]
+    compared = sorted(rest, key=lambda d: is_seed(table[d]) or table.sizes[d] == 1)[:1]
     stacked = [str(d) for d in table["status"].dims if d not in (along, *compared)]
     y_axis, x_axis = wording(table[variable]), wording(table[against])
     named_by = wording(table[compared[0]]) if compared else None

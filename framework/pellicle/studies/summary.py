@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle.errors import first_of
+from pellicle.results.derived import DERIVED
 from pellicle.results.dimensions import parts
 from pellicle.results.shape import means_something
 from pellicle.results.status import Status, statuses_of
@@ -83,7 +84,7 @@ def path_columns(table: xr.Dataset, *, si: bool = False) -> Columns:
 
 
 def _derived(table: xr.Dataset) -> list[str]:
-    return list(json.loads(table.attrs["configuration"])["study"].get("derived", {}))
+    return list(json.loads(table.attrs[DERIVED]))
 
 
 def _axes(table: xr.Dataset, *, si: bool = False) -> dict[str, Wording]:

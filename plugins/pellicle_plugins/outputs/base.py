@@ -19,7 +19,7 @@ from pellicle.config.run import Run
 from pellicle.config.words import words_at
 from pellicle.errors import ConfigError, StorageError
 from pellicle.files import storage_errors
-from pellicle.results.derived import FIRST_RUN, names
+from pellicle.results.derived import configuration_of, names
 from pellicle.results.result import Result
 from pellicle.results.wording import wording
 from pellicle.schema.expression import evaluate, formula
@@ -235,7 +235,7 @@ def joined(name: str, arrays: Sequence[xr.DataArray]) -> xr.DataArray:
 
 def in_words(text: str, data: xr.Dataset) -> str:
     """Return an expression over a result or a table with words in place of its names."""
-    configuration = json.loads(data.attrs.get(FIRST_RUN, data.attrs.get("configuration", "{}")))
+    configuration = configuration_of(data)
 
     def words(name: str) -> str:
         if name in data.variables:

@@ -55,7 +55,7 @@ def _profiles(result: Result, chosen: list[int], begin: int) -> Picture:
     count = -(-len(chosen) // _PROFILES)
 
     def picture(index: int) -> Picture:
-        label = label_of_step(result.dataset, index, result.configuration)
+        label = label_of_step(result.dataset, index)
         caption = _CURVES["profile"].format(step=label)
         return _picture(lambda figure: profile(result, figure.add_subplot(), index), caption)
 
