@@ -49,9 +49,7 @@ def test_a_retracted_paraboloid_is_the_closed_theory(length: float, name: str) -
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("length", "radius", "size"), [(0.03, 0.9, 4.0), (0.03, 1.8, 6.0)]
-)
+@pytest.mark.parametrize(("length", "radius", "size"), [(0.03, 0.9, 4.0), (0.03, 1.8, 6.0)])
 def test_errors_beside_the_cases_of_the_benchmark(
     length: float, radius: float, size: float
 ) -> None:
