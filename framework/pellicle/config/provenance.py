@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable
 from contextlib import suppress
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
+from typing import Any
 
 from pellicle.components import Component
 from pellicle.files import for_document
@@ -14,12 +15,13 @@ from pellicle.plugins import registry
 from .run import Run, components_in
 
 
-def provenance(run: Run) -> dict[str, str]:
+def provenance(run: Run) -> dict[str, Any]:
     """Return the origin of a result as attributes of its dataset."""
     return {
         "title": for_document(run.title),
         "configuration": run.to_json(),
         "identity": run.identity,
+        "depth_to_base": run.kernel.depth_to_base(),
         **now_with([run]),
     }
 

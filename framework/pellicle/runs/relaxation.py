@@ -12,7 +12,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.checks import errors_attributed_to
-from pellicle.components import HasRelaxation, HasTimeSpan, Kernel, Setting
+from pellicle.components import Kernel, Setting
 from pellicle.components.calls import branches_of
 from pellicle.config.run import Run
 from pellicle.contact.time_step import (
@@ -68,7 +68,7 @@ class CarriedShare:
 class SkinOperators:
     """The operators of a skin on a solid that relaxes, for each stiffness γ of the solid."""
 
-    def __init__(self, kernel: HasRelaxation, grid: Grid) -> None:
+    def __init__(self, kernel: Kernel, grid: Grid) -> None:
         solid = kernel.without_skin()
 
         @lru_cache(maxsize=_OPERATORS)
@@ -104,7 +104,7 @@ def warn_of_relaxation(run: Run) -> None:
     kernel, branches = run.kernel, branches_of(run.kernel)
     if not branches:
         return
-    shortest, longest = kernel.time_span() if isinstance(kernel, HasTimeSpan) else (0.0, math.inf)
+    shortest, longest = kernel.time_span()
     if longest == math.inf and stiffness_after(branches, math.inf) < _LIQUID:
         warnings.warn(
             f"kernel: the shares of {kernel.type_name!r} that relax sum to 1, which makes the "
@@ -134,7 +134,6 @@ def least_domain(run: Run, index: int, largest_area: float) -> float:
     kernel, branches = run.kernel, branches_of(run.kernel)
     if not index or not branches or run.grid.boundary == "periodic":
         return 0.0
-    assert isinstance(kernel, HasRelaxation)
     solid = kernel.without_skin()
     if solid == kernel:
         return 0.0
@@ -161,7 +160,6 @@ def history_arrays(run: Run) -> float:
     if not branches:
         return 0.0
     arrays = 2 * len(branches) + 3.0
-    assert isinstance(kernel, HasRelaxation)
     if kernel.without_skin() != kernel:
         steps = {TimeStep.of(branches, duration) for duration in run.loading.durations}
         kept = min(_OPERATORS, len({_share(step) for step in steps}))
@@ -178,7 +176,6 @@ class Relaxation:
 
     def __init__(self, run: Run) -> None:
         kernel, branches = run.kernel, branches_of(run.kernel)
-        assert isinstance(kernel, HasRelaxation)
         # The solid is undeformed before the first step.
         self._steps = [TimeStep.of(branches, duration) for duration in run.loading.durations]
         self._memory = Memory.at_rest(branches, run.grid.shape)
