@@ -28,8 +28,6 @@ from pellicle.components import (
     AreaCorrection,
     Component,
     FromRegistry,
-    HasRelaxation,
-    HasTimeSpan,
     Indenter,
     Interaction,
     Kernel,
@@ -134,17 +132,16 @@ class Run(FromFile):
                 f"legs of {self.loading.prescribed}",
                 "loading.time",
             )
-        if isinstance(self.kernel, HasTimeSpan):
-            shortest, longest = self.kernel.time_span()
-            duration = math.fsum(self.loading.durations)
-            least = min((t for t in self.loading.durations if t > 0), default=math.inf)
-            if least < shortest or duration > longest:
-                reason = f"has a step of {least:g}" if least < shortest else f"lasts {duration:g}"
-                raise ConfigError(
-                    f"{reason} s, and the relaxation of {name!r} holds from {shortest:g} to "
-                    f"{longest:g} s; give it a wider span, or other times",
-                    f"loading.{self.loading.prescribed if self.loading.samples else 'time'}",
-                )
+        shortest, longest = self.kernel.time_span()
+        duration = math.fsum(self.loading.durations)
+        least = min((t for t in self.loading.durations if t > 0), default=math.inf)
+        if least < shortest or duration > longest:
+            reason = f"has a step of {least:g}" if least < shortest else f"lasts {duration:g}"
+            raise ConfigError(
+                f"{reason} s, and the relaxation of {name!r} holds from {shortest:g} to "
+                f"{longest:g} s; give it a wider span, or other times",
+                f"loading.{self.loading.prescribed if self.loading.samples else 'time'}",
+            )
         return self
 
     @model_validator(mode="after")
@@ -172,7 +169,6 @@ class Run(FromFile):
         kernel, interaction = self.kernel, self.interaction
         if interaction is None or not branches_of(kernel) or interaction.cutoff() > 0:
             return self
-        assert isinstance(kernel, HasRelaxation)
         q = np.array([np.pi / self.grid.cell_size])
         with errors_attributed_to(kernel):
             solid = kernel.without_skin().compliance(q).item()

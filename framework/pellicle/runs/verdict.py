@@ -15,7 +15,7 @@ from pellicle.contact.stiffness import Stiffness
 from pellicle.results.status import Status, with_caveats
 from pellicle.units import DIGITS, readable
 
-from .relaxation import least_domain
+from .relaxation_checks import least_domain
 from .target_search import Reached
 
 # Relative distance from its goal above which a search has not converged.
