@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from itertools import chain
 from typing import TYPE_CHECKING, Any
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellicle.analysis import Oscillation, oscillations, path_summary
-from pellicle.loading import OPTIONS
+from pellicle.components.prescription import OPTIONS
 from pellicle.units import DIGITS, readable
 from pellicle.variables import VARIABLES
 
@@ -35,6 +35,14 @@ def prescribed_variable(data: xr.Dataset, configuration: Mapping[str, Any]) -> s
     """Return the variable that names load steps: what is prescribed, else the depth."""
     names = (name for name in configuration["loading"] if name in data and name not in OPTIONS)
     return next(names, "depth")
+
+
+def number_of_steps(values: Sequence[object]) -> int:
+    """Return the number of load steps of values, or of legs as tables, of a valid loading."""
+    return sum(
+        value["num"] * value.get("cycles", 1) if isinstance(value, Mapping) else 1
+        for value in values
+    )
 
 
 def label_of_step(data: xr.Dataset, index: int, configuration: Mapping[str, Any]) -> str:

@@ -12,14 +12,13 @@ from pellicle.analysis import Oscillation
 from pellicle.errors import ConfigError, StorageError, first_of
 from pellicle.files import for_document, is_folder
 from pellicle.grid import Grid
-from pellicle.schema.legs import number_of_steps
 from pellicle.schema.notebook import summary
 from pellicle.units import axis_unit, readable
 from pellicle.variables import COORDINATES, REQUIRED, VARIABLES
 
 from . import storage
 from .limits import beyond_theory
-from .path import label_of_step, oscillations_of, path_variables
+from .path import label_of_step, number_of_steps, oscillations_of, path_variables
 from .status import Status, statuses_of
 
 if TYPE_CHECKING:

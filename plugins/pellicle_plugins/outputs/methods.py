@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any, cast
 
 from pellicle.components import Prescription
+from pellicle.components.prescription import OPTIONS
 from pellicle.config.describe import Input, inputs
 from pellicle.config.loading import prescribed_in
 from pellicle.errors import ConfigError
-from pellicle.loading import OPTIONS
 from pellicle.plugins import registry
-from pellicle.schema.legs import number_of_steps
+from pellicle.results.path import number_of_steps
 from pellicle.units import DIGITS, axis_unit, readable
 from pellicle.variables import words_of_name
 from pellicle.version import CITATION

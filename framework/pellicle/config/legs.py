@@ -10,10 +10,10 @@ from pydantic import Field, PrivateAttr
 from pydantic.fields import FieldInfo
 
 from pellicle.errors import ConfigError, all_problems, shown
+from pellicle.results.path import number_of_steps
+from pellicle.schema.model import Model
+from pellicle.schema.ranges import ramp
 from pellicle.units import Quantity
-
-from .model import Model
-from .ranges import ramp
 
 _MOST = 1_000_000
 # Three samples are the fewest that show an amplitude and a phase; four meet both extremes.
@@ -47,9 +47,10 @@ class Leg(Model):
     _unit: str = PrivateAttr("1")
 
     @property
-    def described_fields(self) -> Mapping[str, FieldInfo]:
-        """The fields by name; those of prescribed values have their unit."""
-        return fields_of(type(self), self._unit)
+    def entries(self) -> Mapping[str, tuple[Any, FieldInfo]]:
+        """Value and description of each field; those of prescribed values have their unit."""
+        fields = fields_of(type(self), self._unit)
+        return {name: (getattr(self, name), info) for name, info in fields.items()}
 
 
 class Move(Leg):
@@ -185,14 +186,6 @@ def sampled(legs: Sequence[Leg]) -> tuple[Sample, ...]:
         times = ramp(begin, begin + duration, len(values) + 1)[1:]
         samples += map(Sample, values, times, [index] * len(values), cycles)
     return tuple(samples[1:])
-
-
-def number_of_steps(values: Sequence[object]) -> int:
-    """Return the number of load steps of values, or of legs as tables, of a valid loading."""
-    return sum(
-        value["num"] * value.get("cycles", 1) if isinstance(value, Mapping) else 1
-        for value in values
-    )
 
 
 def json_schema(value_schema: Mapping[str, Any]) -> dict[str, Any]:
