@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from pellicle.variables import Variable
 
 from .base import Component
 from .indenter import Footprint
+
+OPTIONS: Final = frozenset({"stiffness", "time"})
+"""Keys of ``[loading]`` other than a prescription and its fields."""
 
 
 @dataclass(frozen=True)

@@ -84,7 +84,7 @@ def _words_of_values(key: str, values: Sequence[Any], runs: Sequence[Run]) -> li
     for words, value in zip(types, values, strict=True):
         text = words or _text(value)
         for name in value.model_fields_set - {"type"} if words and several else ():
-            info = value.described_fields[name]
+            info = type(value).model_fields[name]
             unit = quantity.unit if (quantity := quantity_of(info)) else "1"
             text += f", {field_words(name, info)} {readable(getattr(value, name), unit, DIGITS)}"
         texts.append(text)
