@@ -27,7 +27,6 @@ from .plotting import drawings as drawings
 from .plotting import force_depth as force_depth
 from .plotting import over_time as over_time
 from .plotting import save_figures as save_figures
-from .plotting import save_study_figures as save_study_figures
 from .plotting import study_curves as study_curves
 from .saving import save_figure as save_figure
 from .saving import save_pages as save_pages
