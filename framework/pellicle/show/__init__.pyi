@@ -1,8 +1,8 @@
 __all__: list[str]
 
-from .fields import extent as extent
 from .fields import pressure_map as pressure_map
 from .fields import profile as profile
+from .fields import show_field as show_field
 from .fields import without_round_off as without_round_off
 from .html import Block as Block
 from .html import Cell as Cell
