@@ -16,7 +16,7 @@ from pellicle.components import (
     Kernel,
     MayBeBondedLayer,
 )
-from pellicle.surface.kernel_calls import mean_compliance
+from pellicle.surface import mean_compliance
 
 from .skin import Skin
 from .stiffened import stiffened

@@ -6,7 +6,7 @@ from typing import cast
 
 from pellicle.arrays import Array
 from pellicle.components import HasRelaxation, Kernel
-from pellicle.surface.kernel_calls import HasClosedForm, mean_compliance
+from pellicle.surface import HasClosedForm, mean_compliance
 
 
 class Stiffened(Kernel):
