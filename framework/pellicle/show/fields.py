@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
 from pellicle.contact.problem import height_scale
@@ -19,6 +20,7 @@ from .style import NO_CONTACT, add_colour_bar
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
+    from matplotlib.image import AxesImage
 
 DIVERGING = "RdBu_r"
 """The colours of fields that are negative where an interaction pulls."""
@@ -70,22 +72,14 @@ def pressure_map(result: Result, axes: Axes, step: int | None = None) -> None:
     step = default_step(result.dataset) if step is None else step
     data = result.dataset.isel(step=step)
     pressure = data["pressure"].values
-    length, length_name = axis_unit(np.append(data["x"].values, data["y"].values), "m")
     scale, name = axis_unit(pressure, "Pa")
     tensile = has_interaction(data)
-    image = axes.imshow(
-        np.ma.masked_equal(pressure.T * scale, 0.0),
-        origin="lower",
-        extent=extent(data["x"].values * length, data["y"].values * length),
-        **(diverging(pressure * scale) if tensile else {"cmap": "viridis", "vmin": 0.0}),
-        interpolation="nearest",
-        # The stage "rgba" converts every cell to a colour before it resamples.
-        interpolation_stage="data",
-    )
+    colours = diverging(pressure * scale) if tensile else {"cmap": "viridis", "vmin": 0.0}
+    values = np.ma.masked_equal(pressure.T * scale, 0.0)
+    image, length = show_field(axes, data, values, interpolation="nearest", **colours)
     axes.set_facecolor(NO_CONTACT)
     if tensile:
         outline_contact(data, axes, length)
-    axes.set(xlabel=f"x [{length_name}]", ylabel=f"y [{length_name}]")
     axes.set_title(_caption(result, step))
     label = "pressure, negative where it pulls" if tensile else "contact pressure"
     add_colour_bar(axes, image, f"{label} [{name}]")
@@ -179,12 +173,19 @@ def _caption(result: Result, step: int) -> str:
     return f"{title}\n{caption}" if title else caption
 
 
-def extent(x: Array, y: Array) -> tuple[float, float, float, float]:
-    """Return the outer edges of the domain from its cell centres, for ``Axes.imshow``."""
-    dx, dy = (c[1] - c[0] if c.size > 1 else 1.0 for c in (x, y))
-    return (
-        float(x[0] - dx / 2),
-        float(x[-1] + dx / 2),
-        float(y[0] - dy / 2),
-        float(y[-1] + dy / 2),
-    )
+def show_field(
+    axes: Axes, step: xr.Dataset, values: ArrayLike, **colours: Any
+) -> tuple[AxesImage, float]:
+    """Draw values along y, then x, at the cells of a step.
+
+    Return also the factor from metres to the unit of the axes.
+    """
+    length, unit = axis_unit(np.append(step["x"].values, step["y"].values), "m")
+    edges: Any = []
+    for centres in (step["x"].values * length, step["y"].values * length):
+        half = (centres[1] - centres[0] if centres.size > 1 else 1.0) / 2
+        edges += [float(centres[0] - half), float(centres[-1] + half)]
+    axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
+    # The stage "rgba" converts every cell to four colour values first.
+    shared: dict[str, Any] = {"origin": "lower", "interpolation_stage": "data"}
+    return axes.imshow(values, extent=edges, **shared, **colours), length
