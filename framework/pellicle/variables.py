@@ -29,6 +29,13 @@ WORDS: Final = "short_name"
 """Attribute of a variable with the words that figures and tables show for it."""
 WORDS_OF_VALUES: Final = "value_words"
 """Attribute of a coordinate of texts: words by value, as JSON."""
+ROLE: Final = "role"
+"""Key in ``json_schema_extra`` of a field, and attribute of its coordinate in a study: one of the
+roles below."""
+SEED: Final = "seed"
+"""The values only repeat a random run: they are not compared, nor have they an order."""
+SHORTEST_WAVE: Final = "shortest wave"
+"""The shortest wavelength of a rough surface, which the cells have to resolve."""
 
 
 def words_of_name(name: str) -> str:

@@ -31,14 +31,14 @@ def print_origin(data: xr.Dataset) -> None:
 def print_steps(result: Result, *, si: bool = False) -> None:
     """Print a row for each step."""
     from pellicle.contact.caveats import from_text, verdict_of
+    from pellicle.results.path import prescribed_variable
     from pellicle.variables import CAVEATS, names_of
 
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
     printed_names = {"time", "depth", "force", *areas, *names_of("other")}
-    loading = [name for name in result.configuration["loading"] if name in data]
-    requested = [name for name in (*loading, "stiffness") if name in {*data} - printed_names]
-    requested = [*dict.fromkeys(reversed(requested))][::-1]
+    named = prescribed_variable(data), "stiffness"
+    requested = [name for name in named if name in {*data} - printed_names]
     time = ["time"] if "time" in data else []
     names = [*time, "depth", "force", *areas, *requested, "iterations"]
     verdicts = [verdict_of(from_text(text)) for text in data[CAVEATS].values]

@@ -13,7 +13,6 @@ from pellicle.contact.caveats import Caveat, Status, by_phrase, from_text
 from pellicle.errors import ConfigError, StorageError, first_of
 from pellicle.files import for_document, is_folder
 from pellicle.grid import Grid
-from pellicle.schema.legs import number_of_steps
 from pellicle.schema.notebook import summary
 from pellicle.units import axis_unit, readable
 from pellicle.variables import CAVEATS, COORDINATES, REQUIRED, VARIABLES
@@ -52,8 +51,7 @@ class Result:
     @property
     def planned_steps(self) -> int:
         """The number of load steps of the configuration, solved or not."""
-        loading = self.configuration["loading"]
-        return next(number_of_steps(v) for v in loading.values() if isinstance(v, list))
+        return int(self.dataset.attrs["planned_steps"])
 
     @property
     def converged(self) -> bool:
@@ -144,7 +142,7 @@ class Result:
         if len(rows) > _MOST:
             rows = [*rows[: _MOST - 1], ["…"] * len(rows[0]), rows[-1]]
         return summary(
-            str(self.configuration.get("title") or "Result"),
+            str(self.dataset.attrs["title"] or "Result"),
             outcome,
             ["step", *(n.replace("_", " ") for n in _SHOWN if n in self.dataset), "status"],
             rows,
@@ -199,7 +197,7 @@ class Result:
             scale, prefixed = axis_unit(field.values, str(field.attrs["units"]))
             field = (field * scale).assign_attrs(field.attrs | {"units": prefixed})
         mesh = field.plot.pcolormesh(x="x", y="y", **options)
-        title = label_of_step(self.dataset, step, self.configuration)
+        title = label_of_step(self.dataset, step)
         mesh.axes.set(aspect="equal", facecolor=_NO_CONTACT, title=title)
         return mesh
 

@@ -31,8 +31,8 @@ from pellicle.results.step import Steps
 from .compose import compose
 from .journal import Journal
 from .lock import locked
+from .memory_estimate import memory_of
 from .progress import Bar, Report, RunProgress
-from .relaxation import history_arrays
 from .steps import solve_steps
 
 STANDARD_OUTPUTS = ("csv", "figures")
@@ -167,12 +167,6 @@ def execute(
                     calls = [journal.close, *writers(outputs, runs, journal.stem, run)]
                     files = tuple(chain(*all_done(calls)))
     return Executed(result, files, resumed)
-
-
-def memory_of(run: Run) -> float:
-    """Return the estimated peak memory of a run [bytes]."""
-    history, sticks = history_arrays(run), run.interaction is not None
-    return memory.estimate(run.grid, len(run.loading.values), run.solver, history, sticks=sticks)
 
 
 def _hand_over(

@@ -33,6 +33,7 @@ from pellicle.results.dimensions import with_paths, with_python_names
 from pellicle.results.runs import StoredRuns
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
+from pellicle.runs.memory_estimate import memory_of
 from pellicle.runs.progress import ProgressReporter
 from pellicle.variables import BEYOND_THEORY
 
@@ -63,7 +64,7 @@ class RunTask:
     @property
     def memory(self) -> int:
         """Estimated peak memory of the run [bytes]."""
-        return int(runner.memory_of(self.run))
+        return int(memory_of(self.run))
 
     @property
     def steps(self) -> int:

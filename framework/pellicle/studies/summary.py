@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from pellicle.contact.caveats import Status, by_phrase, from_text
 from pellicle.errors import first_of
+from pellicle.results.derived import DERIVED
 from pellicle.results.dimensions import parts
 from pellicle.results.shape import means_something
 from pellicle.results.wording import Wording, wording
@@ -74,7 +75,7 @@ def path_columns(table: xr.Dataset, *, si: bool = False) -> Columns:
 
 
 def _derived(table: xr.Dataset) -> list[str]:
-    return list(json.loads(table.attrs["configuration"])["study"].get("derived", {}))
+    return list(json.loads(table.attrs[DERIVED]))
 
 
 def _axes(table: xr.Dataset, *, si: bool = False) -> dict[str, Wording]:

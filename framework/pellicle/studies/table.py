@@ -11,12 +11,12 @@ import numpy as np
 import xarray as xr
 
 from pellicle.config.coordinates import units_of
-from pellicle.config.provenance import now_with
+from pellicle.config.provenance import facts_of, now_with
 from pellicle.config.study import Study
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.files import atomic_write, for_document
 from pellicle.results import storage
-from pellicle.results.derived import FIRST_RUN, VARYING, derive, header
+from pellicle.results.derived import DERIVED, FIRST_RUN, VARYING, derive, header
 from pellicle.results.dimensions import with_python_names
 from pellicle.results.path import with_path
 from pellicle.variables import BEYOND_THEORY, CAVEATS, VARIABLES
@@ -33,8 +33,10 @@ class StudyTable:
             "title": for_document(study.points[0].run.title),
             "configuration": study.to_json(),
             FIRST_RUN: study.points[0].run.to_json(portable=True),
+            DERIVED: json.dumps(study.derived),
             VARYING: json.dumps(sorted(study.varying)),
             "axes": json.dumps({name: list(axes) for name, axes in study.dimensions.items()}),
+            **facts_of([point.run for point in study.points]),
             **now_with(point.run for point in study.points),
         }
         steps = {point.position: len(point.run.loading.values) for point in study.points}

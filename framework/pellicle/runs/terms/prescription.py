@@ -33,9 +33,7 @@ def _not_met(search: SearchEnd, sticks: bool) -> Iterator[Caveat]:
         return
     values: dict[str, float | str] = {"quantity": search.quantity, "measure": search.missed}
     if search.how == "nearest":
-        # A quantity that falls as the control grows is measured by its negative.
-        below, above = sorted(map(abs, (search.below, search.above)))
-        values |= {"below": below, "above": above, "unit": search.unit}
+        values |= {"below": search.below, "above": search.above, "unit": search.unit}
     of_area = search.quantity == "contact area"
     if search.how == "nearest" and is_near:
         yield Caveat(Status.NEAREST_AREA if of_area else Status.NEAREST, values)

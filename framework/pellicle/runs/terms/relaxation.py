@@ -10,7 +10,7 @@ from pellicle.components.calls import branches_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.load_step import LoadStep, Value
-from pellicle.runs.relaxation import least_domain
+from pellicle.runs.relaxation_checks import least_domain
 
 from .surroundings import Surroundings
 
