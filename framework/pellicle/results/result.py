@@ -97,7 +97,7 @@ class Result:
 
         The equations are solved all the same, so the statuses do not show it.
         """
-        return beyond_theory(self.dataset, self.configuration)
+        return beyond_theory(self.dataset, self.grid)
 
     def caveats(self) -> list[str]:
         """Return a message for each kind of caveat, with the first step that has it.
