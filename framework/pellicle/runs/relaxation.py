@@ -16,7 +16,6 @@ from pellicle.contact.time_step import (
     Memory,
     TimeStep,
     left_behind,
-    left_behind_under_skin,
     strain_under_skin,
 )
 
@@ -53,18 +52,17 @@ class Relaxation:
         """
         for index in range(self._done, len(displacements)):
             self._advance(pressures[index], displacements[index])
-        step = self._steps[self._done]
-        if not self._skin:
-            operator = setting.operator.scaled(1 / step.stiffness)
-            left = left_behind(self._memory, step) if self._done else None
-            return replace(setting, operator=operator, left=left)
-        if not self._done and step.is_jump:
+        step, displacement = self._steps[self._done], None
+        if self._skin and not self._done and step.is_jump:
             return setting
-        whole, left = self._skin[0](step), None
-        if self._done:
+        if self._skin:
+            whole = self._skin[0](step)
+            operator = whole.operator
             displacement = partial(whole, integral=float(self._integral.history(step)))
-            left = left_behind_under_skin(self._memory, step, displacement)
-        return replace(setting, operator=whole.operator, left=left)
+        else:
+            operator = setting.operator.scaled(1 / step.stiffness)
+        left = left_behind(self._memory, step, displacement) if self._done else None
+        return replace(setting, operator=operator, left=left)
 
     def _advance(self, pressure: Array, displacement: Array) -> None:
         """Bring the memory forward to the end of the next step."""
