@@ -58,10 +58,6 @@ class BondedLayer(ElasticLayer):
         denominator = kappa * (1 + decay**2) / 2 + (y**2 / 2 + 5 - 12 * nu + 8 * nu**2) * decay
         return 2 / (self.contact_modulus * q) * (numerator / denominator)
 
-    def bonded_layer(self) -> tuple[float, float]:
-        """Return h [m] and ν."""
-        return self.thickness, self.poissons_ratio
-
 
 class FrictionlessLayer(ElasticLayer):
     """Elastic layer that slips on a rigid base without lifting off (Johnson 1985).
