@@ -8,14 +8,15 @@ import numpy as np
 from pydantic import Field
 
 from pellicle.arrays import Array
+from pellicle.components import Kernel
 from pellicle.units import Length
 
-from .elastic_constants import IsotropicSolid
+from .elastic_constants import ElasticConstants
 from .hyperbolic import DEEP, scaled_sinh_rest
 
 
-class ElasticLayer(IsotropicSolid):
-    """A kernel whose solid is a layer of finite thickness on a rigid base."""
+class Layer(ElasticConstants):
+    """One elastic layer."""
 
     thickness: Annotated[Length, Field(description="thickness h of the layer [m]")]
 
@@ -25,6 +26,10 @@ class ElasticLayer(IsotropicSolid):
         A layer that fills a periodic domain cannot flow sideways, whatever its base.
         """
         return self.thickness * self.uniaxial_compliance
+
+
+class ElasticLayer(Layer, Kernel):
+    """A kernel whose solid is a layer of finite thickness on a rigid base."""
 
     def depth_to_base(self) -> float:
         """Return the thickness h [m]."""
