@@ -99,7 +99,7 @@ def run(
     result = execute(run, journal, outputs, bar, threads=threads).result
     for step, message in result.failures():
         warnings.warn(f"step {step}: {message}", ConvergenceWarning, stacklevel=2)
-    for message in result.caveats():
+    for message in result.warnings():
         warnings.warn(message, ConvergenceWarning, stacklevel=2)
     return result
 
