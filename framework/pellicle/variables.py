@@ -163,6 +163,12 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
         ("converged", "1", "whether every residual is under the tolerance", "truth"),
         ("status_code", "", "how the step ended, a name of pellicle.Status", "text"),
         ("status", "", "how the step ended, in a sentence", "text"),
+        (
+            "caveats",
+            "",
+            "each status with its values in SI, as JSON [[code, {name: value}], …]",
+            "text",
+        ),
     ),
 }
 _TITLES = {
@@ -221,6 +227,8 @@ COORDINATES = ("step", "x", "y")
 """Names of the coordinates of a result."""
 WALL_PRESSURE = "wall_pressure"
 """The field that a result has beside `FIELDS` if there is an interaction."""
+CAVEATS: Final = "caveats"
+"""Text of the caveats of a step, for programs: `pellicle.contact.caveats` reads it."""
 BEYOND_THEORY: Final = "beyond_theory"
 """Text in the table of a study: what `limits` says of a run, if it says so of any."""
 REQUIRED = (*names_of("field", "status"), "depth", "force", "contact_area", "iterations")

@@ -36,10 +36,8 @@ from .indenter import Indenter as Indenter
 from .indenter import IsShallowLimit as IsShallowLimit
 from .indenter import LayerForceCurve as LayerForceCurve
 from .interaction import Interaction as Interaction
-from .kernel import HasRelaxation as HasRelaxation
-from .kernel import HasTimeSpan as HasTimeSpan
 from .kernel import Kernel as Kernel
-from .kernel import MayBeBondedLayer as MayBeBondedLayer
+from .kernel import KernelOf as KernelOf
 from .output import Output as Output
 from .output import Runs as Runs
 from .prescription import Prescription as Prescription

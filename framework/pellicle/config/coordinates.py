@@ -84,7 +84,7 @@ def _words_of_values(key: str, values: Sequence[Any], runs: Sequence[Run]) -> li
     for words, value in zip(types, values, strict=True):
         text = words or _text(value)
         for name in value.model_fields_set - {"type"} if words and several else ():
-            info = value.described_fields[name]
+            info = type(value).model_fields[name]
             unit = quantity.unit if (quantity := quantity_of(info)) else "1"
             text += f", {field_words(name, info)} {readable(getattr(value, name), unit, DIGITS)}"
         texts.append(text)
@@ -132,5 +132,4 @@ def _single(value: Any, given: Any) -> Any:
 def units_of(run: Run) -> dict[str, str]:
     """Return the SI unit of each field with one, by dotted path."""
     quantities = {path: quantity_of(field) for path, _, field in walk(run) if field}
-    # Attributes of datasets write m2 for m**2 of pint.
-    return {path: q.unit.replace("m**2", "m2") for path, q in quantities.items() if q}
+    return {path: quantity.unit for path, quantity in quantities.items() if quantity}

@@ -95,7 +95,7 @@ def _unit_of(text: str, table: xr.Dataset, units: Mapping[str, str]) -> str:
     try:
         for name in names_in(text):
             # An exponent that varies, so that a power has no unit, is NaN here.
-            quantities[name] = math.nan * one(all_units.get(name, "1").replace("m2", "m**2"))
+            quantities[name] = math.nan * one(all_units.get(name, "1"))
         return si_unit(evaluate(text, quantities))
     except (ConfigError, ValueError):
         # Units that differ, or that of a stranger's variable that pint does not know.

@@ -15,9 +15,9 @@ from pellicle.arrays import Array, Mask
 from pellicle.components.base import role_of
 from pellicle.components.calls import profile_of
 from pellicle.config.run import Run
+from pellicle.contact.caveats import Status
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid
-from pellicle.results.status import Status
 from pellicle.schema.paths import walk
 from pellicle.variables import SHORTEST_WAVE
 

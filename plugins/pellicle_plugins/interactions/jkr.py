@@ -39,7 +39,7 @@ class JKR(Interaction):
 
     type: Literal["jkr"] = "jkr"
     work_of_adhesion: Annotated[
-        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m**2]")
+        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m2]")
     ]
 
     estimate_error: Annotated[

@@ -75,8 +75,8 @@ class AdhesiveCurve(TableFigure):
     type: Literal["adhesive_curve"] = "adhesive_curve"
     work_of_adhesion: Annotated[
         float,
-        Quantity("J/m**2", above=0),
-        Field(description="energy per area that separates indenter and solid [J/m**2]"),
+        Quantity("J/m2", above=0),
+        Field(description="energy per area that separates indenter and solid [J/m2]"),
     ]
 
     @property

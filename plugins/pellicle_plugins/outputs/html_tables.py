@@ -11,9 +11,9 @@ import numpy as np
 
 from pellicle import Run
 from pellicle.config.describe import Input, inputs
+from pellicle.contact.caveats import Status
 from pellicle.results.result import Result
 from pellicle.results.shape import means_something
-from pellicle.results.status import Status
 from pellicle.results.wording import Wording, wording, wording_of
 from pellicle.show.html import Cell, Column, Table
 from pellicle.studies.summary import progress_of, short_files

@@ -7,10 +7,10 @@ from typing import Any, cast
 
 from pellicle import Run
 from pellicle.components import Prescription
+from pellicle.components.prescription import OPTIONS
 from pellicle.config.describe import Input, inputs
-from pellicle.loading import OPTIONS
+from pellicle.config.legs import number_of_steps
 from pellicle.plugins import registry
-from pellicle.schema.legs import number_of_steps
 from pellicle.units import DIGITS, axis_unit, readable
 from pellicle.variables import words_of_name
 from pellicle.version import CITATION
