@@ -113,8 +113,8 @@ def _of_table(name: str, model: type[BaseModel]) -> Explanation:
     if model is Study:
         rows = [row for row in rows if row.name != "run"]
     if model is Loading:
-        for type_ in registry().components["prescription"]:
-            for row in rows_of(keys_of(type_)):
+        for type_, entry in registry().components["prescription"].items():
+            for row in _rows_of_component(entry.component):
                 required = "one of these" if row.name == type_ else f"with {type_}"
                 if row.name not in Options.model_fields:
                     rows.append(row._replace(default=row.default.replace("required", required)))
@@ -127,20 +127,24 @@ def _of_table(name: str, model: type[BaseModel]) -> Explanation:
 
 def _of_component(entry: Registered) -> Explanation:
     family = entry.component.family
-    is_prescription = issubclass(entry.component, Prescription)
-    fields = keys_of(entry.type) if is_prescription else entry.component.model_fields
     origin = f"{entry.origin.distribution} {entry.origin.version}"
     if refusal := refusal_of_example(entry.component):
         example = "\n# ".join(["# none; it would be refused:", *refusal.splitlines()])
     else:
         example = _toml(entry.component.place, example_table(entry))
-    text = _documentation(entry.component)
-    return Explanation(entry.type, family, origin, text, rows_of(fields), example)
+    text, rows = _documentation(entry.component), _rows_of_component(entry.component)
+    return Explanation(entry.type, family, origin, text, rows, example)
 
 
 def _documentation(model: type[BaseModel]) -> str:
     """Return the documentation of a class without the marks of its markup."""
     return (inspect.getdoc(model) or "").replace("``", "").replace("`", "")
+
+
+def _rows_of_component(component: type[Component]) -> list[FieldRow]:
+    if issubclass(component, Prescription):
+        return rows_of(keys_of(component))
+    return rows_of(component.model_fields)
 
 
 def rows_of(fields: Mapping[str, FieldInfo], prefix: str = "") -> list[FieldRow]:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, ClassVar, NamedTuple
 
-from pydantic import Field, PrivateAttr
+from pydantic import Field
 from pydantic.fields import FieldInfo
 
 from pellicle.errors import ConfigError, all_problems, shown
@@ -43,14 +43,6 @@ class Leg(Model):
 
     key: ClassVar[str]
     """The field that only this kind of leg has."""
-
-    _unit: str = PrivateAttr("1")
-
-    @property
-    def entries(self) -> Mapping[str, tuple[Any, FieldInfo]]:
-        """Value and description of each field; those of prescribed values have their unit."""
-        fields = fields_of(type(self), self._unit)
-        return {name: (getattr(self, name), info) for name, info in fields.items()}
 
 
 class Move(Leg):
@@ -97,6 +89,8 @@ class Oscillation(Leg):
     ]
 
 
+VALUES = "to", "amplitude"
+"""Fields in the unit of the prescription."""
 KINDS: tuple[type[Leg], ...] = (Move, Hold, Oscillation)
 _FORMS = (
     "{ to, time, num }, { hold, num } or { amplitude, frequency, cycles, num }, with num steps "
@@ -107,7 +101,7 @@ _FORMS = (
 def fields_of(kind: type[Leg], unit: str) -> dict[str, FieldInfo]:
     """Return the fields of a kind of leg; those of prescribed values have the ``unit``."""
     fields = dict(kind.model_fields)
-    for name in fields.keys() & {"to", "amplitude"}:
+    for name in fields.keys() & {*VALUES}:
         about = FieldInfo(annotation=float, description=fields[name].description)
         about.metadata.append(Quantity(unit))
         fields[name] = about
@@ -135,7 +129,7 @@ def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
     except ValueError:
         raise ConfigError(
             f"goes down to {lowest.value:g} {quantity.unit}; it has to stay "
-            f"{' and '.join(quantity.bounds)} {quantity.unit}",
+            f"{' and '.join(quantity.bounds)} {quantity.unit}{quantity.hint}",
             str(lowest.leg),
         ) from None
     return tuple(legs)
@@ -154,14 +148,13 @@ def _leg(entry: object, quantity: Quantity) -> Leg:
         raise ConfigError(f"{has}; give {_FORMS}")
     with all_problems() as within:
         # A valid number in its place, so that the other fields are checked too.
-        data = {**entry, **dict.fromkeys(entry.keys() & {"to", "amplitude"}, 0.0)}
+        data = {**entry, **dict.fromkeys(entry.keys() & {*VALUES}, 0.0)}
         for name, allowed in (("to", quantity), ("amplitude", Quantity(quantity.unit, above=0))):
             if name in entry:
                 with within(name):
                     data[name] = allowed(entry[name])
         with within(""):
             leg = kinds[0](**data)
-    leg._unit = quantity.unit
     return leg
 
 
@@ -192,6 +185,6 @@ def json_schema(value_schema: Mapping[str, Any]) -> dict[str, Any]:
     """Return the JSON schema of a list of legs, from that of a prescribed value."""
     schemas = [kind.model_json_schema() for kind in KINDS]
     for properties in (schema["properties"] for schema in schemas):
-        for name in properties.keys() & {"to", "amplitude"}:
+        for name in properties.keys() & {*VALUES}:
             properties[name] = {**value_schema, "description": properties[name]["description"]}
     return {"type": "array", "items": {"anyOf": schemas}, "minItems": 1}

@@ -6,7 +6,6 @@ import inspect
 import itertools
 import math
 from collections.abc import Mapping
-from contextlib import suppress
 from functools import cached_property
 from itertools import filterfalse
 from typing import Annotated, Any, Self
@@ -93,8 +92,8 @@ class Loading(Options):
     def entries(self) -> Mapping[str, tuple[Any, FieldInfo]]:
         """Value and description of each key of its table in a file."""
         values = {**dict(self), **dict(self.prescription), self.prescribed: self.path}
-        fields = _described(self.prescribed, type(self.prescription))
-        return {name: (values[name], info) for name, info in fields.items()}
+        keys = keys_of(type(self.prescription))
+        return {name: (values[name], info) for name, info in keys.items()}
 
     @model_validator(mode="after")
     def _check_time(self) -> Self:
@@ -163,7 +162,7 @@ class Loading(Options):
     def refuse_pulls(self) -> None:
         """Refuse values that only an interaction allows, such as a force below 0."""
         with all_problems() as within, within(self.prescribed):
-            path_from(self.path, type(self.prescription), interaction=False)
+            LoadSteps(self.prescription.quantity(), legs=True)(self.path)
 
     @property
     def variables(self) -> set[str]:
@@ -180,59 +179,38 @@ def fields_from(table: Mapping[str, Any], interaction: bool = True) -> dict[str,
     Without an interaction values that pull, such as a force below 0, are refused.
     """
     data = {key: value for key, value in table.items() if value is not None}
-    type_ = prescribed_in(data)
-    component = _prescription(type_)
-    described = _described(type_, component)
-    own = {name: data[name] for name in component.model_fields if name in data and name != "type"}
+    component = prescription_in(data)
+    keys = keys_of(component)
+    type_, *_ = keys
+    own = {name: data[name] for name in keys.keys() & data.keys() - {type_, *OPTIONS}}
     with all_problems() as within:
         with within(type_):
-            path = path_from(data[type_], component, interaction)
+            path = LoadSteps(component.quantity(interaction), legs=True)(data[type_])
         with within(""):
             prescription = registry().make(Prescription, {"type": type_, **own})
         with within(""):
             options = dict(Options(**{name: data[name] for name in OPTIONS if name in data}))
-        for name in filterfalse(described.__contains__, data):
+        for name in filterfalse(keys.__contains__, data):
             with within(name):
-                raise ConfigError(f"is not a field here; {nearest(name, described)}")
+                raise ConfigError(f"is not a field here; {nearest(name, keys)}")
     fields = {"prescription": prescription, "path": path, **options}
     return {name: value for name, value in fields.items() if value is not None}
 
 
-def path_from(
-    spec: object, component: type[Prescription], interaction: bool
-) -> tuple[float, ...] | tuple[Leg, ...]:
-    """Return the prescribed values, or the legs through them, in SI."""
-    try:
-        return LoadSteps(component.quantity(interaction), legs=True)(spec)
-    except ConfigError as error:
-        if interaction:
-            raise
-        with suppress(ConfigError):
-            path_from(spec, component, True)
-            error = ConfigError(
-                Problem(field, f"{reason}; with an [interaction] it may be negative")
-                for field, reason in error.problems
-            )
-        raise error from None
-
-
-def keys_of(type_: str) -> dict[str, FieldInfo]:
-    """Return the keys that ``[loading]`` has with a prescription: values, its fields, options."""
-    return _described(type_, _prescription(type_))
-
-
-def _prescription(type_: str) -> type[Prescription]:
-    component = registry().find("prescription", type_)
-    assert issubclass(component, Prescription)
-    return component
-
-
-def _described(type_: str, component: type[Prescription]) -> dict[str, FieldInfo]:
+def keys_of(component: type[Prescription]) -> dict[str, FieldInfo]:
+    """Return the keys of ``[loading]`` with a prescription: its type, its fields, the options."""
     meaning = (inspect.getdoc(component) or "").partition("\n")[0]
     steps = FieldInfo(annotation=tuple[float, ...], description=meaning)
     steps.metadata.append(LoadSteps(component.quantity(), legs=True))
-    fields = {name: info for name, info in component.model_fields.items() if name != "type"}
-    return {type_: steps, **fields, **Options.model_fields}
+    fields = dict(component.model_fields)
+    return {fields.pop("type").default: steps, **fields, **Options.model_fields}
+
+
+def prescription_in(data: Mapping[str, Any]) -> type[Prescription]:
+    """Return the prescription that a key of a table names."""
+    component = registry().find("prescription", prescribed_in(data))
+    assert issubclass(component, Prescription)
+    return component
 
 
 def prescribed_in(data: Mapping[str, Any]) -> str:
