@@ -139,9 +139,7 @@ class Quantity:
     def has_known_unit(self) -> bool:
         """Whether values in other units can be converted to its unit."""
         try:
-            return (
-                self.unit == "1" or self.unit in _EXAMPLES or factor_to_si(self.unit, self.unit) > 0
-            )
+            return self.unit in ("1", *_EXAMPLES) or factor_to_si(self.unit, self.unit) > 0
         except ValueError:
             return False
 
