@@ -21,7 +21,7 @@ from pellicle.plugins import Registered, registry
 from pellicle.schema.messages import similar
 from pellicle.units import quantity_of, readable
 
-from .loading import Loading, Options, keys_of
+from .loading import Loading, Options, keys_of, prescriptions
 from .run import Run
 from .study import Study
 from .words import model_in
@@ -113,8 +113,8 @@ def _of_table(name: str, model: type[BaseModel]) -> Explanation:
     if model is Study:
         rows = [row for row in rows if row.name != "run"]
     if model is Loading:
-        for type_, entry in registry().components["prescription"].items():
-            for row in _rows_of_component(entry.component):
+        for type_, component in prescriptions().items():
+            for row in rows_of(keys_of(component)):
                 required = "one of these" if row.name == type_ else f"with {type_}"
                 if row.name not in Options.model_fields:
                     rows.append(row._replace(default=row.default.replace("required", required)))
@@ -132,19 +132,17 @@ def _of_component(entry: Registered) -> Explanation:
         example = "\n# ".join(["# none; it would be refused:", *refusal.splitlines()])
     else:
         example = _toml(entry.component.place, example_table(entry))
-    text, rows = _documentation(entry.component), _rows_of_component(entry.component)
-    return Explanation(entry.type, family, origin, text, rows, example)
+    is_prescription = family == "prescription"
+    fields = (
+        keys_of(prescriptions()[entry.type]) if is_prescription else entry.component.model_fields
+    )
+    text = _documentation(entry.component)
+    return Explanation(entry.type, family, origin, text, rows_of(fields), example)
 
 
 def _documentation(model: type[BaseModel]) -> str:
     """Return the documentation of a class without the marks of its markup."""
     return (inspect.getdoc(model) or "").replace("``", "").replace("`", "")
-
-
-def _rows_of_component(component: type[Component]) -> list[FieldRow]:
-    if issubclass(component, Prescription):
-        return rows_of(keys_of(component))
-    return rows_of(component.model_fields)
 
 
 def rows_of(fields: Mapping[str, FieldInfo], prefix: str = "") -> list[FieldRow]:

@@ -12,6 +12,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import (
     Field,
+    GetJsonSchemaHandler,
     SerializationInfo,
     SkipValidation,
     WithJsonSchema,
@@ -19,6 +20,8 @@ from pydantic import (
     model_validator,
 )
 from pydantic.fields import FieldInfo
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 
 from pellicle.components import FromRegistry, Prescription
 from pellicle.components.prescription import OPTIONS
@@ -87,6 +90,26 @@ class Loading(Options):
         own = self.prescription.model_dump(mode=info.mode, exclude_none=True, context=info.context)
         table = {"stiffness": self.stiffness, "time": self.time, own.pop("type"): self.path, **own}
         return {name: value for name, value in table.items() if value is not None}
+
+    @classmethod
+    def __get_pydantic_json_schema__(
+        cls, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """Return the choice of one table for each prescription."""
+        reference = handler(schema)
+        whole = handler.resolve_ref_schema(reference)
+        options = {name: whole["properties"][name] for name in OPTIONS}
+        choices = []
+        for type_, component in prescriptions().items():
+            table = handler.resolve_ref_schema(handler(component.__pydantic_core_schema__))
+            steps = LoadSteps(component.quantity(interaction=True), legs=True)
+            fields = {type_: steps.__get_pydantic_json_schema__(schema, handler)}
+            fields |= {name: field for name, field in table["properties"].items() if name != "type"}
+            required = [type_, *table.get("required", [])]
+            choices.append(table | {"properties": fields | options, "required": required})
+        whole.clear()
+        whole.update(description=inspect.getdoc(cls), oneOf=choices)
+        return reference
 
     @property
     def entries(self) -> Mapping[str, tuple[Any, FieldInfo]]:
@@ -179,7 +202,7 @@ def fields_from(table: Mapping[str, Any], interaction: bool = True) -> dict[str,
     Without an interaction values that pull, such as a force below 0, are refused.
     """
     data = {key: value for key, value in table.items() if value is not None}
-    component = prescription_in(data)
+    component = prescriptions()[prescribed_in(data)]
     keys = keys_of(component)
     type_, *_ = keys
     own = {name: data[name] for name in keys.keys() & data.keys() - {type_, *OPTIONS}}
@@ -206,11 +229,10 @@ def keys_of(component: type[Prescription]) -> dict[str, FieldInfo]:
     return {fields.pop("type").default: steps, **fields, **Options.model_fields}
 
 
-def prescription_in(data: Mapping[str, Any]) -> type[Prescription]:
-    """Return the prescription that a key of a table names."""
-    component = registry().find("prescription", prescribed_in(data))
-    assert issubclass(component, Prescription)
-    return component
+def prescriptions() -> dict[str, type[Prescription]]:
+    """Return the installed prescriptions by type."""
+    entries = registry().components["prescription"]
+    return {t: e.component for t, e in entries.items() if issubclass(e.component, Prescription)}
 
 
 def prescribed_in(data: Mapping[str, Any]) -> str:

@@ -16,7 +16,7 @@ from pellicle.variables import words_of_name
 
 from .legs import KINDS, with_quantity
 from .load_steps import LoadSteps
-from .loading import Loading, keys_of, prescription_in
+from .loading import Loading, keys_of, prescribed_in, prescriptions
 
 
 def field_words(name: str, field: FieldInfo | None) -> str:
@@ -94,7 +94,7 @@ def fields_of_table(table: Mapping[str, Any], field: FieldInfo | None) -> Mappin
         model = entry.component if entry else None
     elif model is Loading:
         with suppress(ConfigError, PluginError):
-            return keys_of(prescription_in(table))
+            return keys_of(prescriptions()[prescribed_in(table)])
     return model.model_fields if model else {}
 
 
