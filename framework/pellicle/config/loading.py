@@ -50,8 +50,7 @@ class Options(Model):
     ] = False
 
     time: Annotated[
-        tuple[float, ...] | None,
-        LoadSteps(Quantity("s")),
+        Annotated[tuple[float, ...], LoadSteps(Quantity("s"))] | None,
         Field(
             description="time [s] at the end of each step, for a solid that relaxes; equal times "
             "are a jump, and the first step is one"
@@ -216,8 +215,7 @@ def fields_from(table: Mapping[str, Any], interaction: bool = True) -> dict[str,
         for name in filterfalse(keys.__contains__, data):
             with within(name):
                 raise ConfigError(f"is not a field here; {nearest(name, keys)}")
-    fields = {"prescription": prescription, "path": path, **options}
-    return {name: value for name, value in fields.items() if value is not None}
+    return {"prescription": prescription, "path": path, **options}
 
 
 def keys_of(component: type[Prescription]) -> dict[str, FieldInfo]:
@@ -242,23 +240,20 @@ def prescribed_in(data: Mapping[str, Any]) -> str:
     keys = [name for name in types if name in data]
     if len(keys) == 1:
         return keys[0]
-    if keys:
-        reason = f"prescribes {' and '.join(keys)}"
-    else:
-        problems = []
-        for key in filterfalse(OPTIONS.__contains__, data):
-            try:
-                registry().find("prescription", key)
-            except ConfigError:
-                message = f"is not a field here; {nearest(key, [*types, *OPTIONS])}"
-                problems.append(Problem(key, message))
-        if problems:
-            raise ConfigError(problems)
-        reason = "prescribes nothing"
     remedy = f"give exactly one of {', '.join(types)}"
     if keys:
         # One that an override adds stands last.
         last = [name for name in data if name in keys][-1]
         value = data[last] if isinstance(data[last], (str, float, int)) else "…"
-        remedy += f'; to set another one, replace the table: --set loading="{{{last} = {value!r}}}"'
-    raise ConfigError(f"{reason}; {remedy}")
+        raise ConfigError(
+            f"prescribes {' and '.join(keys)}; {remedy}; to set another one, replace the table: "
+            f'--set loading="{{{last} = {value!r}}}"'
+        )
+    problems = []
+    for key in filterfalse(OPTIONS.__contains__, data):
+        try:
+            registry().find("prescription", key)
+        except ConfigError:
+            message = f"is not a field here; {nearest(key, [*types, *OPTIONS])}"
+            problems.append(Problem(key, message))
+    raise ConfigError(problems or f"prescribes nothing; {remedy}")
