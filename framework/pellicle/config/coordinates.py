@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pellicle.components import Component
-from pellicle.components.base import words_of_type
+from pellicle.components.base import role_of, words_of_type
 from pellicle.schema.input_path import PORTABLE
 from pellicle.schema.model import Model
 from pellicle.schema.paths import get, walk
 from pellicle.schema.ranges import Values
 from pellicle.units import DIGITS, quantity_of, readable
-from pellicle.variables import WORDS, WORDS_OF_VALUES
+from pellicle.variables import ROLE, WORDS, WORDS_OF_VALUES
 
 from .legs import VALUES
 from .points import short
@@ -38,6 +38,9 @@ def coordinate(key: str, given: Values, runs: Sequence[Run]) -> Coordinate:
     values = [_single(get(run, key), value) for run, value in zip(runs, given, strict=True)]
     words = words_at(json.loads(runs[0].to_json()), Run, key)
     attributes = {"long_name": words, WORDS: words}
+    roles = (role_of(field) for path, _, field in walk(runs[0]) if path == key and field)
+    if role := next(roles, ""):
+        attributes[ROLE] = role
     if all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values):
         if unit := units_of(runs[0]).get(key):
             attributes["units"] = unit

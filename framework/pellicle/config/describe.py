@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
+from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from pellicle.components.base import words_of_type
@@ -13,7 +14,6 @@ from pellicle.plugins import Origin
 from pellicle.units import quantity_of, readable
 from pellicle.variables import words_of_name
 
-from .run import Run
 from .words import field_words, fields_of_table, model_in, registered, words_at
 
 
@@ -33,15 +33,15 @@ class Input(NamedTuple):
     """Distribution and entry point of a component."""
 
 
-def inputs(configuration: Mapping[str, Any]) -> Iterator[Input]:
-    """Yield the values of a configuration in the form of `Run.to_json`.
+def inputs(configuration: Mapping[str, Any], model: type[BaseModel]) -> Iterator[Input]:
+    """Yield the values of a configuration of a ``model`` such as `Run`, in the form of its JSON.
 
     Fields of components that are not installed have no unit.
     """
-    for name, value, meaning, origin in _table(configuration, Run.model_fields, ""):
+    for name, value, meaning, origin in _table(configuration, model.model_fields, ""):
         top = name.partition(".")[0]
-        part = field_words(top, Run.model_fields.get(top))
-        yield Input(name, part, words_at(configuration, Run, name), value, meaning, origin)
+        part = field_words(top, model.model_fields.get(top))
+        yield Input(name, part, words_at(configuration, model, name), value, meaning, origin)
 
 
 _SNAKE = re.compile(r"\b[a-z]+(?:_[a-z]+)+\b")

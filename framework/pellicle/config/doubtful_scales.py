@@ -59,7 +59,7 @@ def _doubts(run: Run) -> Iterator[tuple[str, str]]:
         part = path.partition(".")[0]
         if part == "indenter" and unit == "m" and value > _LENGTHS * size:
             yield _doubt(path, value, unit, domain)
-        if part == "kernel" and path.endswith("tension") and moduli:
+        if part == "kernel" and unit == "N/m" and moduli:
             length = value / max(moduli)
             if length > _ELASTOCAPILLARY * size:
                 over = f"over the modulus {readable(length, 'm', 3)}"

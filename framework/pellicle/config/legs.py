@@ -10,7 +10,6 @@ from typing import Annotated, Any, ClassVar, NamedTuple
 from pydantic import Field, create_model
 
 from pellicle.errors import ConfigError, all_problems, shown
-from pellicle.results.path import number_of_steps
 from pellicle.schema.model import Model
 from pellicle.schema.ranges import ramp
 from pellicle.units import Quantity
@@ -125,7 +124,8 @@ def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
             "is a jump",
             "0",
         )
-    if (steps := number_of_steps([leg.model_dump() for leg in legs])) > _MOST:
+    tables = [leg.model_dump() for leg in legs]
+    if (steps := sum(table["num"] * table.get("cycles", 1) for table in tables)) > _MOST:
         raise ConfigError(f"has {shown(steps)} load steps; give legs of {_MOST} at most")
     lowest = min(sampled(legs))
     try:

@@ -7,10 +7,10 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import ConfigDict, Field, PrivateAttr
 
+from pellicle import Grid
 from pellicle.arrays import Array
 from pellicle.components import Interaction, Kernel
-from pellicle.contact.law import GapLaw
-from pellicle.grid import Grid
+from pellicle.contact import GapLaw
 from pellicle.units import WorkOfAdhesion
 
 from .linear import Linear

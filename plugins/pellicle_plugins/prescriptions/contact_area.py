@@ -7,11 +7,10 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from pellicle.components import Depth, Force, Prescription, Search, Setting
-from pellicle.contact.equilibrium import Equilibrium
+from pellicle.components import Depth, Force, Prescription, Search, Setting, Variable
+from pellicle.contact import Equilibrium
 from pellicle.errors import ConfigError
 from pellicle.units import readable
-from pellicle.variables import Variable
 
 RESIDUAL = Variable(
     "residual_area", "1", "relative error of the prescribed contact area or radius", "residual"

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
-from pellicle.components import Depth, Force, Prescription, Search, Setting
-from pellicle.contact.equilibrium import Equilibrium
+from pellicle.components import Depth, Force, Prescription, Search, Setting, Variable
+from pellicle.contact import Equilibrium
 from pellicle.errors import ConfigError
 from pellicle.units import readable
-from pellicle.variables import Variable
 
 
 class GapVolume(Prescription):
