@@ -14,7 +14,7 @@ from pellicle.contact.problem import Depth, Problem
 from pellicle.contact.solution import Progress, Solution, State, Stop
 from pellicle.contact.start import Start
 
-from .adhesion import AdhesionSolver
+from .adhesion import AdhesionSolver, refusal_of
 from .adhesive_response import with_zone
 from .contact_cg import SIGN_CERTAINTY, STRICT_SIGN_CERTAINTY, InnerSolution, inner_solve
 from .few_cells import MOST_CELLS, solved_on_few_cells
@@ -123,8 +123,8 @@ class ActiveSet(ScaledSolver):
     type: Literal["active_set"] = "active_set"
 
     def refuses(self, problem: Problem) -> str:
-        """Return "": it solves with a law too."""
-        return ""
+        """Return why it cannot solve with a law; "" for one that attracts, and less the wider."""
+        return refusal_of(problem.law) if problem.law else ""
 
     def solve(self, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
         """Return the solution of a load step; with a law by `AdhesionSolver`."""

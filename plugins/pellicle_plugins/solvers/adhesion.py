@@ -13,6 +13,7 @@ from pellicle.analysis import perimeter
 from pellicle.arrays import Array, Mask
 from pellicle.contact.attraction import Attraction
 from pellicle.contact.initial_guess import first_guess
+from pellicle.contact.law import Law
 from pellicle.contact.problem import Problem, adhesive_scale
 from pellicle.contact.solution import Progress, State, Stop
 from pellicle.contact.start import Start
@@ -70,6 +71,9 @@ _FALLEN: Final = 0.5
 # Error that an inner solve leaves in the displacement, over the gap that it closes: its changes are
 # of single precision, and errors of 2e-7 were measured.
 _SINGLE: Final = 1e-6
+# Gaps at which a law is asked whether it attracts, and the relative rounding error of tractions.
+_GAPS: Final = 2001
+_ROUNDING: Final = 1e-12
 # Residual of a round that ended before every cell was on its side.
 _UNSETTLED: Final = 1e-3
 
@@ -193,6 +197,33 @@ class _Round:
     @cached_property
     def scale(self) -> float:
         return adhesive_scale(self.problem, self.contact, self.displacement)
+
+
+def refusal_of(law: Law) -> str:
+    """Return why `AdhesionSolver` cannot solve with a law; "" if it can.
+
+    That the energy falls in each round takes an attraction that is strongest at a closed gap and
+    does not grow with the gap.
+    """
+    gaps = np.linspace(0.0, law.cutoff(), _GAPS)
+    traction, strength = law.traction(gaps), law.strength()
+    highest = int(np.argmax(traction))
+    if traction[highest] > _ROUNDING * abs(strength) or not traction.any():
+        return (
+            f"cannot solve with {law.name}, which does not attract: traction(gap) is "
+            f"{traction[highest]:.3g} Pa at {gaps[highest]:.3g} m; it has to be < 0 at a closed "
+            "gap and ≤ 0 up to the cutoff"
+        )
+    change = np.diff(traction)
+    steepest = int(np.argmin(change))
+    if change[steepest] < -_ROUNDING * strength:
+        return (
+            f"cannot solve with {law.name}: traction(gap) grows from {traction[steepest]:.6g} Pa "
+            f"at {gaps[steepest]:.3g} m to {traction[steepest + 1]:.6g} Pa at "
+            f"{gaps[steepest + 1]:.3g} m; the attraction has to be strongest at a closed gap and "
+            "must not grow with the gap"
+        )
+    return ""
 
 
 class AdhesionSolver(ScaledSolver):
