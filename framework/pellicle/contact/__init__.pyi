@@ -18,6 +18,5 @@ from .solution import Progress as Progress
 from .solution import Solution as Solution
 from .solution import State as State
 from .solution import Stop as Stop
-from .start import Start as Start
 from .stiffness import Stiffness as Stiffness
 from .stiffness import measure_stiffness as measure_stiffness

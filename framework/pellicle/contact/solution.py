@@ -56,8 +56,6 @@ class Solution:
     """Why the solver stopped."""
     jumped: bool = False
     """Whether all contact was gained or lost since the start; only with a law."""
-    extrapolated: bool = False
-    """Whether the solver began from the extrapolation of its start; only with a law."""
 
     @property
     def pressure(self) -> Array:

@@ -17,11 +17,12 @@ from pellicle.components.calls import (
     corrected_area,
     report_of,
     response_of,
+    solution_of,
     target_of,
 )
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
-from pellicle.contact.equilibrium import Equilibrium
+from pellicle.contact.equilibrium import Equilibrium, equilibrium_of
 from pellicle.contact.solution import Stop
 from pellicle.contact.stiffness import Stiffness, measure_stiffness
 from pellicle.results.step import Steps, step_dataset
@@ -29,7 +30,6 @@ from pellicle.variables import Variable, corrected_fraction
 from pellicle.variables import corrected_area as area_variable
 
 from .adhesion import asperity_jumped, force_limit, greatest_pull, jump_energy
-from .following import followed
 from .progress import Bar
 from .relaxation import Relaxation
 from .target_search import Reached, reach
@@ -106,7 +106,8 @@ def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> Re
     if isinstance(target, Search):
         return reach(setting, target, run.solver, monitor)
     problem = setting.problem(target)
-    solution, equilibrium = followed(setting, run.solver, problem, monitor)
+    solution = solution_of(run.solver, problem, setting.start(problem), monitor)
+    equilibrium = equilibrium_of(problem, solution)
     step = Reached(equilibrium, solution.iterations, solution.stop, jumped=solution.jumped)
     if step.stop is Stop.PULLED_OFF:
         pull = greatest_pull(setting, run.solver, problem.control.value, monitor)

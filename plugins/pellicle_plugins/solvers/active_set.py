@@ -12,7 +12,6 @@ from pellicle.components import Monitor
 from pellicle.contact.initial_guess import first_guess, with_force
 from pellicle.contact.problem import Depth, Problem
 from pellicle.contact.solution import Progress, Solution, State, Stop
-from pellicle.contact.start import Start
 
 from .adhesion import AdhesionSolver, refusal_of
 from .adhesive_response import with_zone
@@ -131,9 +130,6 @@ class ActiveSet(ScaledSolver):
         if problem.law:
             adhesion = AdhesionSolver(tolerance=self.tolerance, max_iterations=self.max_iterations)
             return adhesion.solve(problem, start, monitor)
-        # Without a law the solution does not depend on the start.
-        if isinstance(start, Start) and start.ahead:
-            start = start.ahead
         return super().solve(problem, start, monitor)
 
     def begin(self, problem: Problem, start: State | None) -> _Iterate:

@@ -10,7 +10,6 @@ import numpy as np
 from pellicle.components import IterativeSolver, Monitor
 from pellicle.contact.problem import Problem
 from pellicle.contact.solution import Solution, State
-from pellicle.contact.start import Start
 
 # Units are 2^±900 at most, so that 2^100 times a unit is still a number.
 _MAX_EXPONENT = 900
@@ -31,10 +30,7 @@ class ScaledSolver(IterativeSolver):
         pressure = height / problem.operator.unit
         # Squares of a pressure far above those of this step would overflow.
         if start is not None and float(start.pressure.max()) / pressure < 2.0**_SINGLE_EXPONENT:
-            scaled = _scaled(start, 1 / height, 1 / pressure)
-            if isinstance(start, Start) and start.ahead:
-                scaled = Start.of(scaled, _scaled(start.ahead, 1 / height, 1 / pressure))
-            start = scaled
+            start = _scaled(start, 1 / height, 1 / pressure)
         else:
             start = None
         solution = super().solve(problem.scaled(height, pressure), start, monitor)

@@ -18,7 +18,6 @@ from pellicle.checks import (
 from pellicle.components.solver import Monitor, Solver
 from pellicle.contact.problem import Problem
 from pellicle.contact.solution import Solution, State, Stop
-from pellicle.contact.start import Start
 from pellicle.errors import ConfigError, PluginError, shown
 
 
@@ -54,9 +53,7 @@ def solution_of(
     _require_unchanged(solver, "solve()", parts, problem.operator.parts(), "problem.operator")
     state = _checked_state(solver, problem, value)
     jumped = bool(value.jumped) or (adheres and _in_contact(state) != _in_contact(start))
-    return Solution(
-        state, int(value.iterations), value.stop, jumped, adheres and bool(value.extrapolated)
-    )
+    return Solution(state, int(value.iterations), value.stop, jumped)
 
 
 def _checked_state(solver: Solver, problem: Problem, value: object) -> State | Array:
@@ -112,10 +109,7 @@ def _read_only_problem(problem: Problem) -> Problem:
 def _read_only_state(state: State) -> State:
     pressure = read_only(state.pressure)
     wall = pressure if state.wall is state.pressure else read_only(state.wall)
-    view = State(pressure, wall, state.depth)
-    if isinstance(state, Start) and state.ahead:
-        return Start.of(view, _read_only_state(state.ahead))
-    return view
+    return State(pressure, wall, state.depth)
 
 
 def _require_unchanged(
