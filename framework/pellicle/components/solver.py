@@ -127,9 +127,9 @@ class IterativeSolver(Solver):
     def pressure(self, state: Any) -> Array:
         """Return the pressure [Pa] of an iterate."""
 
-    def state(self, state: Any) -> State | Array:
-        """Return the solution's state of an iterate; by default its pressure."""
-        return self.pressure(state)
+    def state(self, state: Any) -> State:
+        """Return the solution's state of an iterate; by default that of its pressure."""
+        return State.of_pressure(self.pressure(state))
 
     def terminate(self, problem: Problem, state: Any) -> Stop | None:
         """Return the reason to end the iteration above the tolerance; None, the default, continues.

@@ -34,10 +34,7 @@ class ScaledSolver(IterativeSolver):
         else:
             start = None
         solution = super().solve(problem.scaled(height, pressure), start, monitor)
-        state = solution.state
-        if isinstance(state, State):
-            return replace(solution, state=_scaled(state, height, pressure))
-        return replace(solution, state=state * pressure)
+        return replace(solution, state=_scaled(solution.state, height, pressure))
 
 
 def _scaled(state: State, length: float, pressure: float) -> State:
