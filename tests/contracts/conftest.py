@@ -13,6 +13,7 @@ from pellicle.plugins import registry
 from tests.contracts.examples import EXAMPLES
 
 PROCESSES = "processes", "dask"
+DRAWINGS = "curves", "profiles", "spectrum", "patches", "distributions"
 """Executors whose workers take seconds to start."""
 
 
@@ -22,7 +23,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         pairs = [
             pytest.param(
                 (family, type_),
-                marks=pytest.mark.slow if type_ in PROCESSES else (),
+                marks=pytest.mark.slow if type_ in (*PROCESSES, *DRAWINGS) else (),
                 id=f"{family}.{type_}",
             )
             for family, members in EXAMPLES.items()

@@ -9,6 +9,8 @@ its objects can be pickled to workers. A concrete component declares
 from pellicle.contact.problem import Depth as Depth
 from pellicle.contact.problem import Force as Force
 from pellicle.contact.time_step import Branch as Branch
+from pellicle.grid import pair as pair
+from pellicle.grid import shape_of_run as shape_of_run
 from pellicle.variables import Variable as Variable
 
 from .base import Component as Component
@@ -34,10 +36,8 @@ from .indenter import Indenter as Indenter
 from .indenter import IsShallowLimit as IsShallowLimit
 from .indenter import LayerForceCurve as LayerForceCurve
 from .interaction import Interaction as Interaction
-from .kernel import HasRelaxation as HasRelaxation
-from .kernel import HasTimeSpan as HasTimeSpan
 from .kernel import Kernel as Kernel
-from .kernel import MayBeBondedLayer as MayBeBondedLayer
+from .kernel import KernelOf as KernelOf
 from .output import Output as Output
 from .output import Runs as Runs
 from .prescription import Prescription as Prescription

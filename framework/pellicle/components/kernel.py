@@ -1,12 +1,14 @@
-"""The contract of kernels."""
+"""The contract of kernels, and kernels that are made of another one."""
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
-from typing import ClassVar, Protocol, runtime_checkable
+from typing import ClassVar, cast
 
 from pellicle.arrays import Array
 from pellicle.contact.time_step import Branch
+from pellicle.surface.kernel_calls import HasClosedForm, mean_compliance
 
 from .base import Component
 
@@ -14,10 +16,15 @@ from .base import Component
 class Kernel(Component):
     """The displacement of the surface under pressure: û(q) = G(q) p̂(q).
 
-    Only G(q) is required. On free boundaries the closed form (`pellicle.surface.HasClosedForm`),
-    ``greens_function(r)`` [m/N] and ``radial_primitive(r)`` [m³/N], is used if the kernel has one;
-    otherwise it is tabulated from G(q). On periodic boundaries a uniform pressure causes no
-    displacement unless the kernel also has `pellicle.surface.HasMeanCompliance`.
+    Only G(q) is required; the other methods are those of an elastic half-space without a skin. On
+    free boundaries the closed form (`pellicle.surface.HasClosedForm`), ``greens_function(r)`` [m/N]
+    and ``radial_primitive(r)`` [m³/N], is used if the kernel has one; otherwise it is tabulated
+    from G(q).
+
+    If the solid relaxes in time, ``compliance(q)`` is its instantaneous response. A skin on the
+    solid does not relax: at a time t after a jump the stiffness is
+    1/G(q) − Σ gⱼ (1 − e^(−t/τⱼ))/G₀(q), with G₀ the compliance of `without_skin`, and shares gⱼ and
+    times τⱼ of `branches`.
     """
 
     family: ClassVar[str] = "kernel"
@@ -27,55 +34,119 @@ class Kernel(Component):
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa], of the shape of ``q`` > 0 [rad/m]."""
 
+    def mean_compliance(self) -> float:
+        """Return G(0) [m/Pa], the displacement per uniform pressure on a periodic domain.
 
-@runtime_checkable
-class HasRelaxation(Protocol):
-    """A kernel whose solid relaxes in time; its ``compliance(q)`` is the instantaneous response.
-
-    A skin on the solid does not relax: at a time t after a jump the stiffness is
-    1/G(q) − Σ gⱼ (1 − e^(−t/τⱼ))/G₀(q), with G₀ the compliance of `without_skin`, and shares gⱼ and
-    times τⱼ of `branches`.
-    """
-
-    def compliance(self, q: Array) -> Array:
-        """Return G(q) [m/Pa] of the instantaneous response."""
-        ...
+        If it is infinite, the mean displacement is set to 0 and depths are measured from the mean
+        plane.
+        """
+        return math.inf
 
     def branches(self) -> tuple[Branch, ...]:
         """Return the branches of the solid; none if it is elastic.
 
         Their shares sum to at most 1. If they sum to 1, the solid is a liquid.
         """
-        ...
+        return ()
+
+    def time_span(self) -> tuple[float, float]:
+        """Return the shortest and the longest time [s] after a jump at which the branches hold.
+
+        A run with a shorter step, or one that lasts longer, is refused.
+        """
+        return 0.0, math.inf
+
+    def without_skin(self) -> Kernel:
+        """Return the kernel of the solid alone: this kernel itself if it has no skin."""
+        return self
 
     def scaled(self, share: float) -> Kernel:
         """Return the elastic kernel of a solid ``share`` > 0 times as stiff under the same skin.
 
-        Its compliance is 1/(1/G + (share − 1)/G₀).
+        Its compliance is 1/(1/G + (share − 1)/G₀). It has a closed form if this kernel has one.
         """
-        ...
+        kind = _StiffenedClosedForm if isinstance(self, HasClosedForm) else _Stiffened
+        return kind.model_construct(substrate=self, factor=share)
 
-    def without_skin(self) -> Kernel:
-        """Return the kernel of the solid alone: this kernel itself if it has no skin."""
-        ...
-
-
-@runtime_checkable
-class MayBeBondedLayer(Protocol):
-    """A kernel that may be an elastic layer bonded to a rigid base, under a tension at most."""
+    def depth_to_base(self) -> float:
+        """Return the depth [m] of the rigid base under the solid; ∞ if there is none."""
+        return math.inf
 
     def bonded_layer(self) -> tuple[float, float] | None:
-        """Return thickness [m] and Poisson's ratio of the layer; None if it is anything else."""
-        ...
+        """Return thickness [m] and Poisson's ratio of an elastic layer bonded to a rigid base.
+
+        None if the solid is anything else, or if its skin is more than a tension.
+        """
+        return None
 
 
-@runtime_checkable
-class HasTimeSpan(Protocol):
-    """A kernel whose relaxation is meant for some times only."""
+class KernelOf(Kernel):
+    """A kernel made of another one, as a skin on a substrate.
+
+    A subclass has the field of the other kernel and says what it changes. All else is that of the
+    substrate, but a closed form, which holds for the very compliance of the substrate.
+    """
+
+    substrate_field: ClassVar[str] = "substrate"
+    """Name of the field of the other kernel."""
+
+    def mean_compliance(self) -> float:
+        """Return G(0) [m/Pa] of the substrate."""
+        return mean_compliance(self._substrate)
+
+    def branches(self) -> tuple[Branch, ...]:
+        """Return the branches of the substrate."""
+        return self._substrate.branches()
 
     def time_span(self) -> tuple[float, float]:
-        """Return the shortest and the longest time [s] after a jump at which it holds.
+        """Return the span [s] of the substrate."""
+        return self._substrate.time_span()
 
-        A run with a shorter step, or one that lasts longer, is refused.
-        """
-        ...
+    def without_skin(self) -> Kernel:
+        """Return the substrate, without any skin of its own."""
+        return self._substrate.without_skin()
+
+    def scaled(self, share: float) -> Kernel:
+        """Return the same kernel of an elastic substrate ``share`` times as stiff."""
+        return self.model_copy(update={self.substrate_field: self._substrate.scaled(share)})
+
+    def depth_to_base(self) -> float:
+        """Return the depth [m] of the base under the substrate."""
+        return self._substrate.depth_to_base()
+
+    def bonded_layer(self) -> tuple[float, float] | None:
+        """Return thickness [m] and Poisson's ratio of a substrate that is a bonded layer."""
+        return self._substrate.bonded_layer()
+
+    @property
+    def _substrate(self) -> Kernel:
+        return cast(Kernel, getattr(self, self.substrate_field))
+
+
+class _Stiffened(KernelOf):
+    """An elastic solid whose stiffness is a multiple of another's; not registered."""
+
+    substrate: Kernel
+    factor: float
+
+    def compliance(self, q: Array) -> Array:
+        return self.substrate.compliance(q) / self.factor
+
+    def mean_compliance(self) -> float:
+        return mean_compliance(self.substrate) / self.factor
+
+    def branches(self) -> tuple[Branch, ...]:
+        return ()
+
+    def without_skin(self) -> Kernel:
+        return self
+
+
+class _StiffenedClosedForm(_Stiffened):
+    """The same of a solid whose Green's function is known in closed form."""
+
+    def greens_function(self, r: Array) -> Array:
+        return cast(HasClosedForm, self.substrate).greens_function(r) / self.factor
+
+    def radial_primitive(self, r: Array) -> Array:
+        return cast(HasClosedForm, self.substrate).radial_primitive(r) / self.factor

@@ -28,8 +28,6 @@ from pellicle.components import (
     AreaCorrection,
     Component,
     FromRegistry,
-    HasRelaxation,
-    HasTimeSpan,
     Indenter,
     Interaction,
     Kernel,
@@ -47,7 +45,8 @@ from pellicle.schema.notebook import summary
 from pellicle.schema.paths import get, replaced, walk
 from pellicle.variables import VARIABLES, Variable, corrected_area, corrected_fraction
 
-from .loading import Loading, refuse_pulls
+from .describe import inputs
+from .loading import Loading, fields_from
 
 DEFAULT_SOLVER = "active_set"
 # Increment if an equal configuration gives different numbers, not if the file layout changes.
@@ -106,10 +105,11 @@ class Run(FromFile):
     def _pulls_by_an_interaction(
         cls, value: object, make: ValidatorFunctionWrapHandler, info: ValidationInfo
     ) -> Any:
-        if info.data.get("interaction", "not valid") is not None:
-            return make(value)
-        if isinstance(value, (Mapping, Loading)):
-            refuse_pulls(value.model_dump() if isinstance(value, Loading) else value)
+        if info.data.get("interaction", "not valid") is None:
+            if isinstance(value, Loading):
+                value.refuse_pulls()
+            elif isinstance(value, Mapping):
+                value = fields_from(value, interaction=False)
         return make(value)
 
     @model_validator(mode="after")
@@ -133,17 +133,16 @@ class Run(FromFile):
                 f"legs of {self.loading.prescribed}",
                 "loading.time",
             )
-        if isinstance(self.kernel, HasTimeSpan):
-            shortest, longest = self.kernel.time_span()
-            duration = math.fsum(self.loading.durations)
-            least = min((t for t in self.loading.durations if t > 0), default=math.inf)
-            if least < shortest or duration > longest:
-                reason = f"has a step of {least:g}" if least < shortest else f"lasts {duration:g}"
-                raise ConfigError(
-                    f"{reason} s, and the relaxation of {name!r} holds from {shortest:g} to "
-                    f"{longest:g} s; give it a wider span, or other times",
-                    f"loading.{self.loading.prescribed if self.loading.samples else 'time'}",
-                )
+        shortest, longest = self.kernel.time_span()
+        duration = math.fsum(self.loading.durations)
+        least = min((t for t in self.loading.durations if t > 0), default=math.inf)
+        if least < shortest or duration > longest:
+            reason = f"has a step of {least:g}" if least < shortest else f"lasts {duration:g}"
+            raise ConfigError(
+                f"{reason} s, and the relaxation of {name!r} holds from {shortest:g} to "
+                f"{longest:g} s; give it a wider span, or other times",
+                f"loading.{self.loading.prescribed if self.loading.samples else 'time'}",
+            )
         return self
 
     @model_validator(mode="after")
@@ -171,7 +170,6 @@ class Run(FromFile):
         kernel, interaction = self.kernel, self.interaction
         if interaction is None or not branches_of(kernel) or interaction.cutoff() > 0:
             return self
-        assert isinstance(kernel, HasRelaxation)
         q = np.array([np.pi / self.grid.cell_size])
         with errors_attributed_to(kernel):
             solid = kernel.without_skin().compliance(q).item()
@@ -212,9 +210,7 @@ class Run(FromFile):
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: every value with its unit and meaning."""
-        from .describe import inputs
-
-        values = list(inputs(json.loads(self.to_json())))
+        values = list(inputs(json.loads(self.to_json()), Run))
         types = {i.name: i.value for i in values}
         rows = [
             (i.part, "type" if i.words == i.part else i.words, i.value, i.meaning)

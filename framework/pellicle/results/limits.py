@@ -49,7 +49,7 @@ def beyond_theory(dataset: xr.Dataset, configuration: Mapping[str, Any]) -> dict
     if not contact.any() or not np.isfinite(displacement).all():
         return messages
     step = int(last["step"])
-    thickness, deepest = base_depth(configuration["kernel"]), float(displacement[contact].max())
+    thickness, deepest = dataset.attrs["depth_to_base"], float(displacement[contact].max())
     if deepest > thickness:
         messages[DEEP] = (
             f"step {step}: the surface is pressed down by {readable(deepest, 'm', DIGITS)}, "
@@ -65,14 +65,3 @@ def beyond_theory(dataset: xr.Dataset, configuration: Mapping[str, Any]) -> dict
             "far"
         )
     return messages
-
-
-def base_depth(kernel: Mapping[str, Any]) -> float:
-    """Return the depth [m] of the rigid base under the layers of a kernel; ∞ if none is known."""
-    if kernel.get("substrate") == "rigid":
-        return math.fsum(layer["thickness"] for layer in kernel.get("layers", ())) or math.inf
-    # Other kernels may call the thickness of a skin so.
-    if str(kernel.get("type")).endswith("_layer") and "thickness" in kernel:
-        return float(kernel["thickness"])
-    inner = [base_depth(value) for value in kernel.values() if isinstance(value, Mapping)]
-    return min(inner, default=math.inf)

@@ -19,7 +19,7 @@ from pellicle.errors import ConfigError, PluginError
 from pellicle.surface.grid_checks import warn_of_cells, warn_of_period
 from pellicle.surface.operators import make_operator
 
-from .relaxation import warn_of_relaxation
+from .relaxation_checks import warn_of_relaxation
 
 
 def compose(run: Run) -> Setting:

@@ -25,7 +25,7 @@ def get(at: Any, path: str) -> Any:
         elif isinstance(at, (list, tuple)):
             at = at[int(name)] if name.isdecimal() and int(name) < len(at) else None
         else:
-            at = getattr(at, name, None) if isinstance(at, Model) else None
+            at = at.entries.get(name, (None, None))[0] if isinstance(at, Model) else None
     return at
 
 
@@ -38,7 +38,7 @@ def walk(
     """
     inner: list[tuple[str, Any, FieldInfo | None]]
     if isinstance(at, Model):
-        inner = [(name, getattr(at, name), info) for name, info in at.described_fields.items()]
+        inner = [(name, value, info) for name, (value, info) in at.entries.items()]
     elif isinstance(at, Mapping):
         inner = [(str(name), value, None) for name, value in at.items()]
     elif isinstance(at, (list, tuple)):
@@ -80,8 +80,8 @@ def _replaced(at: Any, names: list[str], value: object, path: str) -> Any:
     if not names:
         return value
     if isinstance(at, Model):
-        set_ = at.model_fields_set | {"type"}
-        at = {name: getattr(at, name) for name in at.described_fields if name in set_}
+        left_out = type(at).model_fields.keys() - at.model_fields_set - {"type"}
+        at = {name: value for name, (value, _) in at.entries.items() if name not in left_out}
     name, rest = _head(at, names)
     if isinstance(at, Mapping):
         return {**at, name: _replaced(at.get(name, {}), rest, value, f"{path}{name}.")}

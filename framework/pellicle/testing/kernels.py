@@ -9,8 +9,8 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.checks import read_only
-from pellicle.components import HasRelaxation, Kernel
-from pellicle.components.calls import branches_of
+from pellicle.components import Kernel
+from pellicle.components.calls import branches_of, instantaneous
 from pellicle.grid import Grid
 from pellicle.surface.kernel_calls import HasClosedForm, mean_compliance
 from pellicle.surface.operators import displacement
@@ -74,8 +74,6 @@ def branches_have_shares_and_times(kernel: Kernel) -> None:
 
 def scaled_by_one_is_the_kernel(kernel: Kernel) -> None:
     """scaled(1) is elastic, with the compliance and the mean compliance of the kernel."""
-    if not isinstance(kernel, HasRelaxation):
-        return
     elastic = kernel.scaled(1.0)
     require(not branches_of(elastic), f"scaled(1) has the branches {branches_of(elastic)}")
     require_close(
@@ -93,8 +91,6 @@ def scaled_by_one_is_the_kernel(kernel: Kernel) -> None:
 
 def scaled_stiffens_the_solid_alone(kernel: Kernel) -> None:
     """The stiffness of scaled(share) is 1/G + (share − 1)/G₀, with G₀ of without_skin()."""
-    if not isinstance(kernel, HasRelaxation):
-        return
     q = _WAVES
     whole, solid = 1 / kernel.compliance(q), 1 / kernel.without_skin().compliance(q)
     for share in (0.01, 0.5, 3.0):
@@ -109,15 +105,10 @@ def scaled_stiffens_the_solid_alone(kernel: Kernel) -> None:
 
 def without_skin_has_no_skin(kernel: Kernel) -> None:
     """The solid without its skin relaxes as the kernel does, and has no skin to take off."""
-    if not isinstance(kernel, HasRelaxation):
-        return
     solid = kernel.without_skin()
-    if not isinstance(solid, HasRelaxation):
-        require(not branches_of(kernel), "without_skin() does not relax")
-        return
-    require(
-        branches_of(solid) == branches_of(kernel), "without_skin() relaxes as another kernel does"
-    )
+    if branches_of(solid) != branches_of(kernel):
+        wrong = "relaxes as another kernel does" if branches_of(solid) else "does not relax"
+        raise AssertionError(f"without_skin() {wrong}")
     require_close(
         solid.without_skin().compliance(_WAVES),
         solid.compliance(_WAVES),
@@ -128,8 +119,7 @@ def without_skin_has_no_skin(kernel: Kernel) -> None:
 
 def _indent(kernel: Kernel, boundary: str) -> None:
     # A run of a kernel that relaxes would need times.
-    if isinstance(kernel, HasRelaxation):
-        kernel = kernel.scaled(1.0)
+    kernel = instantaneous(kernel)
     grid = {"points": 24, "size": "1 mm", "boundary": boundary}
     solved(grid=grid, kernel=kernel, loading={"depth": ["5 um", "20 um"]})
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from pellicle.arrays import Array
-from pellicle.components import ForceCurve, HasLayerForceCurve, LayerForceCurve, MayBeBondedLayer
+from pellicle.components import ForceCurve, HasLayerForceCurve, LayerForceCurve
 from pellicle_fit.parameters import MODULUS, TENSION, THICKNESS, Coordinates, Parameter, Values
 
 from .checked_curve import checked_curve
@@ -103,10 +103,9 @@ class FreeLayerModel(ForceModel):
 
 def known_layer(indenter: object, solid: Solid) -> LayerModel | None:
     """Return the model of a bonded layer; None if the solid is another or has to be simulated."""
-    kernel = solid.kernel
-    if not isinstance(indenter, HasLayerForceCurve) or not isinstance(kernel, MayBeBondedLayer):
+    if not isinstance(indenter, HasLayerForceCurve):
         return None
-    fields = kernel.bonded_layer()
+    fields = solid.kernel.bonded_layer()
     if fields is None or fields[1] < 0:
         return None
     model = LayerModel(indenter, *fields)

@@ -20,7 +20,7 @@ class Exponential(Interaction):
 
     type: Literal["exponential"] = "exponential"
     work_of_adhesion: Annotated[
-        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m**2]")
+        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m2]")
     ]
     range: Annotated[Length, Field(description="decay length of the energy [m]")]
 

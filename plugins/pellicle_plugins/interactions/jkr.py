@@ -9,10 +9,10 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import ConfigDict, Field
 
+from pellicle import Grid
 from pellicle.arrays import Array
 from pellicle.components import Interaction, Kernel
-from pellicle.contact.law import GapLaw
-from pellicle.grid import Grid
+from pellicle.contact import GapLaw
 from pellicle.units import WorkOfAdhesion
 
 from .linear import Linear
@@ -42,7 +42,7 @@ class JKR(Interaction):
 
     type: Literal["jkr"] = "jkr"
     work_of_adhesion: Annotated[
-        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m**2]")
+        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m2]")
     ]
 
     estimate_error: Annotated[

@@ -2,27 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Literal
 
 from pydantic import Field
 
 from pellicle.arrays import Array
-from pellicle.components import (
-    Branch,
-    FromRegistry,
-    HasRelaxation,
-    HasTimeSpan,
-    Kernel,
-    MayBeBondedLayer,
-)
-from pellicle.surface.kernel_calls import mean_compliance
+from pellicle.components import FromRegistry, Kernel, KernelOf
 
 from .skin import Skin
-from .stiffened import stiffened
 
 
-class Coated(Skin):
+class Coated(Skin, KernelOf):
     """Skin with tension and bending stiffness on any other kernel.
 
     The stiffnesses of substrate and skin add at each wave number. This is exact if the skin
@@ -44,34 +34,6 @@ class Coated(Skin):
         substrate = self.substrate.compliance(q)
         return substrate / (1 + substrate * self.skin_stiffness(q))
 
-    def mean_compliance(self) -> float:
-        """Return G(0) of the substrate [m/Pa]: a uniform displacement does not bend the skin."""
-        return mean_compliance(self.substrate)
-
-    def branches(self) -> tuple[Branch, ...]:
-        """Return the branches of the substrate: the skin is elastic."""
-        return self.substrate.branches() if isinstance(self.substrate, HasRelaxation) else ()
-
-    def time_span(self) -> tuple[float, float]:
-        """Return the span of the substrate [s]; all times if it states none."""
-        substrate = self.substrate
-        return substrate.time_span() if isinstance(substrate, HasTimeSpan) else (0.0, math.inf)
-
-    def scaled(self, share: float) -> Kernel:
-        """Return the skin on an elastic substrate ``share`` times as stiff."""
-        return self.model_copy(update={"substrate": stiffened(self.substrate, share)})
-
-    def without_skin(self) -> Kernel:
-        """Return the substrate, without any skin of its own."""
-        if isinstance(self.substrate, HasRelaxation):
-            return self.substrate.without_skin()
-        return self.substrate
-
     def bonded_layer(self) -> tuple[float, float] | None:
-        """Return thickness [m] and Poisson's ratio of a substrate that is a bonded layer.
-
-        None if it is not, or if the skin resists bending.
-        """
-        if self.bending or not isinstance(self.substrate, MayBeBondedLayer):
-            return None
-        return self.substrate.bonded_layer()
+        """Return h [m] and ν of a bonded layer under the skin; None if the skin resists bending."""
+        return None if self.bending else super().bonded_layer()

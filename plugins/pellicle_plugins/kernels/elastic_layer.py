@@ -26,6 +26,10 @@ class ElasticLayer(IsotropicSolid):
         """
         return self.thickness * self.uniaxial_compliance
 
+    def depth_to_base(self) -> float:
+        """Return the thickness h [m]."""
+        return self.thickness
+
     def _twice_depth(self, q: Array) -> Array:
         """Return 2qh, limited to `DEEP` so that exp does not underflow."""
         return np.minimum(2 * self.thickness * q, DEEP)

@@ -95,3 +95,9 @@ class Layered(Kernel):
         if self.substrate != "rigid":
             return math.inf
         return sum(layer.thickness * layer.uniaxial_compliance for layer in self.layers)
+
+    def depth_to_base(self) -> float:
+        """Return Σ h [m] of layers on a rigid base; ∞ on a half-space."""
+        if self.substrate != "rigid":
+            return math.inf
+        return math.fsum(layer.thickness for layer in self.layers)

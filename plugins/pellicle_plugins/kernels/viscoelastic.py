@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Final, Literal, Self
+from typing import Annotated, ClassVar, Final, Literal, Self
 
 from pydantic import ConfigDict, Field, field_validator, model_validator
 
 from pellicle.arrays import Array
-from pellicle.components import Branch, FromRegistry, HasRelaxation, Kernel
+from pellicle.components import Branch, FromRegistry, Kernel, KernelOf
 from pellicle.schema import Model
-from pellicle.surface.kernel_calls import mean_compliance
+from pellicle.surface import mean_compliance
 from pellicle.units import Quantity, Time
 
 from .power_law import PronySeries, power_law_series
 from .skin import Skin
-from .stiffened import stiffened
 from .tensed_membrane import TensedMembrane
 
 # Fractions given in decimals may sum to 1 plus rounding.
@@ -82,7 +81,7 @@ class PowerLaw(Model):
         return self
 
 
-class Viscoelastic(Kernel):
+class Viscoelastic(KernelOf):
     """A solid whose stiffness relaxes in time (Ferry 1980).
 
     The stiffness is E(t) = E (1 − Σ f (1 − e^(−t/τ))) with fractions f, a Prony series; of a power
@@ -94,6 +93,7 @@ class Viscoelastic(Kernel):
         json_schema_extra={"oneOf": [{"required": ["relaxation"]}, {"required": ["power_law"]}]}
     )
 
+    substrate_field: ClassVar[str] = "solid"
     type: Literal["viscoelastic"] = "viscoelastic"
     solid: Annotated[
         Kernel,
@@ -136,7 +136,7 @@ class Viscoelastic(Kernel):
 
     def scaled(self, share: float) -> Kernel:
         """Return the elastic kernel of ``share`` times the instantaneous stiffness."""
-        return stiffened(self.solid, share * self._instantaneous)
+        return self.solid.scaled(share * self._instantaneous)
 
     def time_span(self) -> tuple[float, float]:
         """Return the span of the power law; all times if there is none."""
@@ -145,6 +145,9 @@ class Viscoelastic(Kernel):
     def without_skin(self) -> Kernel:
         """Return this kernel: there is no skin on it."""
         return self
+
+    def bonded_layer(self) -> None:
+        """Return None: the layer relaxes."""
 
     @property
     def _instantaneous(self) -> float:
@@ -163,7 +166,7 @@ class Viscoelastic(Kernel):
                 'without it, and put the skin on top: type = "coated", with this kernel as its '
                 "substrate"
             )
-        if isinstance(solid, HasRelaxation) and solid.branches():
+        if solid.branches():
             raise ValueError(
                 f"{solid.type_name} relaxes already; give an elastic solid, and all fractions in "
                 "one relaxation"

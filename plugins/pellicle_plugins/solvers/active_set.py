@@ -9,9 +9,16 @@ import numpy as np
 
 from pellicle.arrays import Array, Mask
 from pellicle.components import Monitor
-from pellicle.contact.initial_guess import first_guess, with_force
-from pellicle.contact.problem import Depth, Problem
-from pellicle.contact.solution import Progress, Solution, State, Stop
+from pellicle.contact import (
+    Depth,
+    Problem,
+    Progress,
+    Solution,
+    State,
+    Stop,
+    first_guess,
+    with_force,
+)
 
 from .adhesion import AdhesionSolver, refusal_of
 from .adhesive_response import with_zone

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from pellicle.checks import component_name, errors_attributed_to, real_number
-from pellicle.components.kernel import HasRelaxation, Kernel
+from pellicle.components.kernel import Kernel
 from pellicle.contact.time_step import Branch
 from pellicle.errors import PluginError, shown
 
@@ -15,8 +15,6 @@ _ROUNDING = 1e-12
 
 def branches_of(kernel: Kernel) -> tuple[Branch, ...]:
     """Return the branches of a kernel that relaxes; none of one that is elastic."""
-    if not isinstance(kernel, HasRelaxation):
-        return ()
     with errors_attributed_to(kernel):
         value = tuple(Branch(*branch) for branch in kernel.branches())
     branches = tuple(
@@ -37,4 +35,4 @@ def instantaneous(kernel: Kernel) -> Kernel:
 
     It may have a closed form, which a kernel that relaxes need not have.
     """
-    return kernel.scaled(1.0) if isinstance(kernel, HasRelaxation) else kernel
+    return kernel.scaled(1.0) if branches_of(kernel) else kernel
