@@ -229,7 +229,10 @@ def to_text(caveats: Iterable[Caveat]) -> str:
 def from_text(text: str) -> tuple[Caveat, ...]:
     """Return the caveats in a text of `to_text`; none of an empty text."""
     return tuple(
-        Caveat(Status[code], {n: float(v) if v in ("inf", "nan") else v for n, v in values.items()})
+        Caveat(
+            Status[code],
+            {n: float(v) if v in ("inf", "-inf", "nan") else v for n, v in values.items()},
+        )
         for code, values in json.loads(text or "[]")
     )
 
