@@ -16,6 +16,7 @@ from pydantic import (
     SerializationInfo,
     SkipValidation,
     WithJsonSchema,
+    create_model,
     model_serializer,
     model_validator,
 )
@@ -97,16 +98,12 @@ class Loading(Options):
         """Return the choice of one table for each prescription."""
         reference = handler(schema)
         whole = handler.resolve_ref_schema(reference)
-        options = {name: whole["properties"][name] for name in OPTIONS}
+        whole.clear()
         choices = []
         for type_, component in prescriptions().items():
-            table = handler.resolve_ref_schema(handler(component.__pydantic_core_schema__))
-            steps = LoadSteps(component.quantity(interaction=True), legs=True)
-            fields = {type_: steps.__get_pydantic_json_schema__(schema, handler)}
-            fields |= {name: field for name, field in table["properties"].items() if name != "type"}
-            required = [type_, *table.get("required", [])]
-            choices.append(table | {"properties": fields | options, "required": required})
-        whole.clear()
+            keys: dict[str, Any] = {n: (i.annotation, i) for n, i in keys_of(component).items()}
+            table = create_model(f"Loading_{type_}", __base__=Model, **keys)
+            choices.append(handler.resolve_ref_schema(handler(table.__pydantic_core_schema__)))
         whole.update(description=inspect.getdoc(cls), oneOf=choices)
         return reference
 
@@ -222,7 +219,7 @@ def keys_of(component: type[Prescription]) -> dict[str, FieldInfo]:
     """Return the keys of ``[loading]`` with a prescription: its type, its fields, the options."""
     meaning = (inspect.getdoc(component) or "").partition("\n")[0]
     steps = FieldInfo(annotation=tuple[float, ...], description=meaning)
-    steps.metadata.append(LoadSteps(component.quantity(), legs=True))
+    steps.metadata.append(LoadSteps(component.quantity(interaction=True), legs=True))
     fields = dict(component.model_fields)
     return {fields.pop("type").default: steps, **fields, **Options.model_fields}
 
