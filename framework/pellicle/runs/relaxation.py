@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -44,7 +45,9 @@ class Relaxation:
         """Operator applications of the last `setting` to bring the memory forward by one step."""
         return 2 if self._skin and self._done else 0
 
-    def setting(self, setting: Setting, pressures: Array, displacements: Array) -> Setting:
+    def setting(
+        self, setting: Setting, pressures: Sequence[Array], displacements: Sequence[Array]
+    ) -> Setting:
         """Return the setting of the step after those with these pressures and displacements.
 
         Its operator is that of a solid γ times as stiff, its surface is displaced by what the steps
