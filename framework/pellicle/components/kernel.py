@@ -24,7 +24,7 @@ class Kernel(Component):
     If the solid relaxes in time, ``compliance(q)`` is its instantaneous response. A skin on the
     solid does not relax: at a time t after a jump the stiffness is
     1/G(q) − Σ gⱼ (1 − e^(−t/τⱼ))/G₀(q), with G₀ the compliance of `without_skin`, and shares gⱼ and
-    times τⱼ of `branches`.
+    times τⱼ of `branches`. An elastic kernel may count a skin of its own as part of the solid.
     """
 
     family: ClassVar[str] = "kernel"

@@ -12,6 +12,7 @@ from pellicle.arrays import Array
 from pellicle.components import Setting
 from pellicle.components.calls import branches_of
 from pellicle.config.run import Run
+from pellicle.contact.finished_step import FinishedStep
 from pellicle.contact.skin_operators import skin_operators
 from pellicle.contact.time_step import (
     Memory,
@@ -45,16 +46,14 @@ class Relaxation:
         """Operator applications of the last `setting` to bring the memory forward by one step."""
         return 2 if self._skin and self._done else 0
 
-    def setting(
-        self, setting: Setting, pressures: Sequence[Array], displacements: Sequence[Array]
-    ) -> Setting:
-        """Return the setting of the step after those with these pressures and displacements.
+    def setting(self, setting: Setting, path: Sequence[FinishedStep]) -> Setting:
+        """Return the setting of the step after those of a path; each of them is taken once.
 
         Its operator is that of a solid γ times as stiff, its surface is displaced by what the steps
         before have left behind. The operator of ``setting`` is the instantaneous one.
         """
-        for index in range(self._done, len(displacements)):
-            self._advance(pressures[index], displacements[index])
+        for finished in path[self._done :]:
+            self._advance(finished.state.pressure, finished.displacement)
         step, displacement = self._steps[self._done], None
         if self._skin and not self._done and step.is_jump:
             return setting

@@ -63,8 +63,7 @@ def _next_step(
     state = path[-1].state if path else None
     setting, applications = replace(base, state=state, path=end_of(path)), 0
     if memory := physics.memory:
-        pressures, displacements = [s.state.pressure for s in path], [s.displacement for s in path]
-        setting = memory.setting(setting, pressures, displacements)
+        setting = memory.setting(setting, path)
         applications = memory.applications
     step = solve_step(run, setting, run.loading.values[len(path)], monitor)
     applications += step.effort.applications
