@@ -30,7 +30,7 @@ class Staircase(Solver):
         self.starts.append(start)
         pressure = np.zeros(problem.grid.points)
         pressure.ravel()[: self.cells(problem.control.value)] = 1.0
-        return pl.Solution(pressure, 2)
+        return pl.Solution(State.of_pressure(pressure), 2)
 
 
 def setting(start: float | None = None) -> pl.Setting:
@@ -133,7 +133,7 @@ def test_quantity_that_is_lost_is_not_found() -> None:
 
         def solve(self, problem: Problem, start: Any, monitor: Any) -> pl.Solution:
             """Return no numbers."""
-            return pl.Solution(np.full(problem.grid.shape, np.nan), 1)
+            return pl.Solution(State.of_pressure(np.full(problem.grid.shape, np.nan)), 1)
 
     run = pl.Run(
         grid={"points": 8, "size": 1e-3, "boundary": "periodic"},

@@ -107,7 +107,7 @@ class Result:
 
         The equations are solved all the same, so the statuses do not show it.
         """
-        return beyond_theory(self.dataset, self.configuration)
+        return beyond_theory(self.dataset, self.grid)
 
     def caveats_by_phrase(self) -> dict[str, list[tuple[int, str]]]:
         """Return number and sentence of the steps with each kind of caveat, failures left out.

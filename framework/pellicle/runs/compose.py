@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pellicle.checks import errors_attributed_to
+from pellicle.checks import component_name, errors_attributed_to
 from pellicle.components import Force, Search, Setting
 from pellicle.components.calls import (
     check_solver,
@@ -13,8 +13,9 @@ from pellicle.components.calls import (
     target_of,
 )
 from pellicle.components.checked_law import law_of
+from pellicle.components.rules import interactions
 from pellicle.config.run import Run
-from pellicle.errors import ConfigError
+from pellicle.errors import ConfigError, PluginError
 from pellicle.surface.grid_checks import warn_of_cells, warn_of_period
 from pellicle.surface.operators import make_operator
 
@@ -30,7 +31,12 @@ def compose(run: Run) -> Setting:
     if run.indenter.footprint == "domain":
         warn_of_period(profile, run.grid)
     warn_of_relaxation(run)
-    law = law_of(run.interaction, run.kernel, run.grid) if run.interaction else None
+    law = None
+    if run.interaction:
+        law = law_of(run.interaction, run.kernel, run.grid)
+        for rule in interactions.RULES:
+            if broken := rule(run.interaction, interactions.Case(run.grid, run.kernel)):
+                raise PluginError(f"{component_name(run.interaction)}: {broken}")
     setting = Setting(run.grid, operator, profile, run.indenter.footprint, law=law)
     if law:
         check_solver(run.solver, setting.problem(Force(0.0)))

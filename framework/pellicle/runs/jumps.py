@@ -54,15 +54,6 @@ def jump_energy(path: Sequence[PathPoint], equilibrium: Equilibrium, tolerance: 
     return 0.0 if lost <= uncertain else lost
 
 
-def leaves_path(path: Sequence[PathPoint], equilibrium: Equilibrium, tolerance: float) -> bool:
-    """Return whether an equilibrium is not the continuous continuation of a path.
-
-    A patch has come or gone, or the energy changed by more or less than the work of the step.
-    """
-    lost, uncertain = _lost_energy(path, equilibrium, tolerance)
-    return not abs(lost) <= uncertain or asperity_jumped(path[-1].state, equilibrium)
-
-
 def _lost_energy(
     path: Sequence[PathPoint], equilibrium: Equilibrium, tolerance: float
 ) -> tuple[float, float]:

@@ -10,14 +10,14 @@ from functools import partial
 import xarray as xr
 
 from pellicle.components import Monitor, Search, Setting
-from pellicle.components.calls import branches_of, target_of
+from pellicle.components.calls import branches_of, solution_of, target_of
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
+from pellicle.contact.equilibrium import equilibrium_of
 from pellicle.contact.finished_step import FinishedStep, end_of
 from pellicle.contact.load_step import Effort, LoadStep
 from pellicle.results.step import Steps, step_dataset
 
-from .following import followed
 from .progress import Bar
 from .relaxation import Relaxation
 from .target_search import reach
@@ -83,7 +83,9 @@ def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> Lo
     if isinstance(target, Search):
         step = reach(setting, target, run.solver, monitor)
     else:
-        solution, equilibrium = followed(setting, run.solver, setting.problem(target), monitor)
-        step = LoadStep(equilibrium, Effort(solution.iterations, solution.stop), solution.jumped)
+        problem = setting.problem(target)
+        solution = solution_of(run.solver, problem, setting.start(problem), monitor)
+        effort = Effort(solution.iterations, solution.stop)
+        step = LoadStep(equilibrium_of(problem, solution), effort, solution.jumped)
     used = setting.operator.applications - applied
     return replace(step, effort=step.effort._replace(applications=used))

@@ -14,13 +14,12 @@ from typing import Final, Literal
 import numpy as np
 
 from pellicle.components import Monitor, Solver
+from pellicle.components.calls import solution_of
 from pellicle.components.prescription import Search, Setting
-from pellicle.contact.equilibrium import Equilibrium
+from pellicle.contact.equilibrium import Equilibrium, equilibrium_of
 from pellicle.contact.load_step import Effort, LoadStep, SearchEnd
 from pellicle.contact.problem import Depth
 from pellicle.contact.solution import Solution
-
-from .following import followed
 
 # Number of trials to bracket the goal, after which it counts as out of reach.
 _MOST_TRIALS: Final = 40
@@ -122,7 +121,8 @@ class _Trials:
     def _try(self, control: float) -> float:
         goal = self.search.goal
         problem = self.setting.problem(self.search.control(control))
-        solution, equilibrium = followed(self.setting, self.solver, problem, self.monitor)
+        solution = solution_of(self.solver, problem, self.setting.start(problem), self.monitor)
+        equilibrium = equilibrium_of(problem, solution)
         self.iterations += solution.iterations
         value = self.search.measure(equilibrium)
         missed = abs(value - goal) / (abs(goal) or 1.0)

@@ -160,7 +160,7 @@ class Html(Output):
         of_runs = _share_in_words(len(frames), len(rows), "run")
         caption = f"{which} of {of_runs}, each in colours over its own range."
         mapped = tuple(_mapped(table).values())
-        maps = Maps(caption, "run", mapped, list(frames.values()), shared=False)
+        maps = Maps(caption, "run", mapped, list(frames.values()))
         numbers = [run_table(table, rows, list(frames)), *study_path_tables(table, rows)]
         return [
             Section(
@@ -196,10 +196,7 @@ class Html(Output):
         colours = ", each in colours over its own range" if len(chosen) > 1 else ""
         shown_steps = _share_in_words(len(chosen), steps, "load step")
         caption = f"{names} at prescribed {words}, in {shown_steps}{colours}."
-        maps = Maps(
-            caption, "load step", tuple(mapped.values()), frames, begin=max(begin, 0), shared=False
-        )
-        return maps, chosen
+        return Maps(caption, "load step", tuple(mapped.values()), frames, max(begin, 0)), chosen
 
     def _frames_of_runs(
         self, table: xr.Dataset, rows: list[xr.Dataset], folder: Path

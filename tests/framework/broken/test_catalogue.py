@@ -9,7 +9,7 @@ import pytest
 
 import pellicle as pl
 from pellicle import testing
-from pellicle.testing import executors
+from pellicle.testing import executors, interactions
 from pellicle.testing.component import RULES
 from pellicle.testing.rules import rules_of
 from tests.framework.broken.catalogue import Broken, Refused, Taken, make
@@ -96,7 +96,8 @@ def test_run(
 @each_family
 def test_each_rule_refuses_one(name: str) -> None:
     """No rule could be dropped, or say yes to everything, without a test that fails."""
-    rules = RULES if name == "component" else rules_of(f"pellicle.testing.{name}s")
+    of_family = {"component": RULES, "interaction": interactions.RULES}
+    rules = of_family.get(name) or rules_of(f"pellicle.testing.{name}s")
     assert FAMILIES[name].broken.keys() - {"is_registered"} == {rule.__name__ for rule in rules}
 
 

@@ -78,17 +78,17 @@ def _force_limit(run: Run, equilibrium: Equilibrium, solve: Solve) -> dict[str, 
     empty if the interaction has no such limit.
     """
     sticky = run.interaction
-    laws = [law for factor in _WIDER if (law := sticky.wider(factor))] if sticky else []
-    if not laws:
+    wider_laws = [law for factor in _WIDER if (law := sticky.wider(factor))] if sticky else []
+    if not sticky or not wider_laws:
         return {}
     if not equilibrium.contact.any():
         return {"force_extrapolated": equilibrium.force, "force_error": 0.0}
     forces = [equilibrium.force]
     wider = equilibrium
-    for law in laws:
+    for resolved in wider_laws:
         problem = replace(
             equilibrium.problem,
-            law=law_of(law, run.kernel, run.grid),
+            law=law_of(sticky, run.kernel, run.grid, resolved),
             control=Depth(equilibrium.depth),
         )
         _, wider = solve(problem, wider.state)

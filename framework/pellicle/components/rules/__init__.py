@@ -1,0 +1,1 @@
+"""What components keep, asked without a run."""
