@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from enum import Enum
 from math import isfinite
@@ -200,8 +201,7 @@ def status_of(caveats: Sequence[Caveat]) -> Status:
 def sentence_of(caveats: Sequence[Caveat]) -> str:
     """Return the message of a step with these caveats, the gravest first."""
     first, *others = [caveat.sentence for caveat in caveats or (Caveat(Status.CONVERGED),)]
-    said = ("converged, but ", "converged; ")
-    rest = [other.removeprefix(said[0]).removeprefix(said[1]) for other in others]
+    rest = [re.sub("^converged(, but|;) ", "", other) for other in others]
     return _AND.join([first, *rest])
 
 

@@ -68,9 +68,9 @@ def _next_step(
     step = solve_step(run, setting, run.loading.values[len(path)], monitor)
     applications += step.effort.applications
     step = replace(step, effort=step.effort._replace(applications=applications))
-    here = Surroundings(setting, path, Solve(run.solver, monitor))
+    surroundings = Surroundings(setting, path, Solve(run.solver, monitor))
     for term in physics.terms:
-        step = term(step, here)
+        step = term(step, surroundings)
     seconds = time.perf_counter() - started
     return step_dataset(run.grid, len(path) + 1, step, physics.variables, seconds)
 

@@ -152,13 +152,11 @@ def caveats(table: xr.Dataset) -> Iterator[str]:
         for phrase, group in by_phrase(steps).items()
     }
     if BEYOND_THEORY in table:
-        beyond = table[BEYOND_THEORY].values.ravel()
-        kinds[_BEYOND] = [(run, text) for run, text in enumerate(beyond) if text]
-    if any(kinds.values()):
-        names, files = run_names(table), short_files(table)
+        beyond = enumerate(table[BEYOND_THEORY].values.ravel())
+        kinds[_BEYOND] = [(run, text) for run, text in beyond if text]
+    names, files = run_names(table), short_files(table)
     for phrase, messages in kinds.items():
-        if messages:
-            run, message = messages[0]
+        for run, message in messages[:1]:
             yield (
                 f"of {len(names)} runs, in {len({run for run, _ in messages})} {phrase}; "
                 f"{names[run]} (file {files[run]}), {message}"

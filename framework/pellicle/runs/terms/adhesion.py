@@ -35,14 +35,14 @@ _HALVINGS: Final = 6
 _STEEPEST: Final = 0.3
 
 
-def adhesion(run: Run, step: LoadStep, here: Surroundings) -> LoadStep:
+def adhesion(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
     """Add jumps, the limit of the force, and whether zone and slopes are those of the theory."""
-    setting, equilibrium, jumped_as_whole = here.setting, step.equilibrium, step.jumped
+    setting, equilibrium, jumped_as_whole = surroundings.setting, step.equilibrium, step.jumped
     if step.effort.stop is Stop.PULLED_OFF:
-        step = step.having({}, [_pulled_off(step, here)])
+        step = step.having({}, [_pulled_off(step, surroundings)])
     lost = jump_energy(setting.path, equilibrium, run.solver.tolerance)
     jumped = jumped_as_whole or lost > 0 or asperity_jumped(setting.state, equilibrium)
-    limit = _force_limit(run, equilibrium, here.solve)
+    limit = _force_limit(run, equilibrium, surroundings.solve)
     step = step.having({"jumped": jumped, "jump_energy": lost, **limit})
     if not step.converged:
         return step
@@ -106,16 +106,16 @@ def _force_limit(run: Run, equilibrium: Equilibrium, solve: Solve) -> dict[str, 
     return {"force_extrapolated": float(limit), "force_error": error}
 
 
-def _pulled_off(step: LoadStep, here: Surroundings) -> Caveat:
+def _pulled_off(step: LoadStep, surroundings: Surroundings) -> Caveat:
     """Return the caveat with two forces [N], of which the contact of the last state carries one."""
-    setting, force = here.setting, step.equilibrium.problem.control.value
+    setting, force = surroundings.setting, step.equilibrium.problem.control.value
     state = setting.state
     if state is None or not state.contact.any():
         return Caveat(Status.NOTHING_TO_PULL, {"force": force})
     carried, lost = float(state.pressure.sum()) * setting.grid.cell_area, force
     for _ in range(_HALVINGS):
         middle = 0.5 * (carried + lost)
-        solution, _ = here.solve(setting.problem(Force(middle)), state)
+        solution, _ = surroundings.solve(setting.problem(Force(middle)), state)
         if solution.stop is Stop.PULLED_OFF:
             lost = middle
         else:

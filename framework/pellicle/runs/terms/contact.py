@@ -18,11 +18,11 @@ _RESOLVED = 13
 _RESOLVED_ACROSS = 4
 
 
-def contact(run: Run, step: LoadStep, here: Surroundings) -> LoadStep:
+def contact(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
     """Add why the step is not a solution, and whether its contact has too few cells."""
     if not np.isfinite(step.equilibrium.force):
         return step.having({}, [Caveat(Status.NOT_FINITE)])
-    step = step.having({}, _failures(run, step, run.loading.values[len(here.path)]))
+    step = step.having({}, _failures(run, step, run.loading.values[len(surroundings.path)]))
     return step.having({}, _coarse(run, step.equilibrium)) if step.converged else step
 
 

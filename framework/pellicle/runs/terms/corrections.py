@@ -12,7 +12,7 @@ from pellicle.variables import corrected_area as area_variable
 from .surroundings import Surroundings
 
 
-def corrections(run: Run, step: LoadStep, here: Surroundings) -> LoadStep:
+def corrections(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
     """Add the contact area by each correction, and after these the shares of the domain."""
     areas = [corrected_area(c, step.equilibrium.contact, run.grid) for c in run.corrections]
     values = [*areas, *(area / run.grid.area for area in areas)]

@@ -16,10 +16,10 @@ from .surroundings import Surroundings
 _NEAR: Final = 0.05
 
 
-def prescription(run: Run, step: LoadStep, here: Surroundings) -> LoadStep:
+def prescription(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
     """Add the variables of the prescription, and whether its search ended away from the goal."""
     prescribed, search = run.loading.prescription, step.search
-    report = report_of(prescribed, here.setting, step.equilibrium)
+    report = report_of(prescribed, surroundings.setting, step.equilibrium)
     missed = search.missed if search else 0.0
     report |= {v.name: missed for v in prescribed.variables if v.name not in report}
     sticks = step.equilibrium.problem.law is not None

@@ -18,19 +18,19 @@ from .surroundings import Surroundings
 _FARTHEST: Final = 100.0
 
 
-def relaxation(run: Run, step: LoadStep, here: Surroundings) -> LoadStep:
+def relaxation(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
     """Add the time and cycle of the step, and whether the domain is small."""
-    loading, index = run.loading, len(here.path)
+    loading, index = run.loading, len(surroundings.path)
     measures: dict[str, Value] = {}
     if loading.times:
         measures["time"] = loading.times[index]
     if loading.oscillates:
         measures["cycle"] = loading.samples[index].cycle
-    if here.setting.law and branches_of(run.kernel) and loading.durations[index] > 0:
+    if surroundings.setting.law and branches_of(run.kernel) and loading.durations[index] > 0:
         # The energy of a solid that has relaxed on its way does not follow from its surface.
         measures["energy"] = np.nan
     area = np.count_nonzero(step.equilibrium.contact) * run.grid.cell_area
-    largest_area = max(area, *(finished.area for finished in here.path), 0.0)
+    largest_area = max(area, *(finished.area for finished in surroundings.path), 0.0)
     needed, smallest = least_domain(run, index, largest_area), min(run.grid.size)
     if needed <= smallest or not step.converged:
         return step.having(measures)

@@ -16,9 +16,9 @@ from pellicle.contact.stiffness import Stiffness, measure_stiffness
 from .surroundings import Solve, Surroundings
 
 
-def stiffness(run: Run, step: LoadStep, here: Surroundings) -> LoadStep:
+def stiffness(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
     """Add the contact stiffness [N/m], δ being the depth of the indenter."""
-    measured, tolerance = _measured(step.equilibrium, here.solve), run.solver.tolerance
+    measured, tolerance = _measured(step.equilibrium, surroundings.solve), run.solver.tolerance
     missed = Caveat(Status.STIFFNESS, {"measure": measured.residual, "tolerance": tolerance})
     unknown = not measured.residual <= tolerance
     return step.having({"stiffness": measured.value}, [missed] if unknown else [])
