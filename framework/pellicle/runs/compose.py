@@ -19,10 +19,12 @@ from pellicle.surface.grid_checks import warn_of_cells, warn_of_period
 from pellicle.surface.operators import make_operator
 
 from .relaxation import warn_of_relaxation
+from .strangers import ask_strangers
 
 
 def compose(run: Run) -> Setting:
     """Return the setting of the first load step."""
+    ask_strangers(run)
     with errors_attributed_to(run.kernel):
         operator = make_operator(instantaneous(run.kernel), run.grid)
         warn_of_cells(run.kernel.compliance, run.grid)

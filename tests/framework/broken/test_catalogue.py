@@ -9,9 +9,10 @@ import pytest
 
 import pellicle as pl
 from pellicle import testing
+from pellicle.components.rules import CHEAP
 from pellicle.testing.component import RULES
 from pellicle.testing.rules import rules_of
-from tests.framework.broken.catalogue import Broken, Refused, Taken, make
+from tests.framework.broken.catalogue import RULE, Broken, Refused, Taken, make
 from tests.framework.broken.corrections import CORRECTIONS
 from tests.framework.broken.executors import EXECUTORS
 from tests.framework.broken.general import GENERAL
@@ -76,7 +77,8 @@ def test_run(
             with pytest.raises(said.error) as caught:
                 family.uses[use](component, tmp_path / use)
             text = " ".join([str(caught.value), *getattr(caught.value, "__notes__", ())])
-            for word in (f"{component.family} 'broken'", *said.words):
+            by_rule = [f"the rule {rule}: "] if said is RULE else []
+            for word in (f"{component.family} 'broken'", *said.words, *by_rule):
                 assert word in text
             continue
         with warnings.catch_warnings():
@@ -89,7 +91,8 @@ def test_run(
 def test_each_rule_refuses_one(name: str) -> None:
     """No rule could be dropped, or say yes to everything, without a test that fails."""
     rules = RULES if name == "component" else rules_of(f"pellicle.testing.{name}s")
-    assert FAMILIES[name].broken.keys() - {"is_registered"} == {rule.__name__ for rule in rules}
+    names = {rule.__name__ for rule in (*rules, *CHEAP.get(name, ()))}
+    assert FAMILIES[name].broken.keys() - {"is_registered"} == names
 
 
 @each_family

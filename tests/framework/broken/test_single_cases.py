@@ -21,6 +21,7 @@ from tests.framework.broken.corrections import Correction
 from tests.framework.broken.executors import EXECUTORS, Executor
 from tests.framework.broken.general import Tied, TwoFaced
 from tests.framework.broken.interactions import INTERACTIONS
+from tests.framework.broken.kernels import Kernel
 from tests.framework.broken.outputs import Output
 from tests.framework.broken.prescriptions import Volume
 from tests.framework.broken.solvers import Solver
@@ -106,6 +107,20 @@ def test_a_thin_incompressible_layer_may_yield_more_to_shorter_waves(thickness: 
     values = kernel.compliance(np.linspace(1, 2, 5) * np.pi / 5e-4)
     assert (np.diff(values) > 0).all()
     assert pl.displacement(np.eye(8), kernel=kernel, grid=grid).max() > 0
+
+
+class Softening(Kernel):
+    """Half-space whose closed form is that of another."""
+
+    def radial_primitive(self, r: Any) -> Any:
+        return 1.01 * super().radial_primitive(r)
+
+
+def test_a_substrate_of_others_is_asked() -> None:
+    """A stranger's kernel is asked for its rules inside one of ours too, and ours is not blamed."""
+    coated = {"type": "coated", "tension": 0.1, "substrate": Softening(reduced_modulus=1e4)}
+    with pytest.raises(pl.PluginError, match="kernel 'broken' breaks the rule primitive_is_the"):
+        pl.run(STEP | {"kernel": coated}, progress=False)
 
 
 @pytest.mark.filterwarnings("ignore::pellicle.ConvergenceWarning")
