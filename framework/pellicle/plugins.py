@@ -43,6 +43,11 @@ class Registered:
         """The first line of the component's documentation."""
         return (inspect.getdoc(self.component) or "").partition("\n")[0]
 
+    @property
+    def examples(self) -> tuple[Mapping[str, Any], ...]:
+        """The `examples` of the class itself; those of a base class may lack fields."""
+        return tuple(vars(self.component).get("examples", ()))
+
 
 @dataclass(frozen=True)
 class Registry:

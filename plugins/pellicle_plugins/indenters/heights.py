@@ -36,6 +36,7 @@ class Heights(FromHeights):
     """
 
     type: Literal["heights"] = "heights"
+    examples = ({"path": "heights.txt", "unit": "1 um"},)
     path: Annotated[
         InputPath | None,
         Field(

@@ -37,6 +37,7 @@ class Patches(TableFigure):
     """
 
     type: Literal["patches"] = "patches"
+    examples = ({"connectivity": 8, "by": "step"},)
     connectivity: Annotated[
         Literal[4, 8],
         Field(

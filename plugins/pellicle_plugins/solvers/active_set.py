@@ -121,6 +121,7 @@ class ActiveSet(ScaledSolver):
     """
 
     type: Literal["active_set"] = "active_set"
+    examples = ({"tolerance": 1e-09},)
 
     def refuses(self, problem: Problem) -> str:
         """Return "": it solves with a law too."""
