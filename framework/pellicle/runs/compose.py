@@ -7,7 +7,6 @@ from pellicle.components import Force, Search, Setting
 from pellicle.components.calls import (
     check_solver,
     check_value,
-    check_variables,
     instantaneous,
     profile_of,
     target_of,
@@ -37,7 +36,6 @@ def compose(run: Run) -> Setting:
     if law:
         check_solver(run.solver, setting.problem(Force(0.0)))
     prescription = run.loading.prescription
-    check_variables(prescription)
     for index, value in enumerate(run.loading.values):
         field = f"loading.{run.loading.field_of(index)}"
         check_value(prescription, setting, value, field)

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import lru_cache
-
-from pydantic import BaseModel
 
 from pellicle.checks import component_name
 from pellicle.components import Component
 from pellicle.components.rules import CHEAP, Case, broken
-from pellicle.config.run import Run
+from pellicle.config.run import Run, components_in
 from pellicle.errors import PluginError
 from pellicle.plugins import registry
 
@@ -24,21 +21,9 @@ def ask_strangers(run: Run) -> None:
         A component breaks its contract; the message names it, the rule and the violation.
     """
     case = Case(run.grid, run.kernel)
-    for component in _components(run):
+    for component in components_in([run.kernel, run.indenter, run.interaction, run.corrections]):
         if component.family in CHEAP and not _is_own(component):
             _ask(component, case)
-
-
-def _components(value: object) -> Iterator[Component]:
-    """Yield the components in the fields of a model, and those in theirs."""
-    if isinstance(value, Component):
-        yield value
-    if isinstance(value, BaseModel):
-        for name in type(value).model_fields:
-            yield from _components(getattr(value, name))
-    elif isinstance(value, (tuple, list)):
-        for item in value:
-            yield from _components(item)
 
 
 def _is_own(component: Component) -> bool:

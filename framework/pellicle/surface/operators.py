@@ -123,10 +123,6 @@ class Operator:
         """Return G(q) [m/Pa] of the kernel at q > 0, `scaled` as the operator is."""
         return checked_call(self.kernel, "compliance")(q) * self._factor
 
-    def parts(self) -> dict[str, object]:
-        """Return the attributes by name, to detect changes by comparison."""
-        return {**vars(self), "class": type(self), "symbol": self._symbol.double}
-
     def __call__(
         self,
         pressure: NDArray[Float],

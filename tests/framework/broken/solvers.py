@@ -98,7 +98,6 @@ def fill(f: Any, problem: Any, state: Any, monitor: Any) -> Any:
 
 STALLED = pl.Stop.STALLED
 READ_ONLY = Refused("changes what it is given", "read-only")
-CHANGES = Refused("solve() changes problem.operator", "leave its problem as it is")
 NOT_SEEN = Taken("a run measures the residual without it, and counts nothing by it")
 OFF = Marked("CONTACT_RESIDUAL")
 BROKEN: dict[str, Any] = {
@@ -106,9 +105,7 @@ BROKEN: dict[str, Any] = {
         Broken("returns nothing", Refused("solve() returned None"), solve=returns(lambda s: None)),
         gives("in a row", Refused("shape (120,)", "(12, 10)"), state=lambda s: s.pressure.ravel()),
         gives("ends without reason", Refused("stop None", "pellicle.Stop"), stop=lambda s: None),
-        harms("hidden operator", CHANGES, lambda p: object.__setattr__(p, "operator", None)),
         harms("softens the operator", READ_ONLY, lambda p: p.operator._symbol.double.fill(1.0)),
-        harms("symbol", CHANGES, lambda p: setattr(p.operator._symbol, "double", 1.0)),
         harms("lowers the profile", READ_ONLY, lambda problem: np.copyto(problem.profile, -1.0)),
     ],
     "start_belongs_to_the_caller": [

@@ -13,8 +13,9 @@ import pytest
 
 import pellicle as pl
 from pellicle import testing
+from pellicle.components import Variable
 from pellicle.config import explain
-from pellicle.plugins import registry
+from pellicle.plugins import checked_type, registry
 from pellicle.testing import component as component_rules
 from tests.framework.broken.catalogue import GRID, PARTS, Broken, Taken, make, run
 from tests.framework.broken.corrections import Correction
@@ -149,6 +150,20 @@ def test_a_solver_that_uses_its_memory_again_changes_no_earlier_step() -> None:
         for solver in (Thrifty(tolerance=1e-6), Solver(tolerance=1e-6))
     )
     np.testing.assert_array_equal(thrifty, plain)
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        *((name, "the name of another variable") for name in ("force", "status", "x")),
+        *((name, "not a name") for name in ("a/b", "")),
+    ],
+)
+def test_a_variable_has_a_name_of_its_own(name: str, reason: str) -> None:
+    """Registration refuses a prescription that reports what a result cannot hold."""
+    members = {"__doc__": "V.", "__module__": __name__, "variables": (Variable(name, "m", "it"),)}
+    with pytest.raises(pl.PluginError, match=f"variables has '{name}', which is {reason}"):
+        checked_type(type("Reporting", (Volume,), members))
 
 
 class NoType(pl.AreaCorrection):
