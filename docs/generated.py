@@ -78,6 +78,10 @@ def options_of_fits() -> str:
     return fields(pl.FitConfig)
 
 
+_READ_OTHERWISE = (pl.Study, "run"), (pl.Loading, "prescription"), (pl.Loading, "path")
+"""Fields that no key of a table has."""
+
+
 def fields(model: Any) -> str:
     """Return a table of the fields of a model: unit and range, default, meaning."""
     rows = [
@@ -88,7 +92,7 @@ def fields(model: Any) -> str:
             _cell(info.description or ""),
         )
         for name, info in model.model_fields.items()
-        if name != "type" and (model, name) != (pl.Study, "run")
+        if name != "type" and (model, name) not in _READ_OTHERWISE
     ]
     return _table(("field", "takes", "default", "meaning"), rows) if rows else "No fields.\n"
 

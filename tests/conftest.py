@@ -27,11 +27,12 @@ LONGEST = (
     "tests/contracts/test_kit.py",
     "tests/framework/test_study.py",
     "tests/plugins/fit/test_rivals.py",
+    "tests/physics/frozen/test_fits.py",
     "tests/framework/sentences/test_sentences.py",
     "tests/framework/test_memory.py",
     "tests/plugins/solvers/test_active_set.py",
     "tests/packaging/test_strangers.py",
-    "tests/docs/test_benchmarks.py",
+    "tests/plugins/fit/test_checks.py",
     "tests/framework/test_study_killed.py",
 )
 """The longest files, of the slow tests too; longest first."""

@@ -35,6 +35,7 @@ from .config.json_schema import json_schema as json_schema
 from .config.loading import Loading as Loading
 from .config.run import Run as Run
 from .config.study import Study as Study
+from .contact.caveats import Status as Status
 from .contact.problem import Problem as Problem
 from .contact.solution import Solution as Solution
 from .contact.solution import State as State
@@ -55,7 +56,6 @@ from .hookspecs import hookimpl as hookimpl
 from .plugins import registry as registry
 from .results.result import Result as Result
 from .results.result import load as load
-from .results.status import Status as Status
 from .runs.runner import run as run
 from .runs.validation import validate as validate
 from .studies.runner import run_study as run_study

@@ -33,5 +33,5 @@ def _factory(family: type[AnyComponent], example: str) -> Callable[..., AnyCompo
 
 kernel = _factory(Kernel, '"half_space", reduced_modulus="10 kPa"')
 indenter = _factory(Indenter, '"sphere", radius="5 um"')
-interaction = _factory(Interaction, '"jkr", work_of_adhesion="50 mJ/m^2"')
+interaction = _factory(Interaction, '"jkr", work_of_adhesion="50 mJ/m2"')
 solver = _factory(Solver, '"conjugate_gradient", tolerance=1e-6')

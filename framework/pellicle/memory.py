@@ -1,4 +1,4 @@
-"""Compare the memory that a run needs with the available memory before the run starts."""
+"""The memory that is available to this process, and the refusal of a run that needs more."""
 
 from __future__ import annotations
 
@@ -6,29 +6,8 @@ import os
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
-from .components.solver import HasMemory
 from .errors import ConfigError
 from .grid import Grid
-
-# Peak memory in arrays of the grid's shape, eight bytes per cell, measured on Linux with glibc.
-# Arrays above 32 MB are given back when they are freed; of smaller ones malloc may keep three.
-# The indenter, and the operator with its transforms, which are padded on a free boundary.
-_OPERATOR = {"free": 9.0, "periodic": 4.75}
-# The same on a line of cells along x, whose transforms are twice as long and need tables.
-_LINE = 14.0
-# The solver active_set in full contact, and any solver without `HasMemory`; on a periodic grid with
-# half an array for figures that the collector has not freed yet.
-_SOLVER = {"free": 11.5, "periodic": 9.25}
-# An interaction adds eight iterates of three fields, from which the next one is extrapolated, and
-# the fields of two iterations.
-_STICKS = 39.0
-# A load step in the result: pressure, displacement and gap, and a byte per cell for the contact.
-_STEP = 3 + 1 / 8
-# The same step in the compressed file that is assembled in memory. Blocks that the solver has freed
-# and that malloc keeps are too small for it.
-_SERIALISED = 2.6
-# Buffers and Python's own objects [bytes].
-_FIXED = 1e6
 
 PROCESS = 150_000_000
 """Memory of a process that has loaded pellicle and its libraries, without a run [bytes]."""
@@ -36,26 +15,6 @@ PROCESS = 150_000_000
 # Files of a control group: its limit, its usage, and the line of memory.stat with its file cache.
 _VERSION_2 = "memory.max", "memory.current", "inactive_file"
 _VERSION_1 = "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"
-
-
-def estimate(
-    grid: Grid, steps: int, solver: object = None, history: float = 0.0, *, sticks: bool = False
-) -> float:
-    """Return the peak memory [bytes] of a run on ``grid``, without that of the libraries.
-
-    The peak occurs in the last solve, when earlier steps and their file are in memory too. The size
-    of the contact is unknown, so full contact is assumed, which takes up to a third more memory
-    than a small contact. A ``solver`` that is not a `HasMemory` counts as active_set.
-    ``history`` is what a solid that relaxes needs for its memory, in arrays of the grid's shape;
-    ``sticks`` says whether an interaction acts.
-    """
-    cells = grid.points[0] * grid.points[1]
-    operator = _LINE if grid.points[1] == 1 else _OPERATOR[grid.boundary]
-    iterating = solver.arrays(grid) if isinstance(solver, HasMemory) else _SOLVER[grid.boundary]
-    if sticks:
-        iterating += _STICKS
-    arrays = operator + iterating + history + (_STEP + _SERIALISED) * (steps - 1)
-    return _FIXED + 8 * cells * arrays
 
 
 def available(root: Path = Path("/")) -> float | None:

@@ -17,8 +17,8 @@ from typing import Any, Literal, TypeVar, get_args, get_origin
 
 from . import hookspecs
 from .components import FAMILIES, Component, Prescription, Suite
+from .components.prescription import OPTIONS
 from .errors import ConfigError, PellicleError, PluginError, shown
-from .loading import OPTIONS
 from .origins import COMMAND, REMEDY, claimed_by, in_order, isolated
 from .origins import DISABLE as DISABLE
 from .origins import GROUP as GROUP

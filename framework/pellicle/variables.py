@@ -29,6 +29,13 @@ WORDS: Final = "short_name"
 """Attribute of a variable with the words that figures and tables show for it."""
 WORDS_OF_VALUES: Final = "value_words"
 """Attribute of a coordinate of texts: words by value, as JSON."""
+ROLE: Final = "role"
+"""Key in ``json_schema_extra`` of a field, and attribute of its coordinate in a study: one of the
+roles below."""
+SEED: Final = "seed"
+"""The values only repeat a random run: they are not compared, nor have they an order."""
+SHORTEST_WAVE: Final = "shortest wave"
+"""The shortest wavelength of a rough surface, which the cells have to resolve."""
 
 
 def words_of_name(name: str) -> str:
@@ -156,6 +163,12 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
         ("converged", "1", "whether every residual is under the tolerance", "truth"),
         ("status_code", "", "how the step ended, a name of pellicle.Status", "text"),
         ("status", "", "how the step ended, in a sentence", "text"),
+        (
+            "caveats",
+            "",
+            "each status with its values in SI, as JSON [[code, {name: value}], …]",
+            "text",
+        ),
     ),
 }
 _TITLES = {
@@ -214,6 +227,8 @@ COORDINATES = ("step", "x", "y")
 """Names of the coordinates of a result."""
 WALL_PRESSURE = "wall_pressure"
 """The field that a result has beside `FIELDS` if there is an interaction."""
+CAVEATS: Final = "caveats"
+"""Text of the caveats of a step, for programs: `pellicle.contact.caveats` reads it."""
 BEYOND_THEORY: Final = "beyond_theory"
 """Text in the table of a study: what `limits` says of a run, if it says so of any."""
 REQUIRED = (*names_of("field", "status"), "depth", "force", "contact_area", "iterations")

@@ -109,7 +109,7 @@ class Explorer:
         if self._frame is None or not self._frame.largest["force"] > 0:
             return "1 mJ/m²"
         force, area = (float(self._frame.largest[name]) for name in ("force", "contact_area"))
-        return readable(force / (60 * math.sqrt(area)), "J/m**2", 2)
+        return readable(force / (60 * math.sqrt(area)), "J/m2", 2)
 
     def _show(self, solved: Mapping[str, Any], outcome: Frame | Exception) -> None:
         """Draw the frame of a configuration, or show the error of the present one."""

@@ -31,7 +31,7 @@ from cost import case_options, peak
 from tables import in_process, print_head, print_row
 
 import pellicle as pl
-from pellicle import memory
+from pellicle.runs.memory_estimate import memory_of
 
 EXECUTORS = ("serial", "processes", "dask")
 
@@ -79,14 +79,13 @@ def run_alone(case: str, tension: float, points: int, steps: int) -> dict[str, A
     before, started = peak(), time.process_time()
     data = carried_out(points).dataset
     seconds, highest = time.process_time() - started, peak() - before
-    grid = pl.Grid(**run_of(case, points, 0.0)["grid"])
     return {
         "converged": bool(data["converged"].all()),
         "contact": float(data["contact_fraction"][-1]),
         "applications": float(data["operator_applications"].mean()),
         "seconds": seconds / steps,
         "peak": highest,
-        "estimate": memory.estimate(grid, steps),
+        "estimate": memory_of(pl.Run(**run_of(case, points, tension, steps))),
     }
 
 

@@ -24,6 +24,7 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
 DATA = Path(__file__).parents[1] / "data"
 
 PROCESSES = "processes", "dask"
+DRAWINGS = "curves", "profiles", "spectrum", "patches", "distributions"
 """Executors whose workers take seconds to start."""
 
 
@@ -33,7 +34,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         pairs = [
             pytest.param(
                 (family, type_),
-                marks=pytest.mark.slow if type_ in PROCESSES else (),
+                marks=pytest.mark.slow if type_ in (*PROCESSES, *DRAWINGS) else (),
                 id=f"{family}.{type_}",
             )
             for family, members in EXAMPLES.items()

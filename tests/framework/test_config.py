@@ -62,7 +62,7 @@ def test_copy_with_other_values_has_these() -> None:
     """A copy forgets what had been computed of the values that it does not have."""
     loading = pl.Loading(depth=[1e-6, 2e-6])
     assert loading.values == (1e-6, 2e-6)
-    assert loading.model_copy(update={"depth": (3e-6,)}).values == (3e-6,)
+    assert loading.model_copy(update={"path": (3e-6,)}).values == (3e-6,)
     assert loading.model_copy() == loading
 
 

@@ -34,7 +34,7 @@ CONFIGURATION: dict[str, Any] = {
 def table() -> dict[str, Input]:
     """Return the inputs of a run by their names."""
     data = json.loads(pl.Run(**CONFIGURATION).to_json())
-    return {entry.name: entry for entry in inputs(data)}
+    return {entry.name: entry for entry in inputs(data, pl.Run)}
 
 
 def test_values_have_units(table: dict[str, Input]) -> None:
@@ -70,7 +70,7 @@ def test_inputs_are_explained(table: dict[str, Input]) -> None:
 def test_what_nobody_explains_is_there() -> None:
     """A component that is not installed here is listed with its bare numbers."""
     data = {"kernel": {"type": "of_a_stranger", "stiffness": 3.0, "stops": [{"at": 1}]}}
-    assert [(entry.name, entry.value, entry.meaning) for entry in inputs(data)] == [
+    assert [(entry.name, entry.value, entry.meaning) for entry in inputs(data, pl.Run)] == [
         ("kernel", "of a stranger", ""),
         ("kernel.stiffness", "3", ""),
         ("kernel.stops.0.at", "1", ""),

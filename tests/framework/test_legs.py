@@ -96,7 +96,7 @@ def test_a_run_with_legs_is_one_in_every_form() -> None:
 
 def test_inputs_are_listed_leg_by_leg() -> None:
     """Each value has its unit."""
-    rows = {row.name: row.value for row in inputs(json.loads(pl.Run(**RUN).to_json()))}
+    rows = {row.name: row.value for row in inputs(json.loads(pl.Run(**RUN).to_json()), pl.Run)}
     assert rows["loading.depth.0.to"] == "1 µm"
     assert rows["loading.depth.1.hold"] == "5 s"
     assert rows["loading.depth.2.amplitude"] == "10 nm"

@@ -16,20 +16,7 @@ from packaging.version import Version
 
 import pellicle as pl
 from pellicle import memory
-from pellicle.runs.runner import memory_of
-
-
-def _grid(points: int, boundary: str = "free") -> pl.Grid:
-    return pl.Grid(points=points, size=1.0, boundary=boundary)
-
-
-@pytest.mark.parametrize("boundary", ["free", "periodic"])
-def test_estimate_grows_with_cells_and_steps(boundary: str) -> None:
-    """Twice the points take four times the memory, and steps that are kept take more."""
-    large = memory.estimate(_grid(4096, boundary), 1)
-    assert memory.estimate(_grid(8192, boundary), 1) == pytest.approx(4 * large, rel=1e-2)
-    assert memory.estimate(_grid(4096, boundary), 10) > 2 * large
-
+from pellicle.runs.memory_estimate import memory_of
 
 SIZE = 1e-3
 LINE = "periodic, a line of cells"
@@ -83,15 +70,10 @@ KINDS = {
     "periodic, self-affine down to two cells": _kind(
         384, "periodic", indenter=_rough(384, 2.01), loading={"depth": 2e-6}
     ),
-    "periodic, eight steps": _kind(
-        384, "periodic", loading={"depth": [1e-6 * (step + 1) for step in range(8)]}
-    ),
+    "periodic, four steps": _kind(384, "periodic", loading={"depth": [1e-6, 2e-6, 3e-6, 4e-6]}),
     "periodic, full contact, many outputs": _kind(1024, "periodic", **_full(1024), **ALL_OUTPUTS),
     "free, a solid that relaxes": _kind(
         384, kernel=_relaxing(5), loading={"depth": [2e-5] * 4, "time": [0, 1, 2, 3]}
-    ),
-    "free, a skin on a solid that relaxes": _kind(
-        384, kernel=SKIN_ON_GEL, loading={"depth": [2e-5] * 4, "time": [0, 1, 3, 6]}
     ),
     "periodic, a skin on a solid that relaxes": _kind(
         384,
@@ -105,6 +87,17 @@ KINDS = {
         grid={"points": [2**19, 1], "size": [SIZE, SIZE / 2**19], "boundary": "periodic"},
     ),
 }
+
+
+@pytest.mark.parametrize("boundary", ["free", "periodic"])
+def test_estimate_grows_with_cells_and_steps(boundary: str) -> None:
+    """Twice the points take four times the memory, and steps that are kept take more."""
+    large, larger, longer = (
+        memory_of(pl.Run(**_kind(points, boundary, loading={"depth": [1e-6] * steps})))
+        for points, steps in ((4096, 1), (8192, 1), (4096, 10))
+    )
+    assert larger == pytest.approx(4 * large, rel=1e-2)
+    assert longer > 2 * large
 
 
 FULL_CONTACT = {
@@ -160,7 +153,7 @@ def test_estimate_is_the_growth_of_the_peak(kind: str, growths: dict[str, int]) 
 
 def test_require(monkeypatch: pytest.MonkeyPatch) -> None:
     """A run that does not fit is refused, one that fits or on a machine that is silent is not."""
-    grid, needed = _grid(64), memory.estimate(_grid(64), 1)
+    grid, needed = pl.Grid(points=64, size=1.0, boundary="free"), 1e9
     monkeypatch.setattr(memory, "available", lambda: needed * 0.99)
     with pytest.raises(pl.ConfigError, match=r"grid\.points: 64 × 64 with 1 step needs about"):
         memory.require(needed, grid, 1)

@@ -5,12 +5,10 @@ from __future__ import annotations
 import re
 from html import unescape
 
-import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
 import pellicle as pl
-from pellicle.config.picture import draw_indenter
 from tests import small_run
 
 TITLE = "<b>Bead</b> & tip"
@@ -75,14 +73,3 @@ def test_a_run_and_a_study_show_their_values() -> None:
     assert "3 runs" in text
     assert "surface tension" in text
     assert "kernel.tension" in text
-
-
-def test_indenters_are_drawn_to_their_true_profile() -> None:
-    """The height of a cone grows with the distance, on a grid of fewer cells than a large run's."""
-    axes, cone = Figure().subplots(), {"type": "cone", "half_angle": "45 degree"}
-    grid = {"points": [1025, 1], "size": "0.4 mm"}
-    draw_indenter(axes, pl.Run(**{**RUN, "grid": grid, "indenter": cone}))
-    x, height = (np.asarray(values) for values in axes.lines[0].get_data())
-    assert x.size == 512
-    assert axes.get_ylabel() == "indenter [µm]"
-    assert height == pytest.approx(np.abs(x))

@@ -188,7 +188,7 @@ def test_full_contact_obeys_correspondence(tension: float) -> None:
     result = pl.run(full, progress=False)
     assert result.converged
     assert bool(result.dataset["contact"].all())
-    stiffness = grid.area / layer.mean_compliance() * expected(frequency)  # type: ignore[attr-defined]
+    stiffness = grid.area / layer.mean_compliance() * expected(frequency)
     check(result.oscillations[0], stiffness, frequency)
 
 

@@ -95,7 +95,7 @@ def test_other_schema_version(path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.undo()
     with pytest.raises(
         StorageError,
-        match=r"version 99, and this pellicle reads 2; read it with what wrote it .pellicle 0",
+        match=r"version 99, and this pellicle reads 3; read it with what wrote it .pellicle 0",
     ):
         storage.read(path)
 

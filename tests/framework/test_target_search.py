@@ -100,18 +100,23 @@ def test_every_trial_starts_from_the_step_before() -> None:
 
 @pytest.mark.parametrize("goal", [-30.0, 0.0, 55.5])
 @pytest.mark.parametrize("guess", [None, -20.0, 3.0])
-def test_any_quantity_by_depth(goal: float, guess: float | None) -> None:
-    """A quantity of either sign is found at the depth that has it, before first touch too."""
+@pytest.mark.parametrize("slope", [4.0, -4.0])
+def test_any_quantity_by_depth(goal: float, guess: float | None, slope: float) -> None:
+    """A quantity of either sign, rising or falling, is found at the depth that has it.
+
+    Before first touch too.
+    """
     target = pl.Search(
         goal,
-        lambda step: 4.0 * step.problem.control.value - 2.0,
+        lambda step: slope * step.problem.control.value - 2.0,
         control=pl.Depth,
+        increasing=slope > 0,
         resolution=1e-6,
         guess=guess,
     )
     reached = reach(setting(), target, Staircase(cells=lambda depth: 5), lambda *_: None)
     assert reached.how == "met"
-    assert reached.equilibrium.problem.control.value == pytest.approx((goal + 2) / 4, abs=1e-6)
+    assert reached.equilibrium.problem.control.value == pytest.approx((goal + 2) / slope, abs=1e-6)
 
 
 def test_quantity_that_is_lost_is_not_found() -> None:

@@ -53,6 +53,11 @@ TENSION = Quantity("N/m", at_least=0)
         ("J", "3 kg·m²·s⁻²", 3.0),
         ("Pa/m", "3 ((N / mm ** 2) / (mm))", 3e9),
         ("m", "3 Å", 3e-10),
+        # Powers as datasets and UDUNITS write them; pint has units that end in other digits.
+        ("m2", "3 mm2", 3e-6),
+        ("m3", "3 mm^3", 3e-9),
+        ("kg/m3", "3 g / cm3", 3e3),
+        ("m", "1 a0", UREG("a0").to("m").magnitude),
     ],
 )
 def test_value_in_si(unit: str, given: object, expected: float) -> None:

@@ -346,6 +346,7 @@ def test_a_file_for_another_command_is_told_so(pellicle: Command, tmp_path: Path
         assert len(done.stderr.splitlines()) == 1
 
 
+@pytest.mark.slow
 def test_can_be_switched_off(
     pellicle: Command, environment: dict[str, str], tmp_path: Path
 ) -> None:
@@ -372,7 +373,13 @@ def test_written_packages_pass_their_own_tests(
         assert f"test_pellicle_my_{family}.py::test_keeps_its_contract" in shown
 
 
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize(
+    "family",
+    [
+        family if family in ("kernel", "output") else pytest.param(family, marks=pytest.mark.slow)
+        for family in FAMILIES
+    ],
+)
 def test_example_of_a_written_package_runs(
     family: str, written: dict[str, Path], pellicle: Command, tmp_path: Path
 ) -> None:

@@ -66,6 +66,7 @@ def test_path_is_the_same_in_fewer_applications() -> None:
     assert used[1][ahead].mean() < 0.9 * used[0][ahead].mean()
 
 
+@pytest.mark.slow
 def test_jumps_where_the_last_state_does() -> None:
     """A retraction loses its contact at the same step, from states extrapolated up to there."""
     depths = (0.1, -0.4, -0.7, -0.9, -1.1)

@@ -102,7 +102,7 @@ def test_full_contact_of_a_sine(elastic: Table, tension: float, solver: str) -> 
 
 
 @pytest.mark.filterwarnings("ignore::pellicle.ConvergenceWarning")
-@pytest.mark.parametrize("exponent", [0.1, 0.2, 0.3])
+@pytest.mark.parametrize("exponent", [0.1, 0.3])
 def test_power_law_pressed_in_and_drawn_back(exponent: float) -> None:
     """Lee & Radok 1960 and Ting 1966, in steps whose times grow as i² on the way in.
 

@@ -13,7 +13,17 @@ CONTACT_RADIUS = 0.1
 
 
 @pytest.mark.parametrize(
-    "row", reference_rows("paraboloid.csv"), ids=lambda row: f"s/a={row['s_over_a']}"
+    ("row", "solver"),
+    [
+        pytest.param(
+            row,
+            solver,
+            id=f"{solver}-s/a={row['s_over_a']}",
+            marks=[pytest.mark.slow] if solver != "active_set" and row["s_over_a"] >= 1 else [],
+        )
+        for row in reference_rows("paraboloid.csv")
+        for solver in ("active_set", "conjugate_gradient")
+    ],
 )
 def test_force_area_and_centre_pressure_agree_with_the_reference(
     row: dict[str, float], solver: str

@@ -67,7 +67,7 @@ def _allowed(text: str) -> float:
 
 def _check_run(run: Run, error: float, *, json: bool) -> None:
     from pellicle.runs.advice import advise
-    from pellicle.runs.runner import memory_of
+    from pellicle.runs.memory_estimate import memory_of
     from pellicle.units import readable
 
     advice = advise(run, error)
@@ -149,7 +149,7 @@ def _check_study(study: Study, error: float, *, json: bool) -> None:
     A smaller domain is suggested only where it fits every run.
     """
     from pellicle.runs.advice import advise
-    from pellicle.runs.runner import memory_of
+    from pellicle.runs.memory_estimate import memory_of
     from pellicle.studies.planned import check_outputs
     from pellicle.studies.summary import run_names
     from pellicle.studies.table import StudyTable

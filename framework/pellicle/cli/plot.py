@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from .printing import echo
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from pellicle.results.result import Result
 
 
 class Format(StrEnum):
@@ -37,15 +42,16 @@ def plot(
 ) -> None:
     """Draw the figures of a result or of a study."""
     from pellicle.results.result import file_of_run, load
-    from pellicle.show.plotting import save_figures, save_study_figures
+    from pellicle.show.plotting import save_figures
     from pellicle.studies.runner import is_table, read
 
     chosen = [str(format_) for format_ in formats or [Format.PNG]]
+    shown: Result | xr.Dataset
     if is_table(results):
-        table, folder = read(results)
-        files = save_study_figures(table, directory or folder, "study", chosen)
+        shown, folder = read(results)
+        name = "study"
     else:
         file = file_of_run(results)
-        files = save_figures(load(file), directory or file.parent, file.stem, chosen)
-    for path in files:
+        shown, folder, name = load(file), file.parent, file.stem
+    for path in save_figures(shown, directory or folder, name, chosen):
         echo(f"wrote {path}")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import json
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
     import xarray as xr
 
+    from pellicle.contact.caveats import Caveat, Status
     from pellicle.results.result import Result
 
 
@@ -28,16 +30,14 @@ def print_origin(data: xr.Dataset) -> None:
 
 def print_steps(result: Result, *, si: bool = False) -> None:
     """Print a row for each step."""
-    from pellicle.results.result import caveats_of
-    from pellicle.results.status import Status
+    from pellicle.results.path import prescribed_variable
     from pellicle.variables import names_of
 
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
     printed_names = {"time", "depth", "force", *areas, *names_of("other")}
-    loading = [name for name in result.configuration["loading"] if name in data]
-    requested = [name for name in (*loading, "stiffness") if name in {*data} - printed_names]
-    requested = [*dict.fromkeys(reversed(requested))][::-1]
+    named = prescribed_variable(data), "stiffness"
+    requested = [name for name in named if name in {*data} - printed_names]
     time = ["time"] if "time" in data else []
     names = [*time, "depth", "force", *areas, *requested, "iterations"]
     coarse = dict(result.coarse())
@@ -48,14 +48,9 @@ def print_steps(result: Result, *, si: bool = False) -> None:
         for n in numbers
     ]
     print_columns([*_columns(data, names, si), ("status", verdicts)])
-    # `exit_by_convergence` warns of these.
-    warned = {Status.COARSE, Status.COARSE_ZONE, Status.STEEP, Status.SMALL_DOMAIN}
-    caveats = [
-        (number, status.name, message)
-        for number, status, message in caveats_of(data)
-        if status not in warned
-    ]
-    for steps, status in _grouped(caveats):
+    # `exit_by_convergence` warns of the others.
+    told = (c for c in result.caveats() if c[1].status.converged and not c[1].status.phrase)
+    for steps, status in _grouped(told):
         echo(f"{steps}: {for_document(status)}", err=True)
 
 
@@ -180,12 +175,16 @@ def _origin(data: xr.Dataset) -> dict[str, Any]:
 
 
 def _steps(data: xr.Dataset) -> list[dict[str, Any]]:
+    """Return the numbers and texts of each step by name."""
+    from pellicle.variables import CAVEATS
+
     names = [
         "step",
         *(str(n) for n, variable in data.data_vars.items() if variable.dims == ("step",)),
     ]
     columns = [data[name].values.tolist() for name in names]
-    return [dict(zip(names, row, strict=True)) for row in zip(*columns, strict=True)]
+    steps = [dict(zip(names, row, strict=True)) for row in zip(*columns, strict=True)]
+    return [step | {CAVEATS: json.loads(step[CAVEATS] or "[]")} for step in steps]
 
 
 def _units(data: xr.Dataset) -> dict[str, str]:
@@ -198,26 +197,20 @@ def _units(data: xr.Dataset) -> dict[str, str]:
 
 def exit_by_convergence(result: Result) -> None:
     """Print which steps did not converge, or have a caveat; exit unless all converged."""
-    failed = result.dataset.isel(step=~result.dataset["converged"].values)
-    for steps, message in _grouped(_statuses(failed)):
+    failed = (c for c in result.caveats() if not c[1].status.converged)
+    for steps, message in _grouped(failed):
         echo(f"{steps} did not converge: {for_document(message)}", err=True)
-    for message in result.caveats():
+    for message in result.warnings():
         print_warning(message)
     if not result.converged:
         raise typer.Exit(NOT_CONVERGED)
 
 
-def _statuses(data: xr.Dataset) -> list[tuple[int, str, str]]:
-    """Return number, code and status of each step."""
-    columns = (data[name].values.tolist() for name in ("step", "status_code", "status"))
-    return list(zip(*columns, strict=True))
-
-
-def _grouped(statuses: Sequence[tuple[int, str, str]]) -> list[tuple[str, str]]:
-    """Return the steps with each kind of status, and the message of the first of them."""
-    groups: dict[str, list[tuple[int, str]]] = {}
-    for number, code, message in statuses:
-        groups.setdefault(code, []).append((number, message))
+def _grouped(caveats: Iterable[tuple[int, Caveat]]) -> list[tuple[str, str]]:
+    """Return the steps with each status, and the message of the first of them."""
+    groups: dict[Status, list[tuple[int, str]]] = {}
+    for number, caveat in caveats:
+        groups.setdefault(caveat.status, []).append((number, caveat.sentence))
     return [
         (_steps_text([number for number, _ in group]), f"{_first(group)}{group[0][1]}")
         for group in groups.values()

@@ -144,7 +144,7 @@ def _print_plan(configuration: Run | Study, stem: Path, overwrite: bool, json: b
 def _run_one(
     run: Run, stem: Path, display: _Display, *, threads: int | None, overwrite: bool
 ) -> None:
-    from pellicle.results.status import Status
+    from pellicle.contact.caveats import Status
     from pellicle.runs.advice import size_for
     from pellicle.runs.journal import Journal
     from pellicle.runs.progress import RunProgress

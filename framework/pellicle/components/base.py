@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
+from pydantic.fields import FieldInfo
+
 from pellicle.schema.model import Model
-from pellicle.variables import words_of_name
+from pellicle.variables import ROLE, words_of_name
 
 
 class Component(Model):
@@ -36,3 +38,9 @@ def words_of_type(component: type[Component], type_: str) -> str:
     title = component.model_config.get("title")
     inherited = {getattr(base, "model_config", {}).get("title") for base in component.__mro__[1:]}
     return title if title and title not in inherited else words_of_name(type_)
+
+
+def role_of(field: FieldInfo) -> str:
+    """Return the role of a component's field, such as `pellicle.variables.SEED`; "" without one."""
+    extra = field.json_schema_extra
+    return str(extra.get(ROLE, "")) if isinstance(extra, dict) else ""

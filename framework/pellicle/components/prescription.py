@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from pellicle.variables import Variable
 
 from .base import Component
 from .indenter import Footprint
+
+OPTIONS: Final = frozenset({"stiffness", "time"})
+"""Keys of ``[loading]`` other than a prescription and its fields."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +80,7 @@ class Search:
 
     goal: float
     measure: Callable[[Equilibrium], float]
-    """The quantity; it must not fall as the control grows."""
+    """The quantity; it has to grow with the control, or to fall if not `increasing`."""
     control: type[Depth] | type[Force] = Force
     resolution: float = 0.0
     """Difference from the goal up to which the goal counts as met."""
@@ -89,6 +92,8 @@ class Search:
     """Name of the quantity in messages."""
     unit: str = ""
     """SI unit of the quantity in messages."""
+    increasing: bool = True
+    """Whether the quantity grows with the control; False if it falls."""
 
 
 class Prescription(Component):

@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pellicle.components import Component
-from pellicle.components.base import words_of_type
+from pellicle.components.base import role_of, words_of_type
 from pellicle.schema.input_path import PORTABLE
 from pellicle.schema.model import Model
 from pellicle.schema.paths import get, walk
 from pellicle.schema.ranges import Values
 from pellicle.units import DIGITS, quantity_of, readable
-from pellicle.variables import WORDS, WORDS_OF_VALUES
+from pellicle.variables import ROLE, WORDS, WORDS_OF_VALUES
 
 from .points import short
 from .run import Run
@@ -37,6 +37,9 @@ def coordinate(key: str, given: Values, runs: Sequence[Run]) -> Coordinate:
     values = [_single(get(run, key), value) for run, value in zip(runs, given, strict=True)]
     words = words_at(json.loads(runs[0].to_json()), Run, key)
     attributes = {"long_name": words, WORDS: words}
+    roles = (role_of(field) for path, _, field in walk(runs[0]) if path == key and field)
+    if role := next(roles, ""):
+        attributes[ROLE] = role
     if all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values):
         if unit := units_of(runs[0]).get(key):
             attributes["units"] = unit
@@ -81,7 +84,7 @@ def _words_of_values(key: str, values: Sequence[Any], runs: Sequence[Run]) -> li
     for words, value in zip(types, values, strict=True):
         text = words or _text(value)
         for name in value.model_fields_set - {"type"} if words and several else ():
-            info = value.described_fields[name]
+            info = type(value).model_fields[name]
             unit = quantity.unit if (quantity := quantity_of(info)) else "1"
             text += f", {field_words(name, info)} {readable(getattr(value, name), unit, DIGITS)}"
         texts.append(text)
@@ -129,5 +132,4 @@ def _single(value: Any, given: Any) -> Any:
 def units_of(run: Run) -> dict[str, str]:
     """Return the SI unit of each field with one, by dotted path."""
     quantities = {path: quantity_of(field) for path, _, field in walk(run) if field}
-    # Attributes of datasets write m2 for m**2 of pint.
-    return {path: q.unit.replace("m**2", "m2") for path, q in quantities.items() if q}
+    return {path: quantity.unit for path, quantity in quantities.items() if quantity}

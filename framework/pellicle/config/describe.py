@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
+from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from pellicle.components.base import words_of_type
@@ -13,8 +14,7 @@ from pellicle.plugins import Origin
 from pellicle.units import quantity_of, readable
 from pellicle.variables import words_of_name
 
-from .run import Run
-from .words import field_words, fields_of_leg, model_in, model_of_table, registered, words_at
+from .words import field_words, fields_of_table, model_in, registered, words_at
 
 
 class Input(NamedTuple):
@@ -33,15 +33,15 @@ class Input(NamedTuple):
     """Distribution and entry point of a component."""
 
 
-def inputs(configuration: Mapping[str, Any]) -> Iterator[Input]:
-    """Yield the values of a configuration in the form of `Run.to_json`.
+def inputs(configuration: Mapping[str, Any], model: type[BaseModel]) -> Iterator[Input]:
+    """Yield the values of a configuration of a ``model`` such as `Run`, in the form of its JSON.
 
     Fields of components that are not installed have no unit.
     """
-    for name, value, meaning, origin in _table(configuration, Run.model_fields, ""):
+    for name, value, meaning, origin in _table(configuration, model.model_fields, ""):
         top = name.partition(".")[0]
-        part = field_words(top, Run.model_fields.get(top))
-        yield Input(name, part, words_at(configuration, Run, name), value, meaning, origin)
+        part = field_words(top, model.model_fields.get(top))
+        yield Input(name, part, words_at(configuration, model, name), value, meaning, origin)
 
 
 _SNAKE = re.compile(r"\b[a-z]+(?:_[a-z]+)+\b")
@@ -51,15 +51,11 @@ _Row = tuple[str, str, str, Origin | None]
 def _table(table: Mapping[str, Any], fields: Mapping[str, FieldInfo], path: str) -> Iterator[_Row]:
     for key, value in table.items():
         info, name = fields.get(key), f"{path}{key}"
-        annotation = info.annotation if info else None
         if isinstance(value, Mapping):
-            yield from _rows_of(value, annotation, name)
+            yield from _rows_of(value, info, name)
         elif isinstance(value, list) and value and all(isinstance(v, Mapping) for v in value):
             for index, entry in enumerate(value):
-                if fields_of_entry := fields_of_leg(entry, info):
-                    yield from _table(entry, fields_of_entry, f"{name}.{index}.")
-                else:
-                    yield from _rows_of(entry, annotation, f"{name}.{index}")
+                yield from _rows_of(entry, info, f"{name}.{index}")
         elif value not in ([], ""):
             quantity = quantity_of(info) if info else None
             text = readable(value, quantity.unit if quantity else "1")
@@ -71,14 +67,13 @@ def _table(table: Mapping[str, Any], fields: Mapping[str, FieldInfo], path: str)
             yield name, text, meaning, None
 
 
-def _rows_of(table: Mapping[str, Any], annotation: Any, name: str) -> Iterator[_Row]:
+def _rows_of(table: Mapping[str, Any], info: FieldInfo | None, name: str) -> Iterator[_Row]:
     """Yield the values in the table of a component or of another part of the run."""
-    model = model_of_table(table, annotation)
     if "type" in table:
         type_ = str(table["type"])
-        if entry := registered(model_in(annotation), type_):
+        if entry := registered(model_in(info.annotation) if info else None, type_):
             yield name, words_of_type(entry.component, type_), entry.summary, entry.origin
         else:
             yield name, words_of_name(type_), "", None
     inner = {key: value for key, value in table.items() if key != "type"}
-    yield from _table(inner, model.model_fields if model else {}, f"{name}.")
+    yield from _table(inner, fields_of_table(table, info), f"{name}.")

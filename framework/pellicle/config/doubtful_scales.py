@@ -59,12 +59,12 @@ def _doubts(run: Run) -> Iterator[tuple[str, str]]:
         part = path.partition(".")[0]
         if part == "indenter" and unit == "m" and value > _LENGTHS * size:
             yield _doubt(path, value, unit, domain)
-        if part == "kernel" and path.endswith("tension") and moduli:
+        if part == "kernel" and unit == "N/m" and moduli:
             length = value / max(moduli)
             if length > _ELASTOCAPILLARY * size:
                 over = f"over the modulus {readable(length, 'm', 3)}"
                 yield _doubt(path, value, unit, f"{over}, {domain}")
-        if part == "interaction" and unit == "J/m**2" and value * softness > _STICKY * size:
+        if part == "interaction" and unit == "J/m2" and value * softness > _STICKY * size:
             yield _doubt(path, value, unit, "which displaces this solid by more than the domain")
         if part == "loading":
             reached = {"m": value / size, "N": value / size**2 * softness, "Pa": value * softness}

@@ -17,12 +17,11 @@ from pydantic.fields import FieldInfo
 from pellicle.components import Component, Prescription
 from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import Grid
-from pellicle.loading import OPTIONS
 from pellicle.plugins import Registered, registry
 from pellicle.schema.messages import similar
 from pellicle.units import quantity_of, readable
 
-from .loading import Loading, loading_model
+from .loading import Loading, Options, keys_of
 from .run import Run
 from .study import Study
 from .words import model_in
@@ -110,18 +109,16 @@ def words_by_kind(tables: Mapping[str, type[BaseModel]]) -> dict[str, list[str]]
 
 
 def _of_table(name: str, model: type[BaseModel]) -> Explanation:
-    rows = fields_of(model)
+    rows = [] if model is Loading else rows_of(model.model_fields)
     if model is Study:
         rows = [row for row in rows if row.name != "run"]
     if model is Loading:
-        options = rows
-        rows = []
         for type_ in registry().components["prescription"]:
-            for row in fields_of(loading_model(type_)):
+            for row in rows_of(keys_of(type_)):
                 required = "one of these" if row.name == type_ else f"with {type_}"
-                if row.name not in OPTIONS:
+                if row.name not in Options.model_fields:
                     rows.append(row._replace(default=row.default.replace("required", required)))
-        rows += options
+        rows += rows_of(Options.model_fields)
     example = _toml(*_EXAMPLES[model]) if model in _EXAMPLES else ""
     if name not in _TABLES:
         example = _lines(dict(example_values(model)))
@@ -130,14 +127,15 @@ def _of_table(name: str, model: type[BaseModel]) -> Explanation:
 
 def _of_component(entry: Registered) -> Explanation:
     family = entry.component.family
-    model = loading_model(entry.type) if family == "prescription" else entry.component
+    is_prescription = issubclass(entry.component, Prescription)
+    fields = keys_of(entry.type) if is_prescription else entry.component.model_fields
     origin = f"{entry.origin.distribution} {entry.origin.version}"
     if refusal := refusal_of_example(entry.component):
         example = "\n# ".join(["# none; it would be refused:", *refusal.splitlines()])
     else:
         example = _toml(entry.component.place, example_table(entry))
     text = _documentation(entry.component)
-    return Explanation(entry.type, family, origin, text, fields_of(model), example)
+    return Explanation(entry.type, family, origin, text, rows_of(fields), example)
 
 
 def _documentation(model: type[BaseModel]) -> str:
@@ -145,10 +143,10 @@ def _documentation(model: type[BaseModel]) -> str:
     return (inspect.getdoc(model) or "").replace("``", "").replace("`", "")
 
 
-def fields_of(model: type[BaseModel], prefix: str = "") -> list[FieldRow]:
-    """Return the fields of a model and of the tables in it, without those of components."""
+def rows_of(fields: Mapping[str, FieldInfo], prefix: str = "") -> list[FieldRow]:
+    """Return the fields of a table and of the tables in it, without those of components."""
     rows = []
-    for name, info in model.model_fields.items():
+    for name, info in fields.items():
         if name == "type":
             continue
         quantity = quantity_of(info)
@@ -162,7 +160,7 @@ def fields_of(model: type[BaseModel], prefix: str = "") -> list[FieldRow]:
         inner = model_in(info.annotation)
         if inner is not None and not issubclass(inner, (Component, Grid, Loading)):
             mark = "[]" if _is_list(info.annotation) else ""
-            rows += fields_of(inner, f"{prefix}{name}{mark}.")
+            rows += rows_of(inner.model_fields, f"{prefix}{name}{mark}.")
     return rows
 
 

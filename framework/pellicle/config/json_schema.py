@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import inspect
 from collections import defaultdict
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any
 
-from pydantic import BaseModel
+from pydantic import BaseModel, TypeAdapter
 from pydantic.json_schema import models_json_schema
 
-from pellicle.components import Component
+from pellicle.components import Component, Prescription
 from pellicle.components.from_registry import FAMILY
+from pellicle.components.prescription import OPTIONS
 from pellicle.plugins import registry
 
-from .loading import Loading, loading_model
+from .load_steps import LoadSteps
+from .loading import Loading
 from .run import Run
 from .study import Study
 
@@ -38,12 +40,19 @@ def model_schema(model: type[BaseModel]) -> dict[str, Any]:
     names = {entry: refs[entry, "validation"]["$ref"].rpartition("/")[2] for entry in models}
     definitions: dict[str, Any] = generated["$defs"]
     if Loading.__name__ in definitions:
-        choices = [definitions.pop(names[loading]) for loading in _loadings()]
-        definitions[Loading.__name__] = {"description": inspect.getdoc(Loading), "oneOf": choices}
+        options = {name: definitions[Loading.__name__]["properties"][name] for name in OPTIONS}
+        definitions[Loading.__name__] = {
+            "description": inspect.getdoc(Loading),
+            "oneOf": [
+                _loading(component, definitions.pop(names[component]), options)
+                for component in models
+                if issubclass(component, Prescription)
+            ],
+        }
     referred: dict[str, list[dict[str, Any]]] = defaultdict(list)
     written: dict[str, list[dict[str, Any]]] = defaultdict(list)
     for component in models[1:]:
-        if issubclass(component, Component):
+        if issubclass(component, Component) and names[component] in definitions:
             fields = (name for name, info in component.model_fields.items() if info.is_required())
             required = {"required": ["type", *fields]}
             referred[component.family].append(refs[component, "validation"] | required)
@@ -53,20 +62,25 @@ def model_schema(model: type[BaseModel]) -> dict[str, Any]:
 
 
 def _referred_to(schema: Any) -> Iterator[type[BaseModel]]:
-    """Yield the components and the tables of the loading that a schema refers to."""
+    """Yield the components that a schema refers to."""
     if isinstance(schema, dict):
         for entry in registry().components.get(schema.get(FAMILY, ""), {}).values():
             yield entry.component
-        if Loading.__name__ in schema.get("$defs", {}):
-            yield from _loadings()
         schema = [*schema.values()]
     if isinstance(schema, list):
         for inner in schema:
             yield from _referred_to(inner)
 
 
-def _loadings() -> list[type[BaseModel]]:
-    return [loading_model(type_) for type_ in registry().components["prescription"]]
+def _loading(
+    component: type[Prescription], own: dict[str, Any], options: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the JSON schema of ``[loading]`` with a prescription, from that of the component."""
+    steps = TypeAdapter(Annotated[Any, LoadSteps(component.quantity(True), legs=True)])
+    fields = own["properties"]
+    type_ = fields.pop("type")["const"]
+    properties = {type_: steps.json_schema(), **fields, **options}
+    return own | {"properties": properties, "required": [type_, *own.get("required", [])]}
 
 
 def _filled(schema: Any, choices: dict[str, list[dict[str, Any]]]) -> Any:

@@ -6,37 +6,38 @@ import inspect
 import itertools
 import math
 from collections.abc import Mapping
-from functools import cache, cached_property
+from contextlib import suppress
+from functools import cached_property
 from itertools import filterfalse
 from typing import Annotated, Any, Self
 
-from pydantic import ConfigDict, Field, create_model, model_validator
+from pydantic import (
+    Field,
+    SerializationInfo,
+    SkipValidation,
+    WithJsonSchema,
+    model_serializer,
+    model_validator,
+)
 from pydantic.fields import FieldInfo
 
-from pellicle.components import Prescription
-from pellicle.errors import ConfigError, Problem
-from pellicle.loading import OPTIONS, LoadSteps
+from pellicle.components import FromRegistry, Prescription
+from pellicle.components.prescription import OPTIONS
+from pellicle.errors import ConfigError, Problem, all_problems
 from pellicle.plugins import registry
-from pellicle.schema.legs import Leg, Sample, sampled
 from pellicle.schema.messages import nearest
 from pellicle.schema.model import Model
 from pellicle.units import Quantity
+
+from .legs import Leg, Sample, sampled
+from .load_steps import LoadSteps
 
 # Messages name these first.
 _USUAL = "depth", "force", "mean_pressure"
 
 
-class Loading(Model):
-    """The load steps: exactly one quantity is prescribed, in the order of its path.
-
-    The key is the type of a prescription; its value is one value, a list, or a ramp
-    ``{start, stop, num}``, optionally with ``spacing = "log"``; with ``back = true`` the ramp
-    returns to its start through the same values. A list of legs ``{to, time, num}``, ``{hold,
-    num}`` and ``{amplitude, frequency, cycles, num}`` gives values and times. The fields of the
-    prescription are further keys.
-    """
-
-    model_config = ConfigDict(extra="allow")
+class Options(Model):
+    """The keys of ``[loading]`` beside what is prescribed."""
 
     stiffness: Annotated[
         bool,
@@ -55,14 +56,45 @@ class Loading(Model):
         ),
     ] = None
 
-    @model_validator(mode="before")
-    @classmethod
-    def _read(cls, table: Any) -> Any:
-        if not isinstance(table, Mapping):
-            return table
-        data = {key: value for key, value in table.items() if value is not None}
-        model = loading_model(prescribed_in(data))
-        return {key: value for key, value in model(**data) if value is not None}
+
+class Loading(Options):
+    """The load steps: exactly one quantity is prescribed, in the order of its path.
+
+    The key is the type of a prescription; its value is one value, a list, or a ramp
+    ``{start, stop, num}``, optionally with ``spacing = "log"``; with ``back = true`` the ramp
+    returns to its start through the same values. A list of legs ``{to, time, num}``, ``{hold,
+    num}`` and ``{amplitude, frequency, cycles, num}`` gives values and times. The fields of the
+    prescription are further keys.
+    """
+
+    prescription: Annotated[
+        Prescription, FromRegistry(), Field(description="the prescription with its fields")
+    ]
+
+    # Only the prescription knows the unit and the range of the values: `fields_from` reads them.
+    path: Annotated[
+        SkipValidation[tuple[float, ...] | tuple[Leg, ...]],
+        WithJsonSchema({}),
+        Field(description="the prescribed values, or the legs through them"),
+    ]
+
+    def __init__(self, /, **table: Any) -> None:
+        is_read = isinstance(table.get("prescription"), Prescription)
+        super().__init__(**table if is_read else fields_from(table))
+
+    @model_serializer
+    def _table(self, info: SerializationInfo) -> dict[str, Any]:
+        """Return the table of a file."""
+        own = self.prescription.model_dump(mode=info.mode, exclude_none=True, context=info.context)
+        table = {"stiffness": self.stiffness, "time": self.time, own.pop("type"): self.path, **own}
+        return {name: value for name, value in table.items() if value is not None}
+
+    @property
+    def entries(self) -> Mapping[str, tuple[Any, FieldInfo]]:
+        """Value and description of each key of its table in a file."""
+        values = {**dict(self), **dict(self.prescription), self.prescribed: self.path}
+        fields = _described(self.prescribed, type(self.prescription))
+        return {name: (values[name], info) for name, info in fields.items()}
 
     @model_validator(mode="after")
     def _check_time(self) -> Self:
@@ -88,37 +120,21 @@ class Loading(Model):
                 )
         return self
 
-    @cached_property
-    def prescription(self) -> Prescription:
-        """The prescription with its fields."""
-        fields = self.__pydantic_extra__ or {}
-        type_ = self.prescribed
-        others = {name: value for name, value in fields.items() if name != type_}
-        return registry().make(Prescription, {"type": type_, **others})
-
     @property
     def prescribed(self) -> str:
         """The type of the prescription."""
-        return prescribed_in(self.__pydantic_extra__ or {})
-
-    @property
-    def described_fields(self) -> Mapping[str, FieldInfo]:
-        """The options, the prescribed values and the fields of the prescription."""
-        return loading_model(self.prescribed).model_fields
+        return self.prescription.type_name
 
     @cached_property
     def samples(self) -> tuple[Sample, ...]:
         """The load steps of a path in legs; none of any other path."""
-        path = getattr(self, self.prescribed)
-        return sampled(path) if isinstance(path[0], Leg) else ()
+        return sampled(legs) if (legs := [leg for leg in self.path if isinstance(leg, Leg)]) else ()
 
     @cached_property
     def values(self) -> tuple[float, ...]:
         """The load steps in order, SI."""
-        if self.samples:
-            return tuple(sample.value for sample in self.samples)
-        values: tuple[float, ...] = getattr(self, self.prescribed)
-        return values
+        samples = tuple(sample.value for sample in self.samples)
+        return samples or tuple(value for value in self.path if not isinstance(value, Leg))
 
     @cached_property
     def times(self) -> tuple[float, ...] | None:
@@ -144,6 +160,11 @@ class Loading(Model):
         """Return the dotted path of load step ``index``, counted from 0, or of its leg."""
         return f"{self.prescribed}.{self.samples[index].leg if self.samples else index}"
 
+    def refuse_pulls(self) -> None:
+        """Refuse values that only an interaction allows, such as a force below 0."""
+        with all_problems() as within, within(self.prescribed):
+            path_from(self.path, type(self.prescription), interaction=False)
+
     @property
     def variables(self) -> set[str]:
         """The names of the result variables that this loading adds."""
@@ -153,42 +174,65 @@ class Loading(Model):
         return names | {name for name, is_used in used.items() if is_used}
 
 
-def refuse_pulls(loading: Mapping[str, Any]) -> None:
-    """Refuse values of ``[loading]`` that only an interaction allows, such as a force below 0."""
-    data = {key: value for key, value in loading.items() if value is not None}
-    type_ = prescribed_in(data)
-    try:
-        loading_model(type_, interaction=False)(**data)
-    except ConfigError as error:
-        try:
-            loading_model(type_)(**data)
-        except ConfigError:
-            raise error from None
-        raise ConfigError(
-            Problem(field, f"{reason}; with an [interaction] it may be negative")
-            for field, reason in error.problems
-        ) from None
+def fields_from(table: Mapping[str, Any], interaction: bool = True) -> dict[str, Any]:
+    """Return the fields of a `Loading` from the table of a file.
 
-
-@cache
-def loading_model(type_: str, interaction: bool = True) -> type[Model]:
-    """Return the model that validates ``[loading]`` with the prescription ``type_``.
-
-    Without an interaction values that pull are refused.
+    Without an interaction values that pull, such as a force below 0, are refused.
     """
+    data = {key: value for key, value in table.items() if value is not None}
+    type_ = prescribed_in(data)
+    component = _prescription(type_)
+    described = _described(type_, component)
+    own = {name: data[name] for name in component.model_fields if name in data and name != "type"}
+    with all_problems() as within:
+        with within(type_):
+            path = path_from(data[type_], component, interaction)
+        with within(""):
+            prescription = registry().make(Prescription, {"type": type_, **own})
+        with within(""):
+            options = dict(Options(**{name: data[name] for name in OPTIONS if name in data}))
+        for name in filterfalse(described.__contains__, data):
+            with within(name):
+                raise ConfigError(f"is not a field here; {nearest(name, described)}")
+    fields = {"prescription": prescription, "path": path, **options}
+    return {name: value for name, value in fields.items() if value is not None}
+
+
+def path_from(
+    spec: object, component: type[Prescription], interaction: bool
+) -> tuple[float, ...] | tuple[Leg, ...]:
+    """Return the prescribed values, or the legs through them, in SI."""
+    try:
+        return LoadSteps(component.quantity(interaction), legs=True)(spec)
+    except ConfigError as error:
+        if interaction:
+            raise
+        with suppress(ConfigError):
+            path_from(spec, component, True)
+            error = ConfigError(
+                Problem(field, f"{reason}; with an [interaction] it may be negative")
+                for field, reason in error.problems
+            )
+        raise error from None
+
+
+def keys_of(type_: str) -> dict[str, FieldInfo]:
+    """Return the keys that ``[loading]`` has with a prescription: values, its fields, options."""
+    return _described(type_, _prescription(type_))
+
+
+def _prescription(type_: str) -> type[Prescription]:
     component = registry().find("prescription", type_)
     assert issubclass(component, Prescription)
-    options = {name: Loading.model_fields[name] for name in OPTIONS}
-    fields = {n: info for n, info in component.model_fields.items() if n != "type"} | options
+    return component
+
+
+def _described(type_: str, component: type[Prescription]) -> dict[str, FieldInfo]:
     meaning = (inspect.getdoc(component) or "").partition("\n")[0]
-    steps: Any = Annotated[
-        tuple[float, ...],
-        LoadSteps(component.quantity(interaction), legs=True),
-        Field(description=meaning),
-    ]
-    definitions: dict[str, Any] = {type_: (steps, ...)}
-    definitions |= {name: (info.annotation, info) for name, info in fields.items()}
-    return create_model(f"Loading_{type_}", __base__=Model, **definitions)
+    steps = FieldInfo(annotation=tuple[float, ...], description=meaning)
+    steps.metadata.append(LoadSteps(component.quantity(), legs=True))
+    fields = {name: info for name, info in component.model_fields.items() if name != "type"}
+    return {type_: steps, **fields, **Options.model_fields}
 
 
 def prescribed_in(data: Mapping[str, Any]) -> str:

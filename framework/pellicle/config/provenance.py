@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
@@ -21,8 +21,24 @@ def provenance(run: Run) -> dict[str, Any]:
         "title": for_document(run.title),
         "configuration": run.to_json(),
         "identity": run.identity,
+        **facts_of([run]),
         "depth_to_base": run.kernel.depth_to_base(),
         **now_with([run]),
+    }
+
+
+def facts_of(runs: Sequence[Run]) -> dict[str, Any]:
+    """Return what readers of results need to know of their configuration, as attributes.
+
+    Of the runs of a study, they are those of the first run, except that ``boundary`` is periodic
+    and ``adheres`` is 1 where any run's is, and ``planned_steps`` is the largest.
+    """
+    return {
+        "prescribed": runs[0].loading.prescribed,
+        "planned_steps": max(len(run.loading.values) for run in runs),
+        "boundary": "periodic" if any(run.grid.boundary == "periodic" for run in runs) else "free",
+        "tolerance": runs[0].solver.tolerance,
+        "adheres": int(any(run.interaction for run in runs)),
     }
 
 

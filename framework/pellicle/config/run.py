@@ -45,7 +45,8 @@ from pellicle.schema.notebook import summary
 from pellicle.schema.paths import get, replaced, walk
 from pellicle.variables import VARIABLES, Variable, corrected_area, corrected_fraction
 
-from .loading import Loading, refuse_pulls
+from .describe import inputs
+from .loading import Loading, fields_from
 
 DEFAULT_SOLVER = "active_set"
 # Increment if an equal configuration gives different numbers, not if the file layout changes.
@@ -104,10 +105,11 @@ class Run(FromFile):
     def _pulls_by_an_interaction(
         cls, value: object, make: ValidatorFunctionWrapHandler, info: ValidationInfo
     ) -> Any:
-        if info.data.get("interaction", "not valid") is not None:
-            return make(value)
-        if isinstance(value, (Mapping, Loading)):
-            refuse_pulls(value.model_dump() if isinstance(value, Loading) else value)
+        if info.data.get("interaction", "not valid") is None:
+            if isinstance(value, Loading):
+                value.refuse_pulls()
+            elif isinstance(value, Mapping):
+                value = fields_from(value, interaction=False)
         return make(value)
 
     @model_validator(mode="after")
@@ -208,9 +210,7 @@ class Run(FromFile):
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: every value with its unit and meaning."""
-        from .describe import inputs
-
-        values = list(inputs(json.loads(self.to_json())))
+        values = list(inputs(json.loads(self.to_json()), Run))
         types = {i.name: i.value for i in values}
         rows = [
             (i.part, "type" if i.words == i.part else i.words, i.value, i.meaning)

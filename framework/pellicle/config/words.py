@@ -11,12 +11,12 @@ from pydantic.fields import FieldInfo
 
 from pellicle.components import Component
 from pellicle.errors import ConfigError, PluginError
-from pellicle.loading import LoadSteps
 from pellicle.plugins import Registered, registry
-from pellicle.schema.legs import KINDS, fields_of
 from pellicle.variables import words_of_name
 
-from .loading import Loading, loading_model, prescribed_in
+from .legs import KINDS, fields_of
+from .load_steps import LoadSteps
+from .loading import Loading, keys_of, prescribed_in
 
 
 def field_words(name: str, field: FieldInfo | None) -> str:
@@ -33,7 +33,7 @@ def words_at(configuration: Mapping[str, Any], model: type[BaseModel], key: str)
     """
     noun, owner = "", ""
     table: Any = configuration
-    inner: type[BaseModel] | None = model
+    fields: Mapping[str, FieldInfo] = model.model_fields
     field: FieldInfo | None = None
     for depth, name in enumerate(key.split(".")):
         if name == "type" and depth:
@@ -41,15 +41,13 @@ def words_at(configuration: Mapping[str, Any], model: type[BaseModel], key: str)
         if name.isdecimal():
             entries = table if isinstance(table, list) else []
             table = entries[int(name)] if int(name) < len(entries) else None
-            is_leg = bool(fields_of_leg(table, field))
-            noun = f"leg {int(name) + 1}" if is_leg else _entry(noun, field, entries, int(name))
+            noun = _entry(noun, field, entries, int(name))
         else:
             owner = _with_owner(noun, owner) if depth > 1 else ""
-            field = (inner.model_fields if inner else fields_of_leg(table, field)).get(name)
+            field = fields.get(name)
             noun = field_words(name, field)
             table = table.get(name) if isinstance(table, Mapping) else None
-        is_table = isinstance(table, Mapping)
-        inner = model_of_table(table, field.annotation if field else None) if is_table else None
+        fields = fields_of_table(table, field) if isinstance(table, Mapping) else {}
     return _with_owner(noun, owner)
 
 
@@ -66,17 +64,13 @@ def _entry(noun: str, field: FieldInfo | None, entries: list[Any], index: int) -
     if index < 2 and any(len(types) == 2 and ... not in types for types in items):
         return f"{noun} along {'xy'[index]}"
     tables = any(isinstance(entry, Mapping) for entry in entries)
+    if tables and _load_steps(field):
+        return f"leg {index + 1}"
     return f"{noun.removesuffix('s') if tables else noun} {index + 1}"
 
 
-def fields_of_leg(leg: object, info: FieldInfo | None) -> Mapping[str, FieldInfo]:
-    """Return the fields of a leg of the load steps described by ``info``; none of another table."""
-    steps = next((m for m in info.metadata if isinstance(m, LoadSteps)), None) if info else None
-    if steps and isinstance(leg, Mapping):
-        for kind in KINDS:
-            if kind.key in leg:
-                return fields_of(kind, steps.quantity.unit)
-    return {}
+def _load_steps(field: FieldInfo | None) -> LoadSteps | None:
+    return next((m for m in field.metadata if isinstance(m, LoadSteps)), None) if field else None
 
 
 def registered(model: type[BaseModel] | None, type_: object) -> Registered | None:
@@ -86,19 +80,22 @@ def registered(model: type[BaseModel] | None, type_: object) -> Registered | Non
     return registry().components.get(model.family, {}).get(str(type_))
 
 
-def model_of_table(table: Mapping[str, Any], annotation: Any) -> type[BaseModel] | None:
-    """Return the model whose fields a table has, given the annotation of the field that holds it.
+def fields_of_table(table: Mapping[str, Any], field: FieldInfo | None) -> Mapping[str, FieldInfo]:
+    """Return the fields that a table has by name, given the field that holds it.
 
-    None for components that are not installed.
+    A component that is not installed has none.
     """
-    model = model_in(annotation)
+    if steps := _load_steps(field):
+        kind = next((kind for kind in KINDS if kind.key in table), None)
+        return fields_of(kind, steps.quantity.unit) if kind else {}
+    model: type[BaseModel] | None = model_in(field.annotation) if field else None
     if "type" in table:
         entry = registered(model, table["type"])
-        return entry.component if entry else None
-    if model is Loading:
+        model = entry.component if entry else None
+    elif model is Loading:
         with suppress(ConfigError, PluginError):
-            return loading_model(prescribed_in(table))
-    return model
+            return keys_of(prescribed_in(table))
+    return model.model_fields if model else {}
 
 
 def model_in(annotation: Any) -> type[BaseModel] | None:

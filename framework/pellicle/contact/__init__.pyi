@@ -1,6 +1,8 @@
 __all__: list[str]
 
 from .attraction import Attraction as Attraction
+from .caveats import Caveat as Caveat
+from .caveats import Status as Status
 from .dilation import dilated as dilated
 from .equilibrium import Equilibrium as Equilibrium
 from .equilibrium import measure as measure

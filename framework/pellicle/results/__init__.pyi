@@ -5,7 +5,6 @@ from .result import Result as Result
 from .result import first_message as first_message
 from .result import load as load
 from .runs import StoredRuns as StoredRuns
-from .status import Status as Status
 from .storage import read as read
 from .storage import table as table
 from .storage import write as write

@@ -29,6 +29,16 @@ FIRST_RUN = "first_run"
 VARYING = "varying"
 """Attribute of a study's table: as JSON, paths of numbers of the first run that others differ in,
 beside the axes."""
+DERIVED = "derived"
+"""Attribute of a study's table: as JSON, the expression of each derived column, by name."""
+
+
+def configuration_of(data: xr.Dataset) -> dict[str, Any]:
+    """Return the configuration of a result, or of the first run of a study, in SI."""
+    configuration: dict[str, Any] = json.loads(
+        data.attrs.get(FIRST_RUN, data.attrs["configuration"])
+    )
+    return configuration
 
 
 def names(data: xr.Dataset) -> dict[str, Any]:
@@ -37,12 +47,11 @@ def names(data: xr.Dataset) -> dict[str, Any]:
     These are its numeric variables and coordinates, and the numbers of its configuration by their
     dotted path, such as ``kernel.tension`` or ``grid.size.0``, unless they vary in the study.
     """
-    configuration = json.loads(data.attrs.get(FIRST_RUN, data.attrs["configuration"]))
     varied = tuple(f"{name}." for name in data.coords)
     varying = json.loads(data.attrs.get(VARYING, "[]"))
     fixed = {
         key: value
-        for key, value in constants(configuration).items()
+        for key, value in constants(configuration_of(data)).items()
         if not key.startswith(varied) and key not in varying
     }
     numeric = {str(name): data[name] for name in data.variables if data[name].dtype.kind in "iuf"}
@@ -86,7 +95,7 @@ def _unit_of(text: str, table: xr.Dataset, units: Mapping[str, str]) -> str:
     try:
         for name in names_in(text):
             # An exponent that varies, so that a power has no unit, is NaN here.
-            quantities[name] = math.nan * one(all_units.get(name, "1").replace("m2", "m**2"))
+            quantities[name] = math.nan * one(all_units.get(name, "1"))
         return si_unit(evaluate(text, quantities))
     except (ConfigError, ValueError):
         # Units that differ, or that of a stranger's variable that pint does not know.

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import asdict
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pellicle.analysis import Oscillation, oscillations, path_summary
-from pellicle.loading import OPTIONS
 from pellicle.units import DIGITS, readable
 from pellicle.variables import VARIABLES
 
@@ -31,15 +29,15 @@ def has_times(data: xr.Dataset) -> bool:
     return "time" in data
 
 
-def prescribed_variable(data: xr.Dataset, configuration: Mapping[str, Any]) -> str:
+def prescribed_variable(data: xr.Dataset) -> str:
     """Return the variable that names load steps: what is prescribed, else the depth."""
-    names = (name for name in configuration["loading"] if name in data and name not in OPTIONS)
-    return next(names, "depth")
+    prescribed = str(data.attrs["prescribed"])
+    return prescribed if prescribed in data else "depth"
 
 
-def label_of_step(data: xr.Dataset, index: int, configuration: Mapping[str, Any]) -> str:
+def label_of_step(data: xr.Dataset, index: int) -> str:
     """Return what a load step prescribes: "depth 3 µm", "1 s, force 5 nN"."""
-    name = prescribed_variable(data, configuration)
+    name = prescribed_variable(data)
     label = wording(data[name]).text(data[name].values[index].item())
     if has_times(data):
         label = f"{readable(data['time'].values[index].item(), 's', DIGITS)}, {label}"

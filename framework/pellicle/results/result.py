@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pellicle.analysis import Oscillation
+from pellicle.contact.caveats import Caveat, Status, by_phrase, from_text
 from pellicle.errors import ConfigError, StorageError, first_of
 from pellicle.files import for_document, is_folder
 from pellicle.grid import Grid
-from pellicle.schema.legs import number_of_steps
 from pellicle.schema.notebook import summary
 from pellicle.units import axis_unit, readable
-from pellicle.variables import COORDINATES, REQUIRED, VARIABLES
+from pellicle.variables import CAVEATS, COORDINATES, REQUIRED, VARIABLES
 
 from . import storage
 from .limits import beyond_theory
 from .path import label_of_step, oscillations_of, path_variables
-from .status import Status, statuses_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -52,8 +51,7 @@ class Result:
     @property
     def planned_steps(self) -> int:
         """The number of load steps of the configuration, solved or not."""
-        loading = self.configuration["loading"]
-        return next(number_of_steps(v) for v in loading.values() if isinstance(v, list))
+        return int(self.dataset.attrs["planned_steps"])
 
     @property
     def converged(self) -> bool:
@@ -75,22 +73,34 @@ class Result:
         """The complex stiffness and dissipation of each oscillation on the path."""
         return oscillations_of(self.dataset)
 
+    def caveats(self) -> Iterator[tuple[int, Caveat]]:
+        """Yield number, counted from 1, and caveat of each step that has one, failures included.
+
+        A step may have several, the gravest first.
+        """
+        data = self.dataset
+        for number, text in zip(data["step"].values.tolist(), data[CAVEATS].values, strict=True):
+            for caveat in from_text(text):
+                yield number, caveat
+
     def failures(self) -> list[tuple[int, str]]:
-        """Return number, counted from 1, and status of each step that did not converge."""
+        """Return number and status of each step that did not converge."""
         failed = self.dataset.isel(step=~self.dataset["converged"].values)
-        return _statuses(failed)
+        return list(
+            zip(failed["step"].values.tolist(), map(str, failed["status"].values), strict=True)
+        )
 
     def coarse(self) -> list[tuple[int, str]]:
         """Return number and status of each step whose cells are too coarse."""
-        return self._of({Status.COARSE, Status.COARSE_ZONE})
+        return self._of(Status.COARSE, Status.COARSE_ZONE)
 
     def steep(self) -> list[tuple[int, str]]:
         """Return number and status of each step with slopes beyond those of the theory."""
-        return self._of({Status.STEEP})
+        return self._of(Status.STEEP)
 
     def cramped(self) -> list[tuple[int, str]]:
         """Return number and status of each step whose domain is small for the solid's memory."""
-        return self._of({Status.SMALL_DOMAIN})
+        return self._of(Status.SMALL_DOMAIN)
 
     def beyond_theory(self) -> dict[str, str]:
         """Return the limits that the contact exceeds by far, with messages; see `limits`.
@@ -99,19 +109,19 @@ class Result:
         """
         return beyond_theory(self.dataset, self.configuration)
 
-    def caveats(self) -> list[str]:
+    def warnings(self) -> list[str]:
         """Return a message for each kind of caveat, with the first step that has it.
 
-        Of a small domain it is the last, which needs the largest one.
+        Of a small domain it is the step that needs the largest one.
         """
-        kinds = self.coarse(), self.steep(), self.cramped()[::-1]
+        groups = by_phrase(self.caveats()).values()
         return [
-            *(first_message(steps) for steps in kinds if steps),
+            *(first_message([(number, c.sentence) for number, c in group]) for group in groups),
             *self.beyond_theory().values(),
         ]
 
-    def _of(self, statuses: set[Status]) -> list[tuple[int, str]]:
-        return [(number, text) for number, s, text in caveats_of(self.dataset) if s in statuses]
+    def _of(self, *statuses: Status) -> list[tuple[int, str]]:
+        return [(number, c.sentence) for number, c in self.caveats() if c.status in statuses]
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: status, numbers of the steps, all variables folded away."""
@@ -123,15 +133,13 @@ class Result:
             for name in _SHOWN
             if name in self.dataset
         ]
-        statuses = [(str(number), status) for number, status in _statuses(self.dataset)]
-        rows = [
-            [number, *numbers, status]
-            for (number, status), *numbers in zip(statuses, *columns, strict=True)
-        ]
+        numbers = map(str, self.dataset["step"].values.tolist())
+        statuses = map(str, self.dataset["status"].values)
+        rows = [list(row) for row in zip(numbers, *columns, statuses, strict=True)]
         if len(rows) > _MOST:
             rows = [*rows[: _MOST - 1], ["…"] * len(rows[0]), rows[-1]]
         return summary(
-            str(self.configuration.get("title") or "Result"),
+            str(self.dataset.attrs["title"] or "Result"),
             outcome,
             ["step", *(n.replace("_", " ") for n in _SHOWN if n in self.dataset), "status"],
             rows,
@@ -186,7 +194,7 @@ class Result:
             scale, prefixed = axis_unit(field.values, str(field.attrs["units"]))
             field = (field * scale).assign_attrs(field.attrs | {"units": prefixed})
         mesh = field.plot.pcolormesh(x="x", y="y", **options)
-        title = label_of_step(self.dataset, step, self.configuration)
+        title = label_of_step(self.dataset, step)
         mesh.axes.set(aspect="equal", facecolor=_NO_CONTACT, title=title)
         return mesh
 
@@ -199,21 +207,6 @@ class Result:
             The file cannot be written.
         """
         storage.write(self.dataset, Path(path))
-
-
-def _statuses(data: xr.Dataset) -> list[tuple[int, str]]:
-    return list(zip(data["step"].values.tolist(), map(str, data["status"].values), strict=True))
-
-
-def caveats_of(data: xr.Dataset) -> list[tuple[int, Status, str]]:
-    """Return number, status and message of every caveat of the steps; a step may have several."""
-    columns = (data[name].values.tolist() for name in ("step", "status_code", "status"))
-    return [
-        (number, status, message)
-        for number, code, text in zip(*columns, strict=True)
-        for status, message in statuses_of(code, text)
-        if status.converged and status is not Status.CONVERGED
-    ]
 
 
 def first_message(steps: Sequence[tuple[int, str]]) -> str:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import h5py
     import xarray as xr
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 """Version of the layout, in the attribute ``schema_version`` of every file."""
 
 

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from pellicle.variables import CORRECTED_FRACTION
-
-from .derived import FIRST_RUN
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,9 +23,7 @@ def has_one_shape(data: xr.Dataset) -> bool:
 
 def is_periodic(data: xr.Dataset) -> bool:
     """Return whether the domain of a result, or of some run of a study, repeats."""
-    configuration = json.loads(data.attrs.get(FIRST_RUN) or data.attrs.get("configuration", "{}"))
-    varied = [axis for axis in ("grid", "grid.boundary", "grid_boundary") if axis in data.coords]
-    return bool(varied) or configuration.get("grid", {}).get("boundary") == "periodic"
+    return bool(data.attrs["boundary"] == "periodic")
 
 
 def means_something(data: xr.Dataset, name: str) -> bool:

@@ -12,12 +12,14 @@ import xarray as xr
 from scipy.ndimage import binary_dilation
 
 from pellicle.arrays import Array, Mask
+from pellicle.components.base import role_of
 from pellicle.components.calls import profile_of
 from pellicle.config.run import Run
+from pellicle.contact.caveats import Status
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid
-from pellicle.results.status import Status
 from pellicle.schema.paths import walk
+from pellicle.variables import SHORTEST_WAVE
 
 from .runner import solve
 
@@ -128,7 +130,8 @@ def advise(run: Run, allowed: float) -> Advice:
     extent = np.max([_extent(contact, grids[-1]) for contact in contacts], axis=0)
     fitting = run.grid.size if at_edge else _fitting_size(run, extent)
     points = _points(run.grid, fitting or run.grid.size, factor)
-    waves = [value for path, value, _ in walk(run.indenter) if path.endswith("cutoff_wavelength")]
+    fields = ((value, field) for _, value, field in walk(run.indenter) if field)
+    waves = [value for value, field in fields if role_of(field) == SHORTEST_WAVE]
     in_wave = min(waves) / run.grid.cell_size if waves else None
     return Advice(steps, points, fitting, at_edge, in_wave)
 

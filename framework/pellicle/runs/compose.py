@@ -17,7 +17,7 @@ from pellicle.errors import ConfigError
 from pellicle.surface.grid_checks import warn_of_cells, warn_of_period
 from pellicle.surface.operators import make_operator
 
-from .relaxation import warn_of_relaxation
+from .relaxation_checks import warn_of_relaxation
 from .strangers import ask_strangers
 
 

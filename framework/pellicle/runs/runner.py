@@ -31,8 +31,8 @@ from pellicle.results.step import Steps
 from .compose import compose
 from .journal import Journal
 from .lock import locked
+from .memory_estimate import memory_of
 from .progress import Bar, Report, RunProgress
-from .relaxation import history_arrays
 from .steps import solve_steps
 
 STANDARD_OUTPUTS = ("csv", "figures")
@@ -99,7 +99,7 @@ def run(
     result = execute(run, journal, outputs, bar, threads=threads).result
     for step, message in result.failures():
         warnings.warn(f"step {step}: {message}", ConvergenceWarning, stacklevel=2)
-    for message in result.caveats():
+    for message in result.warnings():
         warnings.warn(message, ConvergenceWarning, stacklevel=2)
     return result
 
@@ -167,12 +167,6 @@ def execute(
                     calls = [journal.close, *writers(outputs, runs, journal.stem, run)]
                     files = tuple(chain(*all_done(calls)))
     return Executed(result, files, resumed)
-
-
-def memory_of(run: Run) -> float:
-    """Return the estimated peak memory of a run [bytes]."""
-    history, sticks = history_arrays(run), run.interaction is not None
-    return memory.estimate(run.grid, len(run.loading.values), run.solver, history, sticks=sticks)
 
 
 def _hand_over(

@@ -21,6 +21,7 @@ from pellicle.components.calls import (
 )
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
+from pellicle.contact.caveats import sentence_of, status_of, to_text
 from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.solution import Stop
 from pellicle.contact.stiffness import Stiffness, measure_stiffness
@@ -73,7 +74,7 @@ def _solved_step(
     in_part = jumped and not step.jumped and bool(step.equilibrium.contact.any())
     area = np.count_nonzero(step.equilibrium.contact) * run.grid.cell_area
     largest_area = max(area, steps.largest_area)
-    status, message = judge(run, index, step, stiffness, lost if in_part else None, largest_area)
+    caveats = judge(run, index, step, stiffness, lost if in_part else None, largest_area)
     report = report_of(prescription, setting, step.equilibrium)
     report |= {v.name: step.missed for v in prescription.variables if v.name not in report}
     areas = _corrected_areas(run, step.equilibrium.contact)
@@ -87,9 +88,10 @@ def _solved_step(
         **({"force_extrapolated": limit[0], "force_error": limit[1]} if limit else {}),
         "iterations": step.iterations,
         "operator_applications": used,
-        "converged": status.converged,
-        "status_code": status.name,
-        "status": message,
+        "converged": status_of(caveats).converged,
+        "status_code": status_of(caveats).name,
+        "status": sentence_of(caveats),
+        "caveats": to_text(caveats),
         "wall_time": time.perf_counter() - started,
     }
     added = (*areas, *prescription.variables)

@@ -95,7 +95,10 @@ class _Trials:
     solver: Solver
     monitor: Monitor
     excess: dict[float, float] = field(default_factory=dict)
-    """Signed distance of the value above the goal, 0 if met, by log F or by depth over `scale`."""
+    """Excess of the value over the goal by log F or by depth over `scale`, 0 if met.
+
+    Of a quantity that falls as the control grows it is the negative, so that it grows too.
+    """
     iterations: int = 0
     missed: float = math.inf
     below: float = -math.inf
@@ -149,6 +152,7 @@ class _Trials:
             self.below = max(self.below, value)
         else:
             self.above = min(self.above, value)
+        direction = 1.0 if self.search.increasing else -1.0
         if goal and value / goal > 0:
-            return math.copysign(1.0, goal) * math.log(value / goal)
-        return math.copysign(1.0, value - goal)
+            return direction * math.copysign(math.log(value / goal), value - goal)
+        return direction * math.copysign(1.0, value - goal)

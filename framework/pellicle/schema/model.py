@@ -34,6 +34,6 @@ class Model(BaseModel):
         return copy
 
     @property
-    def described_fields(self) -> Mapping[str, FieldInfo]:
-        """The fields by name, including those that only this object has."""
-        return type(self).model_fields
+    def entries(self) -> Mapping[str, tuple[Any, FieldInfo]]:
+        """Value and description of each key of its table in a file."""
+        return {name: (getattr(self, name), info) for name, info in type(self).model_fields.items()}

@@ -25,7 +25,7 @@ def get(at: Any, path: str) -> Any:
         elif isinstance(at, (list, tuple)):
             at = at[int(name)] if name.isdecimal() and int(name) < len(at) else None
         else:
-            at = getattr(at, name, None) if isinstance(at, Model) else None
+            at = at.entries.get(name, (None, None))[0] if isinstance(at, Model) else None
     return at
 
 
@@ -44,8 +44,8 @@ def walk(
         values.append((place, value, field))
         inner: list[tuple[str, Any, FieldInfo | None]]
         if isinstance(value, Model):
-            fields = value.described_fields.items()
-            inner = [(f"{prefix}{name}", getattr(value, name), info) for name, info in fields]
+            entries = value.entries.items()
+            inner = [(f"{prefix}{name}", entry, info) for name, (entry, info) in entries]
         elif isinstance(value, Mapping):
             inner = [(f"{prefix}{name}", entry, None) for name, entry in value.items()]
         elif isinstance(value, (list, tuple)):
@@ -86,8 +86,8 @@ def _replaced(at: Any, names: list[str], value: object, path: str) -> Any:
     if not names:
         return value
     if isinstance(at, Model):
-        set_ = at.model_fields_set | {"type"}
-        at = {name: getattr(at, name) for name in at.described_fields if name in set_}
+        left_out = type(at).model_fields.keys() - at.model_fields_set - {"type"}
+        at = {name: value for name, (value, _) in at.entries.items() if name not in left_out}
     name, rest = _head(at, names)
     if isinstance(at, Mapping):
         return {**at, name: _replaced(at.get(name, {}), rest, value, f"{path}{name}.")}

@@ -1,8 +1,8 @@
 __all__: list[str]
 
-from .fields import extent as extent
 from .fields import pressure_map as pressure_map
 from .fields import profile as profile
+from .fields import show_field as show_field
 from .fields import without_round_off as without_round_off
 from .html import Block as Block
 from .html import Cell as Cell
@@ -27,7 +27,6 @@ from .plotting import drawings as drawings
 from .plotting import force_depth as force_depth
 from .plotting import over_time as over_time
 from .plotting import save_figures as save_figures
-from .plotting import save_study_figures as save_study_figures
 from .plotting import study_curves as study_curves
 from .saving import save_figure as save_figure
 from .saving import save_pages as save_pages

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
-from pellicle.components import Solver
 from pellicle.contact.problem import height_scale
 from pellicle.results.path import has_interaction, has_times, label_of_step
 from pellicle.results.result import Result
+from pellicle.results.shape import is_periodic
 from pellicle.units import axis_unit
 
 from .lines import EDGE_CELLS, edge_cells
@@ -20,6 +20,7 @@ from .style import NO_CONTACT, add_colour_bar
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
+    from matplotlib.image import AxesImage
 
 DIVERGING = "RdBu_r"
 """The colours of fields that are negative where an interaction pulls."""
@@ -33,17 +34,16 @@ def without_round_off(step: xr.Dataset) -> xr.Dataset:
     The tolerance is ``solver.tolerance`` times the length that scales the residuals of the step;
     otherwise full contact would be drawn as a landscape of femtometres.
     """
-    configuration = json.loads(step.attrs.get("configuration", "{}"))
-    solver = configuration.get("solver", {})
-    tolerance = float(solver.get("tolerance", Solver.model_fields["tolerance"].default))
     gap, depth = step["gap"].values, float(step["depth"])
     # A step that failed may have infinite values of both signs.
     with np.errstate(invalid="ignore"):
         profile = step["displacement"].values - depth - gap
         # A layer far thicker than its period sinks by much more than the heights.
-        if configuration.get("grid", {}).get("boundary") == "periodic":
+        if is_periodic(step):
             depth -= float(step["displacement"].mean())
-    closed = np.abs(gap) <= tolerance * height_scale(profile, step["contact"].values, depth)
+    closed = np.abs(gap) <= step.attrs["tolerance"] * height_scale(
+        profile, step["contact"].values, depth
+    )
     return step.assign(gap=(step["gap"].dims, np.where(closed, 0.0, gap), step["gap"].attrs))
 
 
@@ -72,22 +72,14 @@ def pressure_map(result: Result, axes: Axes, step: int | None = None) -> None:
     step = default_step(result.dataset) if step is None else step
     data = result.dataset.isel(step=step)
     pressure = data["pressure"].values
-    length, length_name = axis_unit(np.append(data["x"].values, data["y"].values), "m")
     scale, name = axis_unit(pressure, "Pa")
     tensile = has_interaction(data)
-    image = axes.imshow(
-        np.ma.masked_equal(pressure.T * scale, 0.0),
-        origin="lower",
-        extent=extent(data["x"].values * length, data["y"].values * length),
-        **(diverging(pressure * scale) if tensile else {"cmap": "viridis", "vmin": 0.0}),
-        interpolation="nearest",
-        # The stage "rgba" converts every cell to a colour before it resamples.
-        interpolation_stage="data",
-    )
+    colours = diverging(pressure * scale) if tensile else {"cmap": "viridis", "vmin": 0.0}
+    values = np.ma.masked_equal(pressure.T * scale, 0.0)
+    image, length = show_field(axes, data, values, interpolation="nearest", **colours)
     axes.set_facecolor(NO_CONTACT)
     if tensile:
         outline_contact(data, axes, length)
-    axes.set(xlabel=f"x [{length_name}]", ylabel=f"y [{length_name}]")
     axes.set_title(_caption(result, step))
     label = "pressure, negative where it pulls" if tensile else "contact pressure"
     add_colour_bar(axes, image, f"{label} [{name}]")
@@ -174,19 +166,26 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
 
 def _caption(result: Result, step: int) -> str:
     """Return the title of a figure of one load step."""
-    caption = label_of_step(result.dataset, step, result.configuration)
+    caption = label_of_step(result.dataset, step)
     title = result.dataset.attrs.get("title", "")
     if not bool(result.dataset["converged"][step]):
         caption += ", NOT CONVERGED"
     return f"{title}\n{caption}" if title else caption
 
 
-def extent(x: Array, y: Array) -> tuple[float, float, float, float]:
-    """Return the outer edges of the domain from its cell centres, for ``Axes.imshow``."""
-    dx, dy = (c[1] - c[0] if c.size > 1 else 1.0 for c in (x, y))
-    return (
-        float(x[0] - dx / 2),
-        float(x[-1] + dx / 2),
-        float(y[0] - dy / 2),
-        float(y[-1] + dy / 2),
-    )
+def show_field(
+    axes: Axes, step: xr.Dataset, values: ArrayLike, **colours: Any
+) -> tuple[AxesImage, float]:
+    """Draw values along y, then x, at the cells of a step.
+
+    Return also the factor from metres to the unit of the axes.
+    """
+    length, unit = axis_unit(np.append(step["x"].values, step["y"].values), "m")
+    edges: Any = []
+    for centres in (step["x"].values * length, step["y"].values * length):
+        half = (centres[1] - centres[0] if centres.size > 1 else 1.0) / 2
+        edges += [float(centres[0] - half), float(centres[-1] + half)]
+    axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
+    # The stage "rgba" converts every cell to four colour values first.
+    shared: dict[str, Any] = {"origin": "lower", "interpolation_stage": "data"}
+    return axes.imshow(values, extent=edges, **shared, **colours), length

@@ -21,7 +21,7 @@ from pellicle.variables import CONTACT_AREA, CORRECTED_AREA
 from .fields import pressure_map, profile
 from .leg_styles import MOST_LEGS, draw_legs, name_legs
 from .saving import save_figure
-from .style import MARKERS, FigureStyle, colour, is_log_spaced, is_ordered
+from .style import MARKERS, FigureStyle, colour, is_log_spaced, is_ordered, is_seed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -89,57 +89,43 @@ STUDY_FIGURES = "force", "contact_area", "contact_fraction"
 
 
 def save_figures(
-    result: Result,
+    shown: Result | xr.Dataset,
     directory: Path,
     name: str,
     formats: Iterable[str],
     style: FigureStyle | None = None,
 ) -> tuple[Path, ...]:
-    """Write every figure as ``directory/name-figure.format`` and return the files."""
-    return _save(drawings(result), directory, name, formats, style)
+    """Write the figures of a result, or of the table of `pellicle.run_study`; return the files.
+
+    They are ``directory/name-figure.format``.
+    """
+    files: list[Path] = []
+    for suffix, fill in drawings(shown).items():
+        files += save_figure(fill, directory / f"{name}-{suffix}", formats, style=style)
+    return tuple(files)
 
 
-def drawings(result: Result) -> dict[str, Callable[[Figure], None]]:
-    """Return what fills each figure of a run, by the suffix of the file name."""
+def drawings(shown: Result | xr.Dataset) -> dict[str, Callable[[Figure], None]]:
+    """Return what fills each figure of a result or of a study's table, by the suffix of its file.
 
-    def fill(draw: Callable[[Result, Axes], None], figure: Figure) -> None:
-        draw(result, figure.add_subplot())
+    A study has force, and contact fraction or area: a free domain has no nominal area of which the
+    contact is a fraction.
+    """
 
+    def fill(draw: Callable[[Axes], None], figure: Figure) -> None:
+        draw(figure.add_subplot())
+
+    if not isinstance(shown, Result):
+        area = "contact_fraction" if is_periodic(shown) else "contact_area"
+        names = ("force", area) if "force" in shown else ()
+        curves = {name: partial(study_curves, shown, variable=name) for name in names}
+        return {name: partial(fill, draw) for name, draw in curves.items()}
     figures: dict[str, Callable[[Figure], None]] = {
-        suffix: partial(fill, draw) for suffix, draw in FIGURES.items()
+        suffix: partial(fill, partial(draw, shown)) for suffix, draw in FIGURES.items()
     }
-    if has_times(result.dataset) and result.dataset.sizes["step"] > 1:
-        figures[TIME] = partial(over_time, result)
+    if has_times(shown.dataset) and shown.dataset.sizes["step"] > 1:
+        figures[TIME] = partial(over_time, shown)
     return figures
-
-
-def save_study_figures(
-    table: xr.Dataset,
-    directory: Path,
-    name: str,
-    formats: Iterable[str],
-    style: FigureStyle | None = None,
-) -> tuple[Path, ...]:
-    """Write the figures of `study_drawings` as ``directory/name-figure.format``.
-
-    Parameters are as for `save_figures`; ``table`` is that of `pellicle.run_study`.
-    """
-    return _save(study_drawings(table), directory, name, formats, style)
-
-
-def study_drawings(table: xr.Dataset) -> dict[str, Callable[[Figure], None]]:
-    """Return what fills each figure of a study by its variable: force, contact fraction or area.
-
-    A free domain has no nominal area of which the contact is a fraction.
-    """
-
-    def fill(variable: str, figure: Figure) -> None:
-        study_curves(table, figure.add_subplot(), variable)
-
-    if "force" not in table:
-        return {}
-    area = "contact_fraction" if is_periodic(table) else "contact_area"
-    return {variable: partial(fill, variable) for variable in ("force", area)}
 
 
 def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
@@ -156,7 +142,7 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     against = ("time" if has_times(table) else "depth") if over_steps else along
     # Values of the first of the others have colours of their own; seeds are only repetitions.
     rest = [d for d in dimensions if d != along]
-    compared = sorted(rest, key=lambda d: d.endswith("seed") or table.sizes[d] == 1)[:1]
+    compared = sorted(rest, key=lambda d: is_seed(table[d]) or table.sizes[d] == 1)[:1]
     stacked = [str(d) for d in table["status"].dims if d not in (along, *compared)]
     y_axis, x_axis = wording(table[variable]), wording(table[against])
     named_by = wording(table[compared[0]]) if compared else None
@@ -193,19 +179,6 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     if compared or axes.get_legend_handles_labels()[1]:
         # matplotlib takes long to find the best place among many curves.
         axes.legend(fontsize="small", loc="upper left" if many > _MOST_NAMED else "best")
-
-
-def _save(
-    figures: Mapping[str, Callable[[Figure], None]],
-    directory: Path,
-    name: str,
-    formats: Iterable[str],
-    style: FigureStyle | None,
-) -> tuple[Path, ...]:
-    files: list[Path] = []
-    for suffix, fill in figures.items():
-        files += save_figure(fill, directory / f"{name}-{suffix}", formats, style=style)
-    return tuple(files)
 
 
 def _curve(result: Result, axes: Axes, labels: Mapping[str, str | None], against: str) -> None:

@@ -14,6 +14,7 @@ from pellicle.errors import ConfigError
 from pellicle.schema.input_path import InputPath
 from pellicle.schema.model import Model
 from pellicle.units import Quantity
+from pellicle.variables import ROLE, SEED
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -119,8 +120,13 @@ def is_ordered(table: xr.Dataset, dim: str | None) -> bool:
         dim is not None
         and dim in table.coords
         and table[dim].dtype.kind in "if"
-        and not dim.endswith("seed")
+        and not is_seed(table[dim])
     )
+
+
+def is_seed(axis: xr.DataArray) -> bool:
+    """Return whether the values of an axis only repeat a random run."""
+    return bool(axis.attrs.get(ROLE) == SEED)
 
 
 def is_log_spaced(values: Array) -> bool:

@@ -7,6 +7,7 @@ import xarray as xr
 
 from pellicle.checks import errors_attributed_to
 from pellicle.components import Runs
+from pellicle.config.provenance import facts_of
 from pellicle.config.study import Study
 from pellicle.errors import ConfigError
 from pellicle.results.derived import CELLS, derive
@@ -50,6 +51,6 @@ def _planned(study: Study) -> Runs:
             row[field] = ("step", *CELLS), cells, VARIABLES[field].attributes
         sides = [edge / 4 * np.array([-1, 1]) for edge in run.grid.size]
         row = row.assign_coords(dict(zip(CELLS, sides, strict=True)))
-        return row.assign_attrs(configuration=run.to_json())
+        return row.assign_attrs(configuration=run.to_json(), **facts_of([run]))
 
     return StoredRuns(derive(table, study.derived, {}), last_step, study.to_json(portable=True))

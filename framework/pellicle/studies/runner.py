@@ -24,15 +24,16 @@ from pellicle.checks import checked_threads, read_only_dataset
 from pellicle.components import Executor, Output, Say
 from pellicle.config.run import Run
 from pellicle.config.study import DEFAULT_EXECUTOR, Study
+from pellicle.contact.caveats import Caveat, Status
 from pellicle.errors import ConfigError, ConvergenceWarning, PluginError, StorageError
 from pellicle.files import check_writable, is_file, is_folder
 from pellicle.plugins import registry
 from pellicle.results import storage
 from pellicle.results.dimensions import with_paths, with_python_names
 from pellicle.results.runs import StoredRuns
-from pellicle.results.status import Status
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
+from pellicle.runs.memory_estimate import memory_of
 from pellicle.runs.progress import ProgressReporter
 from pellicle.variables import BEYOND_THEORY
 
@@ -63,7 +64,7 @@ class RunTask:
     @property
     def memory(self) -> int:
         """Estimated peak memory of the run [bytes]."""
-        return int(runner.memory_of(self.run))
+        return int(memory_of(self.run))
 
     @property
     def steps(self) -> int:
@@ -212,7 +213,7 @@ def _execute(
             if not isinstance(outcome, (ConfigError, StorageError)):
                 reason = f"{type(outcome).__name__}: {reason}"
             rows.fail(task.index, reason)
-            verdict = Status.FAILED.value.format(reason=reason)
+            verdict = Caveat(Status.FAILED, {"reason": reason}).sentence
         else:
             rows.put(task.index, outcome)
             rows.beyond_theory[task.index] = outcome.attrs.pop(BEYOND_THEORY)

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pellicle.contact.caveats import Status, by_phrase, from_text
 from pellicle.errors import first_of
+from pellicle.results.derived import DERIVED
 from pellicle.results.dimensions import parts
 from pellicle.results.shape import means_something
-from pellicle.results.status import Status, statuses_of
 from pellicle.results.wording import Wording, wording
-from pellicle.units.conversion import factor_to_si, split
-from pellicle.variables import BEYOND_THEORY, names_of
+from pellicle.variables import BEYOND_THEORY, CAVEATS, names_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,13 +31,6 @@ _OF_CYCLES = ["storage_stiffness", "loss_stiffness", "phase", "cycle_dissipation
 _LEAST_LETTERS = 8
 Columns = list[tuple[str, list[str]]]
 """Head and cells of each column."""
-_REASONS = {
-    Status.COARSE: "the cells are too coarse for this contact",
-    Status.COARSE_ZONE: "the cells are too coarse for this contact",
-    Status.STEEP: "slopes in contact are beyond the theory",
-    Status.SMALL_DOMAIN: "the domain is small for a skin on a solid that relaxes",
-}
-"""Phrases for messages such as "of 3 runs, in 2 slopes in contact are beyond the theory"."""
 _BEYOND = "a contact is far beyond the theory or its cells"
 _WORST_FIRST = "failed", "not run", "NOT CONVERGED"
 
@@ -83,7 +75,7 @@ def path_columns(table: xr.Dataset, *, si: bool = False) -> Columns:
 
 
 def _derived(table: xr.Dataset) -> list[str]:
-    return list(json.loads(table.attrs["configuration"])["study"].get("derived", {}))
+    return list(json.loads(table.attrs[DERIVED]))
 
 
 def _axes(table: xr.Dataset, *, si: bool = False) -> dict[str, Wording]:
@@ -145,40 +137,32 @@ def failures(table: xr.Dataset) -> str:
 
 
 def caveats(table: xr.Dataset) -> Iterator[str]:
-    """Yield a message for each caveat: how many runs have it, and a run and a step that do.
+    """Yield a message for each kind of caveat: how many runs have it, and a run and a step that do.
 
     Of a small domain it is the step that needs the largest one.
     """
-    if not (found := _caveats_by_phrase(table)):
-        return
-    names, files = run_names(table), short_files(table)
-    for reason, places in found.items():
-        run, message = max(places, key=lambda place: _least_size(place[1]))
-        yield (
-            f"of {len(names)} runs, in {len({number for number, _ in places})} {reason}; "
-            f"{names[run]} (file {files[run]}), {message}"
-        )
-
-
-def _caveats_by_phrase(table: xr.Dataset) -> dict[str, list[tuple[int, str]]]:
-    """Return the index of the run and the message of each caveat, by its phrase."""
-    found: dict[str, list[tuple[int, str]]] = {phrase: [] for phrase in _REASONS.values()}
-    codes, messages = (_by_run(table, name) for name in ("status_code", "status"))
-    for run, step in zip(*np.nonzero(codes), strict=True):
-        for status, message in statuses_of(codes[run, step], messages[run, step]):
-            if status in _REASONS:
-                found[_REASONS[status]].append((int(run), f"step {step + 1}: {message}"))
+    texts = _by_run(table, CAVEATS)
+    steps = (
+        ((int(run), int(step) + 1), caveat)
+        for run, step in zip(*np.nonzero(texts), strict=True)
+        for caveat in from_text(texts[run, step])
+    )
+    kinds = {
+        phrase: [(run, f"step {step}: {caveat.sentence}") for (run, step), caveat in group]
+        for phrase, group in by_phrase(steps).items()
+    }
     if BEYOND_THEORY in table:
-        texts = table[BEYOND_THEORY].values.ravel()
-        found[_BEYOND] = [(run, text) for run, text in enumerate(texts) if text]
-    return {phrase: places for phrase, places in found.items() if places}
-
-
-def _least_size(message: str) -> float:
-    """Return the edge [m] that the message of a small domain asks for; 0 if it is another's."""
-    asked = re.search(r"grid\.size ≥ ([^:]+):", message)
-    value, unit = (split(asked[1]) if asked else None) or (0.0, "m")
-    return value * factor_to_si(unit, "m")
+        beyond = table[BEYOND_THEORY].values.ravel()
+        kinds[_BEYOND] = [(run, text) for run, text in enumerate(beyond) if text]
+    if any(kinds.values()):
+        names, files = run_names(table), short_files(table)
+    for phrase, messages in kinds.items():
+        if messages:
+            run, message = messages[0]
+            yield (
+                f"of {len(names)} runs, in {len({run for run, _ in messages})} {phrase}; "
+                f"{names[run]} (file {files[run]}), {message}"
+            )
 
 
 def _statuses(table: xr.Dataset) -> list[list[Status]]:

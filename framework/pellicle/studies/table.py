@@ -11,17 +11,17 @@ import numpy as np
 import xarray as xr
 
 from pellicle.config.coordinates import units_of
-from pellicle.config.provenance import now_with
+from pellicle.config.provenance import facts_of, now_with
 from pellicle.config.study import Study
+from pellicle.contact.caveats import Caveat, Status
 from pellicle.files import atomic_write, for_document
 from pellicle.results import storage
-from pellicle.results.derived import FIRST_RUN, VARYING, derive, header
+from pellicle.results.derived import DERIVED, FIRST_RUN, VARYING, derive, header
 from pellicle.results.dimensions import with_python_names
 from pellicle.results.path import with_path
-from pellicle.results.status import Status
-from pellicle.variables import BEYOND_THEORY, VARIABLES
+from pellicle.variables import BEYOND_THEORY, CAVEATS, VARIABLES
 
-_TEXTS = "status_code", "status"
+_TEXTS = "status_code", "status", CAVEATS
 
 
 class StudyTable:
@@ -33,8 +33,10 @@ class StudyTable:
             "title": for_document(study.points[0].run.title),
             "configuration": study.to_json(),
             FIRST_RUN: study.points[0].run.to_json(portable=True),
+            DERIVED: json.dumps(study.derived),
             VARYING: json.dumps(sorted(study.varying)),
             "axes": json.dumps({name: list(axes) for name, axes in study.dimensions.items()}),
+            **facts_of([point.run for point in study.points]),
             **now_with(point.run for point in study.points),
         }
         steps = {point.position: len(point.run.loading.values) for point in study.points}
@@ -76,7 +78,7 @@ class StudyTable:
         codes = self._texts["status_code"][index]
         missing = codes == Status.NOT_RUN.name
         codes[missing] = Status.FAILED.name
-        self._texts["status"][index][missing] = Status.FAILED.value.format(reason=reason)
+        self._texts["status"][index][missing] = Caveat(Status.FAILED, {"reason": reason}).sentence
 
     def dataset(self) -> xr.Dataset:
         """Return the table, with NaN for missing numbers."""
@@ -119,7 +121,7 @@ def write(table: xr.Dataset, directory: Path) -> tuple[Path, Path]:
     storage.write(with_python_names(table), whole)
     with atomic_write(text) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        columns = ["run", *table.coords, *(n for n in table.data_vars if n != "run")]
+        columns = ["run", *table.coords, *(n for n in table.data_vars if n not in ("run", CAVEATS))]
         writer.writerow(header(str(name), table[name]) for name in columns)
         status = table["status"]
         cells = [

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from fnmatch import fnmatch
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, NamedTuple
 
 import xarray as xr
 
@@ -104,12 +104,24 @@ def _written(output: Output, steps: xr.Dataset) -> dict[str, bytes]:
         return _contents(stem.parent)
 
 
+class Whole(NamedTuple):
+    """What an output makes of all steps."""
+
+    contents: dict[str, bytes]
+    leaves_data: bool
+
+
+@lru_cache(maxsize=1)
+def _whole(output: Output) -> Whole:
+    """Write all steps, for several rules: drawing takes long."""
+    data = _dataset().copy(deep=True)
+    contents = _written(output, data)
+    return Whole(contents, data.identical(_dataset()))
+
+
 def leaves_its_data_as_they_are(output: Output) -> None:
     """step() and write() change nothing of their arguments: other outputs get them too."""
-    data = _dataset().copy(deep=True)
-    with _stem() as stem:
-        _write(output, stem, data)
-    require(data.identical(_dataset()), "the data of the run differ afterwards")
+    require(_whole(output).leaves_data, "the data of the run differ afterwards")
 
 
 def leaves_the_files_it_returns(output: Output) -> None:
@@ -140,7 +152,7 @@ def loses_no_step(output: Output) -> None:
     if output.scope != "run":
         return
     whole = _dataset()
-    contents, again = _written(output, whole), _written(output, whole)
+    contents, again = _whole(output).contents, _written(output, whole)
     # A file with a date or a random name differs between two equal runs, and proves nothing.
     steady = {name for name, content in again.items() if content == contents.get(name)}
     if not steady:

@@ -33,8 +33,8 @@ def check_prescription(prescription: Prescription, values: Sequence[float] = ())
 
     Besides the rules of all components: ``target`` is pure and returns finite numbers; a value
     that cannot be reached raises a ConfigError; ``report`` has the declared variables; the quantity
-    of a search does not fall as the force grows; and prescribing the value of a known step
-    reproduces that step.
+    of a search grows with the force, or falls if it is not ``increasing``; and prescribing the
+    value of a known step reproduces that step.
 
     Parameters
     ----------
@@ -115,13 +115,16 @@ def values_are_refused_in_words(prescription: Prescription, values: Sequence[flo
         target_of(prescription, setting, value)
 
 
-def search_does_not_fall(prescription: Prescription, values: Sequence[float]) -> None:
-    """The quantity of a search does not fall if the force doubles."""
+def search_goes_one_way(prescription: Prescription, values: Sequence[float]) -> None:
+    """If the force doubles, the quantity of a search does not fall, or not grow if it falls."""
     setting, steps, _ = _reference_steps()
     target = target_of(prescription, setting, _values(prescription, values)[0])
     if isinstance(target, Search):
         low, high = (target.measure(step) for step in steps)
-        require(low <= high, f"{low:g} under 0.1 mN and {high:g} under 0.2 mN; return its negative")
+        require(
+            low <= high if target.increasing else low >= high,
+            f"{low:g} under 0.1 mN and {high:g} under 0.2 mN; give increasing={low <= high}",
+        )
 
 
 def step_has_what_is_prescribed(prescription: Prescription, values: Sequence[float]) -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from decimal import Decimal
 from numbers import Real
@@ -17,7 +17,7 @@ from pydantic_core import core_schema
 
 from pellicle.errors import shown
 
-from .conversion import NUMBER_AND_UNIT, factor_to_si, pint_registry
+from .conversion import NUMBER_AND_UNIT, factor_to_si
 from .conversion import one as one
 from .conversion import si_unit as si_unit
 from .conversion import split as split
@@ -38,12 +38,12 @@ _EXAMPLES = {
     "m": "10 um",
     "Pa": "10 kPa",
     "N/m": "50 mN/m",
-    "J/m**2": "50 mJ/m^2",
+    "J/m2": "50 mJ/m2",
     "N*m": "1 pN*m",
     "Pa/m": "1 kPa/mm",
     "N": "5 nN",
-    "m**2": "0.01 mm**2",
-    "m**3": "0.001 mm**3",
+    "m2": "0.01 mm2",
+    "m3": "0.001 mm3",
     "rad": "70 degree",
     "s": "1 s",
     "Hz": "1 Hz",
@@ -125,7 +125,7 @@ class Quantity:
         if not unit:
             raise ValueError(f"{shown(value)} is text without a unit; give {self._wanted()}")
         try:
-            factor = factor_to_si(" ".join(unit.split()), self.unit)
+            factor = factor_to_si(unit, self.unit)
         except ValueError as problem:
             raise ValueError(f"{shown(value)} {problem}; give {self._wanted()}") from None
         # In decimal "10 um" is 1e-05; in binary it would be 9.999999999999999e-06. The exponent of
@@ -144,7 +144,7 @@ class Quantity:
 
     def powers(self) -> tuple[int, int]:
         """Return the powers of Pa and of m in the unit; its power of seconds is ignored."""
-        dimensions: Mapping[str, Any] = pint_registry().Unit(self.unit).dimensionality
+        dimensions = {} if self.unit == "1" else one(self.unit).dimensionality
         pressure = int(dimensions.get("[mass]", 0))
         return pressure, int(dimensions.get("[length]", 0)) + pressure
 
@@ -218,7 +218,7 @@ Tension = Annotated[float, Quantity("N/m", at_least=0)]
 """A surface tension ≥ 0 [N/m]."""
 BendingStiffness = Annotated[float, Quantity("N*m", at_least=0)]
 """The bending stiffness of a plate ≥ 0 [N*m]."""
-WorkOfAdhesion = Annotated[float, Quantity("J/m**2", above=0)]
+WorkOfAdhesion = Annotated[float, Quantity("J/m2", above=0)]
 """An energy per area > 0 [J/m²]."""
 Strength = Annotated[float, Quantity("Pa", above=0)]
 """A traction > 0 [Pa]."""

@@ -24,6 +24,8 @@ _POWER = r" ?(?:\*\*|\^) ?(?:[-+]?\d\d?(?:\.\d+)?|\([-+]?\d\d?(?:[./]\d+)?\))|�
 _NAME = rf"(?:{_LETTER})(?:{_LETTER}|\d)*(?:{_POWER})?"
 _UNIT = re.compile(rf"(?:1 ?/)?[( ]*{_NAME}(?:[) ]*[ */·⋅×.][( ]*{_NAME})*[) ]*")
 _LONGEST_UNIT = 100
+# m2 is the spelling of datasets and of UDUNITS; no unit of pint ends in such a digit.
+_POWER_BEHIND = re.compile(r"(?<=[^\W\d_])([2-9])(?![\w.])")
 _NOUNS = {
     "rad": "an angle",
     "m": "a length",
@@ -32,14 +34,14 @@ _NOUNS = {
     "N/m": "a force per length",
     "J": "an energy",
     "Pa/m": "a pressure per length",
-    "m**2": "an area",
-    "m**3": "a volume",
+    "m2": "an area",
+    "m3": "a volume",
     "s": "a time",
     "1/m": "an inverse length",
     "m/s": "a speed",
     "Hz": "a frequency",
     "kg": "a mass",
-    "kg/m**3": "a density",
+    "kg/m3": "a density",
     "Pa*s": "a viscosity",
     "K": "a temperature",
     "V": "a voltage",
@@ -69,13 +71,21 @@ def split(text: str) -> tuple[float, str] | None:
 
 def one(unit: str) -> Any:
     """Return 1 of a unit as a pint quantity in SI, whose arithmetic keeps dimensions."""
+    return _quantity(1.0, unit).to_base_units()
+
+
+def _quantity(number: float, unit: str) -> Any:
+    """Return a number of a unit as a pint quantity."""
     # Runs of blanks can be divided among the parts of the pattern in more ways than can be tried.
-    spaced = " ".join(unit.split())
-    if len(spaced) <= _LONGEST_UNIT and _UNIT.fullmatch(spaced):
+    spelled = _POWER_BEHIND.sub(r"**\1", " ".join(unit.split()))
+    if len(spelled) <= _LONGEST_UNIT and _UNIT.fullmatch(spelled):
         try:
-            return pint_registry().Quantity(1.0, spaced).to_base_units()
+            quantity = pint_registry().Quantity(number, spelled)
+            quantity.to_base_units()
+            return quantity
         except Exception:
-            # pint raises a dozen unrelated types (syntax, token, attribute errors) for bad units.
+            # pint raises a dozen unrelated types (syntax, token, attribute errors) for bad units;
+            # decibels and large powers fail in SI only.
             pass
     raise ValueError(f"has an unknown unit ({shown(unit)})")
 
@@ -94,19 +104,24 @@ def si_unit(value: Any) -> str:
         return "1"
     mass, length, time = (dimensions.get(f"[{name}]", 0) for name in ("mass", "length", "time"))
     powers = {"N": mass, "m": length - mass, "s": time + 2 * mass}
-    parts = (f"{n}**{power:g}" if power != 1 else n for n, power in powers.items() if power)
-    return re.sub(r"m\*\*2(?![\d.])", "m2", named_unit or "*".join(parts))
+    parts = (
+        name if power == 1 else f"{name}{'' if power in range(2, 10) else '**'}{power:g}"
+        for name, power in powers.items()
+        if power
+    )
+    return named_unit or "*".join(parts)
 
 
 # pint takes half a millisecond for a conversion, and a study has thousands of values.
 @lru_cache(maxsize=1000)
 def factor_to_si(unit: str, si: str) -> float:
     """Return the factor from ``unit`` to the unit ``si``; refuse a unit that does not fit."""
-    kind, registry = _kind(unit), pint_registry()
+    kind = _kind(unit)
     if kind != _kind(si):
         noun = "a pure number" if kind == "dimensionless" else f"a value in {unit}"
         raise ValueError(f"is {next((n for u, n in _NOUNS.items() if _kind(u) == kind), noun)}")
-    factor, zero = (float(registry.Quantity(x, unit).to(si).magnitude) for x in (1.0, 0.0))
+    to = _quantity(1.0, si).units
+    factor, zero = (float(_quantity(x, unit).to(to).magnitude) for x in (1.0, 0.0))
     if zero != 0:
         raise ValueError(f"is in a unit whose zero is {zero:.6g} {si}")
     if not 0 < factor < math.inf:

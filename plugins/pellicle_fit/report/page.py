@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from pellicle import Run
 from pellicle.config.describe import inputs
 from pellicle.files import atomic_write, json_text
 from pellicle.show import Block, Cell, Code, Column, Notice, Picture, Section, Table, Text, svg
@@ -306,7 +307,10 @@ def _curves(fit: PooledFit) -> Table:
 def _inputs(models: Sequence[Mapping[str, Any]]) -> Table:
     """Return the fields of indenter and kernel, of one curve or of many."""
     configurations = [
-        {field.name: field for field in inputs({k: v for k, v in model.items() if k != "accuracy"})}
+        {
+            field.name: field
+            for field in inputs({k: v for k, v in model.items() if k != "accuracy"}, Run)
+        }
         for model in models
     ]
     rows = []

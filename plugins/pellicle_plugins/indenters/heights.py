@@ -12,11 +12,10 @@ import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
 from pellicle.arrays import Array
+from pellicle.components import shape_of_run
 from pellicle.errors import ConfigError
 from pellicle.files import read_text
-from pellicle.grid import shape_of_run
-from pellicle.schema.input_path import InputPath
-from pellicle.schema.matlab import read_mat
+from pellicle.schema import InputPath, read_mat
 
 from .file_checks import require_content, require_file, require_memory
 from .from_heights import FromHeights, HeightUnit

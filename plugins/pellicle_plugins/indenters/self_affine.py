@@ -41,7 +41,12 @@ class SelfAffine(Indenter):
         Field(title="Hurst exponent", description="Hurst exponent H"),
     ]
     cutoff_wavelength: Annotated[
-        Length, Field(title="cut-off wavelength", description="shortest wavelength 2π/q_s [m]")
+        Length,
+        Field(
+            title="cut-off wavelength",
+            description="shortest wavelength 2π/q_s [m]",
+            json_schema_extra={"role": "shortest wave"},
+        ),
     ]
     roll_off_wavelength: Annotated[
         Length | None,
@@ -50,7 +55,10 @@ class SelfAffine(Indenter):
             description="longest wavelength 2π/q₀ [m]; the longer edge of the domain if absent",
         ),
     ] = None
-    seed: Annotated[int, Field(ge=0, description="seed of the random phases")] = 0
+    seed: Annotated[
+        int,
+        Field(ge=0, description="seed of the random phases", json_schema_extra={"role": "seed"}),
+    ] = 0
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:

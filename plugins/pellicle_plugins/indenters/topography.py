@@ -12,9 +12,9 @@ from numpy.polynomial.legendre import legvander
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from pellicle.arrays import Array
+from pellicle.components import pair
 from pellicle.errors import ConfigError
-from pellicle.grid import pair
-from pellicle.schema.input_path import InputPath
+from pellicle.schema import InputPath
 from pellicle.units import Length, Quantity, readable
 
 from .file_checks import require_memory

@@ -20,7 +20,7 @@ class Adhesive(Interaction):
     _SHAPE: ClassVar[float]
 
     work_of_adhesion: Annotated[
-        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m**2]")
+        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m2]")
     ]
     range: Annotated[
         Length | None,

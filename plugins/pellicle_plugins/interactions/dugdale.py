@@ -8,10 +8,10 @@ from typing import ClassVar, Literal
 import numpy as np
 from pydantic import ConfigDict
 
+from pellicle import Grid
 from pellicle.arrays import Array
 from pellicle.components import Kernel
-from pellicle.contact.law import GapLaw
-from pellicle.grid import Grid
+from pellicle.contact import GapLaw
 
 from .adhesive import Adhesive
 from .zone import zone_width

@@ -21,7 +21,7 @@ class Exponential(Interaction):
     type: Literal["exponential"] = "exponential"
     examples = ({"work_of_adhesion": "50 mJ/m^2", "range": "1 um"},)
     work_of_adhesion: Annotated[
-        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m**2]")
+        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m2]")
     ]
     range: Annotated[Length, Field(description="decay length of the energy [m]")]
 

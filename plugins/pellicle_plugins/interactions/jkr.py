@@ -7,10 +7,10 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import ConfigDict, Field, PrivateAttr
 
+from pellicle import Grid
 from pellicle.arrays import Array
 from pellicle.components import Interaction, Kernel
-from pellicle.contact.law import GapLaw
-from pellicle.grid import Grid
+from pellicle.contact import GapLaw
 from pellicle.units import WorkOfAdhesion
 
 from .linear import Linear
@@ -40,7 +40,7 @@ class JKR(Interaction):
     type: Literal["jkr"] = "jkr"
     examples = ({"work_of_adhesion": "50 mJ/m^2"},)
     work_of_adhesion: Annotated[
-        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m**2]")
+        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m2]")
     ]
 
     estimate_error: Annotated[

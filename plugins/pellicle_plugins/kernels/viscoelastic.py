@@ -10,7 +10,7 @@ from pydantic import ConfigDict, Field, field_validator, model_validator
 from pellicle.arrays import Array
 from pellicle.components import Branch, FromRegistry, Kernel, KernelOf
 from pellicle.schema import Model
-from pellicle.surface.kernel_calls import mean_compliance
+from pellicle.surface import mean_compliance
 from pellicle.units import Quantity, Time
 
 from .power_law import PronySeries, power_law_series

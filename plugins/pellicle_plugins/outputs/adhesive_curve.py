@@ -15,6 +15,7 @@ from pellicle.arrays import Array
 from pellicle.components import Runs
 from pellicle.errors import ConfigError
 from pellicle.results.result import Result
+from pellicle.results.shape import is_periodic
 from pellicle.show.style import colour, sparse_marker
 from pellicle.units import Quantity, axis_unit
 from pellicle_plugins.validation.adhesive_path import curve_of
@@ -75,8 +76,8 @@ class AdhesiveCurve(TableFigure):
     examples = ({"work_of_adhesion": "50 mJ/m^2"},)
     work_of_adhesion: Annotated[
         float,
-        Quantity("J/m**2", above=0),
-        Field(description="energy per area that separates indenter and solid [J/m**2]"),
+        Quantity("J/m2", above=0),
+        Field(description="energy per area that separates indenter and solid [J/m2]"),
     ]
 
     @property
@@ -220,12 +221,11 @@ def _steepest_slopes(path: xr.Dataset) -> Array:
 
 def _refuse(run: xr.Dataset) -> None:
     """Refuse a run that has no adhesive curve, however many steps are solved."""
-    result = Result(run)
-    if result.configuration.get("interaction"):
+    if run.attrs["adheres"]:
         raise ConfigError(
             "adds adhesion to a path without it, and this run has an [interaction]; leave one out"
         )
-    if result.grid.boundary == "periodic":
+    if is_periodic(run):
         raise ConfigError(
             'holds for one contact on an infinite surface; set grid.boundary = "free"'
         )

@@ -8,10 +8,9 @@ import re
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from pydantic import Field
 
 from pellicle.components import Output, Runs
@@ -19,15 +18,15 @@ from pellicle.config.run import Run
 from pellicle.config.words import words_at
 from pellicle.errors import ConfigError, StorageError
 from pellicle.files import storage_errors
-from pellicle.results.derived import FIRST_RUN, names
+from pellicle.results.derived import configuration_of, names
 from pellicle.results.result import Result
 from pellicle.results.wording import wording
 from pellicle.schema.expression import evaluate, formula
 from pellicle.schema.messages import nearest
-from pellicle.show.fields import extent, without_round_off
+from pellicle.show.fields import without_round_off
 from pellicle.show.saving import SIZE, save_figure
 from pellicle.show.style import FigureStyle, is_ordered
-from pellicle.units import DIGITS, axis_unit, readable
+from pellicle.units import DIGITS, readable
 from pellicle.variables import words_of_name
 from pellicle_plugins.validation.reference import require_solution
 
@@ -35,7 +34,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from matplotlib.image import AxesImage
 
 _PLACEHOLDER = re.compile(r"\{([^{}:]+)(?::(\.\d+[fg]))?\}")
 
@@ -235,7 +233,7 @@ def joined(name: str, arrays: Sequence[xr.DataArray]) -> xr.DataArray:
 
 def in_words(text: str, data: xr.Dataset) -> str:
     """Return an expression over a result or a table with words in place of its names."""
-    configuration = json.loads(data.attrs.get(FIRST_RUN, data.attrs.get("configuration", "{}")))
+    configuration = configuration_of(data)
 
     def words(name: str) -> str:
         if name in data.variables:
@@ -258,18 +256,6 @@ def set_scales(axes: Axes, log: Sequence[str], *, signed: bool = False) -> None:
         elif low < 0 and getattr(axes.dataLim, f"{direction}0") >= 0:
             getattr(axes, f"set_{direction}lim")(**{"left" if direction == "x" else "bottom": 0.0})
     axes.grid(alpha=0.3)
-
-
-def show_field(
-    axes: Axes, step: xr.Dataset, values: ArrayLike, **colours: Any
-) -> tuple[AxesImage, float]:
-    """Draw values along y, then x, at the cells of a step; return also the factor of its edges."""
-    length, unit = axis_unit(np.append(step["x"].values, step["y"].values), "m")
-    edges = extent(step["x"].values * length, step["y"].values * length)
-    axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
-    # The stage "rgba" converts every cell to four colour values first.
-    shared: dict[str, Any] = {"origin": "lower", "interpolation_stage": "data"}
-    return axes.imshow(values, extent=edges, **shared, **colours), length
 
 
 def add_legend(axes: Axes) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 from pellicle.components import Output, Runs
 from pellicle.files import storage_errors
 from pellicle.results import header
+from pellicle.variables import CAVEATS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -33,7 +34,7 @@ class Csv(Output):
         row = {
             header(str(name), variable): variable.item()
             for name, variable in record.data_vars.items()
-            if variable.dims == ("step",)
+            if variable.dims == ("step",) and name != CAVEATS
         }
         number = record["step"].item()
         mode = "a" if number > 1 else "w"

@@ -7,7 +7,7 @@ from typing import ClassVar, Literal
 
 from pellicle.components import Output, Runs
 from pellicle.results.result import Result
-from pellicle.show.plotting import FIGURES, STUDY_FIGURES, TIME, save_figures, save_study_figures
+from pellicle.show.plotting import FIGURES, STUDY_FIGURES, TIME, save_figures
 from pellicle.show.style import FigureStyle
 
 from .base import Formats, StyleField
@@ -30,6 +30,5 @@ class Figures(Output):
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Draw the result of a run, or the table of a study."""
-        if runs.axes is not None:
-            return save_study_figures(runs.table, stem.parent, stem.name, self.formats, self.style)
-        return save_figures(Result(runs.open()), stem.parent, stem.name, self.formats, self.style)
+        shown = Result(runs.open()) if runs.axes is None else runs.table
+        return save_figures(shown, stem.parent, stem.name, self.formats, self.style)

@@ -13,7 +13,7 @@ import numpy as np
 import tomli_w
 from pydantic import Field
 
-from pellicle import Grid
+from pellicle import Grid, Run
 from pellicle.components import Output, Runs
 from pellicle.config.describe import inputs
 from pellicle.errors import StorageError
@@ -108,7 +108,7 @@ class Html(Output):
             varied = tuple(str(name) for name in table.coords if name != "step")
             sections = self._sections_of_study(table, run, varied, stem.parent / "runs")
         sections += [
-            Section("Methods", [Text(methods(run, table.attrs["versions"], varied))]),
+            Section("Methods", [Text(methods(run, table.attrs, varied))]),
             Section("Provenance", [*origin_tables(table.attrs, run)]),
             Section("How to reproduce it", [*_reproduce(configuration, stem)]),
         ]
@@ -121,19 +121,22 @@ class Html(Output):
 
     def _sections_of_run(self, result: Result, configuration: dict[str, Any]) -> list[Section]:
         """Return what the page of a run shows before methods and provenance."""
-        data, grid = result.dataset, Grid(**configuration["grid"])
-        maps, chosen = self._maps_of_steps(result, grid)
+        data = result.dataset
+        maps, chosen = self._maps_of_steps(result)
         step_shown = default_step(data) % data.sizes["step"]
-        first = sentence_of_step(data, step_shown, grid.boundary, result.configuration)
+        first = sentence_of_step(data, step_shown)
         rest = sentences_of_path(data, result.path_summary)
         sentences = [Text(first, lead=True), *([Text(rest)] if rest else [])]
         numbers = [*step_tables(data), *path_tables(result), *oscillation_tables(result)]
         return [
-            Section("In short", [*sentences, _status(result), _setup(configuration)]),
+            Section(
+                "In short",
+                [*sentences, _status(result), _setup(configuration, str(data.attrs["prescribed"]))],
+            ),
             Section("Maps", [maps]),
             Section("Curves", curves_of_run(result, chosen, maps.begin)),
             Section("Numbers", numbers),
-            Section("Inputs", [input_table(list(inputs(configuration)))]),
+            Section("Inputs", [input_table(list(inputs(configuration, Run)))]),
         ]
 
     def _sections_of_study(
@@ -161,16 +164,19 @@ class Html(Output):
         maps = Maps(caption, "run", mapped, list(frames.values()), shared=False)
         numbers = [run_table(table, rows, list(frames)), *study_path_tables(table, rows)]
         return [
-            Section("In short", [*lead, status, _setup(first_run, varied)]),
+            Section(
+                "In short",
+                [*lead, status, _setup(first_run, str(table.attrs["prescribed"]), varied)],
+            ),
             Section("Maps", [maps] if frames else []),
             Section("Curves", curves_of_study(table)),
             Section("Numbers", numbers),
-            Section("Inputs", [input_table(inputs_of_study(table, list(inputs(first_run))))]),
+            Section("Inputs", [input_table(inputs_of_study(table, list(inputs(first_run, Run))))]),
         ]
 
-    def _maps_of_steps(self, result: Result, grid: Grid) -> tuple[Maps, list[int]]:
+    def _maps_of_steps(self, result: Result) -> tuple[Maps, list[int]]:
         """Return the maps of load steps, and the indices of the steps."""
-        data = result.dataset
+        data, grid = result.dataset, result.grid
         steps = data.sizes["step"]
         chosen = self._chosen(steps)
         mapped = _mapped(data)
@@ -178,15 +184,15 @@ class Html(Output):
         frames = []
         for index in chosen:
             step = without_round_off(data.isel(step=index))
-            label = f"{index + 1}: {label_of_step(data, index, result.configuration)}"
+            label = f"{index + 1}: {label_of_step(data, index)}"
             label += "" if step["converged"].item() else ", NOT CONVERGED"
-            note = sentence_of_step(data, index, grid.boundary, result.configuration)
+            note = sentence_of_step(data, index)
             frames.append(replace(_frame(label, grid, step, mapped, points), note=note))
         step_shown = default_step(data) % steps
         begin = int(np.searchsorted(chosen, step_shown, side="right")) - 1
         *first, last = [f"{field.name}" for field in mapped.values()]
         names = f"{', '.join(first)} and {last}".capitalize()
-        words = wording(data[prescribed_variable(data, result.configuration)]).words
+        words = wording(data[prescribed_variable(data)]).words
         # Over the range of the last step the first ones would have one colour.
         colours = ", each in colours over its own range" if len(chosen) > 1 else ""
         shown_steps = _share_in_words(len(chosen), steps, "load step")
@@ -218,13 +224,13 @@ class Html(Output):
                 )
             except StorageError:
                 continue
-            grid = Grid(**json.loads(attributes["configuration"])["grid"])
             step = xr.Dataset(
                 {name: (("x", "y"), field) for name, field in zip(names, fields, strict=True)},
                 attrs=attributes,
             ).assign(depth=row["depth"][step_shown])
             if not sticks:
                 step = step.assign({WALL_PRESSURE: step["pressure"]})
+            grid = Result(step).grid
             yield index, _frame(names_of_runs[index], grid, without_round_off(step), mapped, points)
 
     def _chosen(self, count: int) -> list[int]:
@@ -251,8 +257,8 @@ def _share_in_words(number: int, count: int, noun: str) -> str:
     return f"each {noun}" if number == count else f"{number} of {count} {noun}s"
 
 
-def _setup(configuration: dict[str, Any], varied: tuple[str, ...] = ()) -> Picture:
-    drawing = setup_drawing(configuration, varied)
+def _setup(configuration: dict[str, Any], prescribed: str, varied: tuple[str, ...] = ()) -> Picture:
+    drawing = setup_drawing(configuration, prescribed, varied)
     return Picture(drawing, "Set-up, not to scale.", description(configuration))
 
 

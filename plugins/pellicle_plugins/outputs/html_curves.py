@@ -14,7 +14,7 @@ from pellicle.results.result import Result
 from pellicle.results.wording import wording
 from pellicle.show.fields import profile
 from pellicle.show.html import Picture
-from pellicle.show.plotting import TIME, drawings, study_drawings
+from pellicle.show.plotting import TIME, drawings
 from pellicle.show.saving import svg
 
 from .html_tables import names_of_numbers
@@ -55,7 +55,7 @@ def _profiles(result: Result, chosen: list[int], begin: int) -> Picture:
     count = -(-len(chosen) // _PROFILES)
 
     def picture(index: int) -> Picture:
-        label = label_of_step(result.dataset, index, result.configuration)
+        label = label_of_step(result.dataset, index)
         caption = _CURVES["profile"].format(step=label)
         return _picture(lambda figure: profile(result, figure.add_subplot(), index), caption)
 
@@ -69,7 +69,7 @@ def curves_of_study(table: xr.Dataset) -> list[Picture]:
     """Return a figure for each variable that is drawn over a study."""
     return [
         _picture(fill, f"{wording(table[name]).words.capitalize()} over the study.")
-        for name, fill in study_drawings(table).items()
+        for name, fill in drawings(table).items()
     ]
 
 

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pellicle import Run
 from pellicle.config.describe import Input, inputs
+from pellicle.contact.caveats import Status
 from pellicle.results.result import Result
 from pellicle.results.shape import means_something
-from pellicle.results.status import Status
 from pellicle.results.wording import Wording, wording, wording_of
 from pellicle.show.html import Cell, Column, Table
 from pellicle.studies.summary import progress_of, short_files
@@ -201,7 +202,7 @@ def origin_tables(attributes: dict[str, str], configuration: dict[str, Any]) -> 
     yield Table("Versions, date and identity.", heads, [list(fact) for fact in facts if fact[1]])
     rows = [
         [i.words, i.value, i.origin.distribution, i.origin.version, i.origin.entry_point]
-        for i in inputs(configuration)
+        for i in inputs(configuration, Run)
         if i.origin
     ]
     names = ("used as", "type", "package", "version", "entry point")

@@ -14,11 +14,11 @@ from pellicle.components import Runs
 from pellicle.results.derived import as_array
 from pellicle.results.path import has_interaction
 from pellicle.schema.expression import names_in
-from pellicle.show.fields import diverging, outline_contact
+from pellicle.show.fields import diverging, outline_contact, show_field
 from pellicle.show.style import NO_CONTACT, add_colour_bar
 from pellicle.variables import WALL_PRESSURE, words_of_name
 
-from .base import Label, TableFigure, scaled, show_field
+from .base import Label, TableFigure, scaled
 
 if TYPE_CHECKING:
     import xarray as xr

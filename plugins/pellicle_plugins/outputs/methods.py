@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, cast
 
+from pellicle import Run
 from pellicle.components import Prescription
+from pellicle.components.prescription import OPTIONS
 from pellicle.config.describe import Input, inputs
-from pellicle.config.loading import prescribed_in
-from pellicle.errors import ConfigError
-from pellicle.loading import OPTIONS
+from pellicle.config.legs import number_of_steps
 from pellicle.plugins import registry
-from pellicle.schema.legs import number_of_steps
 from pellicle.units import DIGITS, axis_unit, readable
 from pellicle.variables import words_of_name
 from pellicle.version import CITATION
@@ -20,21 +19,15 @@ _FEW = 5
 """Number of load steps up to which their values are listed."""
 
 
-def prescribed_of(configuration: Mapping[str, Any]) -> str:
-    """Return the name of what the load steps of a run prescribe; empty if it is not installed."""
-    loading = {k: v for k, v in configuration["loading"].items() if k not in OPTIONS}
-    try:
-        return prescribed_in(loading)
-    except ConfigError:
-        return ""
-
-
-def methods(configuration: Mapping[str, Any], versions: str, varied: tuple[str, ...] = ()) -> str:
+def methods(
+    configuration: Mapping[str, Any], attributes: Mapping[str, Any], varied: tuple[str, ...] = ()
+) -> str:
     """Return a paragraph for the methods section of a paper.
 
-    Values at the dotted paths ``varied`` differ between the runs of a study.
+    ``attributes`` are those of the result, or of the table of the study. Values at the dotted paths
+    ``varied`` differ between the runs of a study.
     """
-    known = {i.name: i for i in inputs(configuration)}
+    known = {i.name: i for i in inputs(configuration, Run)}
     grid, on_cells = configuration["grid"], ""
     if not any(axis.startswith("grid") for axis in varied):
         points = " × ".join(str(n) for n in grid["points"])
@@ -55,27 +48,23 @@ def methods(configuration: Mapping[str, Any], versions: str, varied: tuple[str, 
     parts = "; ".join(described)
     words = [known[name].words if name in known else name for name in varied]
     changes = f"Varied: {', '.join(words)}. " if words else ""
-    tolerance = configuration["solver"].get("tolerance")
-    ending = f", to a relative tolerance of {tolerance:g}" if tolerance is not None else ""
     is_one = "solver" in known and "solver.type" not in varied
     solver = known["solver"].value if is_one else "several solvers"
+    loading = _loading(configuration["loading"], attributes["prescribed"], known, varied)
     return (
         "Normal contact of a rigid indenter with a linear solid was solved by a boundary element "
         f"method with fast Fourier transforms{on_cells} with {grid['boundary']} boundaries. "
-        f"{parts[:1].upper()}{parts[1:]}. "
-        f"{_loading(configuration, known, varied)}{changes}Solver: {solver}{ending}. "
-        f"Computed with {versions}. To cite: {CITATION}."
+        f"{parts[:1].upper()}{parts[1:]}. {loading}{changes}"
+        f"Solver: {solver}, to a relative tolerance of {attributes['tolerance']:g}. "
+        f"Computed with {attributes['versions']}. To cite: {CITATION}."
     )
 
 
 def _loading(
-    configuration: Mapping[str, Any], known: Mapping[str, Input], varied: tuple[str, ...]
+    loading: Mapping[str, Any], name: str, known: Mapping[str, Input], varied: tuple[str, ...]
 ) -> str:
-    """Return a sentence on what the load steps prescribe; empty if that is not installed."""
-    name = prescribed_of(configuration)
-    if not name:
-        return ""
-    loading, texts = configuration["loading"], [words_of_name(name)]
+    """Return a sentence on what the load steps prescribe, the quantity ``name``."""
+    texts = [words_of_name(name)]
     if not any(axis.startswith(f"loading.{name}") for axis in varied):
         prescription = cast(type[Prescription], registry().find("prescription", name))
         texts[0] += f" {_values_of_steps(loading[name], prescription.unit)}"

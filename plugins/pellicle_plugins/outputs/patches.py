@@ -12,10 +12,11 @@ from pydantic import Field
 from pellicle import analysis
 from pellicle.components import Runs
 from pellicle.results.result import Result
+from pellicle.show.fields import show_field
 from pellicle.show.style import MARKERS, NO_CONTACT, colour
 from pellicle.units import axis_unit
 
-from .base import Label, TableFigure, add_legend, show_field, write_csv
+from .base import Label, TableFigure, add_legend, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr

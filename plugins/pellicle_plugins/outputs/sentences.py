@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.results.path import has_interaction, has_times, label_of_step, prescribed_variable
-from pellicle.results.shape import has_one_shape
+from pellicle.results.shape import has_one_shape, is_periodic
 from pellicle.results.wording import wording
 from pellicle.units import readable
 from pellicle.variables import VARIABLES
@@ -25,22 +25,20 @@ _SAME = 1e-9
 """Relative difference up to which numbers count as equal."""
 
 
-def sentence_of_step(
-    data: xr.Dataset, index: int, boundary: str, configuration: Mapping[str, Any]
-) -> str:
+def sentence_of_step(data: xr.Dataset, index: int) -> str:
     """Return a sentence like "At depth 3 µm: force 904 nN, contact radius 4.5 µm" for a load step.
 
     A contact in several parts has its fraction of a periodic domain, or its area on a free one,
     instead of its radius.
     """
     step = data.isel(step=index)
-    heading = f"At {label_of_step(data, index, configuration)}"
+    heading = f"At {label_of_step(data, index)}"
     if not np.isfinite(step["force"].item()):
         return f"{heading}: no result."
-    size = "contact_fraction" if boundary == "periodic" else "contact_area"
+    size = "contact_fraction" if is_periodic(data) else "contact_area"
     if has_one_shape(data) and "contact_radius" in data:
         size = "contact_radius"
-    named = prescribed_variable(data, configuration)
+    named = prescribed_variable(data)
     names = [name for name in ("force", "depth", size) if name != named]
     if named == "depth" or has_times(data):
         names = [name for name in names if name != "depth"]

@@ -6,10 +6,9 @@ from collections.abc import Callable, Iterator, Mapping
 from html import escape
 from typing import Any
 
+from pellicle import Run
 from pellicle.config.describe import inputs
 from pellicle.files import for_document
-
-from .methods import prescribed_of
 
 _SURFACE, _BOTTOM, _LEFT, _RIGHT, _CENTRE, _TIP = 120, 215, 20, 500, 260, 142
 _ROUND = f"M 190 50 C 195 110 225 {_TIP} {_CENTRE} {_TIP} S 325 110 330 50 Z"
@@ -33,12 +32,15 @@ _SHAPES = {
 _UNKNOWN = f"M 170 50 L 170 90 Q 170 {_TIP} {_CENTRE} {_TIP} Q 350 {_TIP} 350 90 L 350 50 Z"
 
 
-def setup_drawing(configuration: Mapping[str, Any], varied: tuple[str, ...] = ()) -> bytes:
+def setup_drawing(
+    configuration: Mapping[str, Any], prescribed: str, varied: tuple[str, ...] = ()
+) -> bytes:
     """Return the set-up of a run as SVG, not to scale.
 
-    Values at the dotted paths ``varied`` differ between the runs of a study and have no number.
+    The load steps give ``prescribed``. Values at the dotted paths ``varied`` differ between the
+    runs of a study and have no number.
     """
-    known = {i.name: i for i in inputs(configuration)}
+    known = {i.name: i for i in inputs(configuration, Run)}
 
     def named(name: str) -> str:
         """Return words and value of an input, "(varied)" if it differs; empty if not there."""
@@ -57,8 +59,8 @@ def setup_drawing(configuration: Mapping[str, Any], varied: tuple[str, ...] = ()
     name = known["indenter"].value if "indenter" in known else indenter["type"]
     radius = named("indenter.radius")
     body.append(_text(_CENTRE, 40, f"{name}{f', {radius}' if radius else ''}"))
-    prescribed = prescribed_of(configuration).replace("_", " ")
-    body += [_arrow(_RIGHT - 40, 50, _RIGHT - 40, 100), _text(_RIGHT - 40, 40, prescribed)]
+    load = prescribed.replace("_", " ")
+    body += [_arrow(_RIGHT - 40, 50, _RIGHT - 40, 100), _text(_RIGHT - 40, 40, load)]
     if configuration.get("interaction"):
         adhesion = f"adhesion: {known['interaction'].value}"
         body.append(_text(_LEFT + 8, _TIP + 40, adhesion, "start"))
@@ -71,7 +73,7 @@ def setup_drawing(configuration: Mapping[str, Any], varied: tuple[str, ...] = ()
 
 def description(configuration: Mapping[str, Any]) -> str:
     """Return the set-up in words, for readers who cannot see the drawing."""
-    values = {i.name: i.value for i in inputs(configuration)}
+    values = {i.name: i.value for i in inputs(configuration, Run)}
     return f"Set-up, not to scale: {values['indenter']} on {values['kernel']}."
 
 

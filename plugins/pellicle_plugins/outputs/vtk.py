@@ -15,8 +15,9 @@ from pellicle.arrays import Array
 from pellicle.components import Output, Runs
 from pellicle.files import storage_errors
 from pellicle.results.path import has_times
-from pellicle.show.vtk import array, element, rows_of, writer
 from pellicle.variables import FIELDS, WALL_PRESSURE
+
+from .vtk_file import array, element, rows_of, writer
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -6,10 +6,9 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from pellicle.components import Depth, Prescription, Setting
-from pellicle.contact.equilibrium import Equilibrium
+from pellicle.components import Depth, Prescription, Setting, Variable
+from pellicle.contact import Equilibrium
 from pellicle.units import Quantity
-from pellicle.variables import Variable
 
 
 class BaseDisplacement(Prescription):

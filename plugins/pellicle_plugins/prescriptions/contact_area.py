@@ -7,11 +7,10 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from pellicle.components import Depth, Force, Prescription, Search, Setting
-from pellicle.contact.equilibrium import Equilibrium
+from pellicle.components import Depth, Force, Prescription, Search, Setting, Variable
+from pellicle.contact import Equilibrium
 from pellicle.errors import ConfigError
 from pellicle.units import readable
-from pellicle.variables import Variable
 
 RESIDUAL = Variable(
     "residual_area", "1", "relative error of the prescribed contact area or radius", "residual"
@@ -23,7 +22,7 @@ class ContactArea(Prescription):
 
     type: Literal["contact_area"] = "contact_area"
     examples = ({},)
-    unit: ClassVar[str] = "m**2"
+    unit: ClassVar[str] = "m2"
     at_least: ClassVar[float | None] = 0.0
     variables: ClassVar[tuple[Variable, ...]] = (RESIDUAL,)
 
@@ -46,16 +45,16 @@ def unreachable(setting: Setting, area: float) -> str:
     first = int(np.count_nonzero(profile == profile.max()))
     if area > (covered + 0.5) * cell:
         owner = "the domain" if covered == profile.size else "the indenter"
-        return f"more than {owner} has, {readable(covered * cell, 'm**2')}; give less"
+        return f"more than {owner} has, {readable(covered * cell, 'm2')}; give less"
     if area > 0 and first == covered:
         return (
             f"not within reach: the indenter is flat, and all its "
-            f"{readable(covered * cell, 'm**2')} touch at once, under any load; prescribe depth "
+            f"{readable(covered * cell, 'm2')} touch at once, under any load; prescribe depth "
             "or force"
         )
     if 0 < area < (first - 0.5) * cell:
         return (
-            f"less than the {first} cells of {readable(cell, 'm**2')} that touch first, all at "
+            f"less than the {first} cells of {readable(cell, 'm2')} that touch first, all at "
             "once; give more, or use more points"
         )
     return ""
@@ -92,5 +91,5 @@ def area_search(setting: Setting, area: float) -> Force | Search:
         width=1e-4,
         guess=guess,
         quantity="contact area",
-        unit="m**2",
+        unit="m2",
     )

@@ -6,10 +6,9 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from pellicle.components import Force, Prescription, Search, Setting
+from pellicle.components import Force, Prescription, Search, Setting, Variable
 from pellicle.errors import ConfigError
 from pellicle.units import readable
-from pellicle.variables import Variable
 
 from .contact_area import RESIDUAL, area_search, unreachable
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
-from pellicle.components import Depth, Force, Prescription, Search, Setting
-from pellicle.contact.equilibrium import Equilibrium
+from pellicle.components import Depth, Force, Prescription, Search, Setting, Variable
+from pellicle.contact import Equilibrium
 from pellicle.errors import ConfigError
 from pellicle.units import readable
-from pellicle.variables import Variable
 
 
 class GapVolume(Prescription):
@@ -16,7 +15,7 @@ class GapVolume(Prescription):
 
     type: Literal["gap_volume"] = "gap_volume"
     examples = ({},)
-    unit: ClassVar[str] = "m**3"
+    unit: ClassVar[str] = "m3"
     at_least: ClassVar[float | None] = 0.0
     is_zero_at_rest: ClassVar[bool] = False
     variables: ClassVar[tuple[Variable, ...]] = (
@@ -42,12 +41,13 @@ class GapVolume(Prescription):
     def target(self, setting: Setting, value: float) -> Search:
         """Return the search for the force with this volume of the gap."""
         return Search(
-            -value,
-            lambda step: -_volume(step),
+            value,
+            _volume,
             control=Depth if setting.law else Force,
+            increasing=False,
             resolution=1e-6 * (value or _at_first_touch(setting)),
             quantity="gap volume",
-            unit="m**3",
+            unit="m3",
         )
 
     def report(self, setting: Setting, step: Equilibrium) -> dict[str, float]:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
-from pellicle.components import Depth, Prescription, Setting
-from pellicle.contact.equilibrium import Equilibrium
+from pellicle.components import Depth, Prescription, Setting, Variable
+from pellicle.contact import Equilibrium
 from pellicle.errors import ConfigError
 from pellicle.units import readable
-from pellicle.variables import Variable
 
 from .depth import refuse_beyond_full_contact
 

@@ -9,10 +9,17 @@ import numpy as np
 
 from pellicle.arrays import Array, Mask
 from pellicle.components import Monitor
-from pellicle.contact.initial_guess import first_guess, with_force
-from pellicle.contact.problem import Depth, Problem
-from pellicle.contact.solution import Progress, Solution, State, Stop
-from pellicle.contact.start import Start
+from pellicle.contact import (
+    Depth,
+    Problem,
+    Progress,
+    Solution,
+    Start,
+    State,
+    Stop,
+    first_guess,
+    with_force,
+)
 
 from .adhesion import AdhesionSolver
 from .adhesive_response import with_zone

@@ -9,14 +9,19 @@ from typing import Final, NamedTuple, Self
 import numpy as np
 import scipy.fft
 
+from pellicle import Grid
 from pellicle.analysis import perimeter
 from pellicle.arrays import Array, Mask
-from pellicle.contact.attraction import Attraction
-from pellicle.contact.initial_guess import first_guess
-from pellicle.contact.problem import Problem, adhesive_scale
-from pellicle.contact.solution import Progress, State, Stop
-from pellicle.contact.start import Start
-from pellicle.grid import Grid
+from pellicle.contact import (
+    Attraction,
+    Problem,
+    Progress,
+    Start,
+    State,
+    Stop,
+    adhesive_scale,
+    first_guess,
+)
 
 from .contact_cg import SIGN_CERTAINTY, inner_solve
 from .nested_grids import prolonged

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from pellicle.arrays import Array, Mask
-from pellicle.surface.operators import Operator
+from pellicle.surface import Operator
 
 # Iterations between restarts; 7 to 20 suffice for zones of some cells.
 _RESTART = 60

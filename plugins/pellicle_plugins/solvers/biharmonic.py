@@ -8,8 +8,8 @@ import numpy as np
 import scipy.sparse
 
 from pellicle.arrays import Mask
-from pellicle.contact.dilation import dilated
-from pellicle.surface.sharing import row_blocks, shared
+from pellicle.contact import dilated
+from pellicle.surface import row_blocks, shared
 
 from .circulant_stiffness import Field
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pellicle.grid import Grid
-from pellicle.surface.convolution import convolve
-from pellicle.surface.operators import Operator
+from pellicle import Grid
+from pellicle.surface import Operator, convolve
 
 Field = NDArray[np.float32]
 

@@ -7,11 +7,9 @@ from typing import Final, Literal
 
 import numpy as np
 
+from pellicle import Grid
 from pellicle.arrays import Array, Mask
-from pellicle.contact.initial_guess import dot, first_guess, with_force
-from pellicle.contact.problem import Problem
-from pellicle.contact.solution import State
-from pellicle.grid import Grid
+from pellicle.contact import Problem, State, dot, first_guess, with_force
 
 from .scaling import ScaledSolver
 

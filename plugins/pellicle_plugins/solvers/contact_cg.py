@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array, Cells
-from pellicle.contact.initial_guess import dot
-from pellicle.contact.problem import Problem
-from pellicle.surface.sharing import blocks, row_blocks, shared
+from pellicle.contact import Problem, dot
+from pellicle.surface import blocks, row_blocks, shared
 
 from .preconditioner import OnContact
 

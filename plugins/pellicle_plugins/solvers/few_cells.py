@@ -8,9 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array, Cells, Mask
-from pellicle.contact.dilation import dilated
-from pellicle.contact.initial_guess import with_force
-from pellicle.contact.problem import Problem
+from pellicle.contact import Problem, dilated, with_force
 
 # Cells in contact up to which this takes less time than local relaxation.
 MOST_CELLS: Final = 160

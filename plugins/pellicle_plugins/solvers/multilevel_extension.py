@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from pellicle.arrays import Mask
-from pellicle.surface.sharing import blocks, shared
+from pellicle.surface import blocks, shared
 
 from .biharmonic import Sweeps, sweeps_near, wrapped
 from .circulant_stiffness import Field

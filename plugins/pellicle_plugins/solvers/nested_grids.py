@@ -8,10 +8,9 @@ from typing import Final
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.contact.problem import Problem
-from pellicle.contact.solution import State
+from pellicle.contact import Problem, State
 from pellicle.errors import ConfigError
-from pellicle.surface.grid_transfer import highest, prolong
+from pellicle.surface import highest, prolong
 
 from .scaling import ScaledSolver
 

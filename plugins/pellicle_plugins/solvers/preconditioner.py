@@ -9,9 +9,9 @@ from typing import Final
 import numpy as np
 import scipy.fft
 
+from pellicle import Grid
 from pellicle.arrays import Array, Cells, Mask
-from pellicle.grid import Grid
-from pellicle.surface.operators import Operator
+from pellicle.surface import Operator
 
 from .biharmonic import stretch_of
 from .circulant_stiffness import CirculantStiffness, Field

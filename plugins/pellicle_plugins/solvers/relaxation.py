@@ -10,7 +10,7 @@ import scipy.fft
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array, Mask
-from pellicle.contact.problem import Problem
+from pellicle.contact import Problem
 
 from .circulant_stiffness import CirculantStiffness, Field
 from .contact_cg import InnerSolution

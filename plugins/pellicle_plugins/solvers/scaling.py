@@ -8,9 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from pellicle.components import IterativeSolver, Monitor
-from pellicle.contact.problem import Problem
-from pellicle.contact.solution import Solution, State
-from pellicle.contact.start import Start
+from pellicle.contact import Problem, Solution, Start, State
 
 # Units are 2^±900 at most, so that 2^100 times a unit is still a number.
 _MAX_EXPONENT = 900

@@ -12,7 +12,7 @@ import numpy as np
 from pellicle import Run
 from pellicle.components import Runs
 from pellicle.errors import ConfigError
-from pellicle.results.derived import derive
+from pellicle.results.derived import DERIVED, derive
 from pellicle.results.result import Result
 from pellicle.results.runs import StoredRuns
 from pellicle.variables import CORRECTED_AREA, CORRECTED_FRACTION, names_of
@@ -103,8 +103,7 @@ def exact(runs: Runs) -> Runs:
     table = runs.table[[*names_of("status"), "run"]].assign(
         {name: (dims, values, runs.table[name].attrs) for name, values in columns.items()}
     )
-    derived = json.loads(table.attrs["configuration"]).get("study", {}).get("derived", {})
-    for name, text in derived.items():
+    for name, text in json.loads(table.attrs.get(DERIVED, "{}")).items():
         with suppress(ConfigError):
             table = derive(table, {name: text}, {})
             table[name].attrs = runs.table[name].attrs

@@ -39,7 +39,7 @@ def searches(**members: Any) -> Any:
 
 def falling(f: Any, *given: Any) -> Any:
     search = f(*given)
-    return replace(search, goal=-search.goal, measure=lambda step: -search.measure(step))
+    return replace(search, increasing=not search.increasing)
 
 
 def target(fault: str, words: str, method: Any) -> Broken:
@@ -70,9 +70,9 @@ BROKEN: dict[str, Any] = {
     "values_are_refused_in_words": Broken(
         "knows no 0", Taken("it is not zero"), target=lambda f, s, value: f(s, 1 / (1 / value))
     ),
-    "search_does_not_fall": [
+    "search_goes_one_way": [
         target("in words", "returned 'much'", searches(measure=lambda step: "much")),
-        Broken("searches for what falls", Marked("CONTACT_AT_EDGE"), target=falling),
+        Broken("searches the wrong way", Marked("CONTACT_AT_EDGE"), target=falling),
     ],
     "step_has_what_is_prescribed": Broken(
         "means another volume", OWN, target=lambda f, setting, value: f(setting, 0.6 * value)

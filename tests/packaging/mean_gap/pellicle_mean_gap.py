@@ -26,7 +26,11 @@ class MeanGap(pl.Prescription):
     def target(self, setting, value):
         """Return the search for the depth, by which the mean gap falls."""
         return pl.Search(
-            -value, lambda step: -self.of(step), control=pl.Depth, resolution=1e-7 * (value or 1e-9)
+            value,
+            self.of,
+            control=pl.Depth,
+            increasing=False,
+            resolution=1e-7 * (value or 1e-9),
         )
 
     def report(self, setting, step):

@@ -12,7 +12,7 @@ class QuadraticSoftening(pl.Interaction):
     """Traction that falls as the square of what is left of the range."""
 
     type: Literal["quadratic_softening"] = "quadratic_softening"
-    work_of_adhesion: Annotated[WorkOfAdhesion, Field(description="work of adhesion w [J/m**2]")]
+    work_of_adhesion: Annotated[WorkOfAdhesion, Field(description="work of adhesion w [J/m2]")]
     range: Annotated[Length, Field(description="gap at which the traction ends [m]")]
 
     def energy(self, gap):

@@ -291,11 +291,7 @@ CASES: dict[str, Case] = {
     "elastic": case(),
     "elastic, much noise": case(share=0.01, seed=1),
     "power law": case("power_law", seed=2, relaxation_exponent=0.1),
-    "power law, fast": case("power_law", seed=3, relaxation_exponent=0.3),
     "standard linear": case("standard_linear", seed=4, relaxed_share=0.5, relaxation_time=0.3),
-    "standard linear, slow": case(
-        "standard_linear", seed=5, share=0.01, relaxed_share=0.3, relaxation_time=0.8
-    ),
     "drag": case("drag", seed=6, drag=0.05 * DRAG),
     "drag, strong": case("drag", seed=7, drag=0.12 * DRAG),
     "adhesion": case("adhesion", seed=8, work_of_adhesion=0.03 * WORK, full=True),
@@ -313,7 +309,6 @@ CASES: dict[str, Case] = {
     "tension, weak": case("tension", seed=18, tension=0.05 * TENSION),
     "tension": case("tension", seed=19, tension=0.3 * TENSION),
     "tension, almost a tie": case("tension", seed=108, tension=0.3 * TENSION),
-    "tension, strong": case("tension", seed=20, tension=1.0 * TENSION),
     "tension, little noise": case("tension", seed=21, share=0.001, tension=0.1 * TENSION),
     "tension and adhesion": case(
         "tension", "adhesion", seed=22, tension=0.2 * TENSION, work_of_adhesion=0.05 * WORK
@@ -351,7 +346,6 @@ CASES: dict[str, Case] = {
         offset=0.02,
         options={"baseline": "offset"},
     ),
-    "cantilever": case("tension", seed=34, tension=0.1 * TENSION, spring=0.02),
     "steps of the detector": case(seed=35, share=0.002, step=0.02),
     "depth known": case(
         "tension", seed=36, tension=0.3 * TENSION, options={"fix": {"contact_point": TOUCH}}
@@ -362,8 +356,5 @@ CASES: dict[str, Case] = {
     "many rows": case("tension", seed=38, points=3400, share=0.02, tension=0.3 * TENSION),
     "two speeds": case(
         "power_law", seed=39, rates=(1.0, 0.1), points=200, relaxation_exponent=0.15
-    ),
-    "two speeds, tension": case(
-        "tension", seed=40, rates=(1.0, 0.1), points=200, tension=0.3 * TENSION
     ),
 }

@@ -51,7 +51,8 @@ def test_paraboloid_matches_the_reference(row: dict[str, float]) -> None:
     assert fixed_depth.force / 3 / pi == pytest.approx(row["F_depth_control_over_piwR"], rel=5e-6)
 
 
-@pytest.mark.parametrize("length", [1.0, pytest.param(10.0, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("length", [1.0, 10.0])
 def test_radius_of_the_lowest_depth_is_stationary(length: float) -> None:
     """dδ/da is 0 there by direct solutions and the line load at the rim of the punch."""
     a = float(adhesion(length).instability(inf).contact_radius)

@@ -14,7 +14,7 @@ POINTS, SIZE = 64, 4.0
 SPACING = SIZE / POINTS
 
 
-@pytest.mark.parametrize("tension", [0.0, 0.5])
+@pytest.mark.parametrize("tension", [0.0, pytest.param(0.5, marks=pytest.mark.slow)])
 def test_cells_are_as_stiff_as_a_smaller_punch(tension: float) -> None:
     """The stiffness of punches of cells, over five radii, is that of the corrected radius."""
     kernel = pl.kernel("tensed_membrane", reduced_modulus=1.0, tension=tension)

@@ -34,7 +34,7 @@ def test_round_ellipse_is_a_sphere() -> None:
         assert getattr(almost, name) == pytest.approx(getattr(round_, name), rel=3e-9)
 
 
-@pytest.mark.parametrize("ratio", [0.9, 0.1, 1e-4])
+@pytest.mark.parametrize("ratio", [0.9, pytest.param(0.1, marks=pytest.mark.slow), 1e-4])
 def test_surface_follows_the_ellipsoid(ratio: float) -> None:
     """The potential of the pressure, integrated directly, has the two curvatures."""
     contact = ellipse(R, ratio * R, E, depth=1e-6)

@@ -21,7 +21,7 @@ ANGLE = 1.2
 
 # Off the nodes, and past both ends of the table: s over the contact radius, and a over R.
 _random = np.random.default_rng(7)
-RATIOS = [0.0, 1e-7, *10 ** _random.uniform(-4, 5, 12), 1e7]
+RATIOS = [0.0, 1e-7, *10 ** _random.uniform(-4, 5, 6), 1e7]
 SPHERES = [
     (0.01, 1e-5),
     (0.3, 0.2),

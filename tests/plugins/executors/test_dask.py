@@ -164,6 +164,7 @@ def test_task_larger_than_every_worker(start_dask: Any) -> None:
     assert str(outcomes[jobs[0]]).startswith(message)
 
 
+@pytest.mark.slow
 @posix
 def test_a_scheduler_that_dies_fails_its_tasks(start_dask: Any) -> None:
     """Without a scheduler tasks come with an exception, and nothing waits for ever."""

@@ -255,8 +255,11 @@ def test_script_without_guard(tmp_path: Path) -> None:
 @posix
 @pytest.mark.parametrize(
     ("signal_", "to_group"),
-    [(signal.SIGINT, True), (signal.SIGINT, False), (signal.SIGKILL, False)],
-    ids=["Ctrl-C", "SIGINT to the parent", "SIGKILL to the parent"],
+    [
+        pytest.param(signal.SIGINT, True, id="Ctrl-C", marks=pytest.mark.slow),
+        pytest.param(signal.SIGINT, False, id="SIGINT to the parent", marks=pytest.mark.slow),
+        pytest.param(signal.SIGKILL, False, id="SIGKILL to the parent"),
+    ],
 )
 def test_no_process_is_left_behind(signal_: signal.Signals, to_group: bool, tmp_path: Path) -> None:
     """However the parent ends in the midst of runs, all its processes end with it, quietly."""

@@ -379,6 +379,7 @@ def test_a_load_of_nothing_is_refused(start: pl.Run) -> None:
     assert page.saved["interaction"]["work_of_adhesion"] == "1 mJ/m²"
 
 
+@pytest.mark.slow
 def test_rows_are_used_again(start: pl.Run) -> None:
     """Bokeh keeps every part that was on a page, so switches must not make new ones.
 
@@ -537,6 +538,7 @@ def explorer(start: pl.Run, curve: Path) -> Iterator[str]:
         yield running
 
 
+@pytest.mark.slow
 def test_sliders_change_the_curves(
     explorer: str,
     browser: Chrome,

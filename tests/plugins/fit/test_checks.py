@@ -63,7 +63,7 @@ def test_no_tension_is_claimed_in_silence_where_the_curve_shows_another_cause(na
 
     A tenth of tests/benchmarks/fit_checks.py.
     """
-    assert not any(outcome.is_silent for outcome in outcomes(MARKED[name], 5, seed=7))
+    assert not any(outcome.is_silent for outcome in outcomes(MARKED[name], 3, seed=7))
 
 
 @pytest.mark.slow

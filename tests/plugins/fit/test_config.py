@@ -78,14 +78,11 @@ def test_three_ways_make_one_object(tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("no_rivals", "shared_fits")
 def test_three_ways_give_one_result(cli: Cli) -> None:
-    """One curve, many and a pool: the numbers are equal to the last digit."""
+    """Many curves and a pool: the numbers are equal to the last digit."""
     for name in ("beads/a.csv", "beads/b.csv"):
         measure(Path(name), points=60 + ord(name[6]))
     Path("bead.toml").write_text(f'curves = ["beads/a.csv"]{FILE}', encoding="utf-8")
     config = pl.FitConfig.from_toml("bead.toml")
-    one = without_configuration(cli("bead.toml", "--json").stdout)
-    assert one == without_configuration(cli("beads/a.csv", *ARGUMENTS, "--json").stdout)
-    assert one == without_configuration(pl.fit(config=config).to_json())
     pool = without_configuration(cli("bead.toml", "beads", "--pool", "--json").stdout)
     assert pool == without_configuration(cli("beads", *ARGUMENTS, "--pool", "--json").stdout)
     assert pool == without_configuration(pl.fit_pooled("beads", config="bead.toml").to_json())
@@ -145,6 +142,7 @@ def test_radius_of_each_file(cli: Cli) -> None:
     assert [curve["model"]["indenter"]["radius"] for curve in curves] == [5e-6, 20e-6]
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_many_fits_keep_the_configuration(tmp_path: Path) -> None:
     """The table of many curves holds the configuration once."""
     measure(tmp_path / "a.csv")

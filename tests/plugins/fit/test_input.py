@@ -197,6 +197,7 @@ def test_hdf5_and_depth(cli: Cli) -> None:
     assert _holds(report["tension"], TENSION)
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_result_of_a_run_is_a_curve(cli: Cli) -> None:
     """The file that ``pellicle run`` leaves can be fitted as it is."""
     run = pl.Run(

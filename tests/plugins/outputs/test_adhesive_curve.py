@@ -1,6 +1,5 @@
 """What the output of the adhesive curve leaves behind."""
 
-import json
 import re
 from math import isnan, pi
 from pathlib import Path
@@ -119,9 +118,6 @@ def test_runs_without_an_adhesive_curve_are_refused(
 def test_a_path_with_adhesion_is_refused() -> None:
     """Adhesion would count twice."""
     result = pl.run(BEAD | {"loading": {"depth": "5 um"}, "outputs": []}, progress=False).dataset
-    configuration = json.loads(result.attrs["configuration"])
-    configuration["interaction"] = {"type": "jkr", "work_of_adhesion": 1e-3}
-    sticky = result.assign_attrs(configuration=json.dumps(configuration))
     output = AdhesiveCurve(work_of_adhesion=WORK)
     with pytest.raises(ConfigError, match="interaction"):
-        output.write(StoredRuns.of_run(sticky), Path("unwritten"))
+        output.write(StoredRuns.of_run(result.assign_attrs(adheres=1)), Path("unwritten"))

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 import pellicle as pl
 from pellicle.results import StoredRuns
-from pellicle.show import vtk
+from pellicle_plugins.outputs import vtk_file
 from pellicle_plugins.outputs.spectrum import Spectrum, _spectra
 from tests.plugins.outputs.shared import bead, rows
 
@@ -152,11 +152,11 @@ def test_vtk_holds_surface_and_fields(left: Left) -> None:
 
 def test_vtk_of_more_than_a_block() -> None:
     """What is larger than a block of the file is cut, whether or not it comes out even."""
-    for cells in (vtk.BLOCK // 8, vtk.BLOCK // 8 + 5, vtk.BLOCK // 4):
+    for cells in (vtk_file.BLOCK // 8, vtk_file.BLOCK // 8 + 5, vtk_file.BLOCK // 4):
         values = np.arange(cells, dtype=float)
         array = Xml.Element("DataArray", type="Float64")
-        blocks = (values[rows].tobytes() for rows in vtk.rows_of(cells, 8))
-        array.text = "".join(vtk.base64_of(blocks))
+        blocks = (values[rows].tobytes() for rows in vtk_file.rows_of(cells, 8))
+        array.text = "".join(vtk_file.base64_of(blocks))
         assert np.array_equal(decoded(array), values)
 
 

@@ -305,7 +305,7 @@ TWO = [{"thickness": "1 um", **ELASTIC}, {"thickness": "2 um", **ELASTIC}]
 def test_drawing_of_the_set_up(kernel: dict[str, Any], shapes: str) -> None:
     """It has an arrow at each end of a tensed surface, the layers, and what is below them."""
     run = pl.Run(**{**RUN, "kernel": kernel})
-    drawing = setup_drawing(json.loads(run.to_json()))
+    drawing = setup_drawing(json.loads(run.to_json()), run.loading.prescribed)
     drawn = [element.get("class") for element in ElementTree.fromstring(drawing)]
     named = {*drawn} - {None, "indenter", "surface", "load"}
     assert sorted(name for name in drawn if name and name in named) == sorted(shapes.split())

@@ -79,14 +79,14 @@ def test_names_of_files_of_a_study(tmp_path: Path) -> None:
     "changes",
     [
         {"loading": {"depth": [0, 0]}},
-        {
-            "grid": {"points": [1, 8], "size": "0.4 mm", "boundary": "periodic"},
-            "indenter": PUNCH,
-        },
-        pytest.param(
-            {"grid": {"points": 1, "size": "0.1 mm"}, "indenter": PUNCH}, marks=pytest.mark.slow
+        *(
+            pytest.param(changes | {"indenter": PUNCH}, marks=pytest.mark.slow)
+            for changes in (
+                {"grid": {"points": [1, 8], "size": "0.4 mm", "boundary": "periodic"}},
+                {"grid": {"points": 1, "size": "0.1 mm"}},
+                {},
+            )
         ),
-        pytest.param({"indenter": PUNCH}, marks=pytest.mark.slow),
     ],
     ids=["no contact", "one cell across", "a single cell", "punch with nothing beside it"],
 )

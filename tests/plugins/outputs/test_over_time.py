@@ -102,7 +102,7 @@ def test_profile_is_of_the_step_of_the_map(
     steps = list(range(result.dataset.sizes["step"]))
     picture = html_curves.curves_of_run(result, steps, int(chosen))[0]
     assert len({id(part) for part in picture.by_frame}) == 4
-    label = label_of_step(result.dataset, int(chosen), result.configuration)
+    label = label_of_step(result.dataset, int(chosen))
     assert label in picture.caption
     assert picture.by_frame[int(chosen)].source == picture.source
 

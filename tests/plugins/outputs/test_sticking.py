@@ -42,17 +42,16 @@ BEAD: dict[str, Any] = {
     "loading": {"depth": {"start": "0.2 m", "stop": "-2.2 m", "num": 5, "back": True}},
 }
 OUTPUTS: list[dict[str, Any]] = [
-    {"type": "csv"},
-    {"type": "figures"},
     {"type": "html"},
     {"type": "vtk"},
     {"type": "curves", "y": ["force", "contact_radius"]},
-    {"type": "curves", "name": "log", "x": "contact_area", "y": "depth", "log": ["x", "y"]},
     {"type": "maps"},
-    {"type": "profiles"},
     {"type": "distributions", "by": "step"},
-    {"type": "patches", "by": "step"},
-    {"type": "spectrum"},
+]
+EVERYTHING: list[dict[str, Any]] = [
+    *OUTPUTS,
+    {"type": "curves", "name": "log", "x": "contact_area", "y": "depth", "log": ["x", "y"]},
+    *({"type": name} for name in ("csv", "figures", "profiles", "patches", "spectrum")),
 ]
 STUDY: dict[str, Any] = {
     **BEAD,
@@ -91,10 +90,8 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, xr.Dataset]:
         return folder, pl.run_study(STUDY, folder, progress=False, threads=1)
 
 
-def test_pull_off_on_few_cells_has_its_error_beside_it(
-    bead: tuple[Path, pl.Result], study: tuple[Path, xr.Dataset]
-) -> None:
-    """Six cells in the radius are warned of on terminal and page, and every table has the error."""
+def test_pull_off_on_few_cells_has_its_error_beside_it(bead: tuple[Path, pl.Result]) -> None:
+    """Six cells in the radius are warned of on terminal and page."""
     folder, result = bead
     (message,) = result.beyond_theory().values()
     assert "6.0 cells" in message
@@ -104,10 +101,6 @@ def test_pull_off_on_few_cells_has_its_error_beside_it(
         CliRunner().invoke(app, ["show", str(folder / "run.h5")]).output.split()
     )
     assert message[1:] in unescape((folder / "run.html").read_text(encoding="utf-8"))
-    errors = study[1]["pull_off_accuracy"] / -study[1]["pull_off"]
-    assert ((errors > 0.05) & (errors < 0.2)).all()
-    shown = CliRunner().invoke(app, ["show", str(study[0])]).output
-    assert "accuracy of the pull-off force" in shown
 
 
 @pytest.mark.slow
@@ -147,10 +140,9 @@ def test_the_last_step_in_contact_is_drawn(bead: tuple[Path, pl.Result]) -> None
 
 def test_tension_is_blue_and_pressure_red(bead: tuple[Path, pl.Result]) -> None:
     """Both signs occur, so the map has both colours, and no colour is that of an empty cell."""
-    for name in ("run-pressure.png", "run-maps.png"):
-        red, _, blue = np.moveaxis(pixels(bead[0] / name), -1, 0)
-        assert ((red - blue) > 0.15).mean() > 5e-3, name
-        assert ((blue - red) > 0.15).mean() > 5e-3, name
+    red, _, blue = np.moveaxis(pixels(bead[0] / "run-maps.png"), -1, 0)
+    assert ((red - blue) > 0.15).mean() > 5e-3
+    assert ((blue - red) > 0.15).mean() > 5e-3
 
 
 def test_approach_and_retraction_are_told_apart(bead: tuple[Path, pl.Result]) -> None:
@@ -158,7 +150,6 @@ def test_approach_and_retraction_are_told_apart(bead: tuple[Path, pl.Result]) ->
     table = rows(bead[0] / "run-curves.csv", series="force")
     assert [row["direction"] for row in table] == ["retraction"] * 5 + ["approach"] * 4
     np.testing.assert_allclose([float(r["y"]) for r in table], bead[1].dataset["force"])
-    assert "direction" in rows(bead[0] / "run-log.csv")[0]
 
 
 def test_page_and_paraview_have_both_pressures(bead: tuple[Path, pl.Result]) -> None:
@@ -193,7 +184,7 @@ def test_distribution_of_pressure_gives_the_force(bead: tuple[Path, pl.Result]) 
 @pytest.mark.slow
 def test_a_path_that_never_touches_is_drawn(tmp_path: Path) -> None:
     """At negative depths there is nothing to draw, and everything that draws it still ends."""
-    changes = {"loading": {"depth": ["-1 m", "-2 m", "-0.5 m"]}, "outputs": OUTPUTS}
+    changes = {"loading": {"depth": ["-1 m", "-2 m", "-0.5 m"]}, "outputs": EVERYTHING}
     result = pl.run({**BEAD, **changes}, directory=tmp_path, progress=False, threads=1)
     assert result.dataset["contact_area"].max() == 0
     assert np.isnan(result.path_summary["pull_off"])
@@ -218,7 +209,11 @@ def test_a_study_has_one_path_for_each_run(study: tuple[Path, xr.Dataset]) -> No
     assert {row["converged"] for row in drawn} == {"True"}
     by_step = rows(folder / "study.csv")
     assert {float(row["pull_off [N]"]) for row in by_step} == {*table["pull_off"].values}
-    shown = CliRunner().invoke(app, ["show", str(folder)]).output.partition("path:")[2]
+    errors = table["pull_off_accuracy"] / -table["pull_off"]
+    assert ((errors > 0.05) & (errors < 0.2)).all()
+    output = CliRunner().invoke(app, ["show", str(folder)]).output
+    assert "accuracy of the pull-off force" in output
+    shown = output.partition("path:")[2]
     assert [line.split()[1] for line in shown.splitlines()[2:4]] == [
         f"{value:.4g}" for value in table["pull_off"].values
     ]

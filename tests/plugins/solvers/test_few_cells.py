@@ -77,7 +77,7 @@ def test_too_many_cells_are_left_to_others() -> None:
     assert solved_on_few_cells(problem, column, few, -few.astype(np.float64), gap, 0.0) is None
 
 
-@pytest.mark.parametrize("boundary", BOUNDARIES)
+@pytest.mark.parametrize("boundary", ["periodic", pytest.param("free", marks=pytest.mark.slow)])
 def test_it_takes_fewer_applications_and_gives_the_same(
     boundary: Boundary, monkeypatch: pytest.MonkeyPatch
 ) -> None:

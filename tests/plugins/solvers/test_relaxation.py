@@ -65,9 +65,9 @@ def test_stiffness_undoes_the_operator() -> None:
         np.testing.assert_allclose(again, pressure, atol=2e-4)
 
 
-@pytest.mark.parametrize("spacing", [(1.0, 1.0), (1.0, 1.5), (2.0, 1.0)])
+@pytest.mark.parametrize("spacing", [(1.0, 1.5), (2.0, 1.0)])
 @pytest.mark.parametrize("left", [0.0, 0.02])
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_optimality(
     spacing: tuple[float, float], left: float, seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:

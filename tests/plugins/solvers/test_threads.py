@@ -9,7 +9,6 @@ import scipy.fft
 from pellicle_plugins.solvers.active_set import ActiveSet
 from pellicle_plugins.solvers.multilevel_extension import Extension
 from tests.plugins.solvers.problems import (
-    BOUNDARIES,
     Boundary,
     Prescribed,
     make,
@@ -19,7 +18,7 @@ from tests.plugins.solvers.problems import (
 )
 
 
-@pytest.mark.parametrize("boundary", BOUNDARIES)
+@pytest.mark.parametrize("boundary", ["periodic", pytest.param("free", marks=pytest.mark.slow)])
 def test_solutions_have_the_same_bits(boundary: Boundary) -> None:
     """Grids large enough that threads share every pass; 600 points end in a shorter block."""
     prescribed: Prescribed = "force" if boundary == "periodic" else "depth"

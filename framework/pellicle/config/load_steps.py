@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sized
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from pydantic_core import core_schema
 
-from .errors import ConfigError, all_problems, shown
-from .schema.legs import KINDS, Leg, json_schema, legs_of
-from .schema.ranges import RANGE, SPACINGS, ranged
-from .units import Quantity
+from pellicle.errors import ConfigError, all_problems, shown
+from pellicle.schema.ranges import RANGE, SPACINGS, ranged
+from pellicle.units import Quantity
+
+from .legs import KINDS, Leg, json_schema, legs_of
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
     from pydantic.json_schema import JsonSchemaValue
-
-OPTIONS: Final = {"stiffness", "time"}
-"""Keys of ``[loading]`` other than a prescription and its fields."""
 
 
 @dataclass(frozen=True)

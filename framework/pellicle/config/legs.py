@@ -10,10 +10,9 @@ from pydantic import Field, PrivateAttr
 from pydantic.fields import FieldInfo
 
 from pellicle.errors import ConfigError, all_problems, shown
+from pellicle.schema.model import Model
+from pellicle.schema.ranges import ramp
 from pellicle.units import Quantity
-
-from .model import Model
-from .ranges import ramp
 
 _MOST = 1_000_000
 # Three samples are the fewest that show an amplitude and a phase; four meet both extremes.
@@ -47,9 +46,10 @@ class Leg(Model):
     _unit: str = PrivateAttr("1")
 
     @property
-    def described_fields(self) -> Mapping[str, FieldInfo]:
-        """The fields by name; those of prescribed values have their unit."""
-        return fields_of(type(self), self._unit)
+    def entries(self) -> Mapping[str, tuple[Any, FieldInfo]]:
+        """Value and description of each field; those of prescribed values have their unit."""
+        fields = fields_of(type(self), self._unit)
+        return {name: (getattr(self, name), info) for name, info in fields.items()}
 
 
 class Move(Leg):
@@ -187,14 +187,6 @@ def sampled(legs: Sequence[Leg]) -> tuple[Sample, ...]:
     return tuple(samples[1:])
 
 
-def number_of_steps(values: Sequence[object]) -> int:
-    """Return the number of load steps of values, or of legs as tables, of a valid loading."""
-    return sum(
-        value["num"] * value.get("cycles", 1) if isinstance(value, Mapping) else 1
-        for value in values
-    )
-
-
 def json_schema(value_schema: Mapping[str, Any]) -> dict[str, Any]:
     """Return the JSON schema of a list of legs, from that of a prescribed value."""
     schemas = [kind.model_json_schema() for kind in KINDS]
@@ -202,3 +194,11 @@ def json_schema(value_schema: Mapping[str, Any]) -> dict[str, Any]:
         for name in properties.keys() & {"to", "amplitude"}:
             properties[name] = {**value_schema, "description": properties[name]["description"]}
     return {"type": "array", "items": {"anyOf": schemas}, "minItems": 1}
+
+
+def number_of_steps(values: Sequence[object]) -> int:
+    """Return the number of load steps of values, or of legs as tables, of a valid loading."""
+    return sum(
+        value["num"] * value.get("cycles", 1) if isinstance(value, Mapping) else 1
+        for value in values
+    )

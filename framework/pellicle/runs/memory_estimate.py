@@ -1,0 +1,65 @@
+"""The peak memory that a run needs, estimated before it starts."""
+
+from __future__ import annotations
+
+from pellicle.components import HasMemory
+from pellicle.components.calls import branches_of
+from pellicle.config.run import Run
+from pellicle.contact.skin_operators import KEPT, rounded_stiffness
+from pellicle.contact.time_step import TimeStep
+
+# Peak memory in arrays of the grid's shape, eight bytes per cell, measured on Linux with glibc.
+# Arrays above 32 MB are given back when they are freed; of smaller ones malloc may keep three.
+# The indenter, and the operator with its transforms, which are padded on a free boundary.
+_OPERATOR = {"free": 9.0, "periodic": 4.75}
+# The same on a line of cells along x, whose transforms are twice as long and need tables.
+_LINE = 14.0
+# The solver active_set in full contact, and any solver without `HasMemory`; on a periodic grid with
+# half an array for figures that the collector has not freed yet.
+_SOLVER = {"free": 11.5, "periodic": 9.25}
+# An interaction adds eight iterates of three fields, from which the next one is extrapolated, and
+# the fields of two iterations.
+_STICKS = 39.0
+# A load step in the result: pressure, displacement and gap, and a byte per cell for the contact.
+_STEP = 3 + 1 / 8
+# The same step in the compressed file that is assembled in memory. Blocks that the solver has freed
+# and that malloc keeps are too small for it.
+_SERIALISED = 2.6
+# Buffers and Python's own objects [bytes].
+_FIXED = 1e6
+# Both operators of a skin for one stiffness γ of a solid that relaxes.
+_PAIR = {"free": 13.5, "periodic": 1.3}
+
+
+def memory_of(run: Run) -> float:
+    """Return the estimated peak memory of a run [bytes], without that of the libraries.
+
+    The peak occurs in the last solve, when earlier steps and their file are in memory too. The size
+    of the contact is unknown, so full contact is assumed, which takes up to a third more memory
+    than a small contact. A solver that is not a `HasMemory` counts as active_set.
+    """
+    grid, solver = run.grid, run.solver
+    cells = grid.points[0] * grid.points[1]
+    operator = _LINE if grid.points[1] == 1 else _OPERATOR[grid.boundary]
+    iterating = solver.arrays(grid) if isinstance(solver, HasMemory) else _SOLVER[grid.boundary]
+    if run.interaction:
+        iterating += _STICKS
+    kept = (_STEP + _SERIALISED) * (len(run.loading.values) - 1)
+    return _FIXED + 8 * cells * (operator + iterating + history_arrays(run) + kept)
+
+
+def history_arrays(run: Run) -> float:
+    """Return the peak memory of the history of a solid, in arrays of the grid's shape.
+
+    These are the branches, twice as they are brought forward, what they leave behind and the
+    profile that it displaces; under a skin also the strain and the operators that are kept.
+    """
+    kernel, branches = run.kernel, branches_of(run.kernel)
+    if not branches:
+        return 0.0
+    arrays = 2 * len(branches) + 3.0
+    if kernel.without_skin() != kernel:
+        steps = {TimeStep.of(branches, duration) for duration in run.loading.durations}
+        kept = min(KEPT, len({rounded_stiffness(step) for step in steps}))
+        arrays += 1 + kept * _PAIR[run.grid.boundary]
+    return arrays
