@@ -59,8 +59,10 @@ def _left(folder: Path, limit: str, usage: str, cache: str) -> float | None:
         most, used = (float((folder / name).read_text()) for name in (limit, usage))
     except (OSError, ValueError):  # missing, not readable, or "max"
         return None
-    statistics = dict(line.split() for line in _lines(folder / "memory.stat"))
-    return max(0.0, most - used + float(statistics.get(cache, 0)))
+    for line in _lines(folder / "memory.stat"):
+        if line.startswith(f"{cache} "):
+            used -= float(line.split()[1])
+    return max(0.0, most - used)
 
 
 def _lines(path: Path) -> list[str]:

@@ -28,7 +28,7 @@ def ask_strangers(run: Run) -> None:
 
 def _is_own(component: Component) -> bool:
     """Return whether the class is one that the distribution of pellicle registers."""
-    registered = registry().components.get(component.family, {}).get(component.type_name)
+    registered = registry().components[component.family].get(getattr(component, "type", ""))
     return (
         registered is not None
         and registered.component is type(component)

@@ -42,17 +42,14 @@ def walk(
         place, value, field = waiting.pop()
         prefix = f"{place}." if values else path
         values.append((place, value, field))
-        inner: list[tuple[str, Any, FieldInfo | None]]
         if isinstance(value, Model):
-            entries = value.entries.items()
-            inner = [(f"{prefix}{name}", entry, info) for name, (entry, info) in entries]
+            for name, (entry, info) in reversed([*value.entries.items()]):
+                waiting.append((f"{prefix}{name}", entry, info))
         elif isinstance(value, Mapping):
-            inner = [(f"{prefix}{name}", entry, None) for name, entry in value.items()]
+            waiting.extend((f"{prefix}{name}", value[name], None) for name in reversed([*value]))
         elif isinstance(value, (list, tuple)):
-            inner = [(f"{prefix}{index}", entry, field) for index, entry in enumerate(value)]
-        else:
-            continue
-        waiting.extend(reversed(inner))
+            indices = reversed(range(len(value)))
+            waiting.extend((f"{prefix}{index}", value[index], field) for index in indices)
     return values[1:]
 
 
