@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
-import sys
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -13,20 +11,10 @@ from numpy.typing import ArrayLike
 from pellicle.arrays import Array
 from pellicle.components.rules import required
 from pellicle.components.rules.comparison import difference, not_pure, not_vectorised
+from pellicle.components.rules.rule import rules_of as rules_of
 
 Rule = Callable[..., str | None]
 """A function of a component that raises, or returns what is wrong, if the component breaks it."""
-
-
-def rules_of(module: str) -> list[Rule]:
-    """Return the rules of a module, which are all of its public functions, in their order."""
-    return [
-        value
-        for name, value in vars(sys.modules[module]).items()
-        if inspect.isfunction(value)
-        and value.__module__ == module
-        and not name.startswith(("_", "check_"))
-    ]
 
 
 def keep(rules: Iterable[Rule], component: Any, *arguments: Any) -> None:

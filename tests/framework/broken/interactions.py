@@ -38,7 +38,7 @@ def late_traction(f: Any, gap: Any) -> Any:
 
 
 CALLS = count(1)
-GIVEN, ROUNDING = Refused("changes what it is given"), Taken("it is rounding")
+GIVEN, ROUNDING = Refused("read-only", error=ValueError), Taken("it is rounding")
 NAN, REPELS = Refused("slope(gap) has values that are NaN"), Refused("repels; it has to be ≤ 0")
 LEFT = Refused("energy(gap) is", "J/m² at the cutoff of", "m; it has to be 0 there")
 STRONGEST = Refused("traction(gap) grows from", "the attraction has to be strongest at a closed")

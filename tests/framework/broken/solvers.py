@@ -97,7 +97,7 @@ def fill(f: Any, problem: Any, state: Any, monitor: Any) -> Any:
 
 
 STALLED = pl.Stop.STALLED
-READ_ONLY = Refused("changes what it is given", "read-only")
+READ_ONLY = Refused("read-only", error=ValueError)
 NOT_SEEN = Taken("a run measures the residual without it, and counts nothing by it")
 OFF = Marked("CONTACT_RESIDUAL")
 BROKEN: dict[str, Any] = {

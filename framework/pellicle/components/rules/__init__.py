@@ -9,6 +9,7 @@ from .rule import Case as Case
 from .rule import Rule as Rule
 from .rule import broken as broken
 from .rule import required as required
+from .rule import rules_of
 
-CHEAP: dict[str, tuple[Rule, ...]] = {"kernel": kernels.RULES}
+CHEAP: dict[str, list[Rule]] = {"kernel": rules_of(kernels.__name__)}
 """By family; a family without an entry has only rules that need a run."""

@@ -15,7 +15,7 @@ from pellicle.surface.operators import make_operator
 
 from .closed_form import contradiction_of_compliance, contradiction_of_primitive
 from .comparison import difference, not_pure, not_vectorised
-from .rule import Case, Rule
+from .rule import Case
 
 # Relative rounding error of formulas that nearly cancel.
 _ROUNDING = 1e-9
@@ -41,6 +41,14 @@ def _lengths(grid: Grid) -> tuple[float, float]:
     return min(grid.spacing), math.hypot(*grid.size)
 
 
+def compliance_is_positive_and_finite(kernel: Kernel, case: Case) -> str:
+    """The compliance is positive and finite for every wave of a grid."""
+    q = _waves(case.grid, 200)
+    values = np.asarray(kernel.compliance(q.copy()))
+    bad = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
+    return f"compliance is {values[bad[0]]:g} m/Pa at q = {q[bad[0]]:g} rad/m" if bad.size else ""
+
+
 def compliance_is_vectorised(kernel: Kernel, case: Case) -> str:
     """compliance(q) is a float array of the shape of q; each value depends on its own q only."""
     return not_vectorised(kernel.compliance, _waves(case.grid), "compliance(q)", relative=_ROUNDING)
@@ -49,14 +57,6 @@ def compliance_is_vectorised(kernel: Kernel, case: Case) -> str:
 def compliance_leaves_its_argument(kernel: Kernel, case: Case) -> str:
     """A kernel is pure: it does not change q, and a second call returns the same."""
     return not_pure(kernel.compliance, _waves(case.grid), "compliance(q)")
-
-
-def compliance_is_positive_and_finite(kernel: Kernel, case: Case) -> str:
-    """The compliance is positive and finite for every wave of a grid."""
-    q = _waves(case.grid, 200)
-    values = np.asarray(kernel.compliance(q.copy()))
-    bad = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
-    return f"compliance is {values[bad[0]]:g} m/Pa at q = {q[bad[0]]:g} rad/m" if bad.size else ""
 
 
 def compliance_does_not_grow_for_short_waves(kernel: Kernel, case: Case) -> str:
@@ -80,6 +80,34 @@ def compliance_does_not_grow_for_short_waves(kernel: Kernel, case: Case) -> str:
         f"compliance(q) grows from {half:.3g} m/Pa at {shortest / 2:.3g} rad/m to "
         f"{values[known - 1]:.3g} m/Pa at {q[known - 1]:.3g} rad/m"
     )
+
+
+def periodic_operator_is_the_compliance(kernel: Kernel, case: Case) -> str:
+    """A wave of pressure on a periodic grid displaces the surface by G(q) times the wave."""
+    grid = Grid(points=[32, 18], size=case.grid.size, boundary="periodic")
+    operator = make_operator(kernel, grid)
+    x, y = grid.coordinates()
+    for m, n in ((1, 0), (0, 3), (5, 2), (8, 4)):
+        qx, qy = 2 * np.pi * m / grid.size[0], 2 * np.pi * n / grid.size[1]
+        wave = np.cos(qx * x + qy * y + 0.3)
+        compliance = float(kernel.compliance(np.array([np.hypot(qx, qy)]))[0])
+        if differs := difference(
+            operator(wave),
+            compliance * wave,
+            f"the displacement [m] under a wave of 1 Pa, q = ({qx:g}, {qy:g}) rad/m,",
+            absolute=_ROUNDING * compliance,
+        ):
+            return differs
+    return ""
+
+
+def uniform_pressure_sinks_by_the_mean_compliance(kernel: Kernel, case: Case) -> str:
+    """On a periodic grid uniform pressure p displaces by p mean_compliance(), or 0 if that is ∞."""
+    grid = Grid(points=[6, 5], size=case.grid.size, boundary="periodic")
+    mean = mean_compliance(kernel)
+    expected = np.full(grid.shape, 3 * mean if np.isfinite(mean) else 0.0)
+    values = make_operator(kernel, grid)(np.full(grid.shape, 3.0))
+    return difference(values, expected, "the displacement [m] under 3 Pa", relative=_ROUNDING)
 
 
 def branches_have_shares_and_times(kernel: Kernel, case: Case) -> str:
@@ -135,34 +163,6 @@ def without_skin_has_no_skin(kernel: Kernel, case: Case) -> str:
     )
 
 
-def periodic_operator_is_the_compliance(kernel: Kernel, case: Case) -> str:
-    """A wave of pressure on a periodic grid displaces the surface by G(q) times the wave."""
-    grid = Grid(points=[32, 18], size=case.grid.size, boundary="periodic")
-    operator = make_operator(kernel, grid)
-    x, y = grid.coordinates()
-    for m, n in ((1, 0), (0, 3), (5, 2), (8, 4)):
-        qx, qy = 2 * np.pi * m / grid.size[0], 2 * np.pi * n / grid.size[1]
-        wave = np.cos(qx * x + qy * y + 0.3)
-        compliance = float(kernel.compliance(np.array([np.hypot(qx, qy)]))[0])
-        if differs := difference(
-            operator(wave),
-            compliance * wave,
-            f"the displacement [m] under a wave of 1 Pa, q = ({qx:g}, {qy:g}) rad/m,",
-            absolute=_ROUNDING * compliance,
-        ):
-            return differs
-    return ""
-
-
-def uniform_pressure_sinks_by_the_mean_compliance(kernel: Kernel, case: Case) -> str:
-    """On a periodic grid uniform pressure p displaces by p mean_compliance(), or 0 if that is ∞."""
-    grid = Grid(points=[6, 5], size=case.grid.size, boundary="periodic")
-    mean = mean_compliance(kernel)
-    expected = np.full(grid.shape, 3 * mean if np.isfinite(mean) else 0.0)
-    values = make_operator(kernel, grid)(np.full(grid.shape, 3.0))
-    return difference(values, expected, "the displacement [m] under 3 Pa", relative=_ROUNDING)
-
-
 def closed_form_is_whole(kernel: Kernel, case: Case) -> str:
     """A kernel has both of greens_function and radial_primitive, or neither."""
     present = [name for name in _FORMS if hasattr(kernel, name)]
@@ -192,21 +192,3 @@ def closed_form_is_the_transform_of_the_compliance(kernel: Kernel, case: Case) -
     if not isinstance(kernel, HasClosedForm):
         return ""
     return contradiction_of_compliance(kernel, *_lengths(case.grid))
-
-
-RULES: tuple[Rule, ...] = (
-    compliance_is_positive_and_finite,
-    compliance_is_vectorised,
-    compliance_leaves_its_argument,
-    compliance_does_not_grow_for_short_waves,
-    periodic_operator_is_the_compliance,
-    uniform_pressure_sinks_by_the_mean_compliance,
-    branches_have_shares_and_times,
-    scaled_by_one_is_the_kernel,
-    scaled_stiffens_the_solid_alone,
-    without_skin_has_no_skin,
-    closed_form_is_whole,
-    closed_form_leaves_its_argument,
-    primitive_is_the_integral_of_the_closed_form,
-    closed_form_is_the_transform_of_the_compliance,
-)

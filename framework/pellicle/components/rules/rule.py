@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import sys
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
@@ -41,3 +42,14 @@ def broken(rules: Iterable[Rule], component: object, case: Case) -> str:
 def required(rule: Callable[..., object]) -> str:
     """Return what a rule requires."""
     return " ".join((inspect.getdoc(rule) or "").split())
+
+
+def rules_of(module: str) -> list[Callable[..., Any]]:
+    """Return the rules of a module, which are all of its public functions, in their order."""
+    return [
+        value
+        for name, value in vars(sys.modules[module]).items()
+        if inspect.isfunction(value)
+        and value.__module__ == module
+        and not name.startswith(("_", "check_"))
+    ]
