@@ -102,6 +102,7 @@ def _check(name: str | None, json: bool) -> None:
     from pellicle.plugins import registry
     from pellicle.testing.installed import verdict_on_examples
 
+    heads = "family", "type", "origin", "verdict"
     rows, kept = [], True
     for family, members in registry().components.items():
         for type_, registered in members.items():
@@ -110,14 +111,8 @@ def _check(name: str | None, json: bool) -> None:
             if name in names or (name is None and not origin.is_own):
                 holds, verdict = verdict_on_examples(registered)
                 kept = kept and holds
-                rows.append(
-                    {
-                        "family": family,
-                        "type": type_,
-                        "origin": origin.distribution,
-                        "verdict": verdict,
-                    }
-                )
+                cells = family, type_, origin.distribution, verdict
+                rows.append(dict(zip(heads, cells, strict=True)))
     if name is not None and not rows:
         raise ConfigError(
             f"{name!r} is neither a type, a family nor a distribution of what is installed; see "
@@ -127,6 +122,6 @@ def _check(name: str | None, json: bool) -> None:
     if json:
         print_json(rows)
     else:
-        print_table(["family", "type", "origin", "verdict"], rows)
+        print_table(heads, rows)
     if not kept:
         raise typer.Exit(NOT_CONVERGED)
