@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array, Mask
-from pellicle.contact.law import GapLaw
+from pellicle.contact.law import Law
 from pellicle.contact.problem import Problem
 
 # Share of the old traction that a round keeps, so that a step of the descent is small.
@@ -41,7 +41,7 @@ class DenseContact:
     """A problem of at most some hundred cells with its full influence matrix."""
 
     problem: Problem
-    law: GapLaw
+    law: Law
     matrix: Array
     """Displacement of cell i per pressure on cell j [m/Pa]."""
 
@@ -53,7 +53,7 @@ class DenseContact:
         shape, size = problem.grid.shape, problem.profile.size
         units = np.eye(size).reshape(size, *shape)
         matrix = np.array([problem.operator(unit).ravel() for unit in units]).T
-        return cls(problem, problem.law.law, 0.5 * (matrix + matrix.T))
+        return cls(problem, problem.law, 0.5 * (matrix + matrix.T))
 
     def descend(self, wall: Array, traction: Array, rounds: int) -> DenseState:
         """Return the end of the descent from tractions across the gap.

@@ -18,6 +18,8 @@ from typer.testing import CliRunner
 import pellicle as pl
 from pellicle.cli.app import app
 from pellicle.components import AreaCorrection, Output
+from pellicle.components.prescription import OPTIONS
+from pellicle.config.loading import Options
 from pellicle.plugins import registry
 from pellicle.schema import get
 
@@ -64,6 +66,19 @@ def test_copy_with_other_values_has_these() -> None:
     assert loading.values == (1e-6, 2e-6)
     assert loading.model_copy(update={"path": (3e-6,)}).values == (3e-6,)
     assert loading.model_copy() == loading
+
+
+def test_no_prescription_can_take_the_key_of_an_option() -> None:
+    """The reserved names are the options that a loading has."""
+    assert Options.model_fields.keys() == OPTIONS
+
+
+def test_loading_of_its_fields() -> None:
+    """A loading has a prescription and a path; with these it can be made again."""
+    loading = pl.Loading(base_displacement="1 um", spring_constant="2 N/m", stiffness=True)
+    assert dict(loading.prescription) == {"type": "base_displacement", "spring_constant": 2.0}
+    assert pl.Loading(**dict(loading)) == pl.Loading(**loading.model_dump()) == loading
+    assert get(loading, "spring_constant") == 2.0
 
 
 def test_depths_of_numpy() -> None:

@@ -11,8 +11,9 @@ import pytest
 import pellicle as pl
 from pellicle.components import Solver
 from pellicle.contact import Problem
+from pellicle.contact.load_step import LoadStep, SearchEnd
 from pellicle.contact.solution import State
-from pellicle.runs.target_search import Reached, reach
+from pellicle.runs.target_search import reach
 from pellicle.surface import make_operator
 
 GRID = pl.Grid(points=11, size=11.0, boundary="periodic")
@@ -29,7 +30,7 @@ class Staircase(Solver):
         self.starts.append(start)
         pressure = np.zeros(problem.grid.points)
         pressure.ravel()[: self.cells(problem.control.value)] = 1.0
-        return pl.Solution(pressure, 2)
+        return pl.Solution(State.of_pressure(pressure), 2)
 
 
 def setting(start: float | None = None) -> pl.Setting:
@@ -45,12 +46,17 @@ def setting(start: float | None = None) -> pl.Setting:
     return pl.Setting(GRID, make_operator(kernel, GRID), profile, "unbounded", state)
 
 
-def search(cells: Callable[[float], int], area: float, start: float | None = None) -> Reached:
+def search(cells: Callable[[float], int], area: float, start: float | None = None) -> LoadStep:
     """Return what is reached on a staircase of areas."""
     here = setting(start)
     target = pl.registry().find("prescription", "contact_area")().target(here, area)  # type: ignore[attr-defined]
     Staircase.starts.clear()
     return reach(here, target, Staircase(cells=cells), lambda *_: None)
+
+
+def _end(step: LoadStep) -> SearchEnd:
+    assert step.search
+    return step.search
 
 
 @pytest.mark.parametrize("start", [None, 1e-6, 1.0, 1e6])
@@ -63,11 +69,11 @@ def test_whole_cells_are_met(power: float, start: float | None) -> None:
 
     for area in (0.5, 3.0, 40.4, 99.6):
         reached = search(cells, area, start)
-        assert reached.how == "met"
+        assert _end(reached).how == "met"
         count = cells(reached.equilibrium.problem.control.value)
         assert abs(count - area) <= 0.5
-        assert reached.missed == pytest.approx(abs(count - area) / area)
-        assert reached.iterations % 2 == 0
+        assert _end(reached).missed == pytest.approx(abs(count - area) / area)
+        assert reached.effort.iterations % 2 == 0
 
 
 @pytest.mark.parametrize(("area", "side"), [(32.0, 30), (37.0, 40)])
@@ -75,19 +81,19 @@ def test_jump_is_found(area: float, side: int) -> None:
     """Where the area jumps across what is wanted, the force is the jump's, on the nearer side."""
     jump = 7.3
     reached = search(lambda force: 30 if force < jump else 40, area)
-    assert reached.how == "nearest"
+    assert _end(reached).how == "nearest"
     assert reached.equilibrium.problem.control.value == pytest.approx(jump, rel=2e-4)
     assert np.count_nonzero(reached.equilibrium.pressure) == side
-    assert reached.missed == pytest.approx(abs(side - area) / area)
-    assert reached.between == (30.0, 40.0)
+    assert _end(reached).missed == pytest.approx(abs(side - area) / area)
+    assert (_end(reached).below, _end(reached).above) == (30.0, 40.0)
 
 
 @pytest.mark.parametrize("area", [20.0, 60.0])
 def test_area_that_no_force_brings(area: float) -> None:
     """The search ends, and says that it found nothing."""
     reached = search(lambda force: 30, area)
-    assert reached.how == "not found"
-    assert reached.missed == pytest.approx(abs(30 - area) / area)
+    assert _end(reached).how == "not found"
+    assert _end(reached).missed == pytest.approx(abs(30 - area) / area)
 
 
 def test_every_trial_starts_from_the_step_before() -> None:
@@ -115,7 +121,7 @@ def test_any_quantity_by_depth(goal: float, guess: float | None, slope: float) -
         guess=guess,
     )
     reached = reach(setting(), target, Staircase(cells=lambda depth: 5), lambda *_: None)
-    assert reached.how == "met"
+    assert _end(reached).how == "met"
     assert reached.equilibrium.problem.control.value == pytest.approx((goal + 2) / slope, abs=1e-6)
 
 
@@ -127,7 +133,7 @@ def test_quantity_that_is_lost_is_not_found() -> None:
 
         def solve(self, problem: Problem, start: Any, monitor: Any) -> pl.Solution:
             """Return no numbers."""
-            return pl.Solution(np.full(problem.grid.shape, np.nan), 1)
+            return pl.Solution(State.of_pressure(np.full(problem.grid.shape, np.nan)), 1)
 
     run = pl.Run(
         grid={"points": 8, "size": 1e-3, "boundary": "periodic"},

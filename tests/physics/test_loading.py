@@ -126,6 +126,7 @@ def test_stiffness_of_full_contact(solver: str) -> None:
     assert yields["stiffness"].item() == pytest.approx(expected, rel=1e-7)
 
 
+@pytest.mark.filterwarnings("ignore::pellicle.ConvergenceWarning")
 @pytest.mark.parametrize("wanted", [2, 23, 30, 170])
 def test_area_on_springs_is_known_cell_by_cell(wanted: int, solver: str) -> None:
     """On springs a cell touches when the indenter is as deep: which areas there are is known."""
@@ -148,6 +149,7 @@ def test_area_on_springs_is_known_cell_by_cell(wanted: int, solver: str) -> None
     assert ("misses the prescribed one" in data["status"].item()) == (count != wanted)
 
 
+@pytest.mark.filterwarnings("ignore::pellicle.ConvergenceWarning")
 def test_radius_of_hertz(solver: str) -> None:
     """The force of a given contact radius is Hertz's within the error of counting cells."""
     radius = 1e-4

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     import xarray as xr
 
-    from pellicle.contact.caveats import Caveat, Status
+    from pellicle.contact.caveats import Status
     from pellicle.results.result import Result
 
 
@@ -30,8 +30,9 @@ def print_origin(data: xr.Dataset) -> None:
 
 def print_steps(result: Result, *, si: bool = False) -> None:
     """Print a row for each step."""
+    from pellicle.contact.caveats import from_text, verdict_of
     from pellicle.results.path import prescribed_variable
-    from pellicle.variables import names_of
+    from pellicle.variables import CAVEATS, names_of
 
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
@@ -40,18 +41,8 @@ def print_steps(result: Result, *, si: bool = False) -> None:
     requested = [name for name in named if name in {*data} - printed_names]
     time = ["time"] if "time" in data else []
     names = [*time, "depth", "force", *areas, *requested, "iterations"]
-    coarse = dict(result.coarse())
-    numbers = data["step"].values.tolist()
-    converged = dict(zip(numbers, data["converged"].values.tolist(), strict=True))
-    verdicts = [
-        "too coarse" if n in coarse else "converged" if converged[n] else "NOT CONVERGED"
-        for n in numbers
-    ]
+    verdicts = [verdict_of(from_text(text)) for text in data[CAVEATS].values]
     print_columns([*_columns(data, names, si), ("status", verdicts)])
-    # `exit_by_convergence` warns of the others.
-    told = (c for c in result.caveats() if c[1].status.converged and not c[1].status.phrase)
-    for steps, status in _grouped(told):
-        echo(f"{steps}: {for_document(status)}", err=True)
 
 
 def print_contact(result: Result, *, si: bool = False) -> None:
@@ -197,29 +188,19 @@ def _units(data: xr.Dataset) -> dict[str, str]:
 
 def exit_by_convergence(result: Result) -> None:
     """Print which steps did not converge, or have a caveat; exit unless all converged."""
-    failed = (c for c in result.caveats() if not c[1].status.converged)
-    for steps, message in _grouped(failed):
-        echo(f"{steps} did not converge: {for_document(message)}", err=True)
+    failed: dict[Status, list[tuple[int, str]]] = {}
+    for number, caveat in result.caveats():
+        if not caveat.status.converged:
+            failed.setdefault(caveat.status, []).append((number, caveat.sentence))
+    for group in failed.values():
+        steps = _steps_text([number for number, _ in group])
+        several = len({message for _, message in group}) > 1
+        first = f"step {group[0][0]}: " if several else ""
+        echo(f"{steps} did not converge: {first}{for_document(group[0][1])}", err=True)
     for message in result.warnings():
         print_warning(message)
     if not result.converged:
         raise typer.Exit(NOT_CONVERGED)
-
-
-def _grouped(caveats: Iterable[tuple[int, Caveat]]) -> list[tuple[str, str]]:
-    """Return the steps with each status, and the message of the first of them."""
-    groups: dict[Status, list[tuple[int, str]]] = {}
-    for number, caveat in caveats:
-        groups.setdefault(caveat.status, []).append((number, caveat.sentence))
-    return [
-        (_steps_text([number for number, _ in group]), f"{_first(group)}{group[0][1]}")
-        for group in groups.values()
-    ]
-
-
-def _first(group: Sequence[tuple[int, str]]) -> str:
-    several = len({message for _, message in group}) > 1
-    return f"step {group[0][0]}: " if several else ""
 
 
 def _steps_text(numbers: Sequence[int]) -> str:

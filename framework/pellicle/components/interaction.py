@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Callable
 from typing import ClassVar
 
 import numpy as np
@@ -30,7 +31,10 @@ class Interaction(Component):
     needs_contact: ClassVar[bool] = False
     """Whether it acts only on cells that are joined to a contact by cells within the cutoff."""
     averaged: ClassVar[bool] = False
-    """Whether its traction is averaged over each cell, with the gap interpolated in between."""
+    """Whether the traction of the law that is resolved is averaged over each cell.
+
+    The gap is interpolated between the cells then.
+    """
     least_cells: ClassVar[float] = 3.0
     """Cells across the zone around a contact below which the cells pin its edge."""
 
@@ -61,8 +65,8 @@ class Interaction(Component):
         """
         return self
 
-    def wider(self, factor: float) -> Interaction | None:
-        """Return the interaction with a zone ``factor`` times as wide, to estimate an error.
+    def wider(self, factor: float) -> Callable[[Kernel, Grid], GapLaw] | None:
+        """Return `resolved` with a zone ``factor`` times as wide, to estimate an error.
 
         None, the default, if its range is its own and not that of the grid.
         """

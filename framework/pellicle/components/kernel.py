@@ -72,13 +72,6 @@ class Kernel(Component):
         """Return the depth [m] of the rigid base under the solid; ∞ if there is none."""
         return math.inf
 
-    def bonded_layer(self) -> tuple[float, float] | None:
-        """Return thickness [m] and Poisson's ratio of an elastic layer bonded to a rigid base.
-
-        None if the solid is anything else, or if its skin is more than a tension.
-        """
-        return None
-
 
 class KernelOf(Kernel):
     """A kernel made of another one, as a skin on a substrate.
@@ -113,10 +106,6 @@ class KernelOf(Kernel):
     def depth_to_base(self) -> float:
         """Return the depth [m] of the base under the substrate."""
         return self._substrate.depth_to_base()
-
-    def bonded_layer(self) -> tuple[float, float] | None:
-        """Return thickness [m] and Poisson's ratio of a substrate that is a bonded layer."""
-        return self._substrate.bonded_layer()
 
     @property
     def _substrate(self) -> Kernel:

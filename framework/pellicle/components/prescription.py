@@ -117,7 +117,10 @@ class Prescription(Component):
     @classmethod
     def quantity(cls, interaction: bool = False) -> Quantity:
         """Return unit and range of its values, without or with an interaction."""
-        return Quantity(cls.unit, at_least=None if interaction and cls.may_pull else cls.at_least)
+        if interaction and cls.may_pull:
+            return Quantity(cls.unit)
+        hint = "; with an [interaction] it may be negative" * cls.may_pull
+        return Quantity(cls.unit, at_least=cls.at_least, hint=hint)
 
     @abstractmethod
     def target(self, setting: Setting, value: float) -> Depth | Force | Search:

@@ -61,8 +61,9 @@ class Solver(Component):
     def solve(self, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
         """Return the solution of one load step.
 
-        ``start`` is the state at the end of the last step, or None. The framework computes the
-        residuals of the solution itself; the solver's own estimates are not used.
+        ``start`` is where the iteration may start: the state at the end of the last step or,
+        without a law, what the last two lead to; None at the first step. The framework computes
+        the residuals of the solution itself; the solver's own estimates are not used.
         """
 
     def response(self, problem: Problem, state: State, monitor: Monitor) -> Array:
@@ -112,7 +113,7 @@ class IterativeSolver(Solver):
 
     @abstractmethod
     def begin(self, problem: Problem, start: State | None) -> Any:
-        """Return the first iterate; ``start`` is the state of the step before, or None."""
+        """Return the first iterate; ``start`` is as in `solve`."""
 
     @abstractmethod
     def step(self, problem: Problem, state: Any) -> Any:
@@ -126,13 +127,9 @@ class IterativeSolver(Solver):
     def pressure(self, state: Any) -> Array:
         """Return the pressure [Pa] of an iterate."""
 
-    def state(self, state: Any) -> State | Array:
-        """Return the solution's state of an iterate; by default its pressure."""
-        return self.pressure(state)
-
-    def extrapolated(self, state: Any) -> bool:
-        """Return whether the iteration began from `Start.ahead`; by default False."""
-        return False
+    def state(self, state: Any) -> State:
+        """Return the solution's state of an iterate; by default that of its pressure."""
+        return State.of_pressure(self.pressure(state))
 
     def terminate(self, problem: Problem, state: Any) -> Stop | None:
         """Return the reason to end the iteration above the tolerance; None, the default, continues.
@@ -167,9 +164,7 @@ class IterativeSolver(Solver):
                 break
             state = self.step(problem, state)
             iteration += 1
-        solution = Solution(
-            self.state(state), iteration, stop, extrapolated=self.extrapolated(state)
-        )
+        solution = Solution(self.state(state), iteration, stop)
         if stop is Stop.STALLED and residual <= _ROUNDINGS * round_off(problem, solution.pressure):
             solution = replace(solution, stop=Stop.ROUND_OFF)
         return solution

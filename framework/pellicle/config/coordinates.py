@@ -18,6 +18,7 @@ from pellicle.schema.ranges import Values
 from pellicle.units import DIGITS, quantity_of, readable
 from pellicle.variables import ROLE, WORDS, WORDS_OF_VALUES
 
+from .legs import VALUES
 from .points import short
 from .run import Run
 from .words import field_words, words_at
@@ -132,4 +133,7 @@ def _single(value: Any, given: Any) -> Any:
 def units_of(run: Run) -> dict[str, str]:
     """Return the SI unit of each field with one, by dotted path."""
     quantities = {path: quantity_of(field) for path, _, field in walk(run) if field}
-    return {path: quantity.unit for path, quantity in quantities.items() if quantity}
+    units = {path: quantity.unit for path, quantity in quantities.items() if quantity}
+    loading = f"loading.{run.loading.prescribed}"
+    of_legs = [path for path, *_ in walk(run.loading.path, f"{loading}.") if path.endswith(VALUES)]
+    return units | dict.fromkeys(of_legs, units[loading])

@@ -21,7 +21,7 @@ from pellicle.plugins import Registered, registry
 from pellicle.schema.messages import similar
 from pellicle.units import quantity_of, readable
 
-from .loading import Loading, Options, keys_of
+from .loading import Loading, Options, keys_of, prescriptions
 from .run import Run
 from .study import Study
 from .words import model_in
@@ -113,8 +113,8 @@ def _of_table(name: str, model: type[BaseModel]) -> Explanation:
     if model is Study:
         rows = [row for row in rows if row.name != "run"]
     if model is Loading:
-        for type_ in registry().components["prescription"]:
-            for row in rows_of(keys_of(type_)):
+        for type_, component in prescriptions().items():
+            for row in rows_of(keys_of(component)):
                 required = "one of these" if row.name == type_ else f"with {type_}"
                 if row.name not in Options.model_fields:
                     rows.append(row._replace(default=row.default.replace("required", required)))
@@ -127,13 +127,15 @@ def _of_table(name: str, model: type[BaseModel]) -> Explanation:
 
 def _of_component(entry: Registered) -> Explanation:
     family = entry.component.family
-    is_prescription = issubclass(entry.component, Prescription)
-    fields = keys_of(entry.type) if is_prescription else entry.component.model_fields
     origin = f"{entry.origin.distribution} {entry.origin.version}"
     if refusal := refusal_of_example(entry.component):
         example = "\n# ".join(["# none; it would be refused:", *refusal.splitlines()])
     else:
         example = _toml(entry.component.place, example_table(entry))
+    is_prescription = family == "prescription"
+    fields = (
+        keys_of(prescriptions()[entry.type]) if is_prescription else entry.component.model_fields
+    )
     text = _documentation(entry.component)
     return Explanation(entry.type, family, origin, text, rows_of(fields), example)
 

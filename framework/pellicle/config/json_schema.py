@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import inspect
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
-from typing import Annotated, Any
+from collections.abc import Iterator
+from typing import Any
 
-from pydantic import BaseModel, TypeAdapter
+from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
-from pellicle.components import Component, Prescription
+from pellicle.components import Component
 from pellicle.components.from_registry import FAMILY
-from pellicle.components.prescription import OPTIONS
 from pellicle.plugins import registry
 
-from .load_steps import LoadSteps
-from .loading import Loading
 from .run import Run
 from .study import Study
 
@@ -29,8 +25,7 @@ def model_schema(model: type[BaseModel]) -> dict[str, Any]:
 
     It holds the families that the model refers to, itself or by components of another family. In
     fields of the model itself the schemas of the components are written out. Components may hold
-    others of their own family without end, so their fields refer to schemas. The loading is a
-    choice of one table per prescription.
+    others of their own family without end, so their fields refer to schemas.
     """
     models, referred_to = [model], [model]
     while referred_to:
@@ -39,20 +34,10 @@ def model_schema(model: type[BaseModel]) -> dict[str, Any]:
         models += dict.fromkeys(referred_to)
     names = {entry: refs[entry, "validation"]["$ref"].rpartition("/")[2] for entry in models}
     definitions: dict[str, Any] = generated["$defs"]
-    if Loading.__name__ in definitions:
-        options = {name: definitions[Loading.__name__]["properties"][name] for name in OPTIONS}
-        definitions[Loading.__name__] = {
-            "description": inspect.getdoc(Loading),
-            "oneOf": [
-                _loading(component, definitions.pop(names[component]), options)
-                for component in models
-                if issubclass(component, Prescription)
-            ],
-        }
     referred: dict[str, list[dict[str, Any]]] = defaultdict(list)
     written: dict[str, list[dict[str, Any]]] = defaultdict(list)
     for component in models[1:]:
-        if issubclass(component, Component) and names[component] in definitions:
+        if issubclass(component, Component):
             fields = (name for name, info in component.model_fields.items() if info.is_required())
             required = {"required": ["type", *fields]}
             referred[component.family].append(refs[component, "validation"] | required)
@@ -70,17 +55,6 @@ def _referred_to(schema: Any) -> Iterator[type[BaseModel]]:
     if isinstance(schema, list):
         for inner in schema:
             yield from _referred_to(inner)
-
-
-def _loading(
-    component: type[Prescription], own: dict[str, Any], options: Mapping[str, Any]
-) -> dict[str, Any]:
-    """Return the JSON schema of ``[loading]`` with a prescription, from that of the component."""
-    steps = TypeAdapter(Annotated[Any, LoadSteps(component.quantity(True), legs=True)])
-    fields = own["properties"]
-    type_ = fields.pop("type")["const"]
-    properties = {type_: steps.json_schema(), **fields, **options}
-    return own | {"properties": properties, "required": [type_, *own.get("required", [])]}
 
 
 def _filled(schema: Any, choices: dict[str, list[dict[str, Any]]]) -> Any:

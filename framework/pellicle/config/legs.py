@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import Annotated, Any, ClassVar, NamedTuple
 
-from pydantic import Field, PrivateAttr
-from pydantic.fields import FieldInfo
+from pydantic import Field, create_model
 
 from pellicle.errors import ConfigError, all_problems, shown
 from pellicle.schema.model import Model
@@ -42,14 +42,6 @@ class Leg(Model):
 
     key: ClassVar[str]
     """The field that only this kind of leg has."""
-
-    _unit: str = PrivateAttr("1")
-
-    @property
-    def entries(self) -> Mapping[str, tuple[Any, FieldInfo]]:
-        """Value and description of each field; those of prescribed values have their unit."""
-        fields = fields_of(type(self), self._unit)
-        return {name: (getattr(self, name), info) for name, info in fields.items()}
 
 
 class Move(Leg):
@@ -96,6 +88,8 @@ class Oscillation(Leg):
     ]
 
 
+VALUES = "to", "amplitude"
+"""Fields in the unit of the prescription."""
 KINDS: tuple[type[Leg], ...] = (Move, Hold, Oscillation)
 _FORMS = (
     "{ to, time, num }, { hold, num } or { amplitude, frequency, cycles, num }, with num steps "
@@ -103,14 +97,18 @@ _FORMS = (
 )
 
 
-def fields_of(kind: type[Leg], unit: str) -> dict[str, FieldInfo]:
-    """Return the fields of a kind of leg; those of prescribed values have the ``unit``."""
-    fields = dict(kind.model_fields)
-    for name in fields.keys() & {"to", "amplitude"}:
-        about = FieldInfo(annotation=float, description=fields[name].description)
-        about.metadata.append(Quantity(unit))
-        fields[name] = about
-    return fields
+@cache
+def with_quantity(kind: type[Leg], quantity: Quantity) -> type[Leg]:
+    """Return a kind of leg whose prescribed values have unit and range of ``quantity``.
+
+    It describes, and reads tables; paths hold legs of the three kinds themselves, which pickle.
+    """
+    allowed = {"to": quantity, "amplitude": Quantity(quantity.unit, above=0)}
+    fields: dict[str, Any] = {
+        name: (Annotated[float, allowed[name], kind.model_fields[name]], ...)
+        for name in allowed.keys() & kind.model_fields.keys()
+    }
+    return create_model(kind.__name__, __base__=kind, **fields)
 
 
 def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
@@ -126,7 +124,8 @@ def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
             "is a jump",
             "0",
         )
-    if (steps := number_of_steps([leg.model_dump() for leg in legs])) > _MOST:
+    tables = [leg.model_dump() for leg in legs]
+    if (steps := sum(table["num"] * table.get("cycles", 1) for table in tables)) > _MOST:
         raise ConfigError(f"has {shown(steps)} load steps; give legs of {_MOST} at most")
     lowest = min(sampled(legs))
     try:
@@ -134,7 +133,7 @@ def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
     except ValueError:
         raise ConfigError(
             f"goes down to {lowest.value:g} {quantity.unit}; it has to stay "
-            f"{' and '.join(quantity.bounds)} {quantity.unit}",
+            f"{' and '.join(quantity.bounds)} {quantity.unit}{quantity.hint}",
             str(lowest.leg),
         ) from None
     return tuple(legs)
@@ -151,17 +150,7 @@ def _leg(entry: object, quantity: Quantity) -> Leg:
         keys = " and ".join(kind.key for kind in kinds)
         has = f"mixes {keys}" if kinds else f"has {', '.join(map(str, entry)) or 'no key'}"
         raise ConfigError(f"{has}; give {_FORMS}")
-    with all_problems() as within:
-        # A valid number in its place, so that the other fields are checked too.
-        data = {**entry, **dict.fromkeys(entry.keys() & {"to", "amplitude"}, 0.0)}
-        for name, allowed in (("to", quantity), ("amplitude", Quantity(quantity.unit, above=0))):
-            if name in entry:
-                with within(name):
-                    data[name] = allowed(entry[name])
-        with within(""):
-            leg = kinds[0](**data)
-    leg._unit = quantity.unit
-    return leg
+    return kinds[0](**dict(with_quantity(kinds[0], quantity)(**entry)))
 
 
 def sampled(legs: Sequence[Leg]) -> tuple[Sample, ...]:
@@ -185,20 +174,3 @@ def sampled(legs: Sequence[Leg]) -> tuple[Sample, ...]:
         times = ramp(begin, begin + duration, len(values) + 1)[1:]
         samples += map(Sample, values, times, [index] * len(values), cycles)
     return tuple(samples[1:])
-
-
-def json_schema(value_schema: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the JSON schema of a list of legs, from that of a prescribed value."""
-    schemas = [kind.model_json_schema() for kind in KINDS]
-    for properties in (schema["properties"] for schema in schemas):
-        for name in properties.keys() & {"to", "amplitude"}:
-            properties[name] = {**value_schema, "description": properties[name]["description"]}
-    return {"type": "array", "items": {"anyOf": schemas}, "minItems": 1}
-
-
-def number_of_steps(values: Sequence[object]) -> int:
-    """Return the number of load steps of values, or of legs as tables, of a valid loading."""
-    return sum(
-        value["num"] * value.get("cycles", 1) if isinstance(value, Mapping) else 1
-        for value in values
-    )

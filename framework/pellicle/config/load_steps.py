@@ -12,7 +12,7 @@ from pellicle.errors import ConfigError, all_problems, shown
 from pellicle.schema.ranges import RANGE, SPACINGS, ranged
 from pellicle.units import Quantity
 
-from .legs import KINDS, Leg, json_schema, legs_of
+from .legs import KINDS, Leg, legs_of, with_quantity
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -48,8 +48,8 @@ class LoadSteps:
         if not isinstance(back, bool):
             raise ConfigError(f"{shown(back)} is not allowed; give true or false", "back")
         once = {key: value for key, value in table.items() if key != "back"}
-        ends = self._all({end: once[end] for end in ("start", "stop") if end in once})
-        once |= zip([end for end in ("start", "stop") if end in once], ends, strict=True)
+        ends = {end: once[end] for end in ("start", "stop") if end in once}
+        once |= zip(ends, self._all(ends), strict=True)
         values = ranged(once, "ramp", 'back = true or spacing = "log"')
         return values + values[-2::-1] if back else values
 
@@ -83,5 +83,9 @@ class LoadSteps:
             "required": sorted(RANGE),
             "additionalProperties": False,
         }
-        several = {"type": "array", "items": value_schema, "minItems": 1}
-        return {"anyOf": [value_schema, several, ramp, *[json_schema(value_schema)] * self.legs]}
+        legs = [with_quantity(kind, self.quantity).model_json_schema() for kind in KINDS]
+        several: list[dict[str, Any]] = [
+            {"type": "array", "items": items, "minItems": 1}
+            for items in (value_schema, {"anyOf": legs})
+        ]
+        return {"anyOf": [value_schema, ramp, *several[: 1 + self.legs]]}

@@ -6,13 +6,13 @@ import inspect
 import itertools
 import math
 from collections.abc import Mapping
-from contextlib import suppress
 from functools import cached_property
 from itertools import filterfalse
 from typing import Annotated, Any, Self
 
 from pydantic import (
     Field,
+    GetJsonSchemaHandler,
     SerializationInfo,
     SkipValidation,
     WithJsonSchema,
@@ -20,6 +20,8 @@ from pydantic import (
     model_validator,
 )
 from pydantic.fields import FieldInfo
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 
 from pellicle.components import FromRegistry, Prescription
 from pellicle.components.prescription import OPTIONS
@@ -48,8 +50,7 @@ class Options(Model):
     ] = False
 
     time: Annotated[
-        tuple[float, ...] | None,
-        LoadSteps(Quantity("s")),
+        Annotated[tuple[float, ...], LoadSteps(Quantity("s"))] | None,
         Field(
             description="time [s] at the end of each step, for a solid that relaxes; equal times "
             "are a jump, and the first step is one"
@@ -89,12 +90,32 @@ class Loading(Options):
         table = {"stiffness": self.stiffness, "time": self.time, own.pop("type"): self.path, **own}
         return {name: value for name, value in table.items() if value is not None}
 
+    @classmethod
+    def __get_pydantic_json_schema__(
+        cls, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """Return the choice of one table for each prescription."""
+        reference = handler(schema)
+        whole = handler.resolve_ref_schema(reference)
+        options = {name: whole["properties"][name] for name in OPTIONS}
+        choices = []
+        for type_, component in prescriptions().items():
+            table = handler.resolve_ref_schema(handler(component.__pydantic_core_schema__))
+            steps = LoadSteps(component.quantity(interaction=True), legs=True)
+            fields = {type_: steps.__get_pydantic_json_schema__(schema, handler)}
+            fields |= {name: field for name, field in table["properties"].items() if name != "type"}
+            required = [type_, *table.get("required", [])]
+            choices.append(table | {"properties": fields | options, "required": required})
+        whole.clear()
+        whole.update(description=inspect.getdoc(cls), oneOf=choices)
+        return reference
+
     @property
     def entries(self) -> Mapping[str, tuple[Any, FieldInfo]]:
         """Value and description of each key of its table in a file."""
         values = {**dict(self), **dict(self.prescription), self.prescribed: self.path}
-        fields = _described(self.prescribed, type(self.prescription))
-        return {name: (values[name], info) for name, info in fields.items()}
+        keys = keys_of(type(self.prescription))
+        return {name: (values[name], info) for name, info in keys.items()}
 
     @model_validator(mode="after")
     def _check_time(self) -> Self:
@@ -163,7 +184,7 @@ class Loading(Options):
     def refuse_pulls(self) -> None:
         """Refuse values that only an interaction allows, such as a force below 0."""
         with all_problems() as within, within(self.prescribed):
-            path_from(self.path, type(self.prescription), interaction=False)
+            LoadSteps(self.prescription.quantity(), legs=True)(self.path)
 
     @property
     def variables(self) -> set[str]:
@@ -180,59 +201,36 @@ def fields_from(table: Mapping[str, Any], interaction: bool = True) -> dict[str,
     Without an interaction values that pull, such as a force below 0, are refused.
     """
     data = {key: value for key, value in table.items() if value is not None}
-    type_ = prescribed_in(data)
-    component = _prescription(type_)
-    described = _described(type_, component)
-    own = {name: data[name] for name in component.model_fields if name in data and name != "type"}
+    component = prescriptions()[prescribed_in(data)]
+    keys = keys_of(component)
+    type_, *_ = keys
+    own = {name: data[name] for name in keys.keys() & data.keys() - {type_, *OPTIONS}}
     with all_problems() as within:
         with within(type_):
-            path = path_from(data[type_], component, interaction)
+            path = LoadSteps(component.quantity(interaction), legs=True)(data[type_])
         with within(""):
             prescription = registry().make(Prescription, {"type": type_, **own})
         with within(""):
             options = dict(Options(**{name: data[name] for name in OPTIONS if name in data}))
-        for name in filterfalse(described.__contains__, data):
+        for name in filterfalse(keys.__contains__, data):
             with within(name):
-                raise ConfigError(f"is not a field here; {nearest(name, described)}")
-    fields = {"prescription": prescription, "path": path, **options}
-    return {name: value for name, value in fields.items() if value is not None}
+                raise ConfigError(f"is not a field here; {nearest(name, keys)}")
+    return {"prescription": prescription, "path": path, **options}
 
 
-def path_from(
-    spec: object, component: type[Prescription], interaction: bool
-) -> tuple[float, ...] | tuple[Leg, ...]:
-    """Return the prescribed values, or the legs through them, in SI."""
-    try:
-        return LoadSteps(component.quantity(interaction), legs=True)(spec)
-    except ConfigError as error:
-        if interaction:
-            raise
-        with suppress(ConfigError):
-            path_from(spec, component, True)
-            error = ConfigError(
-                Problem(field, f"{reason}; with an [interaction] it may be negative")
-                for field, reason in error.problems
-            )
-        raise error from None
-
-
-def keys_of(type_: str) -> dict[str, FieldInfo]:
-    """Return the keys that ``[loading]`` has with a prescription: values, its fields, options."""
-    return _described(type_, _prescription(type_))
-
-
-def _prescription(type_: str) -> type[Prescription]:
-    component = registry().find("prescription", type_)
-    assert issubclass(component, Prescription)
-    return component
-
-
-def _described(type_: str, component: type[Prescription]) -> dict[str, FieldInfo]:
+def keys_of(component: type[Prescription]) -> dict[str, FieldInfo]:
+    """Return the keys of ``[loading]`` with a prescription: its type, its fields, the options."""
     meaning = (inspect.getdoc(component) or "").partition("\n")[0]
     steps = FieldInfo(annotation=tuple[float, ...], description=meaning)
     steps.metadata.append(LoadSteps(component.quantity(), legs=True))
-    fields = {name: info for name, info in component.model_fields.items() if name != "type"}
-    return {type_: steps, **fields, **Options.model_fields}
+    fields = dict(component.model_fields)
+    return {fields.pop("type").default: steps, **fields, **Options.model_fields}
+
+
+def prescriptions() -> dict[str, type[Prescription]]:
+    """Return the installed prescriptions by type."""
+    entries = registry().components["prescription"]
+    return {t: e.component for t, e in entries.items() if issubclass(e.component, Prescription)}
 
 
 def prescribed_in(data: Mapping[str, Any]) -> str:
@@ -242,23 +240,20 @@ def prescribed_in(data: Mapping[str, Any]) -> str:
     keys = [name for name in types if name in data]
     if len(keys) == 1:
         return keys[0]
-    if keys:
-        reason = f"prescribes {' and '.join(keys)}"
-    else:
-        problems = []
-        for key in filterfalse(OPTIONS.__contains__, data):
-            try:
-                registry().find("prescription", key)
-            except ConfigError:
-                message = f"is not a field here; {nearest(key, [*types, *OPTIONS])}"
-                problems.append(Problem(key, message))
-        if problems:
-            raise ConfigError(problems)
-        reason = "prescribes nothing"
     remedy = f"give exactly one of {', '.join(types)}"
     if keys:
         # One that an override adds stands last.
         last = [name for name in data if name in keys][-1]
         value = data[last] if isinstance(data[last], (str, float, int)) else "…"
-        remedy += f'; to set another one, replace the table: --set loading="{{{last} = {value!r}}}"'
-    raise ConfigError(f"{reason}; {remedy}")
+        raise ConfigError(
+            f"prescribes {' and '.join(keys)}; {remedy}; to set another one, replace the table: "
+            f'--set loading="{{{last} = {value!r}}}"'
+        )
+    problems = []
+    for key in filterfalse(OPTIONS.__contains__, data):
+        try:
+            registry().find("prescription", key)
+        except ConfigError:
+            message = f"is not a field here; {nearest(key, [*types, *OPTIONS])}"
+            problems.append(Problem(key, message))
+    raise ConfigError(problems or f"prescribes nothing; {remedy}")

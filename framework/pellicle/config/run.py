@@ -100,17 +100,15 @@ class Run(FromFile):
         with grid_of_run(info.data.get("grid")):
             return make(value)
 
-    @field_validator("loading", mode="wrap")
+    @field_validator("loading", mode="before")
     @classmethod
-    def _pulls_by_an_interaction(
-        cls, value: object, make: ValidatorFunctionWrapHandler, info: ValidationInfo
-    ) -> Any:
+    def _pulls_by_an_interaction(cls, value: object, info: ValidationInfo) -> object:
         if info.data.get("interaction", "not valid") is None:
             if isinstance(value, Loading):
                 value.refuse_pulls()
             elif isinstance(value, Mapping):
-                value = fields_from(value, interaction=False)
-        return make(value)
+                return fields_from(value, interaction=False)
+        return value
 
     @model_validator(mode="after")
     def _prescription_has_a_period(self) -> Self:

@@ -14,9 +14,9 @@ from pellicle.errors import ConfigError, PluginError
 from pellicle.plugins import Registered, registry
 from pellicle.variables import words_of_name
 
-from .legs import KINDS, fields_of
+from .legs import KINDS, with_quantity
 from .load_steps import LoadSteps
-from .loading import Loading, keys_of, prescribed_in
+from .loading import Loading, keys_of, prescribed_in, prescriptions
 
 
 def field_words(name: str, field: FieldInfo | None) -> str:
@@ -87,14 +87,14 @@ def fields_of_table(table: Mapping[str, Any], field: FieldInfo | None) -> Mappin
     """
     if steps := _load_steps(field):
         kind = next((kind for kind in KINDS if kind.key in table), None)
-        return fields_of(kind, steps.quantity.unit) if kind else {}
+        return with_quantity(kind, steps.quantity).model_fields if kind else {}
     model: type[BaseModel] | None = model_in(field.annotation) if field else None
     if "type" in table:
         entry = registered(model, table["type"])
         model = entry.component if entry else None
     elif model is Loading:
         with suppress(ConfigError, PluginError):
-            return keys_of(prescribed_in(table))
+            return keys_of(prescriptions()[prescribed_in(table)])
     return model.model_fields if model else {}
 
 

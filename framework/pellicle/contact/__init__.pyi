@@ -11,6 +11,7 @@ from .initial_guess import dot as dot
 from .initial_guess import first_guess as first_guess
 from .initial_guess import with_force as with_force
 from .law import GapLaw as GapLaw
+from .law import Law as Law
 from .problem import Depth as Depth
 from .problem import Force as Force
 from .problem import Problem as Problem
@@ -20,6 +21,5 @@ from .solution import Progress as Progress
 from .solution import Solution as Solution
 from .solution import State as State
 from .solution import Stop as Stop
-from .start import Start as Start
 from .stiffness import Stiffness as Stiffness
 from .stiffness import measure_stiffness as measure_stiffness

@@ -27,7 +27,7 @@ class Status(Enum):
     """
 
     phrase: str
-    """What it limits, to follow "in 2 of 3 steps"; empty unless it is warned of."""
+    """What a caveat limits, to follow "in 2 of 3 steps"; empty where the step did not converge."""
 
     def __new__(cls, template: str, phrase: str = "") -> Self:
         """Return a member with its template and phrase."""
@@ -87,11 +87,13 @@ class Status(Enum):
     NEAREST_AREA = (
         "converged; the contact area misses the prescribed one by {measure:.1e}: it jumps from "
         "{below:unit} to {above:unit}, and no load attains a nearer number of whole cells; use "
-        "more points"
+        "more points",
+        "the contact jumps across the prescribed value",
     )
     NEAREST = (
         "converged; the {quantity} misses the prescribed one by {measure:.1e}: it jumps from "
-        "{below:unit} to {above:unit}"
+        "{below:unit} to {above:unit}",
+        "the contact jumps across the prescribed value",
     )
     COARSE = (
         "converged, but the cells are too coarse for this contact, which covers {cells:count} of "
@@ -118,7 +120,8 @@ class Status(Enum):
     )
     JUMPED = (
         "converged; a part of the contact jumped after the last step{loss:variant}: in between it "
-        "is not in equilibrium; smaller steps show where it jumps"
+        "is not in equilibrium; smaller steps show where it jumps",
+        "a part of the contact jumped",
     )
     CONVERGED = "converged"
 
@@ -130,9 +133,13 @@ class Status(Enum):
     @property
     def verdict(self) -> str:
         """The status in one or two words, for tables."""
-        if self.converged:
-            return "converged"
-        return {Status.NOT_RUN: "not run", Status.FAILED: "failed"}.get(self, "NOT CONVERGED")
+        usual = "converged" if self.converged else "NOT CONVERGED"
+        return {
+            Status.NOT_RUN: "not run",
+            Status.FAILED: "failed",
+            Status.COARSE: "too coarse",
+            Status.COARSE_ZONE: "too coarse",
+        }.get(self, usual)
 
 
 _GRAVEST_FIRST: Final = tuple(Status)
@@ -196,6 +203,12 @@ def sentence_of(caveats: Sequence[Caveat]) -> str:
     said = ("converged, but ", "converged; ")
     rest = [other.removeprefix(said[0]).removeprefix(said[1]) for other in others]
     return _AND.join([first, *rest])
+
+
+def verdict_of(caveats: Iterable[Caveat]) -> str:
+    """Return how a step with these caveats ended in one or two words, for tables."""
+    verdicts = (caveat.status.verdict for caveat in caveats)
+    return next((v for v in verdicts if v != Status.CONVERGED.verdict), Status.CONVERGED.verdict)
 
 
 def to_text(caveats: Iterable[Caveat]) -> str:

@@ -208,8 +208,7 @@ class Equilibrium:
 
 def equilibrium_of(problem: Problem, solution: Solution) -> Equilibrium:
     """Return the equilibrium of a solver's solution; its gap is computed on first access."""
-    state = solution.state
-    return Equilibrium(problem, solution.pressure, state if isinstance(state, State) else None)
+    return Equilibrium(problem, solution.pressure, solution.state if problem.law else None)
 
 
 def measure(problem: Problem, pressure: Array) -> Equilibrium:

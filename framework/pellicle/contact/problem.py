@@ -189,36 +189,35 @@ class Problem:
         )
 
 
-def height_scale(profile: Array, contact: Mask | Cells, depth: float, wave: float = 0.0) -> float:
+def height_scale(
+    profile: Array, contact: Mask | Cells, depth: float, wave: float = 0.0, rounding: float = 0.0
+) -> float:
     """Return the length [m] to which gaps are compared: the indenter's height range in contact.
 
-    If the indenter is flat over the contact (a punch, a single cell), the length is the depth or,
-    if greater, ``wave`` [m], since both range and depth may be its rounding errors. ``contact`` is
-    a mask or has flat indices.
+    If the indenter is flat over the contact (a punch, a single cell), the length is the ``depth``
+    or, if greater, ``wave`` [m], since both range and depth may be rounding errors of that. If
+    this is no more than ``rounding`` [m], it is the height range of the indenter. ``contact`` is a
+    mask or has flat indices.
     """
     heights = profile.ravel()[contact.ravel()]
     in_contact = float(np.ptp(heights)) if heights.size else 0.0
     if in_contact > max(_FLAT * abs(depth), _ROUNDING * wave):
         return in_contact
-    indenter = profile[np.isfinite(profile)]
-    return max(abs(depth), wave) or float(np.ptp(indenter)) or 1.0
+    displaced = max(abs(depth), wave)
+    # A NaN is returned, so that the residuals show it.
+    if not displaced <= rounding:
+        return displaced
+    return float(np.ptp(profile[np.isfinite(profile)])) or 1.0
 
 
 def adhesive_scale(problem: Problem, contact: Mask, displacement: Array) -> float:
     """Return the length [m] to which gaps are compared where a law acts.
 
-    It is the height range in contact or, if the indenter is flat there, the greatest
-    ``displacement`` [m] by the pressure: a surface that is pulled may be far from flat at a depth
-    near 0. Where wall pressure and attraction cancel, as on a single cell that just touches, the
-    displacement is mere rounding; the length is then the height range of the indenter.
+    It is `height_scale` with the greatest ``displacement`` [m] by the pressure as depth: a surface
+    that is pulled may be far from flat at a depth near 0. Where wall pressure and attraction
+    cancel, as on a single cell that just touches, the displacement is mere rounding.
     """
-    heights = problem.heights[contact]
-    in_contact = float(np.ptp(heights)) if heights.size else 0.0
-    greatest = float(np.abs(displacement).max())
-    if in_contact > _FLAT * greatest:
-        return in_contact
     assert problem.law
-    if greatest > _ROUNDING * problem.law.strength() * problem.operator.unit:
-        return greatest
-    indenter = problem.profile[np.isfinite(problem.profile)]
-    return float(np.ptp(indenter)) or 1.0
+    rounding = _ROUNDING * problem.law.strength() * problem.operator.unit
+    greatest = float(np.abs(displacement).max())
+    return height_scale(problem.heights, contact, greatest, rounding=rounding)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final, Protocol
@@ -16,7 +17,7 @@ from pellicle.surface.outside import PlaneOperator
 from .time_step import TimeStep
 
 KEPT: Final = 4
-"""Number of stiffnesses γ whose operators are kept."""
+"""Number of stiffnesses γ for which `skin_operators` are kept."""
 # Equal steps whose times differ by rounding share their operators.
 _DIGITS: Final = 12
 
@@ -53,31 +54,24 @@ class CarriedShare:
         return mean_compliance(self.whole) / solid if 0 < solid < math.inf else math.inf
 
 
-class SkinOperators:
-    """The operators of a skin on a solid that relaxes, for each stiffness γ of the solid."""
+def skin_operators(
+    kernel: SkinKernel, grid: Grid
+) -> tuple[Callable[[TimeStep], PlaneOperator], Callable[[TimeStep], PlaneOperator]]:
+    """Return the operators of a step from pressure to displacement, and to what the solid carries.
 
-    def __init__(self, kernel: SkinKernel, grid: Grid) -> None:
-        solid = kernel.without_skin()
+    The first is in m/Pa, the second without unit. Each is kept for `KEPT` stiffnesses γ.
+    """
+    solid = kernel.without_skin()
 
+    def kept(make: Callable[[float], HasCompliance]) -> Callable[[TimeStep], PlaneOperator]:
         @lru_cache(maxsize=KEPT)
-        def whole(share: float) -> PlaneOperator:
+        def operator(share: float) -> PlaneOperator:
             with errors_attributed_to(kernel):
-                return PlaneOperator(kernel.scaled(share), grid)
+                return PlaneOperator(make(share), grid)
 
-        @lru_cache(maxsize=KEPT)
-        def carried(share: float) -> PlaneOperator:
-            with errors_attributed_to(kernel):
-                return PlaneOperator(CarriedShare(kernel.scaled(share), solid), grid)
+        return lambda step: operator(rounded_stiffness(step))
 
-        self._whole, self._carried = whole, carried
-
-    def whole(self, step: TimeStep) -> PlaneOperator:
-        """Return the operator from pressure to displacement [m/Pa]."""
-        return self._whole(rounded_stiffness(step))
-
-    def carried(self, step: TimeStep) -> PlaneOperator:
-        """Return the operator from pressure to what the solid carries, without unit."""
-        return self._carried(rounded_stiffness(step))
+    return kept(kernel.scaled), kept(lambda share: CarriedShare(kernel.scaled(share), solid))
 
 
 def rounded_stiffness(step: TimeStep) -> float:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import NamedTuple
+from typing import NamedTuple, Self
+
+import numpy as np
 
 from pellicle.arrays import Array, Mask
 
@@ -18,6 +20,14 @@ class State(NamedTuple):
     """Wall pressure w ≥ 0 [Pa]; equals `pressure` if no traction acts across the gap."""
     depth: float
     """Depth δ of the indenter [m]."""
+
+    @classmethod
+    def of_pressure(cls, pressure: Array) -> Self:
+        """Return the state of a ``pressure`` ≥ 0 [Pa] where no traction acts across the gap.
+
+        The depth follows from the pressure, so that a solver need not compute it.
+        """
+        return cls(pressure, pressure, np.nan)
 
     @property
     def contact(self) -> Mask:
@@ -48,21 +58,18 @@ class Stop(Enum):
 class Solution:
     """The solution of one load step."""
 
-    state: State | Array
-    """The state; the pressure ≥ 0 [Pa] suffices if no traction acts across the gap."""
+    state: State
     iterations: int
     """Steps of the solver's outermost loop."""
     stop: Stop = Stop.DONE
     """Why the solver stopped."""
     jumped: bool = False
     """Whether all contact was gained or lost since the start; only with a law."""
-    extrapolated: bool = False
-    """Whether the solver began from the extrapolation of its start; only with a law."""
 
     @property
     def pressure(self) -> Array:
         """The pressure [Pa], of the grid's shape."""
-        return self.state.pressure if isinstance(self.state, State) else self.state
+        return self.state.pressure
 
 
 class Progress(NamedTuple):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final, NamedTuple, Self
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -30,33 +30,16 @@ class PathPoint(NamedTuple):
     """`Equilibrium.energy` [J]; NaN if it is not known."""
 
 
-class Start(State):
-    """The state at the end of the last step, with the one that the path leads to.
-
-    A solver that starts from `ahead` must return the same solution as from the state itself.
-    """
-
-    ahead: State | None = None
-    """The last two steps extrapolated to the control of the problem."""
-
-    @classmethod
-    def of(cls, state: State, ahead: State) -> Self:
-        """Return a state with its extrapolation."""
-        start = cls(*state)
-        start.ahead = ahead
-        return start
-
-
 def start_of(problem: Problem, state: State | None, path: Sequence[PathPoint]) -> State | None:
-    """Return the start of a load step: its last state, with its extrapolation if there is one.
+    """Return the start of a load step: the last two extrapolated to its control, or the last state.
 
     ``path`` has the last two load steps, the earlier one first; fewer if there are no more.
-    Nothing is extrapolated across a reversal of the path or a jump, to more than twice the last
-    step, and in a solid that relaxes, whose next state also depends on what earlier steps have left
-    behind. Neither is it with a law that acts before there is contact: its contacts come and go
-    within a step, and at which position of the lattice may depend on the start.
+    Nothing is extrapolated across a reversal of the path, to more than twice the last step, and in
+    a solid that relaxes, whose next state also depends on what earlier steps have left behind.
+    Neither is it with a law, where there may be several equilibria: the descent from the last state
+    ends in the one that the path leads to.
     """
-    if state is None or len(path) < 2 or problem.left is not None:
+    if state is None or len(path) < 2 or problem.left is not None or problem.law:
         return state
     before, last = path
     reached = [_control(problem, point.state) for point in (before, last)]
@@ -66,11 +49,8 @@ def start_of(problem: Problem, state: State | None, path: Sequence[PathPoint]) -
     if not 0 < ratio <= _FARTHEST or not touches:
         return state
     depth = last.state.depth + ratio * (last.state.depth - before.state.depth)
-    if problem.law:
-        ahead = _sticking_ahead(problem, before.state, last.state, ratio)
-        return state if ahead is None else Start.of(state, State(*ahead, depth))
     pressure = _pressure_ahead(problem, before, last, ratio)
-    return Start.of(state, State(pressure, pressure, depth))
+    return State(pressure, pressure, depth)
 
 
 def _control(problem: Problem, state: State) -> float:
@@ -105,39 +85,3 @@ def _pressure_ahead(problem: Problem, before: PathPoint, last: PathPoint, ratio:
     joins = np.where(beside, linear, two + ratio * (two - one)) < 0
     np.put(pressure, coming[joins], _JOINING * float(pressure.max()))
     return pressure
-
-
-def _sticking_ahead(
-    problem: Problem, before: State, last: State, ratio: float
-) -> tuple[Array, Array] | None:
-    """Return the extrapolated traction and wall pressure [Pa] of a contact that sticks.
-
-    None if a patch of the contact or its zone comes, goes, splits or merges, which is for the
-    descent from the last state to find.
-    """
-    # The import takes long, and only contacts that stick need it.
-    from .front import Traction, same_patches, shifted
-
-    def traction(state: State) -> Traction:
-        contact = state.contact
-        across = np.where(contact, -strength, state.pressure - state.wall)
-        return Traction(contact, np.where(contact, state.pressure - across, 0.0), across)
-
-    law, boundary = problem.law, problem.grid.boundary
-    assert law
-    if not law.needs_contact:
-        return None
-    strength = law.strength()
-    one, two = traction(before), traction(last)
-    if not same_patches(one.across != 0, two.across != 0, boundary):
-        return None
-    ahead = shifted(problem.grid, one, two, ratio)
-    contact = ahead.contact & np.isfinite(problem.profile)
-    across = np.where(contact, -strength, np.clip(ahead.across, -strength, 0.0))
-    if not same_patches(two.contact, contact, boundary):
-        return None
-    if not same_patches(two.across != 0, across != 0, boundary):
-        return None
-    least = _JOINING * float(last.wall.max())
-    wall = np.where(contact, np.maximum(ahead.wall, least), 0.0)
-    return wall + across, wall

@@ -107,25 +107,17 @@ class Memory:
         return Memory(strain, branches)
 
 
-def left_behind(memory: Memory, step: TimeStep) -> Array:
-    """Return the displacement [m] at the end of a step without pressure, of a solid without skin.
-
-    The displacement is ``left_behind + A p``, with A the operator of the instantaneous response
-    over γ.
-    """
-    left: Array = memory.history(step) / -step.stiffness
-    return left
-
-
-def left_behind_under_skin(
-    memory: Memory, step: TimeStep, displacement: Callable[[Array], Array]
+def left_behind(
+    memory: Memory, step: TimeStep, displacement: Callable[[Array], Array] | None = None
 ) -> Array:
-    """Return the displacement [m] at the end of a step without pressure, of a solid under a skin.
+    """Return the displacement [m] at the end of a step without pressure; A p adds to it.
 
-    ``displacement`` is the operator A = 1/(k_skin + γ k₀) of the step [m/Pa], applied once. The
-    displacement is ``left_behind_under_skin + A p``.
+    Without a skin A is the operator of the instantaneous response over γ. Under a skin
+    ``displacement`` is A = 1/(k_skin + γ k₀) of the step [m/Pa], applied once.
     """
-    return -displacement(memory.history(step))
+    history = memory.history(step)
+    left: Array = -displacement(history) if displacement else history / -step.stiffness
+    return left
 
 
 def strain_under_skin(

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from pellicle.analysis.steepness import steepest
 from pellicle.grid import Grid
 from pellicle.units import DIGITS, readable
 
-from .path import path_variables
+from .path import has_interaction, path_variables
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,15 +25,14 @@ STEEP = "slopes in contact are far beyond the theory"
 PULL_OFF = "the pull-off force is that of a contact of few cells"
 
 
-def beyond_theory(dataset: xr.Dataset, configuration: Mapping[str, Any]) -> dict[str, str]:
+def beyond_theory(dataset: xr.Dataset, grid: Grid) -> dict[str, str]:
     """Return the limits that the largest contact of a run, or that at pull-off, exceeds by far.
 
     The keys are `DEEP`, `STEEP` and `PULL_OFF`, the values messages with the step and its numbers.
     Slopes under an interaction are left out: they have a status. So is pull-off by a range that is
     not that of the cells: no error of its force is known.
     """
-    grid, messages = Grid(**configuration["grid"]), {}
-    summary = path_variables(dataset)
+    messages, summary = {}, path_variables(dataset)
     cells = summary.get("pull_off_radius", math.nan) / math.sqrt(grid.cell_area)
     if "force_error" in dataset and 0 < cells < _CELLS and min(grid.shape) > 1:
         error = summary["pull_off_accuracy"] / -summary["pull_off"]
@@ -58,7 +56,7 @@ def beyond_theory(dataset: xr.Dataset, configuration: Mapping[str, Any]) -> dict
         )
     slope = steepest(displacement, contact, grid)
     # As it is told: an indenter of that very slope is not beyond it by rounding.
-    if round(slope, 1) > _STEEPEST and not configuration.get("interaction"):
+    if round(slope, 1) > _STEEPEST and not has_interaction(dataset):
         messages[STEEP] = (
             f"step {step}: slopes in contact reach {slope:.1f}, and the theory is for slopes up to "
             "0.3: force and area are those of the equations, not of an experiment; press in less "

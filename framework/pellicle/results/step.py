@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import numpy as np
 import xarray as xr
 
 from pellicle.analysis import ellipse, patches, perimeter
-from pellicle.arrays import Array
+from pellicle.contact.caveats import sentence_of, status_of, to_text
 from pellicle.contact.equilibrium import Equilibrium
-from pellicle.contact.solution import State
-from pellicle.contact.start import PathPoint
+from pellicle.contact.finished_step import FinishedStep
+from pellicle.contact.load_step import LoadStep
 from pellicle.grid import Grid
-from pellicle.variables import VARIABLES, Variable
+from pellicle.variables import CAVEATS, VARIABLES, Variable
 
 from . import storage
 
@@ -21,30 +21,45 @@ from . import storage
 def step_dataset(
     grid: Grid,
     number: int,
-    equilibrium: Equilibrium,
-    scalars: Mapping[str, object],
+    step: LoadStep,
     variables: Iterable[Variable] = (),
+    seconds: float = 0.0,
 ) -> xr.Dataset:
     """Return load step ``number``, counted from 1, with dimensions (step: 1, x: nx, y: ny).
 
-    ``scalars`` are further values by the name of their variable; ``variables`` describes those that
-    are not in `VARIABLES`.
+    ``variables`` describes the measures of the step that are not in `VARIABLES`; it took
+    ``seconds`` to solve.
     """
+    equilibrium, measures = step.equilibrium, dict(step.measures)
     fields = {
         "pressure": equilibrium.pressure,
         "displacement": equilibrium.displacement,
         "gap": equilibrium.gap,
         "contact": equilibrium.contact,
     }
-    values = {**_numbers(grid, equilibrium), **scalars}
+    of_law: dict[str, object] = {}
     if equilibrium.problem.law:
         fields["wall_pressure"] = equilibrium.wall
-        values |= {
+        of_law = {
             "zone_area": np.count_nonzero(equilibrium.zone) * grid.cell_area,
             "zone_width": equilibrium.zone_width,
-            "energy": equilibrium.energy,
+            # A measure if it does not follow from the surface.
+            "energy": measures.pop("energy", equilibrium.energy),
             "residual_traction": equilibrium.residual_traction,
         }
+    status = status_of(step.caveats)
+    values = {
+        **_numbers(grid, equilibrium),
+        **measures,
+        "iterations": step.effort.iterations,
+        "operator_applications": step.effort.applications,
+        "converged": status.converged,
+        "status_code": status.name,
+        "status": sentence_of(step.caveats),
+        CAVEATS: to_text(step.caveats),
+        "wall_time": seconds,
+        **of_law,
+    }
     described = {**VARIABLES, **{variable.name: variable for variable in variables}}
     x, y = grid.coordinates()
     coordinates = {
@@ -77,50 +92,11 @@ class Steps:
         self._number = number
         self._fields: dict[str, xr.Variable] = {}
         self._scalars: list[xr.Dataset] = []
-        self.largest_area = 0.0
-        """Largest contact area of the finished steps [m²]."""
+        self.path: list[FinishedStep] = []
+        """What the finished steps leave to those after them."""
 
     def __len__(self) -> int:
         return len(self._scalars)
-
-    @property
-    def state(self) -> State | None:
-        """The state at the end of the last step, or None before the first step."""
-        return self._state(len(self) - 1) if self._scalars else None
-
-    @property
-    def path(self) -> tuple[PathPoint, ...]:
-        """The last two steps, the earlier one first.
-
-        Only the last one if the path jumped there, and none that did not converge or lies before
-        such a step.
-        """
-        points: list[PathPoint] = []
-        for index in range(max(0, len(self) - 2), len(self)):
-            scalars = self._scalars[index]
-            if not scalars["converged"].item():
-                points.clear()
-                continue
-            if "jumped" in scalars and scalars["jumped"].item():
-                points.clear()
-            energy = scalars["energy"].item() if "energy" in scalars else np.nan
-            gap = self._fields["gap"].values[index]
-            points.append(PathPoint(self._state(index), gap, energy))
-        return tuple(points)
-
-    def field(self, name: str) -> Array:
-        """Return a field at the end of each step, in order; (step, nx, ny), a view."""
-        if not self._scalars:
-            return np.empty((0, 0, 0))
-        values: Array = self._fields[name].values[: len(self)]
-        return values
-
-    def _state(self, index: int) -> State:
-        pressure = self._fields["pressure"].values[index]
-        wall = pressure
-        if "wall_pressure" in self._fields:
-            wall = self._fields["wall_pressure"].values[index]
-        return State(pressure, wall, self._scalars[index]["depth"].item())
 
     def append(self, step: xr.Dataset) -> xr.Dataset:
         """Copy a step of `step_dataset` into the arrays, and return it as views of them."""
@@ -135,7 +111,8 @@ class Steps:
                 fields[str(name)] = self._fields[str(name)].isel(step=index)
                 fields[str(name)].values[:] = variable.values
         self._scalars.append(step.drop_vars(fields))
-        self.largest_area = max(self.largest_area, step["contact_area"].item())
+        numbers = {str(n): value.item() for n, value in self._scalars[-1].data_vars.items()}
+        self.path.append(FinishedStep.of({n: f.values[0] for n, f in fields.items()}, numbers))
         return step.assign(fields)
 
     def joined(self) -> xr.Dataset:

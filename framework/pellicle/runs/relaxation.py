@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -11,12 +12,11 @@ from pellicle.arrays import Array
 from pellicle.components import Setting
 from pellicle.components.calls import branches_of
 from pellicle.config.run import Run
-from pellicle.contact.skin_operators import SkinOperators
+from pellicle.contact.skin_operators import skin_operators
 from pellicle.contact.time_step import (
     Memory,
     TimeStep,
     left_behind,
-    left_behind_under_skin,
     strain_under_skin,
 )
 
@@ -37,7 +37,7 @@ class Relaxation:
         self._integral = Memory.at_rest(branches, ())
         self._cell_area = run.grid.cell_area
         has_skin = kernel.without_skin() != kernel
-        self._skin = SkinOperators(kernel, run.grid) if has_skin else None
+        self._skin = skin_operators(kernel, run.grid) if has_skin else None
         self._done = 0
 
     @property
@@ -45,7 +45,9 @@ class Relaxation:
         """Operator applications of the last `setting` to bring the memory forward by one step."""
         return 2 if self._skin and self._done else 0
 
-    def setting(self, setting: Setting, pressures: Array, displacements: Array) -> Setting:
+    def setting(
+        self, setting: Setting, pressures: Sequence[Array], displacements: Sequence[Array]
+    ) -> Setting:
         """Return the setting of the step after those with these pressures and displacements.
 
         Its operator is that of a solid γ times as stiff, its surface is displaced by what the steps
@@ -53,18 +55,17 @@ class Relaxation:
         """
         for index in range(self._done, len(displacements)):
             self._advance(pressures[index], displacements[index])
-        step = self._steps[self._done]
-        if not self._skin:
-            operator = setting.operator.scaled(1 / step.stiffness)
-            left = left_behind(self._memory, step) if self._done else None
-            return replace(setting, operator=operator, left=left)
-        if not self._done and step.is_jump:
+        step, displacement = self._steps[self._done], None
+        if self._skin and not self._done and step.is_jump:
             return setting
-        whole, left = self._skin.whole(step), None
-        if self._done:
+        if self._skin:
+            whole = self._skin[0](step)
+            operator = whole.operator
             displacement = partial(whole, integral=float(self._integral.history(step)))
-            left = left_behind_under_skin(self._memory, step, displacement)
-        return replace(setting, operator=whole.operator, left=left)
+        else:
+            operator = setting.operator.scaled(1 / step.stiffness)
+        left = left_behind(self._memory, step, displacement) if self._done else None
+        return replace(setting, operator=operator, left=left)
 
     def _advance(self, pressure: Array, displacement: Array) -> None:
         """Bring the memory forward to the end of the next step."""
@@ -73,9 +74,8 @@ class Relaxation:
         if self._skin:
             force = np.asarray(pressure.sum() * self._cell_area)
             remaining = float(force - self._integral.history(step))
-            strain = strain_under_skin(
-                self._memory, step, pressure, partial(self._skin.carried(step), integral=remaining)
-            )
+            carried = partial(self._skin[1](step), integral=remaining)
+            strain = strain_under_skin(self._memory, step, pressure, carried)
             self._integral = self._integral.after(step, np.asarray(remaining / step.stiffness))
         self._memory = self._memory.after(step, strain)
         self._done += 1

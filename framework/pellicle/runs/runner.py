@@ -82,8 +82,8 @@ def run(
     Warns
     -----
     ConvergenceWarning
-        A step of the result is marked as not converged, or as too coarse, or the largest contact
-        is far outside the theory.
+        A step of the result did not converge or has a caveat, or the largest contact is far outside
+        the theory.
     """
     threads = checked_threads(threads)
     run = Run.of(configuration)

@@ -9,41 +9,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Final, Literal, NamedTuple
+from typing import Final, Literal
 
 import numpy as np
 
 from pellicle.components import Monitor, Solver
+from pellicle.components.calls import solution_of
 from pellicle.components.prescription import Search, Setting
-from pellicle.contact.equilibrium import Equilibrium
+from pellicle.contact.equilibrium import Equilibrium, equilibrium_of
+from pellicle.contact.load_step import Effort, LoadStep, SearchEnd
 from pellicle.contact.problem import Depth
-from pellicle.contact.solution import Solution, Stop
-
-from .following import followed
+from pellicle.contact.solution import Solution
 
 # Number of trials to bracket the goal, after which it counts as out of reach.
 _MOST_TRIALS: Final = 40
 
 
-class Reached(NamedTuple):
-    """A solved load step; after a search, the trial nearest to the goal."""
-
-    equilibrium: Equilibrium
-    iterations: int
-    """Iterations of the solver, summed over all trials."""
-    stop: Stop
-    search: Search | None = None
-    missed: float = 0.0
-    """|value − goal| / |goal|."""
-    how: Literal["met", "nearest", "not found"] = "met"
-    """"nearest" if the quantity jumps across the goal, "not found" if no control passes it."""
-    between: tuple[float, float] = (-math.inf, math.inf)
-    """The values next below and above the goal, or forces carried and not carried by a pull."""
-    jumped: bool = False
-    """Whether all contact was gained or lost since the start."""
-
-
-def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) -> Reached:
+def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) -> LoadStep:
     """Return the load step at which the quantity of ``search`` has its goal.
 
     A bracket grows from the first trial; Brent's method (1973) then finds the root, in log F if the
@@ -65,16 +47,16 @@ def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) ->
     if jumps := below < 0 < above:
         brentq(trials, low, high, xtol=search.width, rtol=1e-15)
     how: Literal["met", "nearest", "not found"] = "nearest" if jumps else "not found"
-    return Reached(
-        trials.nearest,
-        trials.iterations,
-        trials.solution.stop,
-        search,
+    end = SearchEnd(
+        search.quantity,
+        search.unit,
         trials.missed,
         "met" if 0.0 in trials.excess.values() else how,
-        (trials.below, trials.above),
-        trials.solution.jumped,
+        trials.below,
+        trials.above,
     )
+    effort = Effort(trials.iterations, trials.solution.stop)
+    return LoadStep(trials.nearest, effort, trials.solution.jumped, end)
 
 
 def _stride(excess: float, trials: int) -> float:
@@ -139,7 +121,8 @@ class _Trials:
     def _try(self, control: float) -> float:
         goal = self.search.goal
         problem = self.setting.problem(self.search.control(control))
-        solution, equilibrium = followed(self.setting, self.solver, problem, self.monitor)
+        solution = solution_of(self.solver, problem, self.setting.start(problem), self.monitor)
+        equilibrium = equilibrium_of(problem, solution)
         self.iterations += solution.iterations
         value = self.search.measure(equilibrium)
         missed = abs(value - goal) / (abs(goal) or 1.0)

@@ -83,7 +83,7 @@ def frame(
 
 @dataclass(frozen=True)
 class Maps:
-    """Maps of the same fields in several frames, zoomed together."""
+    """Maps of the same fields in several frames, zoomed together, each in colours of its range."""
 
     kind: ClassVar[str] = "maps"
     caption: str
@@ -93,8 +93,6 @@ class Maps:
     frames: Sequence[Frame]
     begin: int = 0
     """Index of the frame that is shown first."""
-    shared: bool = True
-    """Whether all frames share one range of colours."""
 
     @property
     def remark(self) -> str:
@@ -130,14 +128,11 @@ class Maps:
                     **({"centred": True} if field.centred else {}),
                     # The 256 colours of the map, three bytes for each.
                     "colours": base64.b64encode(colours.tobytes()).decode(),
-                    "low": min(low for low, _ in ends) * scale,
-                    "high": max(high for _, high in ends) * scale,
                 }
             )
         return {
             "unit": length_unit,
             "per_metre": length,
-            "shared": self.shared,
             "fields": fields,
             "frames": [
                 {

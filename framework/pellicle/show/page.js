@@ -121,7 +121,7 @@ function makeMaps(figure, data) {
     paint();
   }
 
-  // The range of the colours: of all frames, of this one, or of the pixels in view.
+  // The range of the colours: of this frame, or of the pixels in view.
   function range(number) {
     const [low, high] = rangeOfValues(number);
     const most = Math.max(-low, high);
@@ -129,7 +129,7 @@ function makeMaps(figure, data) {
   }
 
   function rangeOfValues(number) {
-    const { low: least, high: most } = (data.shared ? data : frame).fields[number];
+    const { low: least, high: most } = frame.fields[number];
     if (!alone.checked) return [least, most];
     const [nx, ny] = frame.shape;
     const cell = (at, axis) => Math.floor((at + frame.size[axis] / 2) / frame.pixel[axis]);

@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pellicle.arrays import Array
 from pellicle.components.rules import required
-from pellicle.components.rules.comparison import difference, not_pure, not_vectorised
+from pellicle.components.rules.comparison import difference
 from pellicle.components.rules.rule import rules_of as rules_of
 
 Rule = Callable[..., str | None]
@@ -45,20 +44,5 @@ def require(holds: bool | np.bool_, message: str) -> None:
 
 def require_close(actual: ArrayLike, expected: ArrayLike, name: str, **allowed: float) -> None:
     """Raise AssertionError with the largest difference if two arrays differ; see `difference`."""
-    _require_nothing(difference(actual, expected, name, **allowed))
-
-
-def require_vectorised(
-    function: Callable[[Array], Array], argument: Array, name: str, **allowed: float
-) -> None:
-    """Require an array of 24 floats, each of which depends on its own argument only."""
-    _require_nothing(not_vectorised(function, argument, name, **allowed))
-
-
-def require_pure(function: Callable[[Array], Array], argument: Array, name: str) -> None:
-    """Require that a function leaves its argument unchanged and, called again, returns the same."""
-    _require_nothing(not_pure(function, argument, name))
-
-
-def _require_nothing(violation: str) -> None:
+    violation = difference(actual, expected, name, **allowed)
     require(not violation, violation)

@@ -73,6 +73,8 @@ class Quantity:
         SI unit, e.g. ``"Pa"``; ``"1"`` for a pure number.
     above, at_least, below, at_most
         Bounds in that unit; ``above`` and ``below`` exclude the bound.
+    hint
+        What else would help if a value is out of bounds, at the end of the message.
     """
 
     unit: str
@@ -80,6 +82,7 @@ class Quantity:
     at_least: float | None = None
     below: float | None = None
     at_most: float | None = None
+    hint: str = ""
 
     def __call__(self, value: object) -> float:
         """Return ``value`` in SI.
@@ -95,7 +98,7 @@ class Quantity:
             raise ValueError(f"{shown(value)} is not finite; give {self._wanted()}")
         for _, _, holds, bound in self._limits:
             if not holds(number, bound):
-                raise ValueError(f"{shown(value)} is not allowed; give {self._wanted()}")
+                raise ValueError(f"{shown(value)} is not allowed; give {self._wanted()}{self.hint}")
         if number and not 1 / LARGEST < abs(number) < LARGEST:
             raise ValueError(
                 f"{shown(value)} is too large or too near 0 to compute with; check the unit"
@@ -138,9 +141,7 @@ class Quantity:
     def has_known_unit(self) -> bool:
         """Whether values in other units can be converted to its unit."""
         try:
-            return (
-                self.unit == "1" or self.unit in _EXAMPLES or factor_to_si(self.unit, self.unit) > 0
-            )
+            return self.unit in ("1", *_EXAMPLES) or factor_to_si(self.unit, self.unit) > 0
         except ValueError:
             return False
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
+
+import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.components import ForceCurve, HasLayerForceCurve, LayerForceCurve
@@ -13,6 +16,7 @@ from pellicle_fit.parameters import MODULUS, TENSION, THICKNESS, Coordinates, Pa
 from .checked_curve import checked_curve
 from .force_model import ForceModel, ModelForce, TensionModel, described
 from .solid import Solid, layer_table
+from .solid import solid as solid_of
 
 ACCURACY = 1e-4
 """Relative error of the force of the shipped indenters on a layer."""
@@ -102,13 +106,19 @@ class FreeLayerModel(ForceModel):
 
 
 def known_layer(indenter: object, solid: Solid) -> LayerModel | None:
-    """Return the model of a bonded layer; None if the solid is another or has to be simulated."""
-    if not isinstance(indenter, HasLayerForceCurve):
+    """Return the model of a bonded layer; None if the solid is another or has to be simulated.
+
+    A bonded layer is what is elastic and has the compliance of one at its depth and ratio.
+    """
+    kernel, ratio, thickness = solid.kernel, solid.poissons_ratio, solid.kernel.depth_to_base()
+    if ratio is None or ratio < 0 or math.isinf(thickness) or kernel.branches():
         return None
-    fields = solid.kernel.bonded_layer()
-    if fields is None or fields[1] < 0:
+    bonded = solid_of(layer_table(ratio, thickness=thickness)).kernel
+    q = np.geomspace(1e-2, 1e2, 9) / thickness
+    is_bonded = np.allclose(kernel.compliance(q), bonded.compliance(q), rtol=1e-9, atol=0)
+    if not is_bonded or not isinstance(indenter, HasLayerForceCurve):
         return None
-    model = LayerModel(indenter, *fields)
+    model = LayerModel(indenter, thickness, ratio)
     # A punch is too wide for the curve at any depth, or at none.
     return model if model.depth_limit > 0 else None
 

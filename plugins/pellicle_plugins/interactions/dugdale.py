@@ -35,6 +35,7 @@ class Dugdale(Adhesive):
 
     model_config = ConfigDict(title="Dugdale")
 
+    averaged: ClassVar[bool] = True
     _SHAPE: ClassVar[float] = 1.0
 
     type: Literal["dugdale"] = "dugdale"
@@ -74,9 +75,6 @@ class Spread:
     """Gap in the middle of the drop [m]."""
     drop: float
     """Change of the gap over which the traction drops [m]."""
-
-    needs_contact: ClassVar[bool] = False
-    averaged: ClassVar[bool] = True
 
     def energy(self, gap: Array) -> Array:
         """Return γ(g) [J/m²]."""

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import ConfigDict, Field, PrivateAttr
+from pydantic import ConfigDict, Field
 
 from pellicle import Grid
 from pellicle.arrays import Array
@@ -35,6 +37,7 @@ class JKR(Interaction):
     model_config = ConfigDict(title="JKR")
 
     needs_contact: ClassVar[bool] = True
+    averaged: ClassVar[bool] = True
     least_cells: ClassVar[float] = 1.25
 
     type: Literal["jkr"] = "jkr"
@@ -51,8 +54,6 @@ class JKR(Interaction):
         ),
     ] = True
 
-    _cells: float = PrivateAttr(default=_CELLS)
-
     def energy(self, gap: Array) -> Array:
         """Return −w [J/m²] at contact and 0 across any gap."""
         return np.where(gap > 0, 0.0, -self.work_of_adhesion)
@@ -67,21 +68,14 @@ class JKR(Interaction):
 
     def resolved(self, kernel: Kernel, grid: Grid) -> GapLaw:
         """Return linear softening over about two to three cells on this kernel."""
-        width = self._cells * grid.cell_size
+        return self._softening(_CELLS, kernel, grid)
+
+    def wider(self, factor: float) -> Callable[[Kernel, Grid], GapLaw] | None:
+        """Return softening over more cells; None without `estimate_error`."""
+        return partial(self._softening, factor * _CELLS) if self.estimate_error else None
+
+    def _softening(self, cells: float, kernel: Kernel, grid: Grid) -> GapLaw:
+        """Return linear softening over about a number of cells."""
+        width = cells * grid.cell_size
         strength = softening_strength(self.work_of_adhesion, width, kernel)
-        return Joined(work_of_adhesion=self.work_of_adhesion, strength=strength)
-
-    def wider(self, factor: float) -> JKR | None:
-        """Return the interaction with a zone of more cells; None without `estimate_error`."""
-        if not self.estimate_error:
-            return None
-        wider = self.model_copy()
-        wider._cells = factor * self._cells
-        return wider
-
-
-class Joined(Linear):
-    """Linear softening that acts only on cells joined to a contact."""
-
-    needs_contact: ClassVar[bool] = True
-    averaged: ClassVar[bool] = True
+        return Linear(work_of_adhesion=self.work_of_adhesion, strength=strength)

@@ -44,7 +44,3 @@ class Coated(Skin, KernelOf):
         """Return G(q) = 1/(1/G_s + τ₀ q² + B q⁴) [m/Pa], with G_s of the substrate."""
         substrate = self.substrate.compliance(q)
         return substrate / (1 + substrate * self.skin_stiffness(q))
-
-    def bonded_layer(self) -> tuple[float, float] | None:
-        """Return h [m] and ν of a bonded layer under the skin; None if the skin resists bending."""
-        return None if self.bending else super().bonded_layer()

@@ -105,7 +105,3 @@ class ElasticConstants(ElasticModulus):
             moduli = "no modulus" if self.reduced_modulus is None else "two moduli"
             raise ValueError(f"{moduli}; give exactly one of reduced_modulus and youngs_modulus")
         return self
-
-
-class IsotropicSolid(ElasticConstants, Kernel):
-    """A kernel whose solid is given by ν, and by E or E*."""

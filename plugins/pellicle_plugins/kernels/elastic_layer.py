@@ -8,14 +8,15 @@ import numpy as np
 from pydantic import Field
 
 from pellicle.arrays import Array
+from pellicle.components import Kernel
 from pellicle.units import Length
 
-from .elastic_constants import IsotropicSolid
+from .elastic_constants import ElasticConstants
 from .hyperbolic import DEEP, scaled_sinh_rest
 
 
-class ElasticLayer(IsotropicSolid):
-    """A kernel whose solid is a layer of finite thickness on a rigid base."""
+class Layer(ElasticConstants):
+    """One elastic layer."""
 
     thickness: Annotated[Length, Field(description="thickness h of the layer [m]")]
 
@@ -25,6 +26,10 @@ class ElasticLayer(IsotropicSolid):
         A layer that fills a periodic domain cannot flow sideways, whatever its base.
         """
         return self.thickness * self.uniaxial_compliance
+
+
+class ElasticLayer(Layer, Kernel):
+    """A kernel whose solid is a layer of finite thickness on a rigid base."""
 
     def depth_to_base(self) -> float:
         """Return the thickness h [m]."""
@@ -58,10 +63,6 @@ class BondedLayer(ElasticLayer):
         numerator = kappa * scaled_sinh_rest(y) + 2 * (1 - 2 * nu) * y * decay
         denominator = kappa * (1 + decay**2) / 2 + (y**2 / 2 + 5 - 12 * nu + 8 * nu**2) * decay
         return 2 / (self.contact_modulus * q) * (numerator / denominator)
-
-    def bonded_layer(self) -> tuple[float, float]:
-        """Return h [m] and ν."""
-        return self.thickness, self.poissons_ratio
 
 
 class FrictionlessLayer(ElasticLayer):

@@ -9,11 +9,11 @@ from pydantic import ConfigDict, Field
 from pellicle.arrays import Array
 from pellicle.units import Tension
 
-from .elastic_constants import IsotropicSolid
+from .elastic_constants import ElasticConstants
 from .skin import Skin
 
 
-class GurtinMurdoch(Skin, IsotropicSolid):
+class GurtinMurdoch(Skin, ElasticConstants):
     """Elastic half-space whose surface resists stretching too (Gurtin & Murdoch 1975).
 
     The surface has a residual tension τ₀ and a stiffness κ_s = λ_s + 2μ_s against in-plane strain.

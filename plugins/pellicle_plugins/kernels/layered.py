@@ -12,19 +12,13 @@ from pydantic import BeforeValidator, Field
 from pellicle.arrays import Array
 from pellicle.components import Kernel
 from pellicle.errors import ConfigError, shown
-from pellicle.units import Length
 
 from .elastic_constants import ElasticConstants
+from .elastic_layer import Layer
 from .layer_recursion import RIGID, half_space, on_layer
 
 # Wavenumbers treated at once, so that some thirty temporaries stay in the cache.
 _BLOCK: Final = 8192
-
-
-class Layer(ElasticConstants):
-    """One elastic layer."""
-
-    thickness: Annotated[Length, Field(description="thickness h of the layer [m]")]
 
 
 def _substrate(value: object) -> object:
@@ -103,7 +97,7 @@ class Layered(Kernel):
         """Return Σ h/M [m/Pa] of layers on a rigid base, M the P-wave moduli; ∞ on a half-space."""
         if self.substrate != "rigid":
             return math.inf
-        return sum(layer.thickness * layer.uniaxial_compliance for layer in self.layers)
+        return sum(layer.mean_compliance() for layer in self.layers)
 
     def depth_to_base(self) -> float:
         """Return Σ h [m] of layers on a rigid base; ∞ on a half-space."""

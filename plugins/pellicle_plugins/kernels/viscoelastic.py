@@ -152,9 +152,6 @@ class Viscoelastic(KernelOf):
         """Return this kernel: there is no skin on it."""
         return self
 
-    def bonded_layer(self) -> None:
-        """Return None: the layer relaxes."""
-
     @property
     def _instantaneous(self) -> float:
         """The instantaneous stiffness over that of `solid`."""

@@ -161,7 +161,7 @@ class Html(Output):
         of_runs = _share_in_words(len(frames), len(rows), "run")
         caption = f"{which} of {of_runs}, each in colours over its own range."
         mapped = tuple(_mapped(table).values())
-        maps = Maps(caption, "run", mapped, list(frames.values()), shared=False)
+        maps = Maps(caption, "run", mapped, list(frames.values()))
         numbers = [run_table(table, rows, list(frames)), *study_path_tables(table, rows)]
         return [
             Section(
@@ -197,10 +197,7 @@ class Html(Output):
         colours = ", each in colours over its own range" if len(chosen) > 1 else ""
         shown_steps = _share_in_words(len(chosen), steps, "load step")
         caption = f"{names} at prescribed {words}, in {shown_steps}{colours}."
-        maps = Maps(
-            caption, "load step", tuple(mapped.values()), frames, begin=max(begin, 0), shared=False
-        )
-        return maps, chosen
+        return Maps(caption, "load step", tuple(mapped.values()), frames, max(begin, 0)), chosen
 
     def _frames_of_runs(
         self, table: xr.Dataset, rows: list[xr.Dataset], folder: Path
@@ -271,15 +268,10 @@ def _status(result: Result) -> Notice:
     count = "The load step" if done == 1 else f"All {done} load steps"
     bad = f"{len(failed)} of {done} load steps did not converge: do not rely on them."
     sentences.append(bad if failed else f"{count} converged.")
-    if coarse := result.coarse():
-        sentences.append(f"In {len(coarse)} of {done} the cells are too coarse for the contact.")
-    details = [f"Step {step}: {message}" for step, message in (*failed, *coarse)]
-    if steep := result.steep():
-        sentences.append(f"In {len(steep)} of {done} slopes in contact are beyond the theory.")
-        details.append(f"S{first_message(steep)[1:]}")
-    if cramped := result.cramped():
-        sentences.append(f"In {len(cramped)} of {done} the domain is small for this solid.")
-        details.append(f"S{first_message(cramped[::-1])[1:]}")
+    details = [f"Step {step}: {message}" for step, message in failed]
+    for phrase, steps in result.caveats_by_phrase().items():
+        sentences.append(f"In {len(steps)} of {done} {phrase}.")
+        details.append(f"S{first_message(steps)[1:]}")
     for subject, message in result.beyond_theory().items():
         sentences.append(f"{subject[0].upper()}{subject[1:]}.")
         details.append(f"S{message[1:]}")

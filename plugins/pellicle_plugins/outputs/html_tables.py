@@ -11,14 +11,14 @@ import numpy as np
 
 from pellicle import Run
 from pellicle.config.describe import Input, inputs
-from pellicle.contact.caveats import Status
+from pellicle.contact.caveats import from_text, verdict_of
 from pellicle.results.result import Result
 from pellicle.results.shape import means_something
 from pellicle.results.wording import Wording, wording, wording_of
 from pellicle.show.html import Cell, Column, Table
 from pellicle.studies.summary import progress_of, short_files
 from pellicle.units import DIGITS, readable
-from pellicle.variables import VARIABLES, names_of
+from pellicle.variables import CAVEATS, VARIABLES, names_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -125,8 +125,8 @@ def _table_of_steps(data: xr.Dataset, names: list[str], caption: str) -> Table:
             shown = replace(shown, digits=2)
         texts.append([shown.number(value) for value in data[name].values.tolist()])
     rows = [
-        [*cells, _verdict(Status[code].verdict)]
-        for *cells, code in zip(*texts, data["status_code"].values, strict=True)
+        [*cells, _verdict(verdict_of(from_text(caveats)))]
+        for *cells, caveats in zip(*texts, data[CAVEATS].values, strict=True)
     ]
     return Table(caption, [*columns, Column("status", words=True)], rows)
 

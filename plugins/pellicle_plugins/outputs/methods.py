@@ -9,7 +9,6 @@ from pellicle import Run
 from pellicle.components import Prescription
 from pellicle.components.prescription import OPTIONS
 from pellicle.config.describe import Input, inputs
-from pellicle.config.legs import number_of_steps
 from pellicle.plugins import registry
 from pellicle.units import DIGITS, axis_unit, readable
 from pellicle.variables import words_of_name
@@ -50,7 +49,7 @@ def methods(
     changes = f"Varied: {', '.join(words)}. " if words else ""
     is_one = "solver" in known and "solver.type" not in varied
     solver = known["solver"].value if is_one else "several solvers"
-    loading = _loading(configuration["loading"], attributes["prescribed"], known, varied)
+    loading = _loading(configuration["loading"], attributes, known, varied)
     return (
         "Normal contact of a rigid indenter with a linear solid was solved by a boundary element "
         f"method with fast Fourier transforms{on_cells} with {grid['boundary']} boundaries. "
@@ -61,13 +60,18 @@ def methods(
 
 
 def _loading(
-    loading: Mapping[str, Any], name: str, known: Mapping[str, Input], varied: tuple[str, ...]
+    loading: Mapping[str, Any],
+    attributes: Mapping[str, Any],
+    known: Mapping[str, Input],
+    varied: tuple[str, ...],
 ) -> str:
-    """Return a sentence on what the load steps prescribe, the quantity ``name``."""
+    """Return a sentence on what the load steps prescribe."""
+    name = attributes["prescribed"]
     texts = [words_of_name(name)]
     if not any(axis.startswith(f"loading.{name}") for axis in varied):
         prescription = cast(type[Prescription], registry().find("prescription", name))
-        texts[0] += f" {_values_of_steps(loading[name], prescription.unit)}"
+        count = f"{attributes['planned_steps']} load steps"
+        texts[0] += f" {_values_of_steps(loading[name], prescription.unit, count)}"
     for key in loading:
         path = f"loading.{key}"
         if key not in (*OPTIONS, name) and path in known and path not in varied:
@@ -75,9 +79,8 @@ def _loading(
     return f"Prescribed: {', '.join(texts)}. "
 
 
-def _values_of_steps(values: Sequence[Any], unit: str) -> str:
+def _values_of_steps(values: Sequence[Any], unit: str, count: str) -> str:
     """Return the values of load steps as words, such as "from 1 to 5 nN in 12 load steps"."""
-    count = f"{number_of_steps(values)} load steps"
     if any(isinstance(value, Mapping) for value in values):
         return f"in {len(values)} legs of {count} in all"
     if len(values) <= _FEW:

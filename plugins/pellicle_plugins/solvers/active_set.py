@@ -14,14 +14,13 @@ from pellicle.contact import (
     Problem,
     Progress,
     Solution,
-    Start,
     State,
     Stop,
     first_guess,
     with_force,
 )
 
-from .adhesion import AdhesionSolver
+from .adhesion import AdhesionSolver, refusal_of
 from .adhesive_response import with_zone
 from .contact_cg import SIGN_CERTAINTY, STRICT_SIGN_CERTAINTY, InnerSolution, inner_solve
 from .few_cells import MOST_CELLS, solved_on_few_cells
@@ -131,17 +130,14 @@ class ActiveSet(ScaledSolver):
     examples = ({"tolerance": 1e-09},)
 
     def refuses(self, problem: Problem) -> str:
-        """Return "": it solves with a law too."""
-        return ""
+        """Return why it cannot solve with a law; "" for one that attracts, and less the wider."""
+        return refusal_of(problem.law) if problem.law else ""
 
     def solve(self, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
         """Return the solution of a load step; with a law by `AdhesionSolver`."""
         if problem.law:
             adhesion = AdhesionSolver(tolerance=self.tolerance, max_iterations=self.max_iterations)
             return adhesion.solve(problem, start, monitor)
-        # Without a law the solution does not depend on the start.
-        if isinstance(start, Start) and start.ahead:
-            start = start.ahead
         return super().solve(problem, start, monitor)
 
     def begin(self, problem: Problem, start: State | None) -> _Iterate:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Final, NamedTuple, Self
+from typing import Final, NamedTuple
 
 import numpy as np
 import scipy.fft
@@ -14,9 +14,9 @@ from pellicle.analysis import perimeter
 from pellicle.arrays import Array, Mask
 from pellicle.contact import (
     Attraction,
+    Law,
     Problem,
     Progress,
-    Start,
     State,
     Stop,
     adhesive_scale,
@@ -64,57 +64,14 @@ _CHANGES_SHIFTED: Final = 2
 _FLOOR: Final = 0.05
 # Rounds without a smaller residual after which the solve is abandoned.
 _STAGNATION: Final = 60
-# Cells by which the contact may differ from the extrapolated one, over those extrapolated; it may
-# always differ by as many as lie along the front. Beyond, the state jumps.
-_MOST_MISSED: Final = 3.0
-# Rounds after which the residual must have been below this share of that of the extrapolated start.
-# Later it may grow again, where the state between two positions of the edge on the lattice is
-# unstable: the descent from the last state meets the same one.
-_TRIED: Final = 8
-_FALLEN: Final = 0.5
 # Error that an inner solve leaves in the displacement, over the gap that it closes: its changes are
 # of single precision, and errors of 2e-7 were measured.
 _SINGLE: Final = 1e-6
+# Gaps at which a law is asked whether it attracts, and the relative rounding error of tractions.
+_GAPS: Final = 2001
+_ROUNDING: Final = 1e-12
 # Residual of a round that ended before every cell was on its side.
 _UNSETTLED: Final = 1e-3
-
-
-@dataclass(frozen=True)
-class _Extrapolation:
-    """The extrapolated start of the rounds, and the state to which they return if it misses."""
-
-    last: State
-    """The state at the end of the last step."""
-    contact: Mask
-    """The extrapolated contact."""
-    most: float
-    """Number of cells by which the contact may differ from it."""
-    residual: float = np.inf
-    """Residual of the first round."""
-    least: float = np.inf
-    """The least residual so far."""
-    rounds: int = 0
-
-    @classmethod
-    def of(cls, start: Start, problem: Problem) -> Self:
-        """Return it for a start; see `_MOST_MISSED`."""
-        assert start.ahead
-        contact = start.ahead.contact
-        front = perimeter(contact, problem.grid) / max(problem.grid.spacing)
-        moved = float(np.count_nonzero(contact ^ start.contact))
-        return cls(State(*start), contact, max(_MOST_MISSED * moved, front))
-
-    def after(self, contact: Mask, residual: float) -> Self | None:
-        """Return it after one more round; None if the state seems to jump.
-
-        It does if the contact is far from the extrapolated one, or the residual does not fall.
-        """
-        rounds = self.rounds + 1
-        far = np.count_nonzero(contact ^ self.contact) > self.most
-        least = min(residual, self.least)
-        slow = rounds > _TRIED and least > _FALLEN * self.residual
-        first = residual if self.rounds == 0 else self.residual
-        return None if far or slow else replace(self, rounds=rounds, residual=first, least=least)
 
 
 class _Earlier(NamedTuple):
@@ -149,8 +106,6 @@ class _Round:
     progress: Progress = field(default_factory=Progress)
     gain: float = 1.0
     """Factor on the estimated shift of the fronts."""
-    extrapolation: _Extrapolation | None = None
-    """The extrapolated start, if there was one."""
 
     @property
     def contact(self) -> Mask:
@@ -200,6 +155,33 @@ class _Round:
         return adhesive_scale(self.problem, self.contact, self.displacement)
 
 
+def refusal_of(law: Law) -> str:
+    """Return why `AdhesionSolver` cannot solve with a law; "" if it can.
+
+    That the energy falls in each round takes an attraction that is strongest at a closed gap and
+    does not grow with the gap.
+    """
+    gaps = np.linspace(0.0, law.cutoff(), _GAPS)
+    traction, strength = law.traction(gaps), law.strength()
+    highest = int(np.argmax(traction))
+    if traction[highest] > _ROUNDING * abs(strength) or not traction.any():
+        return (
+            f"cannot solve with {law.name}, which does not attract: traction(gap) is "
+            f"{traction[highest]:.3g} Pa at {gaps[highest]:.3g} m; it has to be < 0 at a closed "
+            "gap and ≤ 0 up to the cutoff"
+        )
+    change = np.diff(traction)
+    steepest = int(np.argmin(change))
+    if change[steepest] < -_ROUNDING * strength:
+        return (
+            f"cannot solve with {law.name}: traction(gap) grows from {traction[steepest]:.6g} Pa "
+            f"at {gaps[steepest]:.3g} m to {traction[steepest + 1]:.6g} Pa at "
+            f"{gaps[steepest + 1]:.3g} m; the attraction has to be strongest at a closed gap and "
+            "must not grow with the gap"
+        )
+    return ""
+
+
 class AdhesionSolver(ScaledSolver):
     """Solver of problems with a law, for `ActiveSet`.
 
@@ -220,14 +202,6 @@ class AdhesionSolver(ScaledSolver):
         """Return the round from the last state; without one, from that of a coarser grid."""
         assert problem.law
         preconditioner = Preconditioner(problem.operator)
-        if isinstance(start, Start) and start.ahead:
-            first = self.begin(problem, start.ahead)
-            extrapolation = _Extrapolation.of(start, problem).after(first.contact, first.residual)
-            return (
-                replace(first, extrapolation=extrapolation)
-                if extrapolation
-                else self.begin(problem, State(*start))
-            )
         if start is not None and start.is_loaded:
             traction = start.pressure - start.wall
             return self._closed(problem, preconditioner.on(start.contact), start.wall, traction)
@@ -266,12 +240,7 @@ class AdhesionSolver(ScaledSolver):
         rise = after.energy - state.energy
         if state.gain > _LEAST_GAIN and rise > _RISE * (front / state.gap.size):
             return replace(state, gain=max(0.5 * state.gain, _LEAST_GAIN))
-        extrapolation = state.extrapolation and state.extrapolation.after(
-            after.contact, after.residual
-        )
-        if state.extrapolation and not extrapolation:
-            return self.begin(problem, state.extrapolation.last)
-        return replace(after, gain=_gain(state, after), extrapolation=extrapolation)
+        return replace(after, gain=_gain(state, after))
 
     def residual(self, problem: Problem, state: _Round) -> float:
         """Return the largest of gap, penetration and missed traction, each relative."""
@@ -284,10 +253,6 @@ class AdhesionSolver(ScaledSolver):
     def state(self, state: _Round) -> State:
         """Return traction, wall pressure and depth."""
         return State(state.wall + state.traction, np.maximum(state.wall, 0.0), state.depth)
-
-    def extrapolated(self, state: _Round) -> bool:
-        """Return whether the rounds began from the extrapolated start."""
-        return state.extrapolation is not None
 
     def terminate(self, problem: Problem, state: _Round) -> Stop | None:
         """Return why the rounds end above the tolerance."""

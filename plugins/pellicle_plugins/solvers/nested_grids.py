@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.contact import Problem, State
+from pellicle.contact import Problem
 from pellicle.errors import ConfigError
 from pellicle.surface import highest, prolong
 
@@ -41,7 +41,7 @@ def prolonged(solver: ScaledSolver, problem: Problem) -> Array | None:
     tolerance = max(solver.tolerance, _COARSE_TOLERANCE)
     loose = solver.model_copy(update={"tolerance": tolerance})
     state = loose.solve(coarse, None, lambda iteration, residual_ratio: None).state
-    finer = prolong(state.wall if isinstance(state, State) else state, problem.grid.shape)
+    finer = prolong(state.wall, problem.grid.shape)
     # A coarse cell may extend beyond the rim of the indenter.
     finer *= np.isfinite(problem.profile)
     return finer if finer.any() else None

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from pellicle.components import IterativeSolver, Monitor
-from pellicle.contact import Problem, Solution, Start, State
+from pellicle.contact import Problem, Solution, State
 
 # Units are 2^±900 at most, so that 2^100 times a unit is still a number.
 _MAX_EXPONENT = 900
@@ -29,17 +29,11 @@ class ScaledSolver(IterativeSolver):
         pressure = height / problem.operator.unit
         # Squares of a pressure far above those of this step would overflow.
         if start is not None and float(start.pressure.max()) / pressure < 2.0**_SINGLE_EXPONENT:
-            scaled = _scaled(start, 1 / height, 1 / pressure)
-            if isinstance(start, Start) and start.ahead:
-                scaled = Start.of(scaled, _scaled(start.ahead, 1 / height, 1 / pressure))
-            start = scaled
+            start = _scaled(start, 1 / height, 1 / pressure)
         else:
             start = None
         solution = super().solve(problem.scaled(height, pressure), start, monitor)
-        state = solution.state
-        if isinstance(state, State):
-            return replace(solution, state=_scaled(state, height, pressure))
-        return replace(solution, state=state * pressure)
+        return replace(solution, state=_scaled(solution.state, height, pressure))
 
 
 def _scaled(state: State, length: float, pressure: float) -> State:

@@ -67,12 +67,12 @@ def overwritten(solution: Any, start: Any) -> Any:
 def negative(solution: Any) -> Any:
     pressure = solution.pressure.copy()
     pressure[0, 0] = -1e-9 * pressure.max()
-    return pressure
+    return of(pressure)
 
 
 def of_soft_solids(f: Any, problem: Any, *given: Any) -> Any:
     solution, soft = f(problem, *given), problem.operator.kernel.reduced_modulus < 1.5e4
-    return solution if soft else replace(solution, state=0.9 * solution.pressure, stop=STALLED)
+    return solution if soft else replace(solution, state=of(0.9 * solution.pressure), stop=STALLED)
 
 
 def three_steps(f: Any, *given: Any) -> Any:
@@ -96,6 +96,7 @@ def fill(f: Any, problem: Any, state: Any, monitor: Any) -> Any:
     return f(problem, state, monitor)
 
 
+of = pl.State.of_pressure
 STALLED = pl.Stop.STALLED
 READ_ONLY = Refused("read-only", error=ValueError)
 NOT_SEEN = Taken("a run measures the residual without it, and counts nothing by it")
@@ -103,7 +104,12 @@ OFF = Marked("CONTACT_RESIDUAL")
 BROKEN: dict[str, Any] = {
     "solve_returns_a_solution": [
         Broken("returns nothing", Refused("solve() returned None"), solve=returns(lambda s: None)),
-        gives("in a row", Refused("shape (120,)", "(12, 10)"), state=lambda s: s.pressure.ravel()),
+        gives(
+            "in a row", Refused("shape (120,)", "(12, 10)"), state=lambda s: of(s.pressure.ravel())
+        ),
+        gives(
+            "a pressure", Refused("has to be one of a pellicle.State"), state=lambda s: s.pressure
+        ),
         gives("ends without reason", Refused("stop None", "pellicle.Stop"), stop=lambda s: None),
         harms("softens the operator", READ_ONLY, lambda p: p.operator._symbol.double.fill(1.0)),
         harms("lowers the profile", READ_ONLY, lambda problem: np.copyto(problem.profile, -1.0)),
@@ -115,10 +121,10 @@ BROKEN: dict[str, Any] = {
     "start_does_not_matter": Broken(
         "takes the step before for the answer",
         OFF,
-        solve=after(lambda s, start: replace(s, state=start.pressure.copy(), stop=STALLED)),
+        solve=after(lambda s, start: replace(s, state=of(start.pressure.copy()), stop=STALLED)),
     ),
     "pressure_is_nowhere_negative": gives("sucks", Marked("NEGATIVE_PRESSURE"), state=negative),
-    "done_means_solved": gives("is not done", OFF, state=lambda s: 1.0001 * s.pressure),
+    "done_means_solved": gives("is not done", OFF, state=lambda s: of(1.0001 * s.pressure)),
     "prescribed_values_are_met": Broken("gives up early", OFF, solve=three_steps),
     "pressure_is_proportional_to_the_stiffness": Broken(
         "knows of soft solids alone", Taken("this solid is soft"), solve=of_soft_solids

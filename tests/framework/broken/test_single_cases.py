@@ -142,7 +142,7 @@ def test_a_solver_that_uses_its_memory_again_changes_no_earlier_step() -> None:
         def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
             solution = super().solve(problem, start, monitor)
             memory[...] = solution.pressure
-            return replace(solution, state=memory)
+            return replace(solution, state=pl.State.of_pressure(memory))
 
     loading = {"depth": ["2 um", "4 um"]}
     thrifty, plain = (

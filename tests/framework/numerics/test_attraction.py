@@ -8,8 +8,7 @@ import pytest
 from pellicle.arrays import Array
 from pellicle.contact.attraction import Attraction, attraction
 from pellicle.contact.law import Law
-from pellicle.grid import Boundary, Grid
-from pellicle_plugins.interactions.jkr import Joined
+from pellicle.grid import Boundary
 from pellicle_plugins.interactions.linear import Linear
 
 SHAPE = (11, 14)
@@ -17,13 +16,10 @@ SHAPE = (11, 14)
 
 def law(*, averaged: bool = True, joined: bool = False) -> Law:
     """Return linear softening with a range of 1 and a strength of 2."""
-    kind = Joined if joined else Linear
-    interaction = kind(work_of_adhesion=1.0, range=1.0)
-
-    def resolve(grid: Grid) -> Linear:
-        return interaction
-
-    return Law(interaction, resolve, averaged=averaged)
+    interaction = Linear(work_of_adhesion=1.0, range=1.0)
+    return Law(
+        interaction, lambda _: interaction, interaction, needs_contact=joined, averaged=averaged
+    )
 
 
 def gap() -> Array:

@@ -15,7 +15,6 @@ from pellicle.contact.time_step import (
     Memory,
     TimeStep,
     left_behind,
-    left_behind_under_skin,
     strain_under_skin,
 )
 
@@ -41,7 +40,7 @@ def press_skin(
 ) -> tuple[Array, Memory]:
     """Return the pressure that makes a displacement, and the memory, under a skin."""
     stiffness = SKIN + step.stiffness * STIFFNESS
-    left = left_behind_under_skin(memory, step, lambda p: p / stiffness)
+    left = left_behind(memory, step, lambda p: p / stiffness)
     pressure = stiffness * (displacement - left)
     strain = strain_under_skin(memory, step, pressure, lambda p: p * (STIFFNESS / stiffness))
     np.testing.assert_allclose(strain, STIFFNESS * displacement, rtol=1e-12, atol=1e-15)
@@ -101,7 +100,7 @@ def creep(stepper: Stepper, skin: float, number: int) -> float:
         step = TimeStep.of(SLS, duration)
         stiffness = skin + step.stiffness * STIFFNESS
         if skin:
-            left = left_behind_under_skin(memory, step, partial(np.multiply, 1 / stiffness))
+            left = left_behind(memory, step, partial(np.multiply, 1 / stiffness))
         else:
             left = left_behind(memory, step)
         displacement = left + 1 / stiffness

@@ -37,10 +37,6 @@ class Stated(pl.Kernel):
         """Return 3 mm."""
         return 3e-3
 
-    def bonded_layer(self) -> tuple[float, float]:
-        """Return 3 mm and ν = 0.4."""
-        return 3e-3, 0.4
-
 
 class Warm(KernelOf):
     """A kernel of a stranger on any other one, half as stiff, with a field of another name."""
@@ -55,7 +51,7 @@ class Warm(KernelOf):
 
 
 def _stated(kernel: pl.Kernel) -> list[Any]:
-    members = "mean_compliance", "branches", "time_span", "depth_to_base", "bonded_layer"
+    members = "mean_compliance", "branches", "time_span", "depth_to_base"
     return [getattr(kernel, name)() for name in members]
 
 
@@ -74,21 +70,7 @@ def test_all_that_the_substrate_states_is_kept(kernel: pl.Kernel) -> None:
     elastic = kernel.scaled(0.5)
     assert elastic.branches() == ()
     assert elastic.depth_to_base() == 3e-3
-    assert elastic.bonded_layer() == (3e-3, 0.4)
     assert elastic.mean_compliance() == 2 * kernel.mean_compliance()
-
-
-def test_what_a_kernel_changes_is_not_passed_on() -> None:
-    """A layer under a skin that bends, or that relaxes, is no layer of the closed force curve."""
-    layer: dict[str, Any] = {
-        "type": "bonded_layer", "reduced_modulus": 1e3, "poissons_ratio": 0.4, "thickness": 3e-3
-    }  # fmt: skip
-    relaxing = {"fraction": 0.5, "time": 1.0}
-    bent = pl.kernel("coated", bending="1 fN*m", substrate=layer)
-    soft = pl.kernel("viscoelastic", solid=layer, relaxation=[relaxing])
-    for kernel in (bent, soft, pl.kernel("coated", substrate=soft)):
-        assert kernel.bonded_layer() is None
-        assert kernel.depth_to_base() == 3e-3
 
 
 def test_base_of_layers_is_below_all_of_them() -> None:

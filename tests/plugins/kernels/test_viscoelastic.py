@@ -10,7 +10,8 @@ import pytest
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.components import Branch
-from pellicle.contact.time_step import Memory, TimeStep, left_behind_under_skin, strain_under_skin
+from pellicle.contact.skin_operators import CarriedShare
+from pellicle.contact.time_step import Memory, TimeStep, left_behind, strain_under_skin
 from pellicle.surface import HasClosedForm, make_operator, mean_compliance
 from pellicle_plugins.kernels.power_law import power_law_series
 
@@ -122,17 +123,6 @@ def test_skin_on_a_solid_that_relaxes_is_elastic(table: dict[str, Any]) -> None:
     assert elastic.branches() == ()
 
 
-class Carried:
-    """The operator from the load less its history to what the solid carries, k₀/k."""
-
-    def __init__(self, kernel: Any, share: float) -> None:
-        self.whole, self.solid = kernel.scaled(share), kernel.without_skin()
-
-    def compliance(self, q: Array) -> Array:
-        """Return k₀/(k_skin + γ k₀)."""
-        return np.asarray(self.whole.compliance(q) / self.solid.compliance(q))
-
-
 def test_full_contact_under_a_tensed_skin_is_exact_in_time() -> None:
     """A sine pressed in at constant speed: p = (q/2) E∗du/dt + τ₀ q² u, through the operators."""
     kernel, grid = coated(), pl.Grid(points=[16, 8], size="0.1 mm", boundary="periodic")
@@ -143,14 +133,14 @@ def test_full_contact_under_a_tensed_skin_is_exact_in_time() -> None:
     memory, before = Memory.at_rest(branches, grid.shape), 0.0
     for t in (0.0, 0.3, 0.4, 2.0, 90.0):
         step = TimeStep.of(branches, t - before)
-        operator = make_operator(kernel.scaled(step.stiffness), grid)
-        left = left_behind_under_skin(memory, step, operator)
+        scaled = kernel.scaled(step.stiffness)
+        operator = make_operator(scaled, grid)
+        left = left_behind(memory, step, operator)
         # One wave, so that the pressure follows from its compliance.
-        stiffness = 1 / kernel.scaled(step.stiffness).compliance(np.array([q])).item()
+        stiffness = 1 / scaled.compliance(np.array([q])).item()
         pressure = (speed * t * wave - left) * stiffness
-        strain = strain_under_skin(
-            memory, step, pressure, make_operator(Carried(kernel, step.stiffness), grid)
-        )
+        carried = make_operator(CarriedShare(scaled, kernel.without_skin()), grid)
+        strain = strain_under_skin(memory, step, pressure, carried)
         memory, before = memory.after(step, strain), t
         integral = 0.2 * t + sum(g * tau * -np.expm1(-t / tau) for g, tau in branches)
         expected = speed * (5e3 * q * integral + 0.05 * q**2 * t) * wave

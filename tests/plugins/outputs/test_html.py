@@ -381,7 +381,7 @@ class Lost(pl.Solver):
 
     def solve(self, problem: pl.Problem, start: Any, monitor: Any) -> pl.Solution:
         """Return NaN."""
-        return pl.Solution(np.full(problem.grid.shape, np.nan), 1)
+        return pl.Solution(pl.State.of_pressure(np.full(problem.grid.shape, np.nan)), 1)
 
 
 def test_steps_that_are_too_coarse_are_marked(tmp_path: Path) -> None:

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 import pellicle as pl
+from pellicle.components.checked_law import law_of
 from pellicle.contact.problem import Depth, Force
-from pellicle.contact.start import PathPoint, Start, start_of
+from pellicle.contact.start import PathPoint, start_of
 from pellicle_plugins.solvers.active_set import ActiveSet
 from tests.plugins.solvers.problems import Shape, make, rough, skin, solve
 
@@ -40,9 +41,9 @@ def steps(here: pl.Problem, values: list[float]) -> list[PathPoint]:
 def ahead(here: pl.Problem, path: list[PathPoint]) -> pl.State:
     """Return the state that is extrapolated from a path."""
     start = start_of(here, path[-1].state, path)
-    assert isinstance(start, Start)
-    assert start.ahead
-    return start.ahead
+    assert start is not None
+    assert start is not path[-1].state
+    return start
 
 
 @pytest.mark.parametrize(("shape", "boundary", "control"), CASES)
@@ -76,14 +77,19 @@ def test_nothing_is_extrapolated_backwards_or_far(value: float) -> None:
     assert ahead(replace(here, control=Depth(0.101)), path).depth == pytest.approx(0.101)
 
 
-def test_nothing_is_extrapolated_from_one_state_or_in_a_solid_that_relaxes() -> None:
-    """What earlier steps leave behind changes the surface as well, so that two states say less."""
+def test_nothing_is_extrapolated_from_one_state_in_a_solid_that_relaxes_or_where_it_sticks() -> (
+    None
+):
+    """What earlier steps leave behind changes the surface too; with a law a descent is followed."""
     here = problem("smooth", "free")
     path = steps(here, [0.08, 0.09])
     state = path[-1].state
     assert start_of(here, None, ()) is None
     assert start_of(here, state, path[-1:]) is state
     assert start_of(replace(here, left=np.zeros(here.grid.shape)), state, path) is state
+    linear = pl.interaction("linear", work_of_adhesion=1.0, range=0.1)
+    law = law_of(linear, skin(0.02), here.grid)
+    assert start_of(replace(here, law=law), state, path) is state
 
 
 def test_force_and_spring_are_extrapolated_by_their_own_control() -> None:
@@ -120,13 +126,3 @@ def test_extrapolated_edge_moves_as_far_as_the_edge_does() -> None:
     cells = np.count_nonzero(answer)
     missed = np.count_nonzero(ahead(here, path).contact ^ answer) / cells
     assert missed < 0.02 < 0.1 < np.count_nonzero(path[-1].state.contact ^ answer) / cells
-
-
-def test_solver_that_knows_no_extrapolation_starts_from_the_last_state() -> None:
-    """A start with an extrapolation is a state of three values, equal to the one it extends."""
-    here = problem("smooth", "free")
-    path = steps(here, [0.08, 0.09])
-    pressure, wall, depth = start = start_of(here, path[-1].state, path) or path[0].state
-    assert start.depth == depth == path[-1].state.depth
-    np.testing.assert_array_equal(pressure, path[-1].state.pressure)
-    np.testing.assert_array_equal(wall, path[-1].state.wall)

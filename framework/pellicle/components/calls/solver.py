@@ -18,7 +18,6 @@ from pellicle.checks import (
 from pellicle.components.solver import Monitor, Solver
 from pellicle.contact.problem import Problem
 from pellicle.contact.solution import Solution, State, Stop
-from pellicle.contact.start import Start
 from pellicle.errors import ConfigError, PluginError, shown
 
 
@@ -42,26 +41,29 @@ def solution_of(
     sticks = adheres and start is not None and start.is_loaded
     if not problem.needs_solving and not sticks:
         nothing = np.zeros(problem.grid.shape)
-        if not adheres:
-            return Solution(nothing, 0, Stop.DONE)
-        stop = Stop.DONE if problem.prescribed == "depth" else Stop.PULLED_OFF
+        lost = adheres and problem.prescribed == "force"
+        stop = Stop.PULLED_OFF if lost else Stop.DONE
         return Solution(State(nothing, nothing, problem.depth(np.zeros(1))), 0, stop)
     view = replace(problem, profile=read_only(problem.profile))
     with errors_attributed_to(solver):
         value = solver.solve(view, None if start is None else _read_only_state(start), monitor)
     state = _checked_state(solver, problem, value)
     jumped = bool(value.jumped) or (adheres and _in_contact(state) != _in_contact(start))
-    return Solution(
-        state, int(value.iterations), value.stop, jumped, adheres and bool(value.extrapolated)
-    )
+    return Solution(state, int(value.iterations), value.stop, jumped)
 
 
-def _checked_state(solver: Solver, problem: Problem, value: object) -> State | Array:
-    """Return a copy of the state of a solution, or of its pressure where nothing adheres."""
+def _checked_state(solver: Solver, problem: Problem, value: object) -> State:
+    """Return a copy of the state of a solution; without a law its pressure is all that counts."""
     name = component_name(solver)
     if not isinstance(value, Solution):
         raise PluginError(
             f"{name}: solve() returned {shown(value)}; it has to return a pellicle.Solution"
+        )
+    if not isinstance(value.state, State):
+        raise PluginError(
+            f"{name}: solve() returned a Solution of {shown(value.state)}; it has to be one of a "
+            "pellicle.State: State.of_pressure(pressure), or with an interaction one that has the "
+            "wall pressure too"
         )
     pressure = real_array(solver, "solve().pressure", value.pressure, problem.grid.shape)
     if not isinstance(value.iterations, Integral) or not isinstance(value.stop, Stop):
@@ -72,19 +74,14 @@ def _checked_state(solver: Solver, problem: Problem, value: object) -> State | A
     # The solver may reuse the memory of the arrays that it returned.
     pressure = pressure.copy()
     if problem.law is None:
-        return pressure
-    if not isinstance(value.state, State):
-        raise PluginError(
-            f"{name}: solve() returned a pressure alone; with an interaction it has to return "
-            "a pellicle.State with the wall pressure"
-        )
+        return State.of_pressure(pressure)
     wall = real_array(solver, "solve().state.wall", value.state.wall, problem.grid.shape)
     depth = real_number(solver, "solve().state.depth", value.state.depth)
     return State(pressure, wall.copy(), depth)
 
 
-def _in_contact(state: State | Array | None) -> bool:
-    return isinstance(state, State) and bool(state.contact.any())
+def _in_contact(state: State | None) -> bool:
+    return state is not None and bool(state.contact.any())
 
 
 def response_of(solver: Solver, problem: Problem, state: State, monitor: Monitor) -> Array:
@@ -104,7 +101,4 @@ def response_of(solver: Solver, problem: Problem, state: State, monitor: Monitor
 def _read_only_state(state: State) -> State:
     pressure = read_only(state.pressure)
     wall = pressure if state.wall is state.pressure else read_only(state.wall)
-    view = State(pressure, wall, state.depth)
-    if isinstance(state, Start) and state.ahead:
-        return Start.of(view, _read_only_state(state.ahead))
-    return view
+    return State(pressure, wall, state.depth)

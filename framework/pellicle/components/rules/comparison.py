@@ -39,12 +39,7 @@ def difference(
 
 
 def not_vectorised(
-    function: Callable[[Array], Array],
-    argument: Array,
-    name: str,
-    *,
-    relative: float = 0.0,
-    of_largest: float = 0.0,
+    function: Callable[[Array], Array], argument: Array, name: str, *, relative: float
 ) -> str:
     """Return why a function of 24 floats is no array of floats that depend each on its own one."""
     single = [np.ravel(function(value.copy()))[0] for value in np.split(argument, argument.size)]
@@ -52,13 +47,8 @@ def not_vectorised(
         values = function(argument.reshape(shape).copy())
         if not (isinstance(values, np.ndarray) and values.dtype == np.float64):
             return f"{name} is {type(values).__name__} of {getattr(values, 'dtype', 'no')} dtype"
-        if differs := difference(
-            values,
-            np.reshape(single, shape),
-            f"{name} for an argument of shape {shape}",
-            relative=relative,
-            absolute=of_largest * float(np.abs(single).max()),
-        ):
+        words = f"{name} for an argument of shape {shape}"
+        if differs := difference(values, np.reshape(single, shape), words, relative=relative):
             return differs
     return ""
 

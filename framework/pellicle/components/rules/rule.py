@@ -19,7 +19,7 @@ class Case(NamedTuple):
 
     grid: Grid
     kernel: Kernel | None = None
-    """The kernel beside an interaction."""
+    """The kernel beside an interaction; None for a law as it is, without a grid."""
 
 
 Rule = Callable[[Any, Case], str]

@@ -1,0 +1,77 @@
+"""Judge the equilibrium of a load step, and whether the cells resolve its contact."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from pellicle.config.run import Run
+from pellicle.contact.caveats import Caveat, Status
+from pellicle.contact.equilibrium import Equilibrium
+from pellicle.contact.load_step import LoadStep
+
+from .surroundings import Surroundings
+
+# The force of a paraboloid is right to 8 % on nine or twelve cells, to 14 % on five, on fewer not.
+_RESOLVED = 13
+_RESOLVED_ACROSS = 4
+
+
+def contact(run: Run, step: LoadStep, here: Surroundings) -> LoadStep:
+    """Add why the step is not a solution, and whether its contact has too few cells."""
+    if not np.isfinite(step.equilibrium.force):
+        return step.having({}, [Caveat(Status.NOT_FINITE)])
+    step = step.having({}, _failures(run, step, run.loading.values[len(here.path)]))
+    return step.having({}, _coarse(run, step.equilibrium)) if step.converged else step
+
+
+def _failures(run: Run, step: LoadStep, value: float) -> Iterator[Caveat]:
+    """Yield why the step is not a solution; ``value`` is the prescribed one."""
+    equilibrium, tolerance = step.equilibrium, run.solver.tolerance
+    if (lowest := float(equilibrium.wall.min())) < 0:
+        share = -lowest / float(np.abs(equilibrium.wall).max())
+        yield Caveat(Status.NEGATIVE_PRESSURE, {"measure": share})
+    for status, residual in (
+        (Status.LOAD, equilibrium.residual_load),
+        (Status.CONTACT_RESIDUAL, equilibrium.residual_contact),
+        (Status.PENETRATION, equilibrium.residual_penetration),
+        (Status.COMPLEMENTARITY, equilibrium.residual_complementarity),
+        (Status.TRACTION, equilibrium.residual_traction),
+    ):
+        if not residual <= tolerance:
+            yield Caveat(
+                status,
+                {"measure": residual, "tolerance": tolerance, "stop": step.effort.stop.name},
+            )
+    reach, loading = equilibrium.contact | equilibrium.zone, run.loading
+    # A period one cell wide has no border in that direction: the problem is plane there.
+    free = run.grid.boundary == "free"
+    across = [axis for axis in (0, 1) if reach.shape[axis] > 1 or free]
+    at_edge = any(np.take(reach, [0, -1], axis=axis).any() for axis in across)
+    if run.indenter.footprint == "unbounded" and at_edge:
+        yield Caveat(
+            Status.CONTACT_AT_EDGE,
+            {
+                "size_x": run.grid.size[0],
+                "size_y": run.grid.size[1],
+                "prescribed": loading.prescribed,
+                "value": value,
+                "unit": loading.prescription.unit,
+            },
+        )
+
+
+def _coarse(run: Run, equilibrium: Equilibrium) -> Iterator[Caveat]:
+    """Yield the caveat of a contact on too few cells."""
+    contact, problem = equilibrium.contact, equilibrium.problem
+    # An interaction of a range of its own acts beyond the contact, however small that is.
+    ranged = run.interaction is not None and not run.interaction.needs_contact
+    cells = int(np.count_nonzero(contact | equilibrium.zone if ranged else contact))
+    enough = _RESOLVED_ACROSS if min(contact.shape) == 1 else _RESOLVED
+    # A surface that was left behind may be out of the indenter's reach at a depth above 0.
+    least = problem.first_touch if problem.prescribed == "depth" else 0.0
+    # An interaction holds a contact at any depth.
+    sticks = run.interaction is not None and bool(contact.any())
+    if (problem.control.value > least or sticks) and cells < min(enough, contact.size):
+        yield Caveat(Status.COARSE, {"cells": cells, "width": run.grid.cell_size})
