@@ -56,7 +56,7 @@ def _of_groups(root: Path) -> Iterator[float | None]:
 def _left(folder: Path, limit: str, usage: str, cache: str) -> float | None:
     """Return the limit of a group minus its usage, which excludes reclaimable cache [bytes]."""
     try:
-        most, used = (float((folder / name).read_text()) for name in (limit, usage))
+        most, used = float((folder / limit).read_text()), float((folder / usage).read_text())
     except (OSError, ValueError):  # missing, not readable, or "max"
         return None
     for line in _lines(folder / "memory.stat"):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from pellicle.checks import component_name
+from pellicle.checks import component_name, errors_attributed_to
 from pellicle.components import Component
 from pellicle.components.rules import CHEAP, Case, broken
 from pellicle.config.run import Run, components_in
@@ -23,7 +23,9 @@ def ask_strangers(run: Run) -> None:
     case = Case(run.grid, run.kernel)
     for component in components_in([run.kernel, run.indenter, run.interaction, run.corrections]):
         if component.family in CHEAP and not _is_own(component):
-            _ask(component, case)
+            # One that has no hash breaks its contract.
+            with errors_attributed_to(component):
+                _ask(component, case)
 
 
 def _is_own(component: Component) -> bool:

@@ -46,10 +46,10 @@ def walk(
             for name, (entry, info) in reversed([*value.entries.items()]):
                 waiting.append((f"{prefix}{name}", entry, info))
         elif isinstance(value, Mapping):
-            waiting.extend((f"{prefix}{name}", value[name], None) for name in reversed([*value]))
+            waiting += [(f"{prefix}{name}", value[name], None) for name in reversed([*value])]
         elif isinstance(value, (list, tuple)):
             indices = reversed(range(len(value)))
-            waiting.extend((f"{prefix}{index}", value[index], field) for index in indices)
+            waiting += [(f"{prefix}{index}", value[index], field) for index in indices]
     return values[1:]
 
 
