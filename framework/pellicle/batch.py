@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import closing
-from typing import Any, cast
+from typing import Any
 
 from pellicle.checks import component_name, errors_attributed_to
 from pellicle.components import AnyTask, Executor, Outcome, Say
@@ -12,8 +12,6 @@ from pellicle.errors import PluginError, shown
 from pellicle.runs.lock import locked as locked
 from pellicle.runs.progress import BatchProgress as BatchProgress
 from pellicle.runs.progress import status_line as status_line
-
-_END = object()
 
 
 def mapped(
@@ -47,27 +45,22 @@ def mapped(
         outcome of another type.
     """
     name = component_name(executor)
-    ids = {id(task) for task in tasks}
     remaining = {id(task): task for task in tasks}
     with errors_attributed_to(executor):
         pairs: Any = executor.map(work, tasks, progress.report)
-    if not isinstance(pairs, Iterator) or not hasattr(pairs, "close"):
+    if not hasattr(pairs, "close"):
         raise PluginError(f"{name}: map() returned {shown(pairs)}; it has to be written with yield")
-    with closing(cast("Any", pairs)):
+    with closing(pairs):
         while True:
             with errors_attributed_to(executor):
-                pair = next(pairs, _END)
-            if pair is _END:
-                break
-            if not isinstance(pair, tuple) or len(pair) != 2 or id(pair[0]) not in ids:
-                raise PluginError(
-                    f"{name}: map() yields {shown(pair)}; it has to yield each of the tasks that "
-                    "it was given, the object itself, with its outcome"
-                )
-            task, outcome = pair
+                pair = next(pairs, None)
+                if pair is None:
+                    break
+                task, outcome = pair
             if remaining.pop(id(task), None) is None:
                 raise PluginError(
-                    f"{name}: map() yields {task.name} twice; it has to yield each task once"
+                    f"{name}: map() yields {shown(task)}; it has to yield each of the tasks that "
+                    "it was given once, the object itself"
                 )
             if not isinstance(outcome, (kind, Exception)):
                 raise PluginError(

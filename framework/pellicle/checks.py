@@ -23,10 +23,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# Words in the messages of numpy, Cython, dataclasses and pydantic about read-only objects.
-_REFUSALS = "read-only", "cannot assign to field", "Instance is frozen"
-
-
 def component_name(component: object) -> str:
     """Return the name of a component for messages, such as ``kernel 'half_space'``."""
     family = getattr(component, "family", "component")
@@ -35,7 +31,7 @@ def component_name(component: object) -> str:
 
 @contextmanager
 def errors_attributed_to(component: object) -> Iterator[None]:
-    """Name the component and the line of its code in exceptions; refuse writes to arguments."""
+    """Name the component and the line of its code in exceptions that it raises."""
     try:
         yield
     except (PellicleError, MemoryError):
@@ -43,15 +39,10 @@ def errors_attributed_to(component: object) -> Iterator[None]:
     except Exception as error:
         if getattr(error, "__notes__", ()):
             raise
-        name, home = component_name(component), inspect.getsourcefile(type(component))
+        home = inspect.getsourcefile(type(component))
         inside = [frame for frame in extract_tb(error.__traceback__) if frame.filename == home]
         line = f" ({home}, line {inside[-1].lineno})" if inside else ""
-        is_write = isinstance(error, (ValueError, AttributeError))
-        if is_write and any(refusal in str(error) for refusal in _REFUSALS):
-            raise PluginError(
-                f"{name} changes what it is given{line}: {error}; it has to work on a copy"
-            ) from error
-        error.add_note(f"{name} failed{line}")
+        error.add_note(f"{component_name(component)} failed{line}")
         raise
 
 

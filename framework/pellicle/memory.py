@@ -56,11 +56,13 @@ def _of_groups(root: Path) -> Iterator[float | None]:
 def _left(folder: Path, limit: str, usage: str, cache: str) -> float | None:
     """Return the limit of a group minus its usage, which excludes reclaimable cache [bytes]."""
     try:
-        most, used = (float((folder / name).read_text()) for name in (limit, usage))
+        most, used = float((folder / limit).read_text()), float((folder / usage).read_text())
     except (OSError, ValueError):  # missing, not readable, or "max"
         return None
-    statistics = dict(line.split() for line in _lines(folder / "memory.stat"))
-    return max(0.0, most - used + float(statistics.get(cache, 0)))
+    for line in _lines(folder / "memory.stat"):
+        if line.startswith(f"{cache} "):
+            used -= float(line.split()[1])
+    return max(0.0, most - used)
 
 
 def _lines(path: Path) -> list[str]:

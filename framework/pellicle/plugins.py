@@ -26,6 +26,7 @@ from .origins import Broken as Broken
 from .origins import Origin as Origin
 from .schema.messages import nearest
 from .units import quantity_of
+from .variables import COORDINATES, VARIABLES
 
 AnyComponent = TypeVar("AnyComponent", bound=Component)
 
@@ -42,6 +43,11 @@ class Registered:
     def summary(self) -> str:
         """The first line of the component's documentation."""
         return (inspect.getdoc(self.component) or "").partition("\n")[0]
+
+    @property
+    def examples(self) -> tuple[Mapping[str, Any], ...]:
+        """The `examples` of the class itself; those of a base class may lack fields."""
+        return tuple(vars(self.component).get("examples", ()))
 
 
 @dataclass(frozen=True)
@@ -273,7 +279,7 @@ def checked_type(component: Any) -> str:
 
 
 def _check_prescription(component: type[Prescription], type_: str) -> None:
-    """Raise PluginError if ``[loading]`` cannot hold a prescription."""
+    """Raise PluginError if ``[loading]`` cannot hold a prescription, or a result its variables."""
     name = component.__name__
     if not isinstance(getattr(component, "unit", None), str):
         raise PluginError(f"{name} lacks the class variable unit: the SI unit of its values")
@@ -285,3 +291,11 @@ def _check_prescription(component: type[Prescription], type_: str) -> None:
         )
     if type_ in component.model_fields:
         raise PluginError(f"{name} has a field with the name of its type; choose another name")
+    for variable in component.variables:
+        is_taken = variable.name in {*VARIABLES, *COORDINATES}
+        if is_taken or not variable.name.isidentifier():
+            reason = "the name of another variable" if is_taken else "not a name"
+            raise PluginError(
+                f"{name}: variables has {shown(variable.name)}, which is {reason}; choose one of "
+                "letters, digits and _ that no result has yet"
+            )

@@ -4,13 +4,24 @@ A test that takes ``kernel``, ``indenter``, … runs on each example of that fam
 ``component`` on all of them.
 """
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from pellicle.components import FAMILIES, Component
 from pellicle.plugins import registry
-from tests.contracts.examples import EXAMPLES
+from pellicle.schema.input_path import paths_relative_to
+
+EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
+    family: {
+        registered.type: dict(registered.examples[0])
+        for registered in members.values()
+        if registered.origin.is_own
+    }
+    for family, members in registry().components.items()
+}
+DATA = Path(__file__).parents[1] / "data"
 
 PROCESSES = "processes", "dask"
 DRAWINGS = "curves", "profiles", "spectrum", "patches", "distributions"
@@ -38,7 +49,8 @@ def _make(request: pytest.FixtureRequest) -> Component:
     fields = EXAMPLES[family][type_]
     if type_ == "dask":
         fields = fields | {"address": request.getfixturevalue("dask_address")}
-    return registry().make(FAMILIES[family], {"type": type_, **fields})
+    with paths_relative_to(DATA):
+        return registry().make(FAMILIES[family], {"type": type_, **fields})
 
 
 for _name in ("component", *FAMILIES):

@@ -33,17 +33,6 @@ def test_nothing_installed_is_broken() -> None:
     assert registry().clashes == {}
 
 
-def test_every_component_has_an_example(examples: dict[str, dict[str, Any]]) -> None:
-    """Each type that pellicle registers has its fields in examples.py, and no other has."""
-    own = {
-        (family, type_)
-        for family, members in registry().components.items()
-        for type_, registered in members.items()
-        if registered.origin.distribution == "pellicle"
-    }
-    assert {(family, type_) for family, members in examples.items() for type_ in members} == own
-
-
 def test_schema_of_a_run_is_a_schema() -> None:
     """The schema that editors get is one."""
     jsonschema.Draft202012Validator.check_schema(pl.json_schema())

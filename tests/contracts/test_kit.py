@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+import pellicle as pl
 from pellicle import testing
 from pellicle.components import FAMILIES, Component
 from pellicle.testing.rules import require_close
@@ -17,6 +18,11 @@ def test_keeps_its_contract(component: Component) -> None:
 def test_each_family_has_a_check() -> None:
     """The kit has a function for each family, named after it, and no others."""
     assert set(testing.__all__) == {f"check_{family}" for family in FAMILIES}
+
+
+def test_a_skin_of_little_tension_keeps_the_contract() -> None:
+    """The closed form of an elastocapillary length of 2 pm is right to eight digits only."""
+    testing.check_kernel(pl.kernel("tensed_membrane", reduced_modulus="1 GPa", tension="1 mN/m"))
 
 
 def test_infinite_values_agree_with_their_equals_only() -> None:

@@ -16,6 +16,7 @@ from typer.testing import CliRunner, Result
 import pellicle as pl
 from pellicle.cli.app import app
 from pellicle.commands import commands
+from pellicle.plugins import registry
 from tests.pictures import drawn_width
 
 SMALL = ["--set", "grid.points=32", "--set", "loading.depth=['10 um', '20 um']"]
@@ -203,6 +204,17 @@ def test_plugins_as_a_table(cli: Cli) -> None:
     lines = cli("plugins").stdout.splitlines()
     assert lines[0].split() == ["family", "type", "origin", "version", "description"]
     assert any(line.split()[:3] == ["kernel", "half_space", "pellicle"] for line in lines)
+
+
+def test_plugins_are_checked_over_their_examples(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    """`pellicle plugins --check` names the rule that an example breaks, and ends with 1 then."""
+    kept = json.loads(cli("plugins", "--check", "correction.yastrebov", "--json").stdout)
+    assert [(row["type"], row["verdict"]) for row in kept] == [("yastrebov", "keeps its contract")]
+    (component,) = (entry.component for entry in registry().components["correction"].values())
+    monkeypatch.setattr(component, "area", lambda self, contact, spacing: -1.0)
+    broken = cli("plugins", "--check", "yastrebov", code=1).stdout
+    assert "Yastrebov breaks the rule no_contact_has_no_area" in broken
+    assert "'springs' is neither a type" in cli("plugins", "--check", "springs", code=2).stderr
 
 
 def test_schema(cli: Cli) -> None:

@@ -44,8 +44,8 @@ def facts_of(runs: Sequence[Run]) -> dict[str, Any]:
 
 def now_with(runs: Iterable[Run]) -> dict[str, str]:
     """Return the date, and the versions of the packages that solve ``runs``, as attributes."""
-    used = (components_in([run, run.loading.prescription]) for run in runs)
-    numbers = versions(set().union(*used))
+    used = components_in(part for run in runs for part in (run, run.loading.prescription))
+    numbers = versions({*map(type, used)})
     return {
         "versions": ", ".join(f"{name} {number}" for name, number in numbers.items()),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),

@@ -252,16 +252,16 @@ class Run(FromFile):
                 content = stat and _digest(value.absolute(), stat.st_mtime_ns, stat.st_size)
                 identifying = replaced(identifying, path, content or str(value))
         solving = self.kernel, self.indenter, self.interaction, self.solver, self.corrections
-        versions = registry().versions(components_in((*solving, self.loading.prescription)))
+        used = {*map(type, components_in((*solving, self.loading.prescription)))}
+        versions = registry().versions(used)
         if others := {name: number for name, number in versions.items() if name != "pellicle"}:
             identifying["plugins"] = others
         return hashlib.sha256(json.dumps(identifying, sort_keys=True).encode()).hexdigest()
 
 
-def components_in(parts: Iterable[object]) -> set[type[Component]]:
-    """Return the classes of the components in parts of a configuration."""
-    values = (value for _, value, _ in walk([*parts]))
-    return {type(value) for value in values if isinstance(value, Component)}
+def components_in(parts: Iterable[object]) -> list[Component]:
+    """Return the components in parts of a configuration, those inside others too."""
+    return [value for _, value, _ in walk([*parts]) if isinstance(value, Component)]
 
 
 @cache

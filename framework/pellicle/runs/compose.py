@@ -2,28 +2,28 @@
 
 from __future__ import annotations
 
-from pellicle.checks import component_name, errors_attributed_to
+from pellicle.checks import errors_attributed_to
 from pellicle.components import Force, Search, Setting
 from pellicle.components.calls import (
     check_solver,
     check_value,
-    check_variables,
     instantaneous,
     profile_of,
     target_of,
 )
 from pellicle.components.checked_law import law_of
-from pellicle.components.rules import interactions
 from pellicle.config.run import Run
-from pellicle.errors import ConfigError, PluginError
+from pellicle.errors import ConfigError
 from pellicle.surface.grid_checks import warn_of_cells, warn_of_period
 from pellicle.surface.operators import make_operator
 
 from .relaxation_checks import warn_of_relaxation
+from .strangers import ask_strangers
 
 
 def compose(run: Run) -> Setting:
     """Return the setting of the first load step."""
+    ask_strangers(run)
     with errors_attributed_to(run.kernel):
         operator = make_operator(instantaneous(run.kernel), run.grid)
         warn_of_cells(run.kernel.compliance, run.grid)
@@ -31,17 +31,11 @@ def compose(run: Run) -> Setting:
     if run.indenter.footprint == "domain":
         warn_of_period(profile, run.grid)
     warn_of_relaxation(run)
-    law = None
-    if run.interaction:
-        law = law_of(run.interaction, run.kernel, run.grid)
-        for rule in interactions.RULES:
-            if broken := rule(run.interaction, interactions.Case(run.grid, run.kernel)):
-                raise PluginError(f"{component_name(run.interaction)}: {broken}")
+    law = law_of(run.interaction, run.kernel, run.grid) if run.interaction else None
     setting = Setting(run.grid, operator, profile, run.indenter.footprint, law=law)
     if law:
         check_solver(run.solver, setting.problem(Force(0.0)))
     prescription = run.loading.prescription
-    check_variables(prescription)
     for index, value in enumerate(run.loading.values):
         field = f"loading.{run.loading.field_of(index)}"
         check_value(prescription, setting, value, field)

@@ -5,7 +5,7 @@ Entries of lists count from 0, as in ``grid.size.0``; a key of a table may itsel
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from pydantic.fields import FieldInfo
@@ -31,23 +31,26 @@ def get(at: Any, path: str) -> Any:
 
 def walk(
     at: Any, path: str = "", field: FieldInfo | None = None
-) -> Iterator[tuple[str, Any, FieldInfo | None]]:
-    """Yield path, value and field of each value below ``at``, outer ones before inner ones.
+) -> list[tuple[str, Any, FieldInfo | None]]:
+    """Return path, value and field of each value below ``at``, outer ones before inner ones.
 
     Entries of a list have the field of the list; those of a table have none.
     """
-    inner: list[tuple[str, Any, FieldInfo | None]]
-    if isinstance(at, Model):
-        inner = [(name, value, info) for name, (value, info) in at.entries.items()]
-    elif isinstance(at, Mapping):
-        inner = [(str(name), value, None) for name, value in at.items()]
-    elif isinstance(at, (list, tuple)):
-        inner = [(str(index), value, field) for index, value in enumerate(at)]
-    else:
-        return
-    for name, value, info in inner:
-        yield f"{path}{name}", value, info
-        yield from walk(value, f"{path}{name}.", info)
+    values: list[tuple[str, Any, FieldInfo | None]] = []
+    waiting = [(path, at, field)]
+    while waiting:
+        place, value, field = waiting.pop()
+        prefix = f"{place}." if values else path
+        values.append((place, value, field))
+        if isinstance(value, Model):
+            for name, (entry, info) in reversed([*value.entries.items()]):
+                waiting.append((f"{prefix}{name}", entry, info))
+        elif isinstance(value, Mapping):
+            waiting += [(f"{prefix}{name}", value[name], None) for name in reversed([*value])]
+        elif isinstance(value, (list, tuple)):
+            indices = reversed(range(len(value)))
+            waiting += [(f"{prefix}{index}", value[index], field) for index in indices]
+    return values[1:]
 
 
 def python_names(paths: Iterable[str]) -> dict[str, str]:

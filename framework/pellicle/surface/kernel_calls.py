@@ -10,11 +10,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to, read_only, real_array, real_number
-from pellicle.errors import ConfigError, PluginError
-
-# Factors on the grid's largest q at which G(q) is checked for growth.
-_SHORTER = np.geomspace(1.0, 1e12, 13)
-_GROWTH = 1e-6  # relative; less is rounding
+from pellicle.errors import ConfigError
 
 
 class HasCompliance(Protocol):
@@ -89,31 +85,3 @@ def positive_compliance(kernel: HasCompliance, q: Array, values: Array) -> Array
             "kernel",
         )
     return values
-
-
-def refuse_growth(
-    kernel: HasCompliance, compliance: Callable[[Array], Array], shortest: float
-) -> None:
-    """Refuse a kernel whose G(q) grows with q at the grid's shortest waves and beyond.
-
-    For short waves a solid is a half-space, with G(q) ∝ 1/q; for a bed of springs G(q) is constant.
-    G(q) of an incompressible layer grows with q down to waves about as long as the layer is thick.
-    These may be shorter than the grid's waves, so still shorter waves are checked. ``compliance``
-    is the checked call, ``shortest`` the largest wavenumber of the grid [rad/m].
-    """
-    if not shortest > 0:
-        return
-    with np.errstate(all="ignore"):
-        half, last = compliance(shortest * np.array([0.5, 1.0]))
-        if not last > half * (1 + _GROWTH):
-            return
-        q: Array = shortest * _SHORTER
-        values = compliance(q)
-    # A formula may overflow far beyond the grid.
-    known = int(np.argmin(np.append(np.isfinite(values), False)))
-    if known < 2 or values[known - 1] > values[known - 2] * (1 + _GROWTH):
-        raise PluginError(
-            f"{component_name(kernel)}: compliance(q) grows with q, from {half:.3g} m/Pa at "
-            f"{shortest / 2:.3g} rad/m to {values[known - 1]:.3g} m/Pa at {q[known - 1]:.3g} "
-            "rad/m; for short waves it has to fall, or to tend to a constant"
-        )

@@ -20,7 +20,6 @@ from pellicle.checks import component_name, read_only
 from pellicle.errors import ConfigError, shown
 from pellicle.grid import Grid
 
-from .closed_form import refuse_contradiction
 from .convolution import Workspace, convolve
 from .grid_checks import warn_of_cells
 from .hankel import Tabulated
@@ -31,7 +30,6 @@ from .kernel_calls import (
     checked_call,
     mean_compliance,
     positive_compliance,
-    refuse_growth,
 )
 
 Float = TypeVar("Float", np.float32, np.float64)
@@ -118,17 +116,12 @@ class Operator:
 
     def coarsened(self) -> Operator:
         """Return the operator of the same kernel on `Grid.coarsened`, as `scaled` as this one."""
-        # The kernel itself has been checked on the finest grid.
-        coarse = _operator(self.kernel, self.grid.coarsened()).scaled(self._factor)
+        coarse = make_operator(self.kernel, self.grid.coarsened()).scaled(self._factor)
         return coarse.with_spring(self._spring_compliance)
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa] of the kernel at q > 0, `scaled` as the operator is."""
         return checked_call(self.kernel, "compliance")(q) * self._factor
-
-    def parts(self) -> dict[str, object]:
-        """Return the attributes by name, to detect changes by comparison."""
-        return {**vars(self), "class": type(self), "symbol": self._symbol.double}
 
     def __call__(
         self,
@@ -206,7 +199,6 @@ class PeriodicOperator(Operator):
                 "positive or infinite; check the parameters, or the formula if the kernel is yours",
                 "kernel",
             )
-        refuse_growth(kernel, compliance, float(q.max()))
         self._symbol = _Symbol(symbol)
         self.padded = grid.shape
 
@@ -267,19 +259,9 @@ def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
     ConfigError
         The kernel cannot be used on this boundary, or its values are not finite and positive.
     PluginError
-        The kernel breaks its contract: it changes its argument, returns anything but an array of
-        real numbers of the argument's shape, has a compliance that grows towards short waves, or a
-        closed form that contradicts its compliance.
+        The kernel changes its argument, or returns anything but an array of real numbers of the
+        argument's shape.
     """
-    # A table is computed from the compliance, so it cannot contradict it.
-    is_table = isinstance(kernel, Tabulated)
-    if grid.boundary == "free" and isinstance(kernel, HasClosedForm) and not is_table:
-        with np.errstate(all="ignore"):
-            refuse_contradiction(kernel, grid)
-    return _operator(kernel, grid)
-
-
-def _operator(kernel: HasCompliance, grid: Grid) -> Operator:
     # Overflow gives infinite or NaN values, which are detected later.
     with np.errstate(all="ignore"):
         if grid.boundary == "periodic":

@@ -6,6 +6,7 @@ import inspect
 import json
 import pickle
 import tomllib
+from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any, get_args
 
@@ -13,6 +14,7 @@ import tomli_w
 from pydantic import ValidationError
 
 from pellicle.components import FAMILIES, Component
+from pellicle.components.rules import CHEAP, Case
 from pellicle.config.explain import refusal_of_example
 from pellicle.errors import ConfigError, PellicleError
 from pellicle.plugins import GROUP, checked_type, family_of, registry
@@ -23,13 +25,23 @@ from .rules import Rule, keep, require
 _LONGEST_SUMMARY = 100
 
 
-def check(component: object, family: str, rules: list[Rule], *arguments: Any) -> None:
-    """Check the rules of all components, then the family's own rules with ``arguments``.
+def check(
+    component: object,
+    family: str,
+    rules: list[Rule],
+    *arguments: Any,
+    cases: Iterable[Case] = (),
+) -> None:
+    """Check the rules of all components, then those of the family.
 
-    Rules that need an installed plugin come last, so that the others can be checked without it.
+    Of these, the rules that need no run are asked in each of the ``cases``, the others with
+    ``arguments``. Rules that need an installed plugin come last, so that the others can be checked
+    without it.
     """
     keep([is_an_instance], component, family)
     keep(RULES, component)
+    for case in cases:
+        keep(CHEAP[family], component, case)
     keep(rules, component, *arguments)
     keep([is_registered, goes_through_the_registry], component)
 

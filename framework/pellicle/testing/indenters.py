@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import get_args
-
 import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.checks import read_only, real_array
-from pellicle.components import Footprint, ForceCurve, HasForceCurve, Indenter
+from pellicle.components import ForceCurve, HasForceCurve, Indenter
+from pellicle.components.calls import profile_of
 from pellicle.errors import shown
 from pellicle.grid import Grid
 
@@ -41,31 +40,9 @@ def check_indenter(indenter: Indenter, grid: Grid | None = None) -> None:
     )
 
 
-def footprint_is_known(indenter: Indenter, grid: Grid) -> None:
-    """The footprint is "unbounded" or "domain", which decides how contact at the edge is judged."""
-    require(indenter.footprint in get_args(Footprint), repr(indenter.footprint))
-
-
-def profile_has_the_shape_of_the_grid(indenter: Indenter, grid: Grid) -> None:
-    """profile(x, y) of shapes (nx, 1) and (1, ny) is an array of floats of shape (nx, ny)."""
-    profile = indenter.profile(*grid.coordinates())
-    require(
-        isinstance(profile, np.ndarray)
-        and profile.dtype == np.float64
-        and profile.shape == grid.shape,
-        f"{type(profile).__name__} of shape {np.shape(profile)}, {getattr(profile, 'dtype', 'no')} "
-        f"dtype, for {grid.shape}",
-    )
-
-
-def profile_is_nowhere_positive(indenter: Indenter, grid: Grid) -> None:
-    """Heights are ≤ 0, finite or −inf, and at least one is finite."""
-    profile = indenter.profile(*grid.coordinates())
-    x, y = np.broadcast_arrays(*grid.coordinates())
-    for at in np.argwhere(~(profile <= 0)):
-        i, j = map(int, at)
-        raise AssertionError(f"{profile[i, j]:g} m at x = {x[i, j]:g} m, y = {y[i, j]:g} m")
-    require(np.isfinite(profile).any(), "no height is finite")
+def profile_is_accepted(indenter: Indenter, grid: Grid) -> None:
+    """A run accepts profile(x, y): float64 of the grid's shape, ≤ 0; and the footprint."""
+    profile_of(indenter, grid)
 
 
 def profile_is_pure(indenter: Indenter, grid: Grid) -> None:

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import wraps
 
 import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.components import Interaction, Kernel
-from pellicle.components.rules import interactions
-from pellicle.components.rules.interactions import Case
+from pellicle.components.rules import Case
 from pellicle.grid import Grid
 from pellicle.plugins import registry
 
 from .component import check
-from .rules import Rule, require, require_close
+from .rules import require, require_close, rules_of
 from .small_runs import solved
 
 _RADIUS = 1e-3
@@ -31,7 +29,7 @@ def check_interaction(interaction: Interaction) -> None:
     adhesion w on every grid; and a small run under a pulling force converges, for which
     ``active_set`` asks that the attraction is strongest at a closed gap and falls from there.
     """
-    check(interaction, "interaction", RULES)
+    check(interaction, "interaction", rules_of(__name__), cases=_cases(interaction))
 
 
 def run_under_a_pull_converges(interaction: Interaction) -> None:
@@ -48,21 +46,6 @@ def run_under_a_pull_converges(interaction: Interaction) -> None:
     require_close(data["force"], [0.1 * unit, -0.5 * unit], "the force [N]", relative=1e-4)
     areas = data["contact_area"].values
     require(bool(areas[0] > areas[1] > 0), f"the contact areas are {areas} m²")
-
-
-def _on_all_cases(rule: Callable[[Interaction, Case], str]) -> Rule:
-    """Return a rule that is asked on each of `_cases`."""
-
-    @wraps(rule)
-    def on_all(interaction: Interaction) -> None:
-        for case in _cases(interaction):
-            if broken := rule(interaction, case):
-                raise AssertionError(f"{broken}\n{case}")
-
-    return on_all
-
-
-RULES: list[Rule] = [*map(_on_all_cases, interactions.RULES), run_under_a_pull_converges]
 
 
 def _cases(interaction: Interaction) -> Iterator[Case]:

@@ -9,7 +9,6 @@ from typing import Any
 from pellicle.components import Force, Prescription, Search, Setting, Solver
 from pellicle.components.calls import (
     check_value,
-    check_variables,
     report_of,
     solution_of,
     target_of,
@@ -88,7 +87,6 @@ def _values(prescription: Prescription, candidates: Sequence[float]) -> list[flo
 
 def report_is_as_declared(prescription: Prescription, values: Sequence[float]) -> None:
     """report() returns numbers under the names of `variables`, the same in a second call."""
-    check_variables(prescription)
     setting, steps, _ = _reference_steps()
     for step in steps:
         report = report_of(prescription, setting, step)

@@ -10,6 +10,7 @@ import operator
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from decimal import Decimal
+from functools import cached_property
 from numbers import Real
 from typing import TYPE_CHECKING, Annotated, Any, Final, get_args
 
@@ -95,8 +96,9 @@ class Quantity:
         number = self._in_si(value)
         if not math.isfinite(number):
             raise ValueError(f"{shown(value)} is not finite; give {self._wanted()}")
-        if not all(holds(number, bound) for _, _, holds, bound in self._limits()):
-            raise ValueError(f"{shown(value)} is not allowed; give {self._wanted()}{self.hint}")
+        for _, _, holds, bound in self._limits:
+            if not holds(number, bound):
+                raise ValueError(f"{shown(value)} is not allowed; give {self._wanted()}{self.hint}")
         if number and not 1 / LARGEST < abs(number) < LARGEST:
             raise ValueError(
                 f"{shown(value)} is too large or too near 0 to compute with; check the unit"
@@ -149,6 +151,7 @@ class Quantity:
         pressure = int(dimensions.get("[mass]", 0))
         return pressure, int(dimensions.get("[length]", 0)) + pressure
 
+    @cached_property
     def _limits(self) -> list[tuple[str, str, Callable[[float, float], bool], float]]:
         bounds = self.above, self.at_least, self.below, self.at_most
         return [(*limit, b) for limit, b in zip(_LIMITS, bounds, strict=True) if b is not None]
@@ -156,7 +159,7 @@ class Quantity:
     @property
     def bounds(self) -> list[str]:
         """The bounds as text, e.g. ``["> 0", "≤ 0.5"]``."""
-        return [f"{sign} {bound:g}" for sign, _, _, bound in self._limits()]
+        return [f"{sign} {bound:g}" for sign, _, _, bound in self._limits]
 
     @property
     def example(self) -> str | float:
@@ -186,7 +189,7 @@ class Quantity:
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
-        number = {"type": "number"} | {key: bound for _, key, _, bound in self._limits()}
+        number = {"type": "number"} | {key: bound for _, key, _, bound in self._limits}
         if self.unit == "1":
             return number
         text: dict[str, Any] = {"type": "string", "pattern": r"^\s*[-+]?[0-9.].*[A-Za-zµ°]"}

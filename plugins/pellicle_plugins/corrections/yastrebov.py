@@ -18,6 +18,7 @@ class Yastrebov(AreaCorrection):
     model_config = ConfigDict(title="Yastrebov")
 
     type: Literal["yastrebov"] = "yastrebov"
+    examples = ({},)
 
     def area(self, contact: Mask, spacing: tuple[float, float]) -> float:
         """Return A − (π − 1 + ln 2)/24 · S·Δ [m²].

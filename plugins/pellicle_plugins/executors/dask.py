@@ -21,6 +21,7 @@ class Dask(Executor):
     """
 
     type: Literal["dask"] = "dask"
+    examples = ({"address": "tcp://127.0.0.1:8786"},)
     address: Annotated[
         str,
         Field(

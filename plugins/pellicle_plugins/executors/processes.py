@@ -28,6 +28,7 @@ class Processes(Executor):
     """
 
     type: Literal["processes"] = "processes"
+    examples = ({"workers": 2},)
     workers: Annotated[
         Workers | None,
         Field(description="number of processes; if absent, enough to use all available cores"),

@@ -15,6 +15,7 @@ class Serial(Executor):
     """One run after the other, in this process."""
 
     type: Literal["serial"] = "serial"
+    examples = ({"threads": 1},)
 
     def map(
         self, work: Work[AnyTask, Outcome], tasks: Sequence[AnyTask], report: Report[AnyTask]

@@ -21,6 +21,7 @@ class Cone(Axisymmetric):
     """Cone with its tip down."""
 
     type: Literal["cone"] = "cone"
+    examples = ({"half_angle": "70 degree"},)
     half_angle: Annotated[
         float,
         Quantity("rad", above=0, below=pi / 2),

@@ -20,6 +20,7 @@ class FlatPunch(Axisymmetric):
     """Flat-ended circular cylinder of the cells whose centres lie under it."""
 
     type: Literal["flat_punch"] = "flat_punch"
+    examples = ({"radius": "0.3 mm"},)
     radius: Annotated[Length, Field(description="radius of the flat end [m]")]
 
     def profile(self, x: Array, y: Array) -> Array:

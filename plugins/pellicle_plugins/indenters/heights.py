@@ -35,6 +35,7 @@ class Heights(FromHeights):
     """
 
     type: Literal["heights"] = "heights"
+    examples = ({"path": "heights.txt", "unit": "1 um"},)
     path: Annotated[
         InputPath | None,
         Field(

@@ -21,6 +21,7 @@ class Paraboloid(Axisymmetric):
     """Paraboloid of revolution, as in the theory of Hertz: the shallow limit of a sphere."""
 
     type: Literal["paraboloid"] = "paraboloid"
+    examples = ({"radius": "1 mm"},)
     radius: Annotated[Length, Field(description="radius of curvature R at the tip [m]")]
 
     def profile(self, x: Array, y: Array) -> Array:

@@ -15,6 +15,7 @@ class Quadric(Indenter):
     """Paraboloid with different radii of curvature along x and y."""
 
     type: Literal["quadric"] = "quadric"
+    examples = ({"radius_x": "1 mm", "radius_y": "2 mm"},)
     radius_x: Annotated[
         Length,
         Field(title="radius along x", description="radius of curvature in the x–z plane [m]"),

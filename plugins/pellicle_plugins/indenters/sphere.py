@@ -20,6 +20,7 @@ class Sphere(Axisymmetric):
     """Sphere with its exact profile up to its equator."""
 
     type: Literal["sphere"] = "sphere"
+    examples = ({"radius": "0.4 mm"},)
     radius: Annotated[Length, Field(description="radius R [m]")]
 
     def profile(self, x: Array, y: Array) -> Array:

@@ -22,6 +22,14 @@ class Sum(Indenter):
     """
 
     type: Literal["sum"] = "sum"
+    examples = (
+        {
+            "parts": [
+                {"type": "sphere", "radius": "1 mm"},
+                {"type": "quadric", "radius_x": "2 mm", "radius_y": "4 mm"},
+            ]
+        },
+    )
     parts: Annotated[
         tuple[Annotated[Indenter, FromRegistry()], ...],
         Field(

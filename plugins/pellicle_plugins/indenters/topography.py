@@ -44,6 +44,7 @@ class Topography(FromHeights):
     libraries: ClassVar[tuple[str, ...]] = ("SurfaceTopography",)
 
     type: Literal["topography"] = "topography"
+    examples = ({"path": "patch.x3p", "fill": 0.01},)
     path: Annotated[
         InputPath,
         Field(

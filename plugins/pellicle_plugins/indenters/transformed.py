@@ -49,6 +49,7 @@ class Shifted(Transformed):
     """Another indenter moved sideways, off the centre of the domain."""
 
     type: Literal["shifted"] = "shifted"
+    examples = ({"part": {"type": "paraboloid", "radius": "1 mm"}, "x": "0.1 mm", "y": "-0.2 mm"},)
     x: Annotated[
         float, Quantity("m"), Field(title="shift along x", description="shift along x [m]")
     ] = 0.0
@@ -65,6 +66,9 @@ class Rotated(Transformed):
     """Another indenter rotated about the vertical through the centre of the domain."""
 
     type: Literal["rotated"] = "rotated"
+    examples = (
+        {"part": {"type": "quadric", "radius_x": "1 mm", "radius_y": "2 mm"}, "angle": "30 degree"},
+    )
     angle: Annotated[
         float,
         Quantity("rad"),
@@ -81,6 +85,9 @@ class Scaled(Transformed):
     """Another indenter with its heights multiplied by a factor."""
 
     type: Literal["scaled"] = "scaled"
+    examples = (
+        {"part": {"type": "heights", "path": "heights.txt", "unit": "1 um"}, "factor": 0.5},
+    )
     moves: ClassVar[bool] = False
     factor: Annotated[
         float,

@@ -39,6 +39,7 @@ class Dugdale(Adhesive):
     _SHAPE: ClassVar[float] = 1.0
 
     type: Literal["dugdale"] = "dugdale"
+    examples = ({"work_of_adhesion": "50 mJ/m^2", "range": "2 um"},)
 
     def energy(self, gap: Array) -> Array:
         """Return γ(g) = −σ₀ (h₀ − g) [J/m²] up to the range h₀."""

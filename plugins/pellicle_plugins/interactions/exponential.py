@@ -19,6 +19,7 @@ class Exponential(Interaction):
     """Energy −w e^(−g/range), smooth for every gap; the strength is w over the range."""
 
     type: Literal["exponential"] = "exponential"
+    examples = ({"work_of_adhesion": "50 mJ/m^2", "range": "1 um"},)
     work_of_adhesion: Annotated[
         WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m2]")
     ]

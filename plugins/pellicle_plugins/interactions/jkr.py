@@ -41,6 +41,7 @@ class JKR(Interaction):
     least_cells: ClassVar[float] = 1.25
 
     type: Literal["jkr"] = "jkr"
+    examples = ({"work_of_adhesion": "50 mJ/m^2"},)
     work_of_adhesion: Annotated[
         WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m2]")
     ]

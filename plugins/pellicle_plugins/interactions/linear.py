@@ -22,6 +22,7 @@ class Linear(Adhesive):
     _SHAPE: ClassVar[float] = 0.5
 
     type: Literal["linear"] = "linear"
+    examples = ({"work_of_adhesion": "50 mJ/m^2", "strength": "20 kPa"},)
 
     def energy(self, gap: Array) -> Array:
         """Return γ(g) = −w (1 − g/g₀)² [J/m²] up to the range g₀."""

@@ -21,6 +21,7 @@ class BendingSkin(Skin, ElasticSolid):
     """
 
     type: Literal["bending_skin"] = "bending_skin"
+    examples = ({"reduced_modulus": 10000.0, "tension": "0.1 N/m", "bending": "100 pN*m"},)
     bending: Annotated[
         BendingStiffness,
         Field(

@@ -20,6 +20,17 @@ class Coated(Skin, KernelOf):
     """
 
     type: Literal["coated"] = "coated"
+    examples = (
+        {
+            "tension": "0.2 N/m",
+            "substrate": {
+                "type": "bonded_layer",
+                "youngs_modulus": "10 kPa",
+                "poissons_ratio": 0.4,
+                "thickness": "0.1 mm",
+            },
+        },
+    )
     substrate: Annotated[
         Kernel,
         FromRegistry(),

@@ -49,6 +49,7 @@ class BondedLayer(ElasticLayer):
     """
 
     type: Literal["bonded_layer"] = "bonded_layer"
+    examples = ({"reduced_modulus": "10 kPa", "poissons_ratio": 0.5, "thickness": "0.2 mm"},)
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa] of a layer on a rigid base without slip; Hayes et al. 1972.
@@ -73,6 +74,7 @@ class FrictionlessLayer(ElasticLayer):
     """
 
     type: Literal["frictionless_layer"] = "frictionless_layer"
+    examples = ({"youngs_modulus": "9 kPa", "poissons_ratio": 0.3, "thickness": "0.1 mm"},)
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa] of a layer on a smooth rigid base; Johnson 1985, section 5.8.

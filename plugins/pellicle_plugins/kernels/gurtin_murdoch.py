@@ -25,6 +25,14 @@ class GurtinMurdoch(Skin, ElasticConstants):
     model_config = ConfigDict(title="Gurtin–Murdoch surface")
 
     type: Literal["gurtin_murdoch"] = "gurtin_murdoch"
+    examples = (
+        {
+            "youngs_modulus": "9 kPa",
+            "poissons_ratio": 0.3,
+            "surface_stiffness": "2 N/m",
+            "tension": "0.5 N/m",
+        },
+    )
     surface_stiffness: Annotated[
         Tension, Field(description="stiffness κ_s = λ_s + 2μ_s of the surface in its plane [N/m]")
     ]

@@ -18,6 +18,7 @@ class HalfSpace(ElasticSolid):
     model_config = ConfigDict(title="half-space")
 
     type: Literal["half_space"] = "half_space"
+    examples = ({"reduced_modulus": "10 kPa"},)
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) = 2/(E* q) [m/Pa]; Johnson 1985, section 13.2."""

@@ -41,6 +41,15 @@ class Layered(Kernel):
     """
 
     type: Literal["layered"] = "layered"
+    examples = (
+        {
+            "layers": [
+                {"youngs_modulus": "1 MPa", "poissons_ratio": 0.3, "thickness": "5 um"},
+                {"reduced_modulus": "10 kPa", "poissons_ratio": 0.5, "thickness": "0.1 mm"},
+            ],
+            "substrate": {"youngs_modulus": "100 kPa", "poissons_ratio": 0.4},
+        },
+    )
     layers: Annotated[
         tuple[Layer, ...],
         Field(

@@ -95,6 +95,12 @@ class Viscoelastic(KernelOf):
 
     substrate_field: ClassVar[str] = "solid"
     type: Literal["viscoelastic"] = "viscoelastic"
+    examples = (
+        {
+            "solid": {"type": "half_space", "reduced_modulus": "10 kPa"},
+            "relaxation": [{"fraction": 0.5, "time": "1 s"}, {"fraction": 0.3, "time": "1 min"}],
+        },
+    )
     solid: Annotated[
         Kernel,
         FromRegistry(),

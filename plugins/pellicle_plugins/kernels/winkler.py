@@ -18,6 +18,7 @@ class Winkler(Kernel):
     model_config = ConfigDict(title="Winkler foundation")
 
     type: Literal["winkler"] = "winkler"
+    examples = ({"foundation": "100 Pa/um"},)
     foundation: Annotated[
         FoundationStiffness,
         Field(

@@ -73,6 +73,7 @@ class AdhesiveCurve(TableFigure):
     """
 
     type: Literal["adhesive_curve"] = "adhesive_curve"
+    examples = ({"work_of_adhesion": "50 mJ/m^2"},)
     work_of_adhesion: Annotated[
         float,
         Quantity("J/m2", above=0),

@@ -19,6 +19,7 @@ class Csv(Output):
     """Table with one row for each step; units in the header."""
 
     type: Literal["csv"] = "csv"
+    examples = ({},)
     scope: ClassVar[Literal["run"]] = "run"
     shares_stem: ClassVar[bool] = True
 

@@ -88,6 +88,17 @@ class Curves(XYFigure):
     """
 
     type: Literal["curves"] = "curves"
+    examples = (
+        {
+            "x": "depth / indenter.radius",
+            "y": ["contact_area", "contact_area_yastrebov"],
+            "series": ["counted", "corrected"],
+            "log": ["x"],
+            "reference": "axisymmetric",
+            "published": [{"label": "by hand", "x": [0.005], "y": [2e-08]}],
+            "formats": ["png", "svg"],
+        },
+    )
     x: Annotated[str, Field(description="expression for the horizontal axis")] = "depth"
     y: Annotated[
         _Texts, Field(min_length=1, description="expression, or several, for the vertical axis")

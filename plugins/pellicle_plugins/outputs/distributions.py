@@ -37,6 +37,7 @@ class Distributions(TableFigure):
     """
 
     type: Literal["distributions"] = "distributions"
+    examples = ({"bins": 10, "log": ["y"]},)
     bins: Annotated[int, Field(ge=1, description="number of bins, from 0 to the highest")] = 50
     log: Log = ()
 

@@ -17,6 +17,7 @@ class Figures(Output):
     """Pressure map, profiles through the centre, force and area curves, also over time."""
 
     type: Literal["figures"] = "figures"
+    examples = ({},)
     shares_stem: ClassVar[bool] = True
     formats: Formats = ("png",)
     style: StyleField = FigureStyle()

@@ -70,6 +70,7 @@ class Html(Output):
     """
 
     type: Literal["html"] = "html"
+    examples = ({"points": 8, "frames": 1},)
     shares_stem: ClassVar[bool] = True
     points: Annotated[
         int,

@@ -42,6 +42,7 @@ class Maps(TableFigure):
     numbers: ClassVar[bool] = False
 
     type: Literal["maps"] = "maps"
+    examples = ({"field": "displacement - depth - gap", "name": "indenter"},)
     field: Annotated[str, Field(description="expression for what is drawn")] = "pressure"
     field_label: Annotated[str | None, Field(description="label of the colours")] = None
 

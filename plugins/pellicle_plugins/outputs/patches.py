@@ -38,6 +38,7 @@ class Patches(TableFigure):
     """
 
     type: Literal["patches"] = "patches"
+    examples = ({"connectivity": 8, "by": "step"},)
     connectivity: Annotated[
         Literal[4, 8],
         Field(

@@ -35,6 +35,7 @@ class Profiles(XYFigure):
     """
 
     type: Literal["profiles"] = "profiles"
+    examples = ({"by": "step", "label": "{depth * 1e6} µm", "reference": "axisymmetric"},)
     along: Annotated[Literal["x", "y"], Field(description="direction of the line")] = "x"
     x: Annotated[
         str | None, Field(description="expression for the horizontal axis; the position if absent")

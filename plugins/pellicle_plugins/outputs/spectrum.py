@@ -35,6 +35,7 @@ class Spectrum(TableFigure):
     """
 
     type: Literal["spectrum"] = "spectrum"
+    examples = ({"by": "step", "label": "{depth * 1e6} µm"},)
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure and its numbers."""

@@ -34,6 +34,7 @@ class Vtk(Output):
     """
 
     type: Literal["vtk"] = "vtk"
+    examples = ({},)
 
     scope: ClassVar[Literal["run"]] = "run"
     shares_stem: ClassVar[bool] = True

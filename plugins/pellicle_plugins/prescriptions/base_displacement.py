@@ -15,6 +15,7 @@ class BaseDisplacement(Prescription):
     """Displacement z [m] of a base that holds the indenter by a spring: F = k (z − δ)."""
 
     type: Literal["base_displacement"] = "base_displacement"
+    examples = ({"spring_constant": "0.1 N/m"},)
     unit: ClassVar[str] = "m"
     at_least: ClassVar[float | None] = 0.0
     may_pull: ClassVar[bool] = True

@@ -21,6 +21,7 @@ class ContactArea(Prescription):
     """Area of the cells in contact [m²], attained to the nearest whole number of cells."""
 
     type: Literal["contact_area"] = "contact_area"
+    examples = ({},)
     unit: ClassVar[str] = "m2"
     at_least: ClassVar[float | None] = 0.0
     variables: ClassVar[tuple[Variable, ...]] = (RESIDUAL,)

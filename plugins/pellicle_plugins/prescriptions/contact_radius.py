@@ -17,6 +17,7 @@ class ContactRadius(Prescription):
     """Radius of the circle with the area of the cells in contact [m]."""
 
     type: Literal["contact_radius"] = "contact_radius"
+    examples = ({},)
     unit: ClassVar[str] = "m"
     at_least: ClassVar[float | None] = 0.0
     variables: ClassVar[tuple[Variable, ...]] = (RESIDUAL,)

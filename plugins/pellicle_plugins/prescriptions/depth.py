@@ -17,6 +17,7 @@ class IndenterDepth(Prescription):
     """
 
     type: Literal["depth"] = "depth"
+    examples = ({},)
     unit: ClassVar[str] = "m"
     at_least: ClassVar[float | None] = 0.0
     may_pull: ClassVar[bool] = True

@@ -11,6 +11,7 @@ class NormalForce(Prescription):
     """Force on the domain [N]."""
 
     type: Literal["force"] = "force"
+    examples = ({},)
     unit: ClassVar[str] = "N"
     at_least: ClassVar[float | None] = 0.0
     may_pull: ClassVar[bool] = True

@@ -14,6 +14,7 @@ class GapVolume(Prescription):
     """Volume of the gap within the domain [m³]: the sum of gaps times the area of a cell."""
 
     type: Literal["gap_volume"] = "gap_volume"
+    examples = ({},)
     unit: ClassVar[str] = "m3"
     at_least: ClassVar[float | None] = 0.0
     is_zero_at_rest: ClassVar[bool] = False

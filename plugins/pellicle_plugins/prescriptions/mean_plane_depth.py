@@ -16,6 +16,7 @@ class MeanPlaneDepth(Prescription):
     """Depth of the mean plane of the indenter's heights [m]; negative where the plane is above."""
 
     type: Literal["mean_plane_depth"] = "mean_plane_depth"
+    examples = ({},)
     unit: ClassVar[str] = "m"
     is_zero_at_rest: ClassVar[bool] = False
     variables: ClassVar[tuple[Variable, ...]] = (

@@ -11,6 +11,7 @@ class MeanPressure(Prescription):
     """Force over the area of a periodic domain [Pa]."""
 
     type: Literal["mean_pressure"] = "mean_pressure"
+    examples = ({},)
     unit: ClassVar[str] = "Pa"
     at_least: ClassVar[float | None] = 0.0
     may_pull: ClassVar[bool] = True

@@ -127,6 +127,7 @@ class ActiveSet(ScaledSolver):
     """
 
     type: Literal["active_set"] = "active_set"
+    examples = ({"tolerance": 1e-09},)
 
     def refuses(self, problem: Problem) -> str:
         """Return why it cannot solve with a law; "" for one that attracts, and less the wider."""

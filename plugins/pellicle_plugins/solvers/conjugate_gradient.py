@@ -78,6 +78,7 @@ class ConjugateGradient(ScaledSolver):
     """
 
     type: Literal["conjugate_gradient"] = "conjugate_gradient"
+    examples = ({"tolerance": 1e-09},)
 
     def begin(self, problem: Problem, start: State | None) -> _Iterate:
         """Return the iterate of the pressure of the last step, or of an initial guess."""

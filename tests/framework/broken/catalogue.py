@@ -19,6 +19,10 @@ class Refused:
         self.words, self.error = words, error
 
 
+RULE = Refused("breaks the rule", "required: ")
+"""The rule of the kit needs no run, so that a run asks it first."""
+
+
 class Marked(NamedTuple):
     """A run goes on, and the status of its last step has this code."""
 

@@ -83,18 +83,18 @@ def halting(f: Any, work: Any, tasks: Any, report: Any) -> Iterator[Any]:
         dead = dead or "ended the process" in str(outcome)
 
 
-ITSELF = Refused("it has to yield each of the tasks that it was given, the object itself")
+ITSELF = Refused("it has to yield each of the tasks that it was given once, the object itself")
 LOST = Refused("map() ended without 1 of 2 tasks, such as reduced modulus 10 kPa")
-AGAIN = Refused("yields reduced modulus 10 kPa twice; it has to yield each task once")
 NOTHING = Refused("with None; it has to yield it with what its work returned or raised")
 LISTED = Refused("map() returned [(RunTask(", "it has to be written with yield")
+ALONE = Refused("values to unpack", "executor 'broken' failed", error=ValueError)
 UNSEEN = Taken("two runs that differ give no trouble, and outcomes do not say whose they are")
 BROKEN: dict[str, Any] = {
     "each_task_comes_once_with_its_outcome": [
         Broken("leaves out a task", LOST, map=carries_out(lambda tasks: tasks[1:])),
-        Broken("again", AGAIN, map=carries_out(lambda tasks: [*tasks, *tasks[:1]])),
+        Broken("again", ITSELF, map=carries_out(lambda tasks: [*tasks, *tasks[:1]])),
         Broken("yields copies", ITSELF, map=yields(lambda task, out: (replace(task), out))),
-        Broken("yields outcomes alone", ITSELF, map=yields(lambda task, out: out)),
+        Broken("yields outcomes alone", ALONE, map=yields(lambda task, out: out)),
         Broken("loses outcomes", NOTHING, map=yields(lambda task, out: (task, None))),
         Broken("gives outcomes to other tasks", UNSEEN, map=crossing),
     ],

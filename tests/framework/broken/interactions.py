@@ -43,7 +43,10 @@ def opposite(f: Any, gap: Any) -> Any:
 
 
 CALLS = count(1)
-GIVEN, ALONE = Refused("changes what it is given"), Refused("among other gaps or when asked again")
+GIVEN, ALONE = (
+    Refused("read-only", error=ValueError),
+    Refused("among other gaps or when asked again"),
+)
 NAN = Refused("slope(gap) has values that are NaN")
 LEFT = Refused("energy(gap) is", "J/m² at the cutoff of", "m; it has to be 0 there")
 NO_DERIVATIVE = Refused("traction(gap) is not −dγ/dg of energy(gap)")

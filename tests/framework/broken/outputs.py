@@ -64,7 +64,7 @@ def empties(f: Any, runs: Any, stem: Any) -> Any:
     return (path,)
 
 
-CHANGES, OWN = Refused("changes what it is given"), Taken("each output gets data of its own")
+CHANGES, OWN = Refused("read-only", error=ValueError), Taken("each output gets data of its own")
 THERE = Refused("there is a file", "output 'broken' failed", error=RuntimeError)
 UNSEEN = Taken("a run does not look into the files of an output")
 PATHS = Refused("write(runs, stem) returned", "a tuple of pathlib.Path")

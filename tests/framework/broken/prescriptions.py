@@ -7,7 +7,6 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 import pellicle as pl
-from pellicle.variables import Variable
 from tests.framework.broken.catalogue import Broken, Family, Marked, Refused, Taken, base, run
 
 GapVolume: Any = base("prescription", "gap_volume")
@@ -43,12 +42,6 @@ def falling(f: Any, *given: Any) -> Any:
     return replace(search, increasing=not search.increasing)
 
 
-def variable(name: str, what: str) -> Broken:
-    """Return a prescription that reports a variable of this name."""
-    refused = Refused(f"variables has '{name}', which is {what}")
-    return Broken(f"variable '{name}'", refused, variables=(Variable(name, "m", "meaning"),))
-
-
 def target(fault: str, words: str, method: Any) -> Broken:
     """Return a prescription whose target a run refuses."""
     return Broken(fault, Refused("target(setting, 1.3e-13)", words), target=method)
@@ -62,8 +55,6 @@ BROKEN: dict[str, Any] = {
     "report_is_as_declared": [
         Broken("not declared", DECLARED, report=lambda f, *given: f(*given) | {"other": 1.0}),
         Broken("in words", Refused("a real number"), report=lambda *_: {"broken": "about 1 mm³"}),
-        *(variable(name, "the name of another variable") for name in ("force", "status", "x")),
-        *(variable(name, "not a name") for name in ("a/b", "")),
     ],
     "target_is_pure": [
         target("a number", "it has to return a pellicle.Depth, Force", lambda f, _, value: value),

@@ -98,8 +98,7 @@ def fill(f: Any, problem: Any, state: Any, monitor: Any) -> Any:
 
 of = pl.State.of_pressure
 STALLED = pl.Stop.STALLED
-READ_ONLY = Refused("changes what it is given", "read-only")
-CHANGES = Refused("solve() changes problem.operator", "leave its problem as it is")
+READ_ONLY = Refused("read-only", error=ValueError)
 NOT_SEEN = Taken("a run measures the residual without it, and counts nothing by it")
 OFF = Marked("CONTACT_RESIDUAL")
 BROKEN: dict[str, Any] = {
@@ -112,9 +111,7 @@ BROKEN: dict[str, Any] = {
             "a pressure", Refused("has to be one of a pellicle.State"), state=lambda s: s.pressure
         ),
         gives("ends without reason", Refused("stop None", "pellicle.Stop"), stop=lambda s: None),
-        harms("hidden operator", CHANGES, lambda p: object.__setattr__(p, "operator", None)),
         harms("softens the operator", READ_ONLY, lambda p: p.operator._symbol.double.fill(1.0)),
-        harms("symbol", CHANGES, lambda p: setattr(p.operator._symbol, "double", 1.0)),
         harms("lowers the profile", READ_ONLY, lambda problem: np.copyto(problem.profile, -1.0)),
     ],
     "start_belongs_to_the_caller": [

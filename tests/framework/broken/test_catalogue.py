@@ -9,10 +9,11 @@ import pytest
 
 import pellicle as pl
 from pellicle import testing
-from pellicle.testing import executors, interactions
+from pellicle.components.rules import CHEAP
+from pellicle.testing import executors
 from pellicle.testing.component import RULES
 from pellicle.testing.rules import rules_of
-from tests.framework.broken.catalogue import Broken, Refused, Taken, make
+from tests.framework.broken.catalogue import RULE, Broken, Refused, Taken, make
 from tests.framework.broken.corrections import CORRECTIONS
 from tests.framework.broken.executors import EXECUTORS
 from tests.framework.broken.general import GENERAL
@@ -84,7 +85,8 @@ def test_run(
             with pytest.raises(said.error) as caught:
                 family.uses[use](component, tmp_path / use)
             text = " ".join([str(caught.value), *getattr(caught.value, "__notes__", ())])
-            for word in (f"{component.family} 'broken'", *said.words):
+            by_rule = [f"the rule {rule}: "] if said is RULE else []
+            for word in (f"{component.family} 'broken'", *said.words, *by_rule):
                 assert word in text
             continue
         with warnings.catch_warnings():
@@ -96,9 +98,9 @@ def test_run(
 @each_family
 def test_each_rule_refuses_one(name: str) -> None:
     """No rule could be dropped, or say yes to everything, without a test that fails."""
-    of_family = {"component": RULES, "interaction": interactions.RULES}
-    rules = of_family.get(name) or rules_of(f"pellicle.testing.{name}s")
-    assert FAMILIES[name].broken.keys() - {"is_registered"} == {rule.__name__ for rule in rules}
+    rules = RULES if name == "component" else rules_of(f"pellicle.testing.{name}s")
+    names = {rule.__name__ for rule in (*rules, *CHEAP.get(name, ()))}
+    assert FAMILIES[name].broken.keys() - {"is_registered"} == names
 
 
 @each_family

@@ -13,14 +13,16 @@ import pytest
 
 import pellicle as pl
 from pellicle import testing
+from pellicle.components import Variable
 from pellicle.config import explain
-from pellicle.plugins import registry
+from pellicle.plugins import checked_type, registry
 from pellicle.testing import component as component_rules
 from tests.framework.broken.catalogue import GRID, PARTS, Broken, Taken, make, run
 from tests.framework.broken.corrections import Correction
 from tests.framework.broken.executors import EXECUTORS, Executor
 from tests.framework.broken.general import Tied, TwoFaced
 from tests.framework.broken.interactions import INTERACTIONS
+from tests.framework.broken.kernels import Kernel
 from tests.framework.broken.outputs import Output
 from tests.framework.broken.prescriptions import Volume
 from tests.framework.broken.solvers import Solver
@@ -108,6 +110,20 @@ def test_a_thin_incompressible_layer_may_yield_more_to_shorter_waves(thickness: 
     assert pl.displacement(np.eye(8), kernel=kernel, grid=grid).max() > 0
 
 
+class Softening(Kernel):
+    """Half-space whose closed form is that of another."""
+
+    def radial_primitive(self, r: Any) -> Any:
+        return 1.01 * super().radial_primitive(r)
+
+
+def test_a_substrate_of_others_is_asked() -> None:
+    """A stranger's kernel is asked for its rules inside one of ours too, and ours is not blamed."""
+    coated = {"type": "coated", "tension": 0.1, "substrate": Softening(reduced_modulus=1e4)}
+    with pytest.raises(pl.PluginError, match="kernel 'broken' breaks the rule primitive_is_the"):
+        pl.run(STEP | {"kernel": coated}, progress=False)
+
+
 @pytest.mark.filterwarnings("ignore::pellicle.ConvergenceWarning")
 def test_a_slope_need_not_be_given() -> None:
     """The one that is measured keeps the contract, and a run takes it."""
@@ -134,6 +150,20 @@ def test_a_solver_that_uses_its_memory_again_changes_no_earlier_step() -> None:
         for solver in (Thrifty(tolerance=1e-6), Solver(tolerance=1e-6))
     )
     np.testing.assert_array_equal(thrifty, plain)
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        *((name, "the name of another variable") for name in ("force", "status", "x")),
+        *((name, "not a name") for name in ("a/b", "")),
+    ],
+)
+def test_a_variable_has_a_name_of_its_own(name: str, reason: str) -> None:
+    """Registration refuses a prescription that reports what a result cannot hold."""
+    members = {"__doc__": "V.", "__module__": __name__, "variables": (Variable(name, "m", "it"),)}
+    with pytest.raises(pl.PluginError, match=f"variables has '{name}', which is {reason}"):
+        checked_type(type("Reporting", (Volume,), members))
 
 
 class NoType(pl.AreaCorrection):

@@ -37,7 +37,7 @@ POWER_LAW = relaxing(
     power_law={"exponent": 0.2, "time": 1.0, "shortest": 0.01, "longest": 100.0},
 )
 YASTREBOV = [{"type": "yastrebov"}]
-HEIGHTS = str(Path(__file__).parents[2] / "contracts" / "heights.txt")
+HEIGHTS = str(Path(__file__).parents[2] / "data" / "heights.txt")
 
 
 def free(points: int, size: float = 5e-4) -> dict[str, Any]:

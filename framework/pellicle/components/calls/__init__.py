@@ -8,14 +8,13 @@ from .correction import corrected_area
 from .indenter import profile_of
 from .kernel import branches_of, instantaneous
 from .output import files_of, require_files
-from .prescription import check_value, check_variables, report_of, target_of
+from .prescription import check_value, report_of, target_of
 from .solver import check_solver, response_of, solution_of
 
 __all__ = [
     "branches_of",
     "check_solver",
     "check_value",
-    "check_variables",
     "corrected_area",
     "files_of",
     "instantaneous",

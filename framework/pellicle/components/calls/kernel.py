@@ -16,7 +16,10 @@ _ROUNDING = 1e-12
 def branches_of(kernel: Kernel) -> tuple[Branch, ...]:
     """Return the branches of a kernel that relaxes; none of one that is elastic."""
     with errors_attributed_to(kernel):
-        value = tuple(Branch(*branch) for branch in kernel.branches())
+        value = kernel.branches()
+        if not value:
+            return ()
+        value = tuple(Branch(*branch) for branch in value)
     branches = tuple(
         Branch(*(real_number(kernel, f"branches() {name}", v) for name, v in b._asdict().items()))
         for b in value

@@ -1,4 +1,4 @@
-"""Calls of a prescription: its check of a value, its target and its variables."""
+"""Calls of a prescription: its check of a value, its target and its report."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from pellicle.components.prescription import Prescription, Search, Setting
 from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.problem import Depth, Force
 from pellicle.errors import ConfigError, PluginError, shown
-from pellicle.variables import COORDINATES, VARIABLES
 
 
 def check_value(prescription: Prescription, setting: Setting, value: float, field: str) -> None:
@@ -25,19 +24,6 @@ def check_value(prescription: Prescription, setting: Setting, value: float, fiel
     except ConfigError as error:
         named = any(problem.field for problem in error.problems)
         raise (error if named else error.within(field)) from None
-
-
-def check_variables(prescription: Prescription) -> None:
-    """Refuse variables that would replace others of a result, or have no valid name in Python."""
-    reserved = {*VARIABLES, *COORDINATES}
-    for variable in prescription.variables:
-        name = variable.name
-        if name in reserved or not name.isidentifier():
-            reason = "the name of another variable" if name in reserved else "not a name"
-            raise PluginError(
-                f"{component_name(prescription)}: variables has {shown(name)}, which is {reason}; "
-                "choose one of letters, digits and _ that no result has yet"
-            )
 
 
 def target_of(prescription: Prescription, setting: Setting, value: float) -> Depth | Force | Search:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.components.checked_law import law_of
 from pellicle.components.interaction import Interaction
-from pellicle.components.kernel import Kernel
 from pellicle.contact.law import Law
-from pellicle.grid import Grid
+
+from .rule import Case
 
 # Gaps at which a law is asked, and the error of the energy by the trapezoidal rule, over the
 # greatest energy. A law that drops within one of these gaps still passes.
@@ -24,14 +24,6 @@ _SLOPE_ERROR: Final = 1e-2
 _KINKS: Final = 0.1
 # Relative rounding error of values.
 _ROUNDING: Final = 1e-12
-
-
-class Case(NamedTuple):
-    """What a rule is asked on."""
-
-    grid: Grid
-    kernel: Kernel | None = None
-    """Of the solid; None for the interaction as it is, without a grid."""
 
 
 def values_are_finite_and_of_their_gap_alone(interaction: Interaction, case: Case) -> str:
@@ -111,15 +103,6 @@ def resolved_keeps_the_work_of_adhesion(interaction: Interaction, case: Case) ->
         f"resolved(kernel, grid) returns a law of −γ(0) = {resolved:g} J/m²; it has to have that "
         f"of the interaction, {at_rest:g} J/m²"
     )
-
-
-RULES: Final = (
-    values_are_finite_and_of_their_gap_alone,
-    energy_ends_at_the_cutoff,
-    traction_is_the_derivative_of_the_energy,
-    slope_is_the_derivative_of_the_traction,
-    resolved_keeps_the_work_of_adhesion,
-)
 
 
 def _law(interaction: Interaction, case: Case) -> Law:

@@ -1,0 +1,194 @@
+"""Rules of kernels: the compliance, its closed form and the operators agree."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from pellicle.arrays import Array
+from pellicle.components.calls.kernel import branches_of
+from pellicle.components.kernel import Kernel
+from pellicle.grid import Grid
+from pellicle.surface.kernel_calls import HasClosedForm, mean_compliance
+from pellicle.surface.operators import make_operator
+
+from .closed_form import contradiction_of_compliance, contradiction_of_primitive
+from .comparison import difference, not_pure, not_vectorised
+from .rule import Case
+
+# Relative rounding error of formulas that nearly cancel.
+_ROUNDING = 1e-9
+# Relative growth of G(q) with q that is more than rounding, and the factors on the grid's largest q
+# at which it is measured.
+_GROWTH = 1e-6
+_SHORTER = np.geomspace(1.0, 1e12, 13)
+_FORMS = ("greens_function", "radial_primitive")
+
+
+def _waves(grid: Grid, number: int = 24) -> Array:
+    """Return wavenumbers [rad/m] from the diagonal of the domain to that of a cell."""
+    return np.geomspace(1 / math.hypot(*grid.size), _shortest(grid), number)
+
+
+def _shortest(grid: Grid) -> float:
+    """Return the wavenumber [rad/m] of the shortest wave of a grid."""
+    return math.pi * math.hypot(*(1 / spacing for spacing in grid.spacing))
+
+
+def _lengths(grid: Grid) -> tuple[float, float]:
+    """Return the width of a cell and the diagonal of the domain [m]."""
+    return min(grid.spacing), math.hypot(*grid.size)
+
+
+def compliance_is_positive_and_finite(kernel: Kernel, case: Case) -> str:
+    """The compliance is positive and finite for every wave of a grid."""
+    q = _waves(case.grid, 200)
+    values = np.asarray(kernel.compliance(q.copy()))
+    bad = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
+    return f"compliance is {values[bad[0]]:g} m/Pa at q = {q[bad[0]]:g} rad/m" if bad.size else ""
+
+
+def compliance_is_vectorised(kernel: Kernel, case: Case) -> str:
+    """compliance(q) is a float array of the shape of q; each value depends on its own q only."""
+    return not_vectorised(kernel.compliance, _waves(case.grid), "compliance(q)", relative=_ROUNDING)
+
+
+def compliance_leaves_its_argument(kernel: Kernel, case: Case) -> str:
+    """A kernel is pure: it does not change q, and a second call returns the same."""
+    return not_pure(kernel.compliance, _waves(case.grid), "compliance(q)")
+
+
+def compliance_does_not_grow_for_short_waves(kernel: Kernel, case: Case) -> str:
+    """For short waves the compliance falls with q, or tends to a constant.
+
+    For short waves a solid is a half-space, with G(q) ∝ 1/q; for a bed of springs G(q) is constant.
+    G(q) of an incompressible layer grows with q down to waves about as long as the layer is thick.
+    These may be shorter than the grid's waves, so still shorter waves are checked.
+    """
+    shortest = _shortest(case.grid)
+    half, last = kernel.compliance(shortest * np.array([0.5, 1.0]))
+    if not last > half * (1 + _GROWTH):
+        return ""
+    q = shortest * _SHORTER
+    values = kernel.compliance(q)
+    # A formula may overflow far beyond the grid.
+    known = int(np.argmin(np.append(np.isfinite(values), False)))
+    if known >= 2 and values[known - 1] <= values[known - 2] * (1 + _GROWTH):
+        return ""
+    return (
+        f"compliance(q) grows from {half:.3g} m/Pa at {shortest / 2:.3g} rad/m to "
+        f"{values[known - 1]:.3g} m/Pa at {q[known - 1]:.3g} rad/m"
+    )
+
+
+def periodic_operator_is_the_compliance(kernel: Kernel, case: Case) -> str:
+    """A wave of pressure on a periodic grid displaces the surface by G(q) times the wave."""
+    grid = Grid(points=[32, 18], size=case.grid.size, boundary="periodic")
+    operator = make_operator(kernel, grid)
+    x, y = grid.coordinates()
+    for m, n in ((1, 0), (0, 3), (5, 2), (8, 4)):
+        qx, qy = 2 * np.pi * m / grid.size[0], 2 * np.pi * n / grid.size[1]
+        wave = np.cos(qx * x + qy * y + 0.3)
+        compliance = float(kernel.compliance(np.array([np.hypot(qx, qy)]))[0])
+        if differs := difference(
+            operator(wave),
+            compliance * wave,
+            f"the displacement [m] under a wave of 1 Pa, q = ({qx:g}, {qy:g}) rad/m,",
+            absolute=_ROUNDING * compliance,
+        ):
+            return differs
+    return ""
+
+
+def uniform_pressure_sinks_by_the_mean_compliance(kernel: Kernel, case: Case) -> str:
+    """On a periodic grid uniform pressure p displaces by p mean_compliance(), or 0 if that is ∞."""
+    grid = Grid(points=[6, 5], size=case.grid.size, boundary="periodic")
+    mean = mean_compliance(kernel)
+    expected = np.full(grid.shape, 3 * mean if np.isfinite(mean) else 0.0)
+    values = make_operator(kernel, grid)(np.full(grid.shape, 3.0))
+    return difference(values, expected, "the displacement [m] under 3 Pa", relative=_ROUNDING)
+
+
+def branches_have_shares_and_times(kernel: Kernel, case: Case) -> str:
+    """branches() returns pairs of a share > 0 and a time > 0, whose shares sum to at most 1."""
+    branches_of(kernel)
+    return ""
+
+
+def scaled_by_one_is_the_kernel(kernel: Kernel, case: Case) -> str:
+    """scaled(1) is elastic, with the compliance and the mean compliance of the kernel."""
+    elastic, q = kernel.scaled(1.0), _waves(case.grid)
+    if branches_of(elastic):
+        return f"scaled(1) has the branches {branches_of(elastic)}"
+    return difference(
+        elastic.compliance(q),
+        kernel.compliance(q),
+        "the compliance [m/Pa] of scaled(1)",
+        relative=_ROUNDING,
+    ) or difference(
+        mean_compliance(elastic),
+        mean_compliance(kernel),
+        "mean_compliance() [m/Pa] of scaled(1)",
+        relative=_ROUNDING,
+    )
+
+
+def scaled_stiffens_the_solid_alone(kernel: Kernel, case: Case) -> str:
+    """The stiffness of scaled(share) is 1/G + (share − 1)/G₀, with G₀ of without_skin()."""
+    q = _waves(case.grid)
+    whole, solid = 1 / kernel.compliance(q), 1 / kernel.without_skin().compliance(q)
+    for share in (0.01, 0.5, 3.0):
+        if differs := difference(
+            1 / kernel.scaled(share).compliance(q),
+            whole + (share - 1) * solid,
+            f"the stiffness [Pa/m] of scaled({share:g})",
+            relative=_ROUNDING,
+        ):
+            return differs
+    return ""
+
+
+def without_skin_has_no_skin(kernel: Kernel, case: Case) -> str:
+    """The solid without its skin relaxes as the kernel does, and has no skin to take off."""
+    solid, q = kernel.without_skin(), _waves(case.grid)
+    if branches_of(solid) != branches_of(kernel):
+        wrong = "relaxes as another kernel does" if branches_of(solid) else "does not relax"
+        return f"without_skin() {wrong}"
+    return difference(
+        solid.without_skin().compliance(q),
+        solid.compliance(q),
+        "the compliance [m/Pa] of without_skin().without_skin()",
+        relative=_ROUNDING,
+    )
+
+
+def closed_form_is_whole(kernel: Kernel, case: Case) -> str:
+    """A kernel has both of greens_function and radial_primitive, or neither."""
+    present = [name for name in _FORMS if hasattr(kernel, name)]
+    return f"{' '.join(present)} alone is defined" if len(present) == 1 else ""
+
+
+def closed_form_leaves_its_argument(kernel: Kernel, case: Case) -> str:
+    """greens_function(r) and radial_primitive(r) do not change r."""
+    r = np.geomspace(*_lengths(case.grid), 9)
+    methods = [(name, getattr(kernel, name)) for name in _FORMS if hasattr(kernel, name)]
+    return next(filter(None, (not_pure(method, r, f"{name}(r)") for name, method in methods)), "")
+
+
+def primitive_is_the_integral_of_the_closed_form(kernel: Kernel, case: Case) -> str:
+    """radial_primitive is 0 at r = 0 and grows by ∫ greens_function r dr."""
+    if not isinstance(kernel, HasClosedForm):
+        return ""
+    cell, size = _lengths(case.grid)
+    at_zero, at_cell = kernel.radial_primitive(np.array([0.0, cell]))
+    if not abs(at_zero) <= _ROUNDING * abs(at_cell):
+        return f"radial_primitive(0) is {at_zero:g} m³/N, and {at_cell:g} at r = {cell:g} m"
+    return contradiction_of_primitive(kernel, cell, size)
+
+
+def closed_form_is_the_transform_of_the_compliance(kernel: Kernel, case: Case) -> str:
+    """At the centre of a Gaussian pressure, radial_primitive and compliance agree."""
+    if not isinstance(kernel, HasClosedForm):
+        return ""
+    return contradiction_of_compliance(kernel, *_lengths(case.grid))
