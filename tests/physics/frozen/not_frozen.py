@@ -7,6 +7,7 @@ from typing import Final
 VARIABLES: Final = {
     "wall_time": "it is the machine's",
     "status": "a sentence; its code is frozen here, its words are in the snapshot of sentences",
+    "caveats": "a text of numbers to all digits; its gravest code is frozen here",
 }
 """Variables of a run."""
 
