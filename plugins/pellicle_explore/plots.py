@@ -11,7 +11,7 @@ from bokeh.plotting import figure
 
 import pellicle as pl
 from pellicle.arrays import Array
-from pellicle.show import edge_cells
+from pellicle.show import with_rim
 from pellicle.units import axis_unit
 
 from .measured import touch
@@ -27,9 +27,9 @@ class Plots:
         self._measured = measured
         self.share = touch(measured) if measured else 0.0
         self._per_depth = self._per_force = 1.0
-        self._cut, self._path, self._curve = cut, path, curve = [
+        self._cut, self._line, self._path, self._curve = cut, line, path, curve = [
             ColumnDataSource({name: [] for name in names.split()})
-            for names in ("x surface indenter pressure edge", "depth force", "depth force")
+            for names in ("x surface indenter", "x pressure", "depth force", "depth force")
         ]
         self.profile, self.pressure, self.force = [
             figure(height=height, sizing_mode="stretch_width", tools="pan,wheel_zoom,reset,save")
@@ -40,8 +40,7 @@ class Plots:
         surface = self.profile.line("x", "surface", source=cut, color=_BLUE, line_width=2)
         indenter = self.profile.line("x", "indenter", source=cut, color=_GREY, line_dash="dashed")
         _name_lines(self.profile, surface=surface, indenter=indenter)
-        self.pressure.line("x", "pressure", source=cut, color=_BLUE, line_width=2)
-        self.pressure.scatter("x", "edge", source=cut, color=_BLUE, size=4)
+        self.pressure.line("x", "pressure", source=line, color=_BLUE, line_width=2)
         computed = self.force.line("depth", "force", source=path, color=_BLUE, line_width=2)
         self.force.scatter("depth", "force", source=path, color=_BLUE, size=6)
         if measured is not None:
@@ -62,15 +61,15 @@ class Plots:
     def draw(self, frame: Frame) -> None:
         """Draw the load steps of a run, and a cut along x through its deepest point.
 
-        The cut is at the largest force. Cells at the edge of contact are dots: their pressure
-        depends on where it passes them.
+        The cut is at the largest force.
         """
         deepest = frame.largest["displacement"].max("x").argmax("y")
         cut = frame.largest.isel(y=int(deepest))
-        x, pressure, surface = cut["x"].values, cut["pressure"].values, -cut["displacement"].values
+        x, surface = cut["x"].values, -cut["displacement"].values
+        line = with_rim(cut) if cut["pressure"].values.min() >= 0 else cut
+        pressure = line["pressure"].values
         indenter = surface + np.maximum(cut["gap"].where(np.isfinite).values, 0.0)
         depth, force = frame.steps["depth"].values, frame.steps["force"].values
-        edge = edge_cells(pressure > 0) & bool(pressure.min() >= 0)
         per_x = _label("x", x, "m", self.profile.xaxis, self.pressure.xaxis)
         per_height = _label("height", np.append(surface, indenter), "m", self.profile.yaxis)
         per_pressure = _label("pressure", pressure, "Pa", self.pressure.yaxis)
@@ -80,9 +79,8 @@ class Plots:
             "x": x * per_x,
             "surface": surface * per_height,
             "indenter": indenter * per_height,
-            "pressure": np.where(edge, np.nan, pressure) * per_pressure,
-            "edge": np.where(edge, pressure, np.nan) * per_pressure,
         }
+        self._line.data = {"x": line["x"].values * per_x, "pressure": pressure * per_pressure}
         self._path.data = {"depth": depth * self._per_depth, "force": force * self._per_force}
         self.shift(self.share)
 

@@ -42,7 +42,7 @@ def plot(
 ) -> None:
     """Draw the figures of a result or of a study."""
     from pellicle.results.result import file_of_run, load
-    from pellicle.show.plotting import save_figures
+    from pellicle.show import figures, write_charts
     from pellicle.studies.runner import is_table, read
 
     chosen = [str(format_) for format_ in formats or [Format.PNG]]
@@ -53,5 +53,6 @@ def plot(
     else:
         file = file_of_run(results)
         shown, folder, name = load(file), file.parent, file.stem
-    for path in save_figures(shown, directory or folder, name, chosen):
+    drawn = ((f"-{suffix}", [figure]) for suffix, figure in figures(shown).items())
+    for path in write_charts(drawn, (directory or folder) / name, chosen):
         echo(f"wrote {path}")

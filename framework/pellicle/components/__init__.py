@@ -14,6 +14,15 @@ from pellicle.grid import shape_of_run as shape_of_run
 from pellicle.variables import Variable as Variable
 
 from .base import Component as Component
+from .charts import Axis as Axis
+from .charts import Chart as Chart
+from .charts import Column as Column
+from .charts import Fields as Fields
+from .charts import Look as Look
+from .charts import Panel as Panel
+from .charts import Series as Series
+from .charts import Shown as Shown
+from .charts import Table as Table
 from .correction import AreaCorrection as AreaCorrection
 from .executor import AnyTask as AnyTask
 from .executor import Executor as Executor

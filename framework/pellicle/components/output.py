@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from itertools import product
@@ -13,6 +12,7 @@ from pellicle.checks import component_name
 from pellicle.errors import ConfigError, PluginError, shown
 
 from .base import Component
+from .charts import Shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -93,12 +93,19 @@ class Output(Component):
         the last step on four cells.
         """
 
-    @abstractmethod
+    def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
+        """Yield what the output shows, each with a suffix of its file names, often ""."""
+        raise NotImplementedError(f"{type(self).__name__} has neither charts() nor write()")
+
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write files whose paths begin with ``stem``, such as ``f"{stem}.txt"``; return the paths.
 
-        Existing files of an earlier call are replaced.
+        Existing files of an earlier call are replaced. By default the figures and tables of
+        `charts` are written, as PNG and CSV.
         """
+        from pellicle.show import write_charts
+
+        return write_charts(self.charts(runs), stem)
 
     def step(self, record: xr.Dataset, stem: Path) -> None:
         """Receive a load step, with dimension ``step`` of length 1, as soon as it is solved.

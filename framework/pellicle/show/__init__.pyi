@@ -1,8 +1,8 @@
 __all__: list[str]
 
+from .drawing import draw as draw
 from .fields import pressure_map as pressure_map
 from .fields import profile as profile
-from .fields import show_field as show_field
 from .fields import without_round_off as without_round_off
 from .html import Block as Block
 from .html import Cell as Cell
@@ -14,22 +14,23 @@ from .html import Section as Section
 from .html import Table as Table
 from .html import Text as Text
 from .html import page as page
-from .lines import edge_cells as edge_cells
 from .maps import Field as Field
 from .maps import Frame as Frame
 from .maps import Maps as Maps
 from .maps import frame as frame
 from .maps import side as side
-from .plotting import FIGURES as FIGURES
-from .plotting import STUDY_FIGURES as STUDY_FIGURES
-from .plotting import area_force as area_force
-from .plotting import drawings as drawings
-from .plotting import force_depth as force_depth
-from .plotting import over_time as over_time
-from .plotting import save_figures as save_figures
-from .plotting import study_curves as study_curves
+from .presets import FIGURES as FIGURES
+from .presets import STUDY_FIGURES as STUDY_FIGURES
+from .presets import area_force as area_force
+from .presets import figures as figures
+from .presets import force_depth as force_depth
+from .presets import over_time as over_time
+from .presets import study_curves as study_curves
+from .rim import up_to_rim as up_to_rim
+from .rim import with_rim as with_rim
 from .saving import save_figure as save_figure
 from .saving import save_pages as save_pages
 from .saving import svg as svg
+from .saving import write_charts as write_charts
 from .style import LINES as LINES
 from .style import FigureStyle as FigureStyle

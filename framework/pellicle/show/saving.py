@@ -2,21 +2,68 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from pellicle.components.charts import Chart, Fields, Shown, Table
 from pellicle.files import atomic_write, for_document, storage_errors
 
+from .drawing import SIZE, draw, size_of
+from .numbers import table_of, write_csv
 from .style import FigureStyle, label_log_axes, lay_out
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-SIZE = 5.4, 4.2
-"""Width and height of a figure [inch], unless it needs more."""
+
+def write_charts(
+    shown: Iterable[tuple[str, Shown]],
+    stem: Path,
+    formats: Iterable[str] = ("png",),
+    style: FigureStyle | None = None,
+) -> tuple[Path, ...]:
+    """Write what an output shows, each under its suffix; return the files.
+
+    Charts and fields become figures in each format, tables CSV; bytes are written as they are, and
+    their suffix ends like a file name. The numbers of a chart are written beside it, unless there
+    is a table with its suffix.
+    """
+    parts = list(shown)
+    tables = {suffix for suffix, part in parts if isinstance(part, Table)}
+    files: list[Path] = []
+    for suffix, part in parts:
+        path = stem.with_name(f"{stem.name}{suffix}")
+        numbers = path.with_name(f"{path.name}.csv")
+        if isinstance(part, bytes):
+            with storage_errors(path):
+                path.write_bytes(part)
+            files.append(path)
+        elif isinstance(part, Table):
+            files.append(write_csv(part, numbers))
+        else:
+            fill, size = figure_of(part)
+            files += save_figure(fill, path, formats, size, style)
+            if isinstance(part, Chart) and suffix not in tables:
+                files.append(write_csv(table_of(part), numbers))
+    return tuple(files)
+
+
+def figure_of(
+    shown: Chart | Fields | Sequence[Chart | Fields],
+) -> tuple[Callable[[Figure], None], tuple[float, float]]:
+    """Return what fills a figure with charts and fields side by side, and its size [inch]."""
+    beside = [shown] if isinstance(shown, (Chart, Fields)) else shown
+
+    def fill(figure: Figure) -> None:
+        places: Any = [figure] if len(beside) == 1 else figure.subfigures(1, len(beside))
+        for place, part in zip(places, beside, strict=True):
+            draw(place, part)
+
+    sizes = [size_of(part) for part in beside]
+    return fill, (sum(width for width, _ in sizes), max(height for _, height in sizes))
 
 
 def save_figure(

@@ -3,28 +3,27 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Iterator
+from dataclasses import replace
 from math import inf
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
 
 from pellicle import analysis
 from pellicle.arrays import Array
-from pellicle.components import Runs
+from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
 from pellicle.errors import ConfigError
 from pellicle.results.result import Result
 from pellicle.results.shape import is_periodic
-from pellicle.show.style import colour, sparse_marker
-from pellicle.units import Quantity, axis_unit
+from pellicle.units import Quantity
 from pellicle_plugins.validation.adhesive_path import curve_of
 
-from .base import Label, TableFigure, set_scales, write_csv
+from .base import Label, TableFigure
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
 
 _HEADS = "curve", "contact_radius [m]", "depth [m]", "force [N]"
 _SUMMARY_HEADS = (
@@ -46,14 +45,13 @@ _STEEP = 0.3
 """Slope above which linear elasticity is beyond its range."""
 _LINE = 70
 """Letters of a line of text across the figure."""
-_MARKERS = {"pull-off": "o", "no load": "s", "last at fixed depth": "v"}
+_MARKERS = {"pull-off": 0, "no load": 1, "last at fixed depth": 4}
 
 
 class _Drawn(NamedTuple):
     """The path of a run and its adhesive curve, without points if the path has none."""
 
     name: Label
-    colour: Any
     path: xr.Dataset
     curve: analysis.AdhesiveCurve | None
     points: dict[str, analysis.AdhesiveContact]
@@ -90,20 +88,17 @@ class AdhesiveCurve(TableFigure):
         for *_, run in self.opened(runs):
             _refuse(run)
 
-    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
-        """Write the figure, the curve and its summary."""
-        paths, ordered = list(self.opened(runs)), self.is_ordered(runs)
-        drawn = [
-            self._drawn(name, colour(number, len(paths), ordered=ordered), run)
-            for number, (name, _, run) in enumerate(paths)
-        ]
-        files = self.save(lambda figure: self._fill(figure.add_subplot(), drawn), stem)
-        rows = (
+    def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
+        """Yield the curves, and the tables of their points and of their ends."""
+        drawn = [self._drawn(name, run) for name, _, run in self.opened(runs)]
+        yield "", self._chart(drawn, ordered=self.is_ordered(runs))
+        rows = [
             (d.name.key, *row)
             for d in drawn
             if d.curve
             for row in zip(d.curve.contact_radius, d.curve.depth, d.curve.force, strict=True)
-        )
+        ]
+        yield "", Table.of_rows(_HEADS, rows)
         summary = []
         for d in drawn:
             pull_off, zero_load, fixed_depth = d.points.values()
@@ -112,69 +107,55 @@ class AdhesiveCurve(TableFigure):
             summary.append(
                 (d.name.key, self.work_of_adhesion, *ends[0], *unloaded, *ends[1], d.status)
             )
-        return (
-            *files,
-            write_csv(stem, _HEADS, rows),
-            write_csv(stem.with_name(f"{stem.name}-summary"), _SUMMARY_HEADS, summary),
-        )
+        yield "-summary", Table.of_rows(_SUMMARY_HEADS, summary)
 
-    def _drawn(self, name: Label, hue: Any, run: xr.Dataset) -> _Drawn:
+    def _drawn(self, name: Label, run: xr.Dataset) -> _Drawn:
         _refuse(run)
         path = run.isel(step=run["converged"].values & (run["contact_area"].values > 0))
         try:
             curve = curve_of(path, self.work_of_adhesion)
         except ConfigError as error:
             unknown = analysis.AdhesiveContact(*np.full(3, np.nan))
-            return _Drawn(name, hue, path, None, dict.fromkeys(_MARKERS, unknown), str(error))
+            return _Drawn(name, path, None, dict.fromkeys(_MARKERS, unknown), str(error))
         contacts = curve.instability(), curve.at_zero_load(), curve.instability(inf)
         points = dict(zip(_MARKERS, contacts, strict=True))
-        return _Drawn(name, hue, path, curve, points, _status(curve, points, path))
+        return _Drawn(name, path, curve, points, _status(curve, points, path))
 
-    def _fill(self, axes: Axes, drawn: list[_Drawn]) -> None:
-        curves = [d.curve for d in drawn if d.curve is not None]
-        depths = [np.zeros(1), *(d.path["depth"].values for d in drawn), *(c.depth for c in curves)]
-        forces = [np.zeros(1), *(d.path["force"].values for d in drawn), *(c.force for c in curves)]
-        length, length_name = axis_unit(np.concatenate(depths), "m")
-        newton, newton_name = axis_unit(np.concatenate(forces), "N")
-        for d in drawn:
-            path = d.path["depth"].values * length, d.path["force"].values * newton
-            axes.plot(*path, "--", color=d.colour, linewidth=0.8)
-        for number, d in enumerate(drawn):
+    def _chart(self, drawn: list[_Drawn], *, ordered: bool) -> Chart:
+        series = list[Series]()
+        for hue, d in enumerate(drawn):
+            look, path = Look(hue, 1), (d.path["depth"].values, d.path["force"].values)
+            series.append(Series(*path, look=look, role="reference"))
             if d.curve is None:
                 continue
             end = d.points["last at fixed depth"].contact_radius
             # Without that point on the curve all of it is stable at a fixed depth.
             stable = ~(d.curve.contact_radius < end)
-            x, y = d.curve.depth * length, d.curve.force * newton
-            shared = {"color": d.colour, "linewidth": 1.4}
-            marked = sparse_marker(number) if len(drawn) > 1 else {}
-            axes.plot(x[stable], y[stable], "-", label=d.name.words or None, **shared, **marked)
-            axes.plot(x[~stable], y[~stable], ":", **shared)
+            x, y = d.curve.depth, d.curve.force
+            smooth = Look(hue, 0, hue if len(drawn) > 1 else None, sparse=True)
+            series.append(Series(x[stable], y[stable], legend=d.name.words, look=smooth))
+            series.append(Series(x[~stable], y[~stable], look=Look(hue, 3)))
             for mark, contact in d.points.items():
-                at = contact.depth * length, contact.force * newton
-                axes.plot(*at, _MARKERS[mark], color=d.colour, markersize=5, mfc="white")
-        hue = "0.4" if len(drawn) != 1 else drawn[0].colour
-        if curves:
-            axes.plot([], [], "-", color=hue, linewidth=1.4, label="with adhesion")
-            axes.plot([], [], ":", color=hue, linewidth=1.4, label="unstable at fixed depth")
-            for mark, marker in _MARKERS.items():
-                axes.plot([], [], marker, color=hue, markersize=5, mfc="white", label=mark)
-        axes.plot([], [], "--", color=hue, linewidth=0.8, label="without adhesion")
-        axes.axhline(0.0, color="0.6", linewidth=0.6)
-        axes.set(xlabel=f"depth [{length_name}]", ylabel=f"force [{newton_name}]", title=self.title)
-        set_scales(axes, ())
+                at = np.array([contact.depth]), np.array([contact.force])
+                series.append(Series(*at, look=Look(hue, None, _MARKERS[mark])))
+        curves = [d.curve for d in drawn if d.curve is not None]
+        grey = 0 if len(drawn) == 1 else None
+        looks = {"with adhesion": Look(grey), "unstable at fixed depth": Look(grey, 3)}
+        looks |= {mark: Look(grey, None, marker) for mark, marker in _MARKERS.items()}
+        looks = (looks if curves else {}) | {"without adhesion": Look(grey, 1)}
+        none = np.empty(0)
+        series += [Series(none, none, legend=name, look=look) for name, look in looks.items()]
+        depth, force = Axis("depth", "m"), Axis("force", "N", signed=True)
         strongest = -min((curve.force.min() for curve in curves), default=0.0)
         if strongest > 0:
             # Curves are shown up to a push as large as the strongest pull.
-            shown = np.concatenate([curve.depth[curve.force <= strongest] for curve in curves])
-            left, right = shown.min() * length, shown.max() * length
-            margin = 0.05 * (right - left)
-            axes.set_xlim(left - margin, right + margin)
-            axes.set_ylim(-1.1 * strongest * newton, 1.1 * strongest * newton)
-        axes.legend(frameon=False, fontsize="small", loc="upper left")
+            seen = np.concatenate([curve.depth[curve.force <= strongest] for curve in curves])
+            margin = 0.05 * np.ptp(seen)
+            depth = replace(depth, limits=(seen.min() - margin, seen.max() + margin))
+            force = replace(force, limits=(-1.1 * strongest, 1.1 * strongest))
         problems = dict.fromkeys(d.status for d in drawn if d.curve is None)
-        text = "\n".join(textwrap.fill(problem, _LINE) for problem in problems)
-        axes.text(0.02, 0.02, text, color="red", fontsize="small", transform=axes.transAxes)
+        note = "\n".join(textwrap.fill(problem, _LINE) for problem in problems)
+        return Chart(depth, [force], series, self.title, note, hues=len(drawn), ordered=ordered)
 
 
 def _status(

@@ -2,29 +2,26 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import re
-from abc import abstractmethod
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
 
-from pellicle.components import Output, Runs
+from pellicle.components import Axis, Output, Runs
 from pellicle.config.run import Run
 from pellicle.config.words import words_at
 from pellicle.errors import ConfigError, StorageError
-from pellicle.files import storage_errors
 from pellicle.results.derived import configuration_of, names
 from pellicle.results.result import Result
 from pellicle.results.wording import wording
 from pellicle.schema.expression import evaluate, formula
 from pellicle.schema.messages import nearest
 from pellicle.show.fields import without_round_off
-from pellicle.show.saving import SIZE, save_figure
+from pellicle.show.saving import write_charts
 from pellicle.show.style import FigureStyle, is_ordered
 from pellicle.units import DIGITS, readable
 from pellicle.variables import words_of_name
@@ -32,8 +29,6 @@ from pellicle_plugins.validation.reference import require_solution
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _PLACEHOLDER = re.compile(r"\{([^{}:]+)(?::(\.\d+[fg]))?\}")
 
@@ -46,6 +41,8 @@ StyleField = Annotated[
     FigureStyle, Field(description="for print: width, font_size, svg_text, file (a style file)")
 ]
 Log = Annotated[tuple[Literal["x", "y"], ...], Field(description="axes that are logarithmic: x, y")]
+XLabel = Annotated[str | None, Field(description="label of the horizontal axis")]
+YLabel = Annotated[str | None, Field(description="label of the vertical axis")]
 Reference = Annotated[
     Literal["axisymmetric"] | None,
     Field(description="draw the semi-analytic solution of the same expressions too"),
@@ -82,14 +79,21 @@ class TableFigure(Output):
         return tuple(f".{kind}" for kind in (*self.formats, *["csv"] * self.numbers))
 
     def check(self, runs: Runs) -> None:
-        """Refuse an axis or a label that the table does not have."""
-        list(self.picked(runs.table))
+        """Refuse what cannot be shown; a reference is not solved for that."""
+        figure = self
+        if getattr(self, "reference", None):
+            for run in self.compared(runs):
+                require_solution(Run.from_json(run.attrs["configuration"]))
+            figure = self.model_copy(update={"reference": None})
+        list(figure.charts(runs))
 
-    def save(
-        self, draw: Callable[[Figure], None], stem: Path, size: tuple[float, float] = SIZE
-    ) -> tuple[Path, ...]:
-        """Let ``draw`` fill a figure of ``size`` [inch], and write it in each format."""
-        return save_figure(draw, stem, self.formats, size, self.style)
+    def compared(self, runs: Runs) -> Iterator[xr.Dataset]:
+        """Yield the runs that a reference is drawn beside."""
+        yield from (run for _, run in self.steps(runs))
+
+    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+        """Write the figure in each format, and its numbers."""
+        return write_charts(self.charts(runs), stem, self.formats, self.style)
 
     def picked(self, table: xr.Dataset) -> Iterator[tuple[Label, xr.Dataset]]:
         """Yield the name of each curve or panel and the point of the table that it shows.
@@ -121,39 +125,6 @@ class TableFigure(Output):
             number = min(int(point["step"].item()), Result(run).planned_steps)
             if number in run["step"]:
                 yield name, without_round_off(run.sel(step=number))
-
-
-class XYFigure(TableFigure):
-    """A figure of one number against another."""
-
-    x_label: Annotated[str | None, Field(description="label of the horizontal axis")] = None
-    y_label: Annotated[str | None, Field(description="label of the vertical axis")] = None
-
-    def check(self, runs: Runs) -> None:
-        """Refuse what cannot be drawn; a reference is not solved for that."""
-        from matplotlib.figure import Figure
-
-        figure = self
-        if getattr(self, "reference", None):
-            for run in self.compared(runs):
-                require_solution(Run.from_json(run.attrs["configuration"]))
-            figure = self.model_copy(update={"reference": None})
-        list(figure.draw(Figure().add_subplot(), runs))
-
-    def compared(self, runs: Runs) -> Iterator[xr.Dataset]:
-        """Yield the runs that a reference is drawn beside."""
-        yield from (run for _, run in self.steps(runs))
-
-    @abstractmethod
-    def draw(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
-        """Draw the curves, and yield the rows of the numbers drawn."""
-
-    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
-        """Write the figure and its numbers."""
-        rows: list[dict[str, object]] = []
-        files = self.save(lambda figure: rows.extend(self.draw(figure.add_subplot(), runs)), stem)
-        heads = list(dict.fromkeys(head for row in rows for head in row))
-        return (*files, write_csv(stem, heads, ([row.get(head) for head in heads] for row in rows)))
 
 
 def one_axis(dims: Iterable[object], chosen: str | None, field: str) -> None:
@@ -204,23 +175,18 @@ def label(template: str | None, data: xr.Dataset, dim: str | None, whole: xr.Dat
     return Label(", ".join(words), ", ".join(keys))
 
 
-def scaled(
-    text: str, values: Sequence[xr.DataArray], axis_label: str | None, data: xr.Dataset
-) -> tuple[float, str]:
-    """Return the factor and the label of an axis that shows the expression ``text`` over ``data``.
+def axis_of(text: str, values: Sequence[xr.DataArray], label: str | None, data: xr.Dataset) -> Axis:
+    """Return the axis that shows the expression ``text`` over ``data``.
 
-    ``values`` are those of all curves along the axis. A bare variable is converted to a unit with a
-    prefix, unless ``axis_label`` is given. Other expressions are in SI, since their unit is not
-    known.
+    ``values`` are those of all curves along it. A bare variable has its unit, unless there is a
+    ``label``; other expressions are in SI, since their unit is not known.
     """
-    if axis_label is not None:
-        return 1.0, axis_label
     name = text.strip()
-    if name not in data.variables:
-        return 1.0, in_words(text, data)
+    if label is not None or name not in data.variables:
+        return Axis(in_words(text, data) if label is None else label, as_given=True)
     # xarray keeps the unit of one operand, so that only the bare variable has its own.
-    axis_wording = wording(joined(name, values))
-    return axis_wording.scale.factor, axis_wording.head
+    shown = wording(joined(name, values))
+    return Axis(shown.words, str(data[name].attrs.get("units", "1")))
 
 
 def joined(name: str, arrays: Sequence[xr.DataArray]) -> xr.DataArray:
@@ -241,32 +207,3 @@ def in_words(text: str, data: xr.Dataset) -> str:
         return words_at(configuration, Run, name) if "." in name else words_of_name(name)
 
     return formula(text, words)
-
-
-def set_scales(axes: Axes, log: Sequence[str], *, signed: bool = False) -> None:
-    """Make the axes in ``log`` logarithmic if they show a positive value; begin others at 0.
-
-    With ``signed`` values, a logarithmic axis leaves out those that are not positive, and the lines
-    to them; otherwise such lines end at the edge.
-    """
-    for direction in ("x", "y"):
-        low, _ = getattr(axes, f"get_{direction}lim")()
-        if direction in log and np.isfinite(getattr(axes.dataLim, f"minpos{direction}")):
-            getattr(axes, f"set_{direction}scale")("log", nonpositive="mask" if signed else "clip")
-        elif low < 0 and getattr(axes.dataLim, f"{direction}0") >= 0:
-            getattr(axes, f"set_{direction}lim")(**{"left" if direction == "x" else "bottom": 0.0})
-    axes.grid(alpha=0.3)
-
-
-def add_legend(axes: Axes) -> None:
-    """Add a legend if there is something to tell apart."""
-    if axes.get_legend_handles_labels()[1]:
-        axes.legend(frameon=False, fontsize="small")
-
-
-def write_csv(stem: Path, heads: Sequence[str], rows: Iterable[Iterable[object]]) -> Path:
-    """Write the numbers drawn beside their figure."""
-    path = Path(f"{stem}.csv")
-    with storage_errors(path), path.open("w", newline="", encoding="utf-8") as file:
-        csv.writer(file).writerows([heads, *rows])
-    return path

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from pellicle.analysis import Leg, legs
-from pellicle.components import Runs
+from pellicle.analysis import Leg, extrapolate, legs
+from pellicle.components import Axis, Chart, Look, Runs, Series, Shown
 from pellicle.errors import ConfigError
 from pellicle.results.path import has_interaction, has_path, has_times
-from pellicle.results.wording import wording
 from pellicle.schema.expression import names_in
 from pellicle.schema.model import Model
-from pellicle.show.leg_styles import MOST_LEGS, RETRACTION
-from pellicle.show.style import LINES, MARKERS, colour, is_log_spaced
+from pellicle.show.presets import MOST_LEGS
+from pellicle.show.style import is_log_spaced
 from pellicle.units import printed
 from pellicle.variables import FIELDS, WALL_PRESSURE
 from pellicle_plugins.validation.reference import exact
@@ -25,28 +25,23 @@ from pellicle_plugins.validation.reference import exact
 from .base import (
     Log,
     Reference,
-    XYFigure,
-    add_legend,
+    TableFigure,
+    XLabel,
+    YLabel,
     along,
+    axis_of,
     in_words,
-    joined,
     label,
     one_axis,
-    scaled,
-    set_scales,
 )
-from .curve_lines import NO_POINTS, CurvePoints, Limit, Line, line_style
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
 
 _GRIDS = 3
 """Fewest grids from which a limit follows."""
 _LETTERS = 50
 """Letters of a line of the label of an axis."""
-_EXACT = {"color": "black", "linewidth": 1.0, "zorder": 1}
-"""Style of a reference."""
 
 
 _Texts = Annotated[
@@ -63,8 +58,8 @@ class Published(Model):
     """Published points or a line, to compare with."""
 
     label: Annotated[str, Field(description="name in the legend")]
-    x: Annotated[tuple[float, ...], Field(min_length=1, description="x as drawn")]
-    y: Annotated[tuple[float, ...], Field(min_length=1, description="y as drawn")]
+    x: Annotated[tuple[float, ...], Field(min_length=1, description="x in the unit of the axis")]
+    y: Annotated[tuple[float, ...], Field(min_length=1, description="y in the unit of the axis")]
     style: Annotated[Literal["points", "line"], Field(description="how it is drawn")] = "points"
 
     @model_validator(mode="after")
@@ -74,7 +69,7 @@ class Published(Model):
         return self
 
 
-class Curves(XYFigure):
+class Curves(TableFigure):
     """One number against another over the runs, one curve for each value of an axis.
 
     ``x`` and ``y`` are arithmetic over the columns of the table, the numbers of the configuration
@@ -99,6 +94,8 @@ class Curves(XYFigure):
             "formats": ["png", "svg"],
         },
     )
+    x_label: XLabel = None
+    y_label: YLabel = None
     x: Annotated[str, Field(description="expression for the horizontal axis")] = "depth"
     y: Annotated[
         _Texts, Field(min_length=1, description="expression, or several, for the vertical axis")
@@ -161,85 +158,78 @@ class Curves(XYFigure):
         of_runs = {name for name in map(str, table.variables) if "step" not in table[name].dims}
         return bool(used & ({*map(str, table.variables), *FIELDS, WALL_PRESSURE} - of_runs))
 
-    def draw(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
-        """Draw the curves, and yield the rows of the numbers drawn."""
-        yield from self._with_by(runs.table)._drawn(axes, runs)
+    def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
+        """Yield the curves."""
+        yield "", self._with_by(runs.table)._chart(runs)
 
-    def _drawn(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
-        one_axis(runs.table.sizes, self.by, "by")
-        one_axis(runs.table.sizes, self.over, "over")
+    def _chart(self, runs: Runs) -> Chart:
+        table = runs.table
+        one_axis(table.sizes, self.by, "by")
+        one_axis(table.sizes, self.over, "over")
         x, *ys = (runs.column(text) for text in (self.x, *self.y))
-        factor_x, x_label = scaled(self.x, [x], self.x_label, runs.table)
-        factor_y, y_label, named = self._scaled_y(ys, runs.table)
-        lines = list(self._lines(runs, x, ys, named))
-        axis, log = self.x.strip(), self.log
-        if "log" not in self.model_fields_set and axis in runs.table.sizes and axis != "step":
+        along, log = self.x.strip(), self.log
+        if "log" not in self.model_fields_set and along in table.sizes and along != "step":
             # An evenly growing axis of the study.
-            values = runs.table[axis].values
+            values = table[along].values
             log = ("x",) if values.dtype.kind in "if" and is_log_spaced(values) else ()
-        for line in lines:
-            line.draw(axes, factor_x, factor_y, bool(self.log))
-        published: list[dict[str, object]] = []
-        for number, other in enumerate(self.published):
-            style = "-" if other.style == "line" else "*x+"[number % 3]
-            axes.plot(
-                other.x, other.y, style, color="black", markersize=9, zorder=5, label=other.label
-            )
-            published += [
-                {"curve": other.label, "series": "published", "x": x, "y": y}
-                for x, y in zip(other.x, other.y, strict=True)
-            ]
-        axes.set(xlabel=x_label, ylabel=y_label, title=self.title)
-        set_scales(axes, log, signed=has_interaction(runs.table))
-        add_legend(axes)
-        for line in lines:
-            yield from line.rows()
-        yield from published
+        y_axis, names = self._y_axis(ys, table)
+        series = [*self._series(runs, x, ys, names), *self._published()]
+        return Chart(
+            replace(axis_of(self.x, [x], self.x_label, table), log="x" in log, column="x"),
+            [replace(y_axis, log="y" in log, column="y")],
+            series,
+            self.title,
+            hues=table.sizes[self.by] if self.by else len(ys),
+            ordered=self.is_ordered(runs),
+        )
 
-    def _scaled_y(
-        self, ys: Sequence[xr.DataArray], table: xr.Dataset
-    ) -> tuple[float, str, Sequence[str]]:
-        """Return the factor and the label of the vertical axis, and the name of each y.
+    def _y_axis(self, ys: Sequence[xr.DataArray], table: xr.Dataset) -> tuple[Axis, Sequence[str]]:
+        """Return the vertical axis, and the name of each y.
 
         Several y have but a common unit. Without one they are in SI, with their units in the names.
         """
         # Only a bare variable has a unit.
         bare = (table.get(text.strip()) for text in self.y)
-        units = ["1" if y is None else y.attrs.get("units", "1") for y in bare]
+        units = ["1" if y is None else str(y.attrs.get("units", "1")) for y in bare]
         is_common, names = len(set(units)) == 1, list(self.series)
         if not names:
             for text, unit in zip(self.y, units, strict=True):
                 head = "" if is_common or unit == "1" else f" [{printed(unit)}]"
                 names.append(f"{in_words(text, table)}{head}")
         if len(ys) == 1 or self.y_label is not None:
-            return *scaled(self.y[0], ys, self.y_label, table), names
-        label = textwrap.fill(", ".join(names), _LETTERS)
-        if not is_common or units[0] == "1":
-            return 1.0, label, names
-        scale = wording(joined("", ys)).scale
-        return scale.factor, f"{label} [{scale.unit}]", names
+            return axis_of(self.y[0], ys, self.y_label, table), names
+        words = textwrap.fill(", ".join(names), _LETTERS)
+        has_unit = is_common and units[0] != "1"
+        return Axis(words, units[0] if has_unit else "1", as_given=not has_unit), names
 
-    def _lines(
+    def _series(
         self, runs: Runs, x: xr.DataArray, ys: Sequence[xr.DataArray], names: Sequence[str]
-    ) -> Iterator[Line | Limit]:
-        """Yield what is drawn, in order; entries that only the legend shows have no points."""
+    ) -> Iterator[Series]:
+        """Yield what is drawn, in order; entries that only the legend shows have no points.
+
+        Colours and markers distinguish the values of `by`, line styles those of y. Beside a
+        reference there are no lines, so that markers distinguish several y.
+        """
+        table = runs.table
         reference = exact(runs) if self.reference else None
-        directions: set[str] = set()
-        many = runs.table.sizes[self.by] if self.by else 1
+        places = along(table, self.by)
         for number, (text, y) in enumerate(zip(self.y, ys, strict=True)):
-            series = self.series[number] if self.series else text
-            named = names[number]
+            name = self.series[number] if self.series else text
             of_reference = [reference.column(t) for t in (self.x, text)] if reference else []
-            for index, point in enumerate(along(runs.table, self.by)):
-                part = runs.table.isel(point)
-                name = label(self.label, part, self.by, runs.table)
-                style = self._style(runs, number, index)
-                legend = "" if number else name.words
+            line = None if reference else number
+            for index, point in enumerate(places):
+                part = table.isel(point)
+                curve = label(self.label, part, self.by, table)
+                legend = "" if number else curve.words
                 if not self.by and (self.series or len(ys) > 1):
-                    legend = named
-                points, path = self._points(part, _at(x, point), _at(y, point))
-                directions |= {leg.direction for leg in path}
-                yield Line(points, style, legend, number, name.key, series, path)
+                    legend = names[number]
+                marker = index if self.by and not (reference and len(ys) > 1) else number
+                look = Look(index if self.by else number, line, marker)
+                drawn = self._points(part, _at(x, point), _at(y, point))
+                if number:
+                    # Several bands could not be told apart.
+                    drawn = replace(drawn, low=None, high=None)
+                yield replace(drawn, key=curve.key, name=name, legend=legend, look=look)
                 if self.extrapolate:
                     if (count := np.unique(_at(x, point)).size) < _GRIDS:
                         raise ConfigError(
@@ -247,42 +237,60 @@ class Curves(XYFigure):
                             f"an exponent; vary the grid over at least {_GRIDS}",
                             "extrapolate",
                         )
-                    # An interrupted study may lack some of them.
-                    if np.unique(points.x).size >= _GRIDS:
-                        yield Limit(points, style["color"], name.key, f"{series}, extrapolated")
+                    yield from self._limit(drawn, curve.key, name, look.hue)
                 if reference:
-                    points, _ = self._points(part, *(_at(axis, point) for axis in of_reference))
-                    curve, of = name.key, f"{series}, semi-analytic"
-                    yield Line(points.ordered(), _EXACT, "", curve=curve, series=of)
+                    points = self._points(part, *(_at(axis, point) for axis in of_reference))
+                    order = np.argsort(points.x)
+                    is_last = (number + 1, index + 1) == (len(ys), len(places))
+                    yield Series(
+                        points.x[order],
+                        points.y[order],
+                        key=curve.key,
+                        name=f"{name}, semi-analytic",
+                        legend="semi-analytic" if is_last else "",
+                        look=Look(None),
+                        role="reference",
+                    )
             if self.by and len(ys) > 1:
-                marker = MARKERS[number % len(MARKERS)] if reference else ""
-                line = "none" if reference else LINES[number % len(LINES)]
-                yield Line(NO_POINTS, line_style("0.4", line, marker), named)
-        if reference:
-            yield Line(NO_POINTS, _EXACT, "semi-analytic")
-        if len(directions) > 1:
-            shared = "0.4" if max(many, len(ys)) > 1 else "C0"
-            yield Line(NO_POINTS, line_style(shared, LINES[0], MARKERS[0]), "approach")
-            yield Line(NO_POINTS, line_style(shared, RETRACTION, MARKERS[0]), "retraction")
+                look = Look(None, line, number if reference else None)
+                yield Series(np.empty(0), np.empty(0), legend=names[number], look=look)
 
-    def _style(self, runs: Runs, number: int, index: int) -> dict[str, Any]:
-        """Return the style of a curve: y of this number, and value of `by` of this index.
+    def _published(self) -> Iterator[Series]:
+        for number, other in enumerate(self.published):
+            look = Look(None, 0 if other.style == "line" else None, number)
+            yield Series(
+                np.array(other.x),
+                np.array(other.y),
+                key=other.label,
+                name="published",
+                legend=other.label,
+                look=look,
+                role="published",
+            )
 
-        Colours and markers distinguish the values of `by`, line styles those of y. Beside a
-        reference there are no lines, so that markers distinguish several y.
-        """
-        if not self.by:
-            hue, mark = colour(number, len(self.y)), number
-        else:
-            hue = colour(index, runs.table.sizes[self.by], ordered=self.is_ordered(runs))
-            mark = number if self.reference and len(self.y) > 1 else index
-        line = "none" if self.reference else LINES[number % len(LINES)]
-        return line_style(hue, line, MARKERS[mark % len(MARKERS)])
+    def _limit(self, points: Series, key: str, name: str, hue: int | None) -> Iterator[Series]:
+        """Yield a curve continued to x = 0, and its limit there with the error."""
+        # An interrupted study may lack some of the grids.
+        if np.unique(points.x).size < _GRIDS:
+            return
+        fit = extrapolate(points.x, points.y)
+        x = np.linspace(0, float(points.x.max()), 200)
+        y = np.append(fit.limit, fit(x[1:]))
+        yield Series(x, y, look=Look(hue), role="reference", written=False)
+        assert points.converged is not None
+        yield Series(
+            np.zeros(1),
+            np.array([fit.limit]),
+            key=key,
+            name=f"{name}, extrapolated",
+            look=Look(hue, None),
+            low=np.array([fit.lowest]),
+            high=np.array([fit.highest]),
+            columns={"converged": bool(points.converged.all()), "exponent": fit.exponent},
+        )
 
-    def _points(
-        self, table: xr.Dataset, x: xr.DataArray, y: xr.DataArray
-    ) -> tuple[CurvePoints, list[Leg]]:
-        """Return the points of one curve, in the order of the table, and the legs of its path."""
+    def _points(self, table: xr.Dataset, x: xr.DataArray, y: xr.DataArray) -> Series:
+        """Return the points of one curve, in the order of the table, with the legs of its path."""
         import xarray as xr
 
         converged = table["converged"]
@@ -305,14 +313,22 @@ class Curves(XYFigure):
                 "by",
             )
         values = np.array([column.values.ravel().astype(float) for column in columns])
-        finite = np.isfinite(values).all(axis=0)
+        values = values[:, finite := np.isfinite(values).all(axis=0)]
         path: list[Leg] = []
         loops = has_interaction(table) or (has_times(table) and "time" not in names_in(self.x))
         if loops and long == ["step"] and self.over is None:
             path = legs(xr.broadcast(table["depth"], x)[0].values.ravel()[finite])
             # The many legs of an oscillation are not told apart by their style.
             path = path if has_interaction(table) or len(path) <= MOST_LEGS else []
-        return CurvePoints(*values[:, finite]), path
+        middle_x, middle_y, low, high, good, runs = values
+        series = Series(middle_x, middle_y, converged=good == 1, legs=path)
+        if not (runs > 1).any():
+            return series
+        spread = {"y_lowest": low, "y_highest": high, "runs": runs.astype(int)}
+        written: dict[str, Any] = {
+            name: np.where(runs > 1, column, None) for name, column in spread.items()
+        }
+        return replace(series, low=low, high=high, columns=written)
 
 
 def _at(column: xr.DataArray, point: dict[str, int]) -> xr.DataArray:

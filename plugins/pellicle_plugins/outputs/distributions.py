@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
 from pellicle import analysis
-from pellicle.components import Runs
+from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
 from pellicle.results.path import has_interaction
-from pellicle.show.style import LINES, colour
 from pellicle.units import axis_unit
 
-from .base import Label, Log, TableFigure, add_legend, set_scales, write_csv
+from .base import Label, Log, TableFigure
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.figure import Figure
 
-_SIZE = 10.0, 4.2
 _HEADS = "curve", "series", "lower", "upper", "mean", "density"
 _FIELDS = {"pressure": "Pa", "gap": "m"}
 _Curves = list[tuple[Label, dict[str, analysis.Distribution]]]
@@ -41,19 +38,37 @@ class Distributions(TableFigure):
     bins: Annotated[int, Field(ge=1, description="number of bins, from 0 to the highest")] = 50
     log: Log = ()
 
-    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
-        """Write the figure and its numbers."""
+    def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
+        """Yield both densities side by side, and the bins."""
         curves = [(name, self._densities(step)) for name, step in self.steps(runs)]
-        files = self.save(
-            lambda figure: self._fill(figure, curves, self.is_ordered(runs)), stem, _SIZE
-        )
-        rows = (
+        yield "", [self._chart(field, unit, curves, runs) for field, unit in _FIELDS.items()]
+        rows = [
             (name.key, field, *row)
             for name, densities in curves
             for field, bins in densities.items()
             for row in zip(bins.edges, bins.edges[1:], bins.mean, bins.density, strict=False)
+        ]
+        yield "", Table.of_rows(_HEADS, rows)
+
+    def _chart(self, field: str, unit: str, curves: _Curves, runs: Runs) -> Chart:
+        edges = [densities[field].edges for _, densities in curves]
+        log = self.log if any(bins.size > 1 for bins in edges) else ()
+        # One unit for both axes: the density is per unit of the field.
+        scale = axis_unit(np.concatenate([*edges, np.zeros(1)]), unit)
+        series = []
+        for number, (name, densities) in enumerate(curves):
+            x = np.repeat(densities[field].edges, 2) * scale.factor
+            y = np.repeat(densities[field].density, 2) / scale.factor
+            look = Look(number, number)
+            series.append(Series(x, np.pad(y, 1) if x.size else y, legend=name.words, look=look))
+        return Chart(
+            Axis(f"{field} [{scale.unit}]", as_given=True, log="x" in log),
+            [Axis(f"probability density [1/{scale.unit}]", as_given=True, log="y" in log)],
+            series,
+            self.title,
+            hues=len(curves),
+            ordered=self.is_ordered(runs),
         )
-        return (*files, write_csv(stem, _HEADS, rows))
 
     def _densities(self, step: xr.Dataset) -> dict[str, analysis.Distribution]:
         contact = step["contact"].values
@@ -63,20 +78,3 @@ class Distributions(TableFigure):
             name: analysis.distribution(step[name].values[cells[name]], self.bins)
             for name in _FIELDS
         }
-
-    def _fill(self, figure: Figure, curves: _Curves, ordered: bool) -> None:
-        for axes, (field, unit) in zip(figure.subplots(1, 2), _FIELDS.items(), strict=True):
-            edges = [densities[field].edges for _, densities in curves]
-            factor, name = axis_unit(np.concatenate([*edges, np.zeros(1)]), unit)
-            for number, (curve, densities) in enumerate(curves):
-                axes.stairs(
-                    densities[field].density / factor,
-                    densities[field].edges * factor,
-                    color=colour(number, len(curves), ordered=ordered),
-                    linestyle=LINES[number % len(LINES)],
-                    label=curve.words or None,
-                )
-            axes.set(xlabel=f"{field} [{name}]", ylabel=f"probability density [1/{name}]")
-            set_scales(axes, self.log if any(bins.size > 1 for bins in edges) else ())
-            add_legend(axes)
-        figure.suptitle(self.title)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import ClassVar, Literal
 
-from pellicle.components import Output, Runs
+from pellicle.components import Output, Runs, Shown
 from pellicle.results.result import Result
-from pellicle.show.plotting import FIGURES, STUDY_FIGURES, TIME, save_figures
+from pellicle.show import FIGURES, STUDY_FIGURES, figures, write_charts
 from pellicle.show.style import FigureStyle
 
 from .base import Formats, StyleField
@@ -25,10 +26,16 @@ class Figures(Output):
     @property
     def suffixes(self) -> tuple[str, ...]:
         """Suffixes of the figures of a run and of a study."""
-        names = dict.fromkeys((*FIGURES, TIME, *STUDY_FIGURES))
+        names = dict.fromkeys((*FIGURES, *STUDY_FIGURES))
         return tuple(f"-{name}.{format_}" for name in names for format_ in self.formats)
 
-    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
-        """Draw the result of a run, or the table of a study."""
+    def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
+        """Yield the figures of the result of a run, or of the table of a study."""
         shown = Result(runs.open()) if runs.axes is None else runs.table
-        return save_figures(shown, stem.parent, stem.name, self.formats, self.style)
+        for name, figure in figures(shown).items():
+            # Its numbers are those of the result.
+            yield f"-{name}", [figure]
+
+    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+        """Write the figures in each format."""
+        return write_charts(self.charts(runs), stem, self.formats, self.style)

@@ -23,7 +23,8 @@ from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction, label_of_step, prescribed_variable
 from pellicle.results.result import Result, first_message
 from pellicle.results.wording import wording
-from pellicle.show.fields import DIVERGING, default_step, draws_contact, without_round_off
+from pellicle.show.drawing import DIVERGING
+from pellicle.show.fields import default_step, draws_contact, without_round_off
 from pellicle.show.html import Code, Notice, Picture, Section, Text, page
 from pellicle.show.maps import Field as MapField
 from pellicle.show.maps import Frame, Maps, frame, side

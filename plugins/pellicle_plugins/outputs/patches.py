@@ -3,27 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
 from pellicle import analysis
-from pellicle.components import Runs
+from pellicle.components import (
+    Axis,
+    Chart,
+    Fields,
+    Look,
+    Panel,
+    Runs,
+    Series,
+    Shown,
+    Table,
+)
 from pellicle.results.result import Result
-from pellicle.show.fields import show_field
-from pellicle.show.style import MARKERS, NO_CONTACT, colour
-from pellicle.units import axis_unit
 
-from .base import Label, TableFigure, add_legend, write_csv
+from .base import Label, TableFigure
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
-_SIZE = 10.0, 4.2
 _HEADS = "curve", "step", "patch", "area [m2]", "force [N]", "neighbours"
 
 
@@ -47,53 +50,42 @@ class Patches(TableFigure):
         ),
     ] = 4
 
-    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
-        """Write the figure and its numbers."""
+    def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
+        """Yield the map of the last curve beside the numbers of patches, and all patches."""
         curves = [
             (name, step, analysis.patches(step["contact"], Result(step).grid, self.connectivity))
             for name, step in self.steps(runs)
         ]
-        files = self.save(
-            lambda figure: self._fill(figure, curves, self.is_ordered(runs)), stem, _SIZE
-        )
-        return (*files, write_csv(stem, _HEADS, (row for curve in curves for row in _rows(*curve))))
-
-    def _fill(
-        self,
-        figure: Figure,
-        curves: list[tuple[Label, xr.Dataset, analysis.Patches]],
-        ordered: bool,
-    ) -> None:
-        left, right = figure.subplots(1, 2)
-        if curves:
-            _map(left, *curves[-1])
-        largest = [patches.area[0] for *_, patches in curves if patches.count]
-        factor, unit = axis_unit(np.array(largest), "m2")
-        for number, (name, _, patches) in enumerate(curves):
-            rank = np.arange(1, patches.count + 1)
-            right.step(
-                patches.area * factor,
-                rank,
-                where="post",
-                color=colour(number, len(curves), ordered=ordered),
-                marker=MARKERS[number % len(MARKERS)],
-                markersize=3,
-                label=name.words or None,
+        is_any = any(patches.count for *_, patches in curves)
+        series = [
+            Series(
+                patches.area,
+                np.arange(1.0, patches.count + 1),
+                legend=name.words,
+                look=Look(number, marker=number),
+                stepped=True,
             )
-        right.set(xlabel=f"area of a patch [{unit}]", ylabel="patches at least as large")
-        if largest:
-            right.set(xscale="log", yscale="log")
-        right.grid(alpha=0.3)
-        add_legend(right)
-        figure.suptitle(self.title)
+            for number, (name, _, patches) in enumerate(curves)
+        ]
+        sizes = Chart(
+            Axis("area of a patch", "m2", log=is_any),
+            [Axis("patches at least as large", log=is_any)],
+            series,
+            hues=len(curves),
+            ordered=self.is_ordered(runs),
+        )
+        shown = Fields(
+            Axis("patch"), [_map(*curve) for curve in curves[-1:]], self.title, parts=True
+        )
+        yield "", [shown, sizes]
+        yield "", Table.of_rows(_HEADS, [row for curve in curves for row in _rows(*curve)])
 
 
-def _map(axes: Axes, name: Label, step: xr.Dataset, patches: analysis.Patches) -> None:
-    """Draw the patches in 20 colours, used in turn."""
-    shown = np.ma.masked_equal(patches.labels.T, 0) % 20
-    show_field(axes, step, shown, cmap="tab20", interpolation="nearest")
-    axes.set_facecolor(NO_CONTACT)
-    axes.set_title(f"{name.words}\n{patches.count} patches".lstrip(), fontsize="medium")
+def _map(name: Label, step: xr.Dataset, patches: analysis.Patches) -> Panel:
+    """Return the patches, numbered in turn."""
+    x, y, labels = step["x"].values, step["y"].values, patches.labels
+    title = f"{name.words}\n{patches.count} patches".lstrip()
+    return Panel(x, y, (labels % 20).astype(float), title, blank=labels == 0)
 
 
 def _rows(name: Label, step: xr.Dataset, patches: analysis.Patches) -> Iterator[tuple[object, ...]]:

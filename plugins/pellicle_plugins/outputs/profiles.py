@@ -5,28 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import numpy as np
 from pydantic import Field
 
-from pellicle.components import Runs
+from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
 from pellicle.results.derived import as_array
 from pellicle.results.path import has_interaction
 from pellicle.schema.expression import names_in
-from pellicle.show.lines import EDGE_CELLS, edge_cells
-from pellicle.show.style import LINES, MARKERS, colour
+from pellicle.show.rim import with_rim
+from pellicle.variables import FIELDS, WALL_PRESSURE
 from pellicle_plugins.validation.reference import exact_line
 
-from .base import Reference, XYFigure, add_legend, scaled, set_scales
+from .base import Reference, TableFigure, XLabel, YLabel, axis_of
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
 
 _ACROSS = {"x": "y", "y": "x"}
 _MARKERS = 90
 
 
-class Profiles(XYFigure):
+class Profiles(TableFigure):
     """Fields along x or y through the centre, one curve for each value of an axis.
 
     Other axes of a study are at their first value, steps at the last. ``x`` and
@@ -37,53 +35,52 @@ class Profiles(XYFigure):
     type: Literal["profiles"] = "profiles"
     examples = ({"by": "step", "label": "{depth * 1e6} µm", "reference": "axisymmetric"},)
     along: Annotated[Literal["x", "y"], Field(description="direction of the line")] = "x"
+    x_label: XLabel = None
+    y_label: YLabel = None
     x: Annotated[
         str | None, Field(description="expression for the horizontal axis; the position if absent")
     ] = None
     y: Annotated[str, Field(description="expression for the vertical axis")] = "pressure"
     reference: Reference = None
 
-    def draw(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
-        """Draw the curves, and yield the rows of the numbers drawn."""
+    def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
+        """Yield the curves, and their numbers in the cells."""
         across = _ACROSS[self.along]
         lines = [(n, run.isel({across: run.sizes[across] // 2})) for n, run in self.steps(runs)]
-        curves = [(name, line, *self._columns(line)) for name, line in lines]
-        factors = [1.0, 1.0]
-        if curves:
-            # Units that suit all curves.
-            xs, ys, line = [c[2] for c in curves], [c[3] for c in curves], lines[0][1]
-            factors[0], x_label = scaled(self.x or self.along, xs, self.x_label, line)
-            factors[1], y_label = scaled(self.y, ys, self.y_label, line)
-            axes.set(xlabel=x_label, ylabel=y_label, title=self.title)
-        shows_pressure = "pressure" in names_in(self.y)
-        ordered, marked = self.is_ordered(runs), False
-        for number, (name, line, x, y) in enumerate(curves):
-            hue = colour(number, len(curves), ordered=ordered)
-            drawn_x, drawn_y = x.values * factors[0], y.values * factors[1]
-            contact = line["contact"].values
-            edge = edge_cells(contact & (shows_pressure and not has_interaction(line)))
-            marked |= bool(edge.any())
-            axes.plot(drawn_x[edge], drawn_y[edge], ".", color=hue, markersize=3)
-            drawn_y, style = np.where(edge, np.nan, drawn_y), {"color": hue, "linewidth": 1.2}
-            every, line_or_marker = 1, LINES[number % len(LINES)]
+        series, rows, shown = list[Series](), list[tuple[object, ...]](), []
+        for number, (name, line) in enumerate(lines):
+            x, y = self._columns(line)
+            shown.append((x, y))
+            rows += [(name.key, "run", *point) for point in zip(x.values, y.values, strict=True)]
+            look = Look(number, number)
             if self.reference:
                 # Cells on both sides of the centre alike.
-                every, line_or_marker = max(1, x.size // _MARKERS), MARKERS[number % len(MARKERS)]
-                style |= {"markersize": 3.5, "markerfacecolor": "white"}
-            label = name.words or None
-            axes.plot(drawn_x[::every], drawn_y[::every], line_or_marker, label=label, **style)
-            yield from _rows(name.key, "run", x, y)
+                x, y = (column[:: max(1, x.size // _MARKERS)] for column in (x, y))
+                look = Look(number, None, number)
+            elif self._fields() == {"pressure"} and not has_interaction(line):
+                x, y = self._columns(with_rim(line))
+            series.append(Series(x.values, y.values, legend=name.words, look=look))
             if self.reference:
                 x, y = self._columns(exact_line(line))
-                drawn_x, drawn_y = x.values * factors[0], y.values * factors[1]
-                axes.plot(drawn_x, drawn_y, color="black", linewidth=0.8, zorder=1)
-                yield from _rows(name.key, "semi-analytic", x, y)
-        if self.reference:
-            axes.plot([], [], color="black", linewidth=0.8, label="semi-analytic")
-        if marked:
-            axes.plot([], [], ".", color="0.4", markersize=3, label=EDGE_CELLS)
-        set_scales(axes, ())
-        add_legend(axes)
+                is_last = number == len(lines) - 1
+                legend, look = "semi-analytic" if is_last else "", Look(None)
+                series.append(
+                    Series(x.values, y.values, legend=legend, look=look, role="reference")
+                )
+                points = zip(x.values, y.values, strict=True)
+                rows += [(name.key, "semi-analytic", *point) for point in points]
+        x_axis, y_axis = Axis(""), Axis("")
+        if shown:
+            xs, ys = zip(*shown, strict=True)
+            x_axis = axis_of(self.x or self.along, xs, self.x_label, lines[0][1])
+            y_axis = axis_of(self.y, ys, self.y_label, lines[0][1])
+        hues, ordered = len(lines), self.is_ordered(runs)
+        yield "", Chart(x_axis, [y_axis], series, self.title, hues=hues, ordered=ordered)
+        yield "", Table.of_rows(("curve", "series", "x", "y"), rows)
+
+    def _fields(self) -> set[str]:
+        """Return the fields that are shown."""
+        return (names_in(self.x or self.along) | names_in(self.y)) & {*FIELDS, WALL_PRESSURE}
 
     def _columns(self, line: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
         """Return x and y along a line, each with a value for every point."""
@@ -92,8 +89,3 @@ class Profiles(XYFigure):
         x, y = (as_array(text, line) for text in (self.x or self.along, self.y))
         x, y = (xr.DataArray(0.0 * line[self.along] + axis, attrs=axis.attrs) for axis in (x, y))
         return x, y
-
-
-def _rows(curve: str, series: str, x: xr.DataArray, y: xr.DataArray) -> Iterator[dict[str, object]]:
-    for px, py in zip(x.values, y.values, strict=True):
-        yield {"curve": curve, "series": series, "x": px, "y": py}

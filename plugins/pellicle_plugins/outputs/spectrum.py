@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from pellicle import analysis
-from pellicle.components import Runs
+from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
 from pellicle.results.result import Result
-from pellicle.show.style import colour, sparse_marker
 
-from .base import Label, TableFigure, write_csv
+from .base import TableFigure
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
 
-_STYLES = {"indenter": "--", "displacement": "-"}
+_LINES = {"indenter": 1, "displacement": 0}
 _HEADS = "curve", "series", "wavenumber [rad/m]", "density [m4]", "wave_vectors"
 _ROUND_OFF = 1e-18
 """Density over the highest below which a ring holds round-off: waves 1e-9 times as high."""
-_Curves = list[tuple[Label, dict[str, analysis.Spectrum]]]
 
 
 class Spectrum(TableFigure):
@@ -37,45 +34,32 @@ class Spectrum(TableFigure):
     type: Literal["spectrum"] = "spectrum"
     examples = ({"by": "step", "label": "{depth * 1e6} µm"},)
 
-    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
-        """Write the figure and its numbers."""
+    def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
+        """Yield the spectra, and the numbers of all rings."""
         curves = [(name, _spectra(step)) for name, step in self.steps(runs)]
-        files = self.save(
-            lambda figure: self._fill(figure.add_subplot(), curves, self.is_ordered(runs)), stem
-        )
-        rows = (
-            (name.key, surface, *row)
-            for name, spectra in curves
-            for surface, part in spectra.items()
-            for row in zip(part.wavenumber, part.density, part.count, strict=True)
-        )
-        return (*files, write_csv(stem, _HEADS, rows))
-
-    def _fill(self, axes: Axes, curves: _Curves, ordered: bool) -> None:
         highest = max(
             (part.density.max(initial=0.0) for _, spectra in curves for part in spectra.values()),
             default=0.0,
         )
-        for number, (name, spectra) in enumerate(curves):
-            hue = colour(number, len(curves), ordered=ordered)
-            for surface, spectrum in spectra.items():
-                shared: dict[str, Any] = {"color": hue, "linewidth": 1.2}
-                if surface == "displacement":
-                    shared["label"] = name.words or None
-                    shared |= sparse_marker(number) if len(curves) > 1 else {}
-                visible = spectrum.density > _ROUND_OFF * highest
-                x, y = spectrum.wavenumber[visible], spectrum.density[visible]
-                axes.plot(x, y, _STYLES[surface], **shared)
-        hue = "0.4" if len(curves) > 1 else "C0"
-        for surface, style in _STYLES.items():
-            axes.plot([], [], style, color=hue, linewidth=1.2, label=surface)
-        axes.set(
-            xlabel="wavenumber q [rad/m]", ylabel="power spectral density [m⁴]", title=self.title
-        )
-        if highest > 0:
-            axes.set(xscale="log", yscale="log")
-        axes.grid(alpha=0.3)
-        axes.legend(frameon=False, fontsize="small")
+        many, series, rows = len(curves) > 1, list[Series](), list[tuple[object, ...]]()
+        for hue, (name, spectra) in enumerate(curves):
+            for surface, part in spectra.items():
+                seen = part.density > _ROUND_OFF * highest
+                is_surface = surface == "displacement"
+                look = Look(hue, _LINES[surface], hue if is_surface and many else None, sparse=True)
+                legend = name.words if is_surface else ""
+                points = part.wavenumber[seen], part.density[seen]
+                series.append(Series(*points, legend=legend, look=look))
+                numbers = zip(part.wavenumber, part.density, part.count, strict=True)
+                rows += [(name.key, surface, *row) for row in numbers]
+        for surface, line in _LINES.items():
+            look = Look(None if many else 0, line)
+            series.append(Series(np.empty(0), np.empty(0), legend=surface, look=look))
+        x = Axis("wavenumber q [rad/m]", as_given=True, log=highest > 0)
+        y = Axis("power spectral density [m⁴]", as_given=True, log=highest > 0)
+        hues, ordered = len(curves), self.is_ordered(runs)
+        yield "", Chart(x, [y], series, self.title, hues=hues, ordered=ordered)
+        yield "", Table.of_rows(_HEADS, rows)
 
 
 def _spectra(step: xr.Dataset) -> dict[str, analysis.Spectrum]:

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from pellicle.show.lines import edge_cells
+from pellicle.show.plotting import study_curves
 
 import pellicle as pl
 from pellicle.show.fields import pressure_map
-from pellicle.show.lines import edge_cells
-from pellicle.show.plotting import study_curves
 from pellicle.show.saving import save_figure
 from pellicle.show.style import FigureStyle, is_log_spaced
 from tests.pictures import pixels

@@ -1,0 +1,293 @@
+"""Charts and fields drawn by matplotlib."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import ceil
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from pellicle.arrays import Array
+from pellicle.components.charts import Axis, Chart, Fields, Panel, Series
+from pellicle.units import Scale, axis_unit
+
+from .style import LINES, MARKERS, NO_CONTACT, add_colour_bar, colour, sparse_marker
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure, SubFigure
+
+SIZE = 5.4, 4.2
+"""Width and height of a chart or of a map [inch]."""
+DIVERGING = "RdBu_r"
+"""The colours of fields that are negative where an interaction pulls."""
+_RETRACTION = (0, (2.5, 1.2))
+_GREY, _PALE = "0.4", "0.6"
+_MOST_MARKED = 80
+_NOT_CONVERGED = "not converged"
+_MAP, _ACROSS = 2.7, 4
+_PARTS = 20
+
+
+class Drawn(NamedTuple):
+    """Where a series was drawn."""
+
+    axes: Axes
+    series: Series
+    points: Array
+    """In the units of the axes, shape (points, 2)."""
+
+
+def size_of(shown: Chart | Fields) -> tuple[float, float]:
+    """Return width and height [inch] for a chart or for fields."""
+    if isinstance(shown, Fields) and len(shown.panels) > 1:
+        across, down = _arrangement(shown)
+        return _MAP * across + 1.2, _MAP * down + 1.0
+    return SIZE
+
+
+def draw(figure: Figure | SubFigure, shown: Chart | Fields) -> list[Drawn]:
+    """Fill a figure with a chart or fields; return where the series of a chart are."""
+    if isinstance(shown, Fields):
+        _draw_fields(figure, shown)
+        return []
+    return _draw_chart(figure, shown)
+
+
+def _draw_chart(figure: Figure | SubFigure, chart: Chart) -> list[Drawn]:
+    ratios = {"height_ratios": chart.heights} if chart.heights else {}
+    panels = figure.subplots(len(chart.y), sharex=True, squeeze=False, gridspec_kw=ratios).ravel()
+    # What is published is in the units that follow from the rest.
+    scaled = [s for s in chart.series if s.role != "published"]
+    scale_x = chart.x.scale([s.x for s in scaled])
+    drawn = []
+    for number, (axes, axis) in enumerate(zip(panels, chart.y, strict=True)):
+        scale_y = axis.scale([s.y for s in scaled if s.panel == number])
+        for low, high in chart.shaded:
+            axes.axvspan(low * scale_x.factor, high * scale_x.factor, color="0.9", zorder=0, lw=0)
+        drawn += [
+            _draw_series(axes, series, chart, scale_x, scale_y)
+            for series in chart.series
+            if series.panel == number
+        ]
+        axes.set_ylabel(axis.label(scale_y))
+        if axis.signed:
+            axes.axhline(0.0, color=_PALE, linewidth=0.6)
+        _set_scale(axes, "x", chart.x, scale_x.factor, signed=axis.signed)
+        _set_scale(axes, "y", axis, scale_y.factor, signed=axis.signed)
+        axes.grid(alpha=0.3)
+    panels[-1].set_xlabel(chart.x.label(scale_x))
+    panels[0].set_title(chart.title)
+    _name_legs(panels[0], chart)
+    if panels[0].get_legend_handles_labels()[1]:
+        panels[0].legend(frameon=False, fontsize="small")
+    if chart.note:
+        place = {"transform": panels[0].transAxes, "fontsize": "small"}
+        panels[0].text(0.02, 0.02, chart.note, color="red", **place)
+    if len(panels) > 1:
+        figure.align_ylabels(panels)
+    return drawn
+
+
+def _draw_series(axes: Axes, series: Series, chart: Chart, scale_x: Scale, scale_y: Scale) -> Drawn:
+    factors = (1.0, 1.0) if series.role == "published" else (scale_x.factor, scale_y.factor)
+    x, y = series.x * factors[0], series.y * factors[1]
+    style, label = _style(series, chart), series.legend or None
+    if series.legs:
+        arrows = not (chart.x.log or chart.y[series.panel].log)
+        _draw_legs(axes, series, x, y, {"label": label, **style}, arrows=arrows)
+    else:
+        axes.plot(x, y, label=label, **style)
+    if series.low is not None and series.high is not None:
+        low, high = series.low * factors[1], series.high * factors[1]
+        if x.size == 1:
+            bar: dict[str, Any] = {"markersize": 12, "linewidth": 0.8, "capsize": 3}
+            spread = np.maximum([y - low, high - y], 0.0)
+            axes.errorbar(x, y, spread, fmt="_", color=style["color"], clip_on=False, **bar)
+        else:
+            axes.fill_between(x, low, high, color=style["color"], alpha=0.2, linewidth=0)
+    if series.converged is not None:
+        bad = ~series.converged & np.isfinite(x) & np.isfinite(y)
+        named = "_" if _NOT_CONVERGED in axes.get_legend_handles_labels()[1] else ""
+        if bad.any():
+            label = f"{named}{_NOT_CONVERGED}"
+            axes.plot(x[bad], y[bad], "x", color="red", markersize=9, label=label)
+    return Drawn(axes, series, np.column_stack([x, y]))
+
+
+def _style(series: Series, chart: Chart) -> dict[str, Any]:
+    """Return keywords of ``Axes.plot`` for a series."""
+    look = series.look
+    if series.role == "published":
+        marker = "" if look.line is not None else "*x+"[(look.marker or 0) % 3]
+        line = "none" if look.line is None else "-"
+        return {"color": "black", "linestyle": line, "marker": marker, "ms": 9, "zorder": 5}
+    is_reference = series.role == "reference"
+    hue = "black" if is_reference else _GREY
+    if look.hue is not None:
+        hue = colour(look.hue, chart.hues, ordered=chart.ordered)
+    style: dict[str, Any] = {"color": hue, "linewidth": 0.9 if is_reference else 1.2}
+    style["linestyle"] = "none" if look.line is None else LINES[look.line % len(LINES)]
+    if is_reference:
+        style["zorder"] = 1
+    if series.stepped:
+        style["drawstyle"] = "steps-post"
+    if look.marker is not None and look.sparse:
+        style |= sparse_marker(look.marker)
+    elif look.marker is not None and (look.line is None or series.x.size <= _MOST_MARKED):
+        marker = MARKERS[look.marker % len(MARKERS)]
+        style |= {"marker": marker, "markersize": 4, "markerfacecolor": "white"}
+    return style
+
+
+def _draw_legs(
+    axes: Axes, series: Series, x: Array, y: Array, style: dict[str, Any], *, arrows: bool
+) -> None:
+    """Draw approach in the style, and retraction with short dashes and filled markers.
+
+    ``arrows`` point in the order of the steps; on logarithmic axes they might begin at values that
+    are not positive.
+    """
+    # The legend shows the plain style if there is an approach.
+    for leg in sorted(series.legs, key=lambda leg: leg.direction):
+        drawn = dict(style)
+        if leg.direction == "retraction":
+            drawn["markerfacecolor"] = style["color"]
+            if style["linestyle"] != "none":
+                drawn["linestyle"] = _RETRACTION
+        u, v = x[leg.steps], y[leg.steps]
+        axes.plot(u, v, **drawn)
+        style = style | {"label": None}
+        # An arrow in the middle of the part of the line in which y changes.
+        finite = np.isfinite(u) & np.isfinite(v)
+        starts = np.flatnonzero(finite[:-1] & finite[1:] & (v[1:] != v[:-1]))
+        if arrows and starts.size:
+            start = int(starts[starts.size // 2])
+            arrow = {"arrowstyle": "-|>", "mutation_scale": 15, "shrinkA": 0, "shrinkB": 0}
+            axes.annotate(
+                "",
+                xy=((u[start] + u[start + 1]) / 2, (v[start] + v[start + 1]) / 2),
+                xytext=(u[start], v[start]),
+                arrowprops=arrow | {"color": style["color"]},
+            )
+
+
+def _name_legs(axes: Axes, chart: Chart) -> None:
+    """Name approach and retraction in the legend to come, if the series have both."""
+    if len({leg.direction for series in chart.series for leg in series.legs}) > 1:
+        hue = colour(0, 1) if chart.hues == 1 else _GREY
+        style: dict[str, Any] = {"color": hue, "marker": MARKERS[0], "markersize": 4}
+        axes.plot([], [], label="approach", markerfacecolor="white", **style)
+        axes.plot([], [], label="retraction", linestyle=_RETRACTION, **style)
+
+
+def _set_scale(axes: Axes, direction: str, axis: Axis, factor: float, *, signed: bool) -> None:
+    """Make an axis logarithmic if it shows a positive value, and set its limits.
+
+    With ``signed`` values, a logarithmic axis leaves out those that are not positive, and the lines
+    to them; otherwise such lines end at the edge. A linear axis of positive values does not begin
+    below 0.
+    """
+    low, high = (None if end is None else end * factor for end in axis.limits)
+    if axis.log and np.isfinite(getattr(axes.dataLim, f"minpos{direction}")):
+        getattr(axes, f"set_{direction}scale")("log", nonpositive="mask" if signed else "clip")
+    elif low is None and getattr(axes.dataLim, f"{direction}0") >= 0:
+        drawn = getattr(axes, f"get_{direction}lim")()
+        low = 0.0 if drawn[0] < 0 else None
+    getattr(axes, f"set_{direction}lim")(low, high)
+
+
+def _arrangement(fields: Fields) -> tuple[int, int]:
+    """Return the number of panels across and down."""
+    count = max(len(fields.panels), 1)
+    across = min(count, _ACROSS)
+    return across, ceil(count / across)
+
+
+def _draw_fields(figure: Figure | SubFigure, fields: Fields) -> None:
+    across, down = _arrangement(fields)
+    all_axes = figure.subplots(down, across, squeeze=False).ravel()
+    for axes in all_axes[len(fields.panels) :]:
+        axes.set_axis_off()
+    figure.suptitle(fields.title)
+    if not fields.panels:
+        return
+    is_bool = fields.panels[0].values.dtype == bool
+    scale = fields.axis.scale([panel.values.astype(float) for panel in fields.panels])
+    colours = _colours(fields, scale.factor)
+    for axes, panel in zip(all_axes, fields.panels, strict=False):
+        image = _draw_panel(axes, panel, scale.factor, colours)
+        axes.label_outer()
+    if is_bool:
+        from matplotlib.patches import Patch
+
+        words = fields.axis.words
+        patches = Patch(color="black"), Patch(color=NO_CONTACT)
+        below: dict[str, Any] = {"loc": "outside lower center", "ncols": 2, "fontsize": "small"}
+        figure.legend(patches, [words, f"no {words}"], **below)
+    elif not fields.parts:
+        bar = all_axes[min(across, len(fields.panels)) - 1]
+        add_colour_bar(bar, image, fields.axis.label(scale))
+
+
+def _draw_panel(axes: Axes, panel: Panel, factor: float, colours: dict[str, Any]) -> Any:
+    """Draw a field times ``factor``, and return its image."""
+    length = axis_unit(np.append(panel.x, panel.y), "m")
+    x, y = panel.x * length.factor, panel.y * length.factor
+    values = panel.values.T * factor
+    if panel.blank is not None:
+        values = np.ma.masked_where(panel.blank.T, values)
+        axes.set_facecolor(NO_CONTACT)
+    halves = [(c[1] - c[0] if c.size > 1 else 1.0) / 2 for c in (x, y)]
+    edges: Any = x[0] - halves[0], x[-1] + halves[0], y[0] - halves[1], y[-1] + halves[1]
+    # The stage "rgba" converts every cell to four colour values first.
+    shared: dict[str, Any] = {"origin": "lower", "interpolation_stage": "data"}
+    image = axes.imshow(values, extent=edges, **shared, **colours)
+    for mask, style in zip(panel.outlines, ("solid", "dotted"), strict=False):
+        # matplotlib warns of a contour that does not exist.
+        if mask.any() and not mask.all() and min(mask.shape) > 1:
+            line: dict[str, Any] = {"colors": "black", "linewidths": 0.8, "linestyles": style}
+            axes.contour(x, y, mask.T.astype(float), levels=[0.5], **line)
+    axes.set(xlabel=f"x [{length.unit}]", ylabel=f"y [{length.unit}]")
+    axes.set_title(panel.title, fontsize="medium")
+    return image
+
+
+def _colours(fields: Fields, factor: float) -> dict[str, Any]:
+    """Return the colours of all panels, as keywords of ``Axes.imshow``."""
+    from matplotlib.colors import ListedColormap
+
+    if fields.panels[0].values.dtype == bool:
+        black = ListedColormap([NO_CONTACT, "black"])
+        return {"cmap": black, "vmin": 0.0, "vmax": 1.0, "interpolation": "nearest"}
+    if fields.parts:
+        return {"cmap": "tab20", "vmin": 0, "vmax": _PARTS - 1, "interpolation": "nearest"}
+    values = np.concatenate([panel.values.ravel() for panel in fields.panels]) * factor
+    values = values[np.isfinite(values)]
+    low, high = (values.min(), values.max()) if values.size else (0.0, 1.0)
+    low = low if fields.axis.limits[0] is None else fields.axis.limits[0] * factor
+    if fields.centred and low < 0:
+        highest = float(max(-low, high))
+        return {"cmap": DIVERGING, "vmin": -highest, "vmax": highest}
+    if low == high:
+        # matplotlib would centre a scale without range on its only value.
+        low, high = min(low, 0.0), max(high, 0.0 if low else 1.0)
+    return {"cmap": "viridis", "vmin": low, "vmax": high}
+
+
+def marks_of(
+    figure: Figure, drawn: Sequence[Drawn], steps: Sequence[int]
+) -> list[list[tuple[float, float]]]:
+    """Return where load steps lie on a drawn figure, as shares of its size from top left."""
+    figure.draw_without_rendering()
+    marks: list[list[tuple[float, float]]] = [[] for _ in steps]
+    for axes, series, points in drawn:
+        if series.steps is None or not series.x.size:
+            continue
+        pixels = axes.transData.transform(points)
+        shares = figure.transFigure.inverted().transform(pixels)
+        for found, step in zip(marks, steps, strict=True):
+            here = shares[series.steps == step]
+            found += [(float(left), float(1 - bottom)) for left, bottom in here]
+    return marks

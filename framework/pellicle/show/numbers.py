@@ -1,0 +1,49 @@
+"""The numbers of charts and tables as CSV."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from pellicle.components.charts import Chart, Column, Series, Table
+from pellicle.files import storage_errors
+
+
+def write_csv(table: Table, path: Path) -> Path:
+    """Write a table, and return the file."""
+    with storage_errors(path), path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow([column.head for column in table.columns])
+        writer.writerows(zip(*(column.values for column in table.columns), strict=True))
+    return path
+
+
+def table_of(chart: Chart) -> Table:
+    """Return the numbers that a chart draws, in SI; what is published in the units of its axes."""
+    rows = [row for series in chart.series if series.written for row in _rows(chart, series)]
+    heads = dict.fromkeys(head for row in rows for head in row)
+    first = dict.fromkeys(("curve", "series", chart.x.head, *(axis.head for axis in chart.y)))
+    return Table([Column(head, [row.get(head) for row in rows]) for head in first | heads])
+
+
+def _rows(chart: Chart, series: Series) -> Iterator[dict[str, object]]:
+    # A turn belongs to the leg that reaches it.
+    directions = {
+        step: leg.direction
+        for leg in reversed(series.legs)
+        for step in range(leg.steps.start, leg.steps.stop)
+    }
+    columns = {chart.x.head: series.x, chart.y[series.panel].head: series.y, **series.columns}
+    if series.low is not None and series.high is not None:
+        columns |= {"y_lowest": series.low, "y_highest": series.high}
+    for index in range(series.x.size):
+        row: dict[str, object] = {"curve": series.key, "series": series.name}
+        row |= {h: v[index] if isinstance(v, np.ndarray) else v for h, v in columns.items()}
+        if index in directions:
+            row["direction"] = directions[index]
+        if series.converged is not None:
+            row["converged"] = bool(series.converged[index])
+        yield row
