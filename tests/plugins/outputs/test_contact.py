@@ -11,12 +11,12 @@ from xml.etree import ElementTree as Xml
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 import pellicle as pl
+from pellicle.components import Chart, Table
 from pellicle.results import StoredRuns
 from pellicle_plugins.outputs import vtk_file
-from pellicle_plugins.outputs.spectrum import Spectrum, _spectra
+from pellicle_plugins.outputs.spectrum import Spectrum
 from tests.plugins.outputs.shared import bead, rows
 
 OUTPUTS = [
@@ -101,14 +101,13 @@ def test_round_off_does_not_set_the_scale_of_a_spectrum(left: Left) -> None:
     """Beyond its shortest wave the indenter has round-off alone, which is not drawn."""
     _, result = left
     output = Spectrum()
-    steps = output.steps(StoredRuns.of_run(result.dataset))
-    curves = [(name, _spectra(step)) for name, step in steps]
-    axes = Figure().add_subplot()
-    output._fill(axes, curves, False)
-    indenter = curves[0][1]["indenter"].density
-    assert indenter.min() < 1e-20 * indenter.max()
-    low, high = axes.get_ylim()
-    assert low > 1e-20 * high
+    (_, chart), (_, table) = output.charts(StoredRuns.of_run(result.dataset))
+    assert isinstance(chart, Chart)
+    assert isinstance(table, Table)
+    written = np.array(table.columns[3].values)
+    assert written.min() < 1e-20 * written.max()
+    drawn = np.concatenate([series.y for series in chart.series])
+    assert drawn.min() > 1e-20 * drawn.max()
 
 
 def decoded(array: Xml.Element) -> np.ndarray:

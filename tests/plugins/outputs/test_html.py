@@ -240,8 +240,9 @@ def test_marks_are_on_the_curves(ran: tuple[Path, xr.Dataset]) -> None:
             left, top = map(float, re.findall(r"([\d.]+)%", attrs["style"] or ""))
             at = (left / 100 * width, top / 100 * height)
             assert min(np.hypot(x - at[0], y - at[1]) for x, y in drawn) < 1.0
-        marked += len(marks) == 2
-        assert sorted(attrs["data-mark"] or "" for attrs in marks) in ([], ["0", "1"])
+        marked += len(marks) >= 2
+        numbers = [attrs["data-mark"] for attrs in marks]
+        assert numbers.count("0") == numbers.count("1")
     assert marked == 2
 
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 import pellicle as pl
 from pellicle.results.path import label_of_step
-from pellicle.show import drawings, study_curves
+from pellicle.show import draw, figures, force_depth, over_time, profile, study_curves
 from pellicle_plugins.outputs import html_curves
 from tests.plugins.outputs.shared import bead
 
@@ -49,27 +49,21 @@ def result(folder: Path) -> pl.Result:
     return pl.load(folder / "bead.h5")
 
 
-@pytest.mark.slow
 def test_figure_over_time_has_what_the_result_has(result: pl.Result) -> None:
     """Force, depth and area have a curve each over the time; without times there is no figure."""
-    figure = Figure()
-    drawings(result)["time"](figure)
-    assert "time" not in drawings(pl.Result(result.dataset.drop_vars("time")))
-    names = ["force", "depth", "contact_area"]
-    assert [axes.get_ylabel().split(" [")[0] for axes in figure.axes] == [
-        name.replace("_", " ") for name in names
-    ]
-    for name, axes in zip(names, figure.axes, strict=True):
-        x, y = (np.asarray(data, dtype=float) for data in axes.lines[0].get_data())
-        np.testing.assert_allclose(x, result.dataset["time"])
-        values = result.dataset[name].values
-        np.testing.assert_allclose(y / y.max(), values / values.max())
+    chart = over_time(result)
+    assert "time" in figures(result)
+    assert "time" not in figures(pl.Result(result.dataset.drop_vars("time")))
+    assert [axis.words for axis in chart.y] == ["force", "depth", "contact area"]
+    for name, series in zip(["force", "depth", "contact_area"], chart.series, strict=True):
+        np.testing.assert_array_equal(series.x, result.dataset["time"])
+        np.testing.assert_array_equal(series.y, result.dataset[name])
 
 
 def test_loop_tells_approach_from_retraction(result: pl.Result) -> None:
     """The curve of force against depth is two, named in the legend, which enclose an area."""
     figure = Figure()
-    drawings(result)["force_depth"](figure)
+    draw(figure, force_depth(result))
     (axes,) = figure.axes
     legend = axes.get_legend()
     assert legend is not None
@@ -83,10 +77,8 @@ def test_last_step_in_contact_is_drawn(folder: Path, result: pl.Result) -> None:
     """A path that ends out of contact shows the last step in contact, and says when it was."""
     last = int(np.flatnonzero(result.dataset["contact_area"].values)[-1])
     assert 4 < last < 8
-    figure = Figure()
-    drawings(result)["profile"](figure)
     time = result.dataset["time"].values[last]
-    assert f"{time:g} s, depth " in figure.axes[0].get_title()
+    assert f"{time:g} s, depth " in profile(result).title
     text = (folder / "bead.html").read_text(encoding="utf-8")
     (chosen,) = re.findall(r"<option value=\"(\d+)\" selected>", text)
     assert int(chosen) == last
@@ -133,11 +125,7 @@ def test_study_is_drawn_over_time(tmp_path: Path) -> None:
         vary={"kernel.relaxation.0.time": ["0.5 s", "5 s"]},
     )
     table = pl.run_study(study, directory=tmp_path, progress=False)
-    axes = Figure().add_subplot()
-    study_curves(table, axes, "force")
-    assert axes.get_xlabel() == "time [s]"
-    ends = {
-        str(line.get_label()).rpartition(" relaxation 1 ")[2]: np.asarray(line.get_ydata())
-        for line in axes.lines
-    }
+    chart = study_curves(table, "force")
+    assert (chart.x.words, chart.x.unit) == ("time", "s")
+    ends = {line.legend.rpartition(" relaxation 1 ")[2]: line.y for line in chart.series}
     assert ends["0.5 s"][-1] < ends["5 s"][-1]

@@ -9,12 +9,9 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from pellicle.show.lines import edge_cells
-from pellicle.show.plotting import study_curves
 
 import pellicle as pl
-from pellicle.show.fields import pressure_map
-from pellicle.show.saving import save_figure
+from pellicle.show import draw, pressure_map, save_figure, study_curves
 from pellicle.show.style import FigureStyle, is_log_spaced
 from tests.pictures import pixels
 from tests.plugins.outputs.shared import bead
@@ -63,8 +60,9 @@ def test_bad_widths(width: object) -> None:
 
 def test_legend_has_colours_and_markers_of_the_lines(table: Any) -> None:
     """Each curve of a study differs from the others by colour and by marker, as in the legend."""
-    axes = Figure().add_subplot()
-    study_curves(table, axes, "force")
+    figure = Figure()
+    draw(figure, study_curves(table, "force"))
+    (axes,) = figure.axes
     lines = [line for line in axes.lines if not str(line.get_label()).startswith("_")]
     legend = axes.get_legend()
     assert legend is not None
@@ -81,35 +79,25 @@ def test_legends_leave_curves_free(tmp_path: Path) -> None:
     """A legend without a free corner stands beside the axes."""
     legends = []
 
-    def draw(figure: Figure) -> None:
+    def fill(figure: Figure) -> None:
         axes = figure.add_subplot()
         x = np.linspace(0, 60, 4000)
         axes.plot(x, np.sin(x), label="a long name of a curve")
         legends.append((axes, axes.legend()))
 
-    save_figure(draw, tmp_path / "a", ["png"])
+    save_figure(fill, tmp_path / "a", ["png"])
     axes, legend = legends[0]
     assert legend.get_window_extent().x0 > axes.get_window_extent().x1
 
 
 def test_no_contact_is_grey() -> None:
     """Cells without contact are not those of the lowest pressure."""
-    axes = Figure().add_subplot()
-    pressure_map(pl.run(bead(), progress=False), axes)
+    figure = Figure()
+    draw(figure, pressure_map(pl.run(bead(), progress=False)))
+    axes = figure.axes[0]
     assert to_hex(axes.get_facecolor()) == to_hex("0.93")
     shown: Any = axes.images[0].get_array()
     assert np.ma.getmaskarray(shown).mean() > 0.3
-
-
-def test_edge_cells() -> None:
-    """The cells at both ends of one resolved contact, and none of several or of a coarse one."""
-    contact = np.zeros(64, dtype=bool)
-    contact[10:40] = True
-    assert [*np.flatnonzero(edge_cells(contact))] == [10, 11, 12, 37, 38, 39]
-    contact[20] = False
-    assert not edge_cells(contact).any()
-    assert not edge_cells(np.arange(64) < 10).any()
-    assert not edge_cells(np.ones(64, dtype=bool)).any()
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 import pellicle as pl
+from pellicle.components import Axis
 from pellicle.config.coordinates import Coordinate, tell_apart
 from pellicle.results.wording import wording
 from pellicle.schema.paths import walk
@@ -22,7 +23,7 @@ from pellicle.variables import VARIABLES
 from pellicle_fit.curves.sources import SourceStream
 from pellicle_fit.many import fit_sources
 from pellicle_fit.report.page import save_report
-from pellicle_plugins.outputs.base import scaled
+from pellicle_plugins.outputs.base import axis_of
 from tests.plugins.fit.conftest import skip_rivals
 from tests.plugins.outputs.shared import bead
 
@@ -256,6 +257,7 @@ def test_the_label_of_an_expression_has_no_wrong_unit() -> None:
     table = xr.Dataset(
         {"force": ("step", [1e-6, 2e-6], {"units": "N"})}, attrs={"configuration": "{}"}
     )
-    assert scaled("force", [table["force"]], None, table) == (1e6, "force [µN]")
-    assert scaled("force / 3", [table["force"] / 3], None, table) == (1.0, "force / 3")
-    assert scaled("force", [table["force"]], "pull [N]", table) == (1.0, "pull [N]")
+    force = table["force"]
+    assert axis_of("force", [force], None, table) == Axis("force", "N")
+    assert axis_of("force / 3", [force / 3], None, table) == Axis("force / 3", as_given=True)
+    assert axis_of("force", [force], "pull [N]", table) == Axis("pull [N]", as_given=True)
