@@ -104,6 +104,13 @@ class Series:
     """Whether its numbers are written; those of a line that guides the eye are not."""
 
 
+def _drawn(shown: Chart | Fields) -> bytes:
+    """Return the drawing as PNG, which a notebook shows."""
+    from pellicle.show import png
+
+    return png(shown)
+
+
 @dataclass(frozen=True)
 class Chart:
     """Numbers against numbers, in one panel or several above each other that share x."""
@@ -123,6 +130,8 @@ class Chart:
     """Ranges of x over which the ground is shaded."""
     heights: Sequence[float] = ()
     """Heights of the panels, relative to each other; all alike if empty."""
+
+    _repr_png_ = _drawn
 
 
 @dataclass(frozen=True)
@@ -156,6 +165,8 @@ class Fields:
     centred: bool = False
     """Whether colours are centred at 0 where values are negative."""
     parts: bool = False
+
+    _repr_png_ = _drawn
 
 
 class Column(NamedTuple):

@@ -28,6 +28,8 @@ from .presets import over_time as over_time
 from .presets import study_curves as study_curves
 from .rim import up_to_rim as up_to_rim
 from .rim import with_rim as with_rim
+from .saving import figure_of as figure_of
+from .saving import png as png
 from .saving import save_figure as save_figure
 from .saving import save_pages as save_pages
 from .saving import svg as svg

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from pellicle.components.charts import Chart, Fields, Shown, Table
 from pellicle.files import atomic_write, for_document, storage_errors
 
-from .drawing import SIZE, draw, size_of
+from .drawing import SIZE, Drawn, draw, size_of
 from .numbers import table_of, write_csv
 from .style import FigureStyle, label_log_axes, lay_out
 
@@ -53,21 +53,21 @@ def write_charts(
 
 def figure_of(
     shown: Chart | Fields | Sequence[Chart | Fields],
-) -> tuple[Callable[[Figure], None], tuple[float, float]]:
+) -> tuple[Callable[[Figure], list[Drawn]], tuple[float, float]]:
     """Return what fills a figure with charts and fields side by side, and its size [inch]."""
     beside = [shown] if isinstance(shown, (Chart, Fields)) else shown
 
-    def fill(figure: Figure) -> None:
+    def fill(figure: Figure) -> list[Drawn]:
         places: Any = [figure] if len(beside) == 1 else figure.subfigures(1, len(beside))
-        for place, part in zip(places, beside, strict=True):
-            draw(place, part)
+        parts = zip(places, beside, strict=True)
+        return [drawn for place, part in parts for drawn in draw(place, part)]
 
     sizes = [size_of(part) for part in beside]
     return fill, (sum(width for width, _ in sizes), max(height for _, height in sizes))
 
 
 def save_figure(
-    draw: Callable[[Figure], None],
+    draw: Callable[[Figure], object],
     stem: Path,
     formats: Iterable[str],
     size: tuple[float, float] = SIZE,
@@ -89,7 +89,7 @@ def save_figure(
 
 
 def save_pages(
-    draws: Iterable[Callable[[Figure], None]], path: Path, size: tuple[float, float]
+    draws: Iterable[Callable[[Figure], object]], path: Path, size: tuple[float, float]
 ) -> Path:
     """Let each function fill a page of ``size`` [inch] of a PDF file, and return the file."""
     from matplotlib.backends.backend_pdf import PdfPages
@@ -106,7 +106,7 @@ def save_pages(
     return path
 
 
-def svg(draw: Callable[[Figure], None], size: tuple[float, float] = SIZE) -> bytes:
+def svg(draw: Callable[[Figure], object], size: tuple[float, float] = SIZE) -> bytes:
     """Let ``draw`` fill a figure of ``size`` [inch], and return it as reproducible SVG."""
     import matplotlib as mpl
 
@@ -118,9 +118,17 @@ def svg(draw: Callable[[Figure], None], size: tuple[float, float] = SIZE) -> byt
     return buffer.getvalue()
 
 
+def png(shown: Chart | Fields) -> bytes:
+    """Return a drawing as PNG, as a notebook shows it."""
+    buffer = BytesIO()
+    with _figure(*figure_of(shown)) as figure:
+        figure.savefig(buffer, format="png")
+    return buffer.getvalue()
+
+
 @contextmanager
 def _figure(
-    draw: Callable[[Figure], None], size: tuple[float, float], style: FigureStyle | None = None
+    draw: Callable[[Figure], object], size: tuple[float, float], style: FigureStyle | None = None
 ) -> Iterator[Figure]:
     """Yield a figure that ``draw`` has filled; it is empty afterwards."""
     from matplotlib.figure import Figure

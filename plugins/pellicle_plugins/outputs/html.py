@@ -13,7 +13,7 @@ import numpy as np
 import tomli_w
 from pydantic import Field
 
-from pellicle import Grid, Run
+from pellicle import Grid, Run, registry
 from pellicle.components import Output, Runs
 from pellicle.config.describe import inputs
 from pellicle.errors import StorageError
@@ -32,7 +32,7 @@ from pellicle.studies.summary import caveats, failures, progress_of, reasons, ru
 from pellicle.variables import FIELDS as RESULT_FIELDS
 from pellicle.variables import WALL_PRESSURE
 
-from .html_curves import curves_of_run, curves_of_study
+from .html_curves import curves_of_outputs, curves_of_run, curves_of_study
 from .html_tables import (
     input_table,
     inputs_of_study,
@@ -103,11 +103,11 @@ class Html(Output):
         varied: tuple[str, ...] = ()
         if runs.axes is None:
             run = configuration
-            sections = self._sections_of_run(Result(runs.open()), run)
+            sections = self._sections_of_run(Result(runs.open()), run, runs)
         else:
             run = json.loads(table.attrs[FIRST_RUN])
             varied = tuple(str(name) for name in table.coords if name != "step")
-            sections = self._sections_of_study(table, run, varied, stem.parent / "runs")
+            sections = self._sections_of_study(runs, run, varied, stem.parent / "runs")
         sections += [
             Section("Methods", [Text(methods(run, table.attrs, varied))]),
             Section("Provenance", [*origin_tables(table.attrs, run)]),
@@ -120,7 +120,9 @@ class Html(Output):
             part.write_text(text, encoding="utf-8")
         return (path,)
 
-    def _sections_of_run(self, result: Result, configuration: dict[str, Any]) -> list[Section]:
+    def _sections_of_run(
+        self, result: Result, configuration: dict[str, Any], runs: Runs
+    ) -> list[Section]:
         """Return what the page of a run shows before methods and provenance."""
         data = result.dataset
         maps, chosen = self._maps_of_steps(result)
@@ -136,17 +138,19 @@ class Html(Output):
             ),
             Section("Maps", [maps]),
             Section("Curves", curves_of_run(result, chosen, maps.begin)),
+            Section("Outputs", [*curves_of_outputs(runs, _outputs(configuration), chosen)]),
             Section("Numbers", numbers),
             Section("Inputs", [input_table(list(inputs(configuration, Run)))]),
         ]
 
     def _sections_of_study(
-        self, table: xr.Dataset, first_run: dict[str, Any], varied: tuple[str, ...], folder: Path
+        self, runs: Runs, first_run: dict[str, Any], varied: tuple[str, ...], folder: Path
     ) -> list[Section]:
         """Return what the page of a study shows before methods and provenance.
 
         ``folder`` holds the files of its runs.
         """
+        table = runs.table
         rows = list(runs_of(table))
         frames = dict(self._frames_of_runs(table, rows, folder))
         sentence = sentence_of_study(table, len(rows))
@@ -171,6 +175,7 @@ class Html(Output):
             ),
             Section("Maps", [maps] if frames else []),
             Section("Curves", curves_of_study(table)),
+            Section("Outputs", [*curves_of_outputs(runs, _outputs(first_run))]),
             Section("Numbers", numbers),
             Section("Inputs", [input_table(inputs_of_study(table, list(inputs(first_run, Run))))]),
         ]
@@ -258,6 +263,11 @@ def _share_in_words(number: int, count: int, noun: str) -> str:
 def _setup(configuration: dict[str, Any], prescribed: str, varied: tuple[str, ...] = ()) -> Picture:
     drawing = setup_drawing(configuration, prescribed, varied)
     return Picture(drawing, "Set-up, not to scale.", description(configuration))
+
+
+def _outputs(configuration: dict[str, Any]) -> list[Output]:
+    """Return the outputs that a configuration names."""
+    return [registry().make(Output, output) for output in configuration.get("outputs") or ()]
 
 
 def _status(result: Result) -> Notice:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from pellicle.components import Chart, Fields
+from pellicle.components import Chart, Fields, Output, Runs, Table
 from pellicle.results.path import label_of_step
 from pellicle.results.result import Result
 from pellicle.results.wording import wording
-from pellicle.show import Picture, figures, profile, svg
-from pellicle.show.drawing import draw, marks_of
+from pellicle.show import Picture, figure_of, figures, profile, svg
+from pellicle.show.drawing import marks_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -64,14 +64,37 @@ def curves_of_study(table: xr.Dataset) -> list[Picture]:
     ]
 
 
-def _picture(chart: Chart | Fields, caption: str, marked: Sequence[int] = ()) -> Picture:
+def curves_of_outputs(
+    runs: Runs, outputs: Sequence[Output], chosen: Sequence[int] = ()
+) -> Iterator[Picture]:
+    """Yield what the other outputs of a run or study show, marked at ``chosen`` steps."""
+    for output in outputs:
+        if output.type_name in ("figures", "html") or type(output).charts is Output.charts:
+            continue
+        try:
+            shown = [part for _, part in output.charts(runs)]
+        except Exception:
+            # The output that fails is told of as it is written.
+            continue
+        name = getattr(output, "title", "") or getattr(output, "name", "") or output.type_name
+        for part in shown:
+            if not isinstance(part, (bytes, Table)):
+                yield _picture(part, f"{name[0].upper()}{name[1:]}.", chosen)
+
+
+def _picture(
+    shown: Chart | Fields | Sequence[Chart | Fields], caption: str, marked: Sequence[int] = ()
+) -> Picture:
     """Return a picture, with marks at the load steps ``marked``."""
     marks: list[list[tuple[float, float]]] = []
 
-    def fill(figure: Figure) -> None:
-        # The page has a title, and a title may be longer than a figure is wide.
-        drawn = draw(figure, replace(chart, title=""))
+    beside = [shown] if isinstance(shown, (Chart, Fields)) else shown
+    # The page has a title, and a title may be longer than a figure is wide.
+    fill, size = figure_of([replace(part, title="") for part in beside])
+
+    def marked_fill(figure: Figure) -> None:
+        drawn = fill(figure)
         if marked:
             marks.extend(marks_of(figure, drawn, marked))
 
-    return Picture(svg(fill), caption, caption, marks)
+    return Picture(svg(marked_fill, size), caption, caption, marks, wide=len(beside) > 1)
