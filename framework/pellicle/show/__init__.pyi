@@ -1,6 +1,7 @@
 __all__: list[str]
 
 from .drawing import draw as draw
+from .fields import cross_section as cross_section
 from .fields import pressure_map as pressure_map
 from .fields import profile as profile
 from .fields import without_round_off as without_round_off

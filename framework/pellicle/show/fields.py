@@ -120,6 +120,28 @@ def profile(result: Result, step: int | None = None) -> Chart:
     return Chart(Axis("x", "m"), axes, series, title, shaded=shaded, heights=heights)
 
 
+def cross_section(step: xr.Dataset) -> Chart:
+    """Return the indenter over the deformed surface along x, through its deepest point, to scale.
+
+    ``step`` is one load step. Heights are above the undeformed surface.
+    """
+    sunk = np.nan_to_num(step["displacement"].transpose("x", "y").values, nan=-np.inf)
+    line = step.isel(y=int(sunk.max(axis=0).argmax()))
+    x, surface = line["x"].values, -line["displacement"].values
+    gap = np.where(np.isfinite(line["gap"].values), line["gap"].values, np.nan)
+    # Far from the contact a round body would set the scale.
+    reach = 2 * max(float(np.ptp(surface)), abs(float(step["depth"])))
+    indenter = np.where(gap <= reach, surface + gap, np.nan) if reach > 0 else surface + gap
+    return Chart(
+        Axis("x", "m"),
+        [Axis("height", "m", signed=True)],
+        [
+            Series(x, indenter, name="indenter", legend="indenter", look=Look(None, 1)),
+            Series(x, surface, name="surface", legend="surface"),
+        ],
+    )
+
+
 def _caption(result: Result, step: int) -> str:
     """Return the title of a figure of one load step."""
     caption = label_of_step(result.dataset, step)

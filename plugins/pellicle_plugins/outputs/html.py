@@ -24,7 +24,7 @@ from pellicle.results.path import has_interaction, label_of_step, prescribed_var
 from pellicle.results.result import Result, first_message
 from pellicle.results.wording import wording
 from pellicle.show.drawing import DIVERGING
-from pellicle.show.fields import default_step, draws_contact, without_round_off
+from pellicle.show.fields import cross_section, default_step, draws_contact, without_round_off
 from pellicle.show.html import Code, Notice, Picture, Section, Text, page
 from pellicle.show.maps import Field as MapField
 from pellicle.show.maps import Frame, Maps, frame, side
@@ -32,7 +32,7 @@ from pellicle.studies.summary import caveats, failures, progress_of, reasons, ru
 from pellicle.variables import FIELDS as RESULT_FIELDS
 from pellicle.variables import WALL_PRESSURE
 
-from .html_curves import curves_of_outputs, curves_of_run, curves_of_study
+from .html_curves import curves_of_outputs, curves_of_run, curves_of_study, picture
 from .html_tables import (
     input_table,
     inputs_of_study,
@@ -45,7 +45,6 @@ from .html_tables import (
 )
 from .methods import methods
 from .sentences import sentence_of_step, sentence_of_study, sentences_of_path
-from .setup_drawing import description, setup_drawing
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -127,20 +126,26 @@ class Html(Output):
         data = result.dataset
         maps, chosen = self._maps_of_steps(result)
         step_shown = default_step(data) % data.sizes["step"]
-        first = sentence_of_step(data, step_shown)
+        first, label = sentence_of_step(data, step_shown), label_of_step(data, step_shown)
         rest = sentences_of_path(data, result.path_summary)
         sentences = [Text(first, lead=True), *([Text(rest)] if rest else [])]
         numbers = [*step_tables(data), *path_tables(result), *oscillation_tables(result)]
         return [
             Section(
                 "In short",
-                [*sentences, _status(result), _setup(configuration, str(data.attrs["prescribed"]))],
+                [*sentences, _status(result)],
             ),
             Section("Maps", [maps]),
             Section("Curves", curves_of_run(result, chosen, maps.begin)),
             Section("Outputs", [*curves_of_outputs(runs, _outputs(configuration), chosen)]),
             Section("Numbers", numbers),
-            Section("Inputs", [input_table(list(inputs(configuration, Run)))]),
+            Section(
+                "Set-up",
+                [
+                    _setup(data.isel(step=step_shown), configuration, label),
+                    input_table(list(inputs(configuration, Run))),
+                ],
+            ),
         ]
 
     def _sections_of_study(
@@ -152,7 +157,14 @@ class Html(Output):
         """
         table = runs.table
         rows = list(runs_of(table))
-        frames = dict(self._frames_of_runs(table, rows, folder))
+        frames, setups = dict[int, Frame](), list[Picture]()
+        mapped = _mapped(table)
+        for index, step, label, points in self._steps_of_runs(table, rows, folder):
+            frames[index] = _frame(
+                label, Result(step).grid, without_round_off(step), mapped, points
+            )
+            if not setups:
+                setups.append(_setup(step, first_run, label))
         sentence = sentence_of_study(table, len(rows))
         lead = [Text(sentence, lead=True)] if sentence else []
         failed, warnings = failures(table), [*caveats(table)]
@@ -165,19 +177,21 @@ class Html(Output):
         which = "The last step in contact" if draws_contact(table) else "The last step"
         of_runs = _share_in_words(len(frames), len(rows), "run")
         caption = f"{which} of {of_runs}, each in colours over its own range."
-        mapped = tuple(_mapped(table).values())
-        maps = Maps(caption, "run", mapped, list(frames.values()))
+        maps = Maps(caption, "run", tuple(mapped.values()), list(frames.values()))
         numbers = [run_table(table, rows, list(frames)), *study_path_tables(table, rows)]
         return [
             Section(
                 "In short",
-                [*lead, status, _setup(first_run, str(table.attrs["prescribed"]), varied)],
+                [*lead, status],
             ),
             Section("Maps", [maps] if frames else []),
             Section("Curves", curves_of_study(table)),
             Section("Outputs", [*curves_of_outputs(runs, _outputs(first_run))]),
             Section("Numbers", numbers),
-            Section("Inputs", [input_table(inputs_of_study(table, list(inputs(first_run, Run))))]),
+            Section(
+                "Set-up",
+                [*setups[:1], input_table(inputs_of_study(table, list(inputs(first_run, Run))))],
+            ),
         ]
 
     def _maps_of_steps(self, result: Result) -> tuple[Maps, list[int]]:
@@ -205,10 +219,10 @@ class Html(Output):
         caption = f"{names} at prescribed {words}, in {shown_steps}{colours}."
         return Maps(caption, "load step", tuple(mapped.values()), frames, max(begin, 0)), chosen
 
-    def _frames_of_runs(
+    def _steps_of_runs(
         self, table: xr.Dataset, rows: list[xr.Dataset], folder: Path
-    ) -> Iterator[tuple[int, Frame]]:
-        """Yield the maps of a step of runs, by their index among all."""
+    ) -> Iterator[tuple[int, xr.Dataset, str, int]]:
+        """Yield the mapped step of each run: index among all, fields, name, and pixels a side."""
         import xarray as xr
 
         mapped, names_of_runs = _mapped(table), run_names(table)
@@ -233,8 +247,9 @@ class Html(Output):
             ).assign(depth=row["depth"][step_shown])
             if not sticks:
                 step = step.assign({WALL_PRESSURE: step["pressure"]})
-            grid = Result(step).grid
-            yield index, _frame(names_of_runs[index], grid, without_round_off(step), mapped, points)
+            x, y = Result(step).grid.coordinates()
+            step = step.assign_coords(x=x[:, 0], y=y[0])
+            yield index, step, names_of_runs[index], points
 
     def _chosen(self, count: int) -> list[int]:
         """Return the indices that are mapped: all, or evenly spaced ones up to the last."""
@@ -260,9 +275,11 @@ def _share_in_words(number: int, count: int, noun: str) -> str:
     return f"each {noun}" if number == count else f"{number} of {count} {noun}s"
 
 
-def _setup(configuration: dict[str, Any], prescribed: str, varied: tuple[str, ...] = ()) -> Picture:
-    drawing = setup_drawing(configuration, prescribed, varied)
-    return Picture(drawing, "Set-up, not to scale.", description(configuration))
+def _setup(step: xr.Dataset, configuration: dict[str, Any], label: str) -> Picture:
+    """Return the indenter over the surface in a load step, to scale."""
+    values = {i.name: i.value for i in inputs(configuration, Run)}
+    caption = f"The {values['indenter']} on the {values['kernel']}, at {label}; heights stretched."
+    return picture(cross_section(step), caption)
 
 
 def _outputs(configuration: dict[str, Any]) -> list[Output]:

@@ -32,7 +32,7 @@ def curves_of_run(result: Result, chosen: list[int], begin: int) -> list[Picture
     if result.dataset.sizes["step"] > 1:
         drawn = figures(result)
         pictures += [
-            _picture(drawn[name], caption, chosen)
+            picture(drawn[name], caption, chosen)
             for name, caption in _CURVES.items()
             if name in drawn
         ]
@@ -46,12 +46,12 @@ def _profiles(result: Result, chosen: list[int], begin: int) -> Picture:
     """
     count = -(-len(chosen) // _PROFILES)
 
-    def picture(index: int) -> Picture:
+    def of_step(index: int) -> Picture:
         label = label_of_step(result.dataset, index)
-        return _picture(profile(result, index), f"Pressure and gap along x, at {label}.")
+        return picture(profile(result, index), f"Pressure and gap along x, at {label}.")
 
     # The step whose map is shown first is drawn, and every `count`-th before and after it.
-    drawn = {index: picture(index) for index in chosen[begin % count :: count]}
+    drawn = {index: of_step(index) for index in chosen[begin % count :: count]}
     frames = [drawn[min(drawn, key=lambda drawn_step: abs(drawn_step - index))] for index in chosen]
     return replace(drawn[chosen[begin]], by_frame=frames if len(drawn) > 1 else ())
 
@@ -59,7 +59,7 @@ def _profiles(result: Result, chosen: list[int], begin: int) -> Picture:
 def curves_of_study(table: xr.Dataset) -> list[Picture]:
     """Return a figure for each variable that is drawn over a study."""
     return [
-        _picture(chart, f"{wording(table[name]).words.capitalize()} over the study.")
+        picture(chart, f"{wording(table[name]).words.capitalize()} over the study.")
         for name, chart in figures(table).items()
     ]
 
@@ -79,10 +79,10 @@ def curves_of_outputs(
         name = getattr(output, "title", "") or getattr(output, "name", "") or output.type_name
         for part in shown:
             if not isinstance(part, (bytes, Table)):
-                yield _picture(part, f"{name[0].upper()}{name[1:]}.", chosen)
+                yield picture(part, f"{name[0].upper()}{name[1:]}.", chosen)
 
 
-def _picture(
+def picture(
     shown: Chart | Fields | Sequence[Chart | Fields], caption: str, marked: Sequence[int] = ()
 ) -> Picture:
     """Return a picture, with marks at the load steps ``marked``."""

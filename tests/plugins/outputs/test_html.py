@@ -14,7 +14,6 @@ from html.parser import HTMLParser
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from xml.etree import ElementTree
 
 import numpy as np
 import pandas as pd
@@ -24,8 +23,8 @@ import xarray as xr
 
 import pellicle as pl
 from pellicle.runs import steps
+from pellicle.show import cross_section
 from pellicle.version import CITATION
-from pellicle_plugins.outputs.setup_drawing import setup_drawing
 from tests.pictures import colourfulness
 from tests.plugins.outputs.shared import bead
 
@@ -285,32 +284,16 @@ def test_a_rough_contact_has_no_ellipse(tmp_path: Path) -> None:
     assert re.search(r"contact fraction 0\.\d+\.", page.frames[0]["note"])
 
 
-ELASTIC = {"youngs_modulus": "10 kPa", "poissons_ratio": 0.45}
-SKIN = {"type": "bonded_layer", "thickness": "20 um", **ELASTIC}
-TWO = [{"thickness": "1 um", **ELASTIC}, {"thickness": "2 um", **ELASTIC}]
-
-
-@pytest.mark.parametrize(
-    ("kernel", "shapes"),
-    [
-        (RUN["kernel"], "half-space tension tension"),
-        ({"type": "half_space", **ELASTIC}, "half-space"),
-        (
-            {"type": "coated", "tension": "1 mN/m", "substrate": SKIN},
-            "layer base tension tension",
-        ),
-        ({"type": "layered", "layers": TWO[:1], "substrate": ELASTIC}, "layer half-space"),
-        ({"type": "layered", "layers": TWO, "substrate": "rigid"}, "layer layer base"),
-    ],
-)
-def test_drawing_of_the_set_up(kernel: dict[str, Any], shapes: str) -> None:
-    """It has an arrow at each end of a tensed surface, the layers, and what is below them."""
-    run = pl.Run(**{**RUN, "kernel": kernel})
-    drawing = setup_drawing(json.loads(run.to_json()), run.loading.prescribed)
-    drawn = [element.get("class") for element in ElementTree.fromstring(drawing)]
-    named = {*drawn} - {None, "indenter", "surface", "load"}
-    assert sorted(name for name in drawn if name and name in named) == sorted(shapes.split())
-    assert b"paraboloid, radius 1 mm" in drawing
+def test_the_cross_section_is_to_scale() -> None:
+    """The indenter lies on the surface in contact, and has its own shape above it."""
+    step = pl.run(RUN, progress=False).dataset.isel(step=-1)
+    indenter, surface = cross_section(step).series
+    assert -float(step["depth"]) <= surface.y.min() < 0
+    shown = np.isfinite(indenter.y)
+    assert (indenter.y[shown] >= surface.y[shown] - 1e-12).all()
+    y = float(step["y"][int(step["displacement"].max("x").argmax("y"))])
+    shape = (indenter.x[shown] ** 2 + y**2) / (2 * 1e-3) - float(step["depth"])
+    np.testing.assert_allclose(indenter.y[shown], shape, atol=1e-12)
 
 
 def test_methods(ran: tuple[Path, xr.Dataset], studied: tuple[Path, xr.Dataset]) -> None:
