@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
-from pellicle.show.lines import EDGE_CELLS, edge_cells
 
 import pellicle as pl
 from pellicle.show import save_figure
@@ -20,7 +19,8 @@ from pellicle_plugins.indenters.paraboloid import Paraboloid
 RADIUS, MODULUS, DEPTH = 1e-3, 10e3, 50e-6
 TENSIONS = {0.0: (OKABE_ITO[0], "o"), 0.1: (OKABE_ITO[1], "s"), 1.0: (OKABE_ITO[2], "^")}
 POINTS, SIZE = 128, 0.5e-3
-_EDGE = 3
+_EDGE = 2
+"""Cells at the edge, whose pressure depends on where it passes through them."""
 
 
 def main() -> None:
@@ -52,9 +52,6 @@ def draw(figure: Figure) -> None:
         )
         line = result.dataset.isel(step=0, y=POINTS // 2)
         line = line.isel(x=line["contact"].values)
-        edge = edge_cells(result.dataset.isel(step=0, y=POINTS // 2)["contact"].values)
-        at_edge = result.dataset.isel(step=0, y=POINTS // 2, x=edge)
-        axes.plot(at_edge["x"] * 1e3, at_edge["pressure"] * 1e-3, ".", color=colour, markersize=3)
         line = line.isel(x=slice(_EDGE, -_EDGE))
         line = line.isel(x=slice(line.sizes["x"] // 2 % 3, None, 3))
         axes.plot(
@@ -67,7 +64,6 @@ def draw(figure: Figure) -> None:
             label=f"τ₀ = {tension:g} N/m",
         )
     axes.plot([], [], color="black", linewidth=0.8, label="integral equation")
-    axes.plot([], [], ".", color="0.4", markersize=3, label=EDGE_CELLS)
     axes.set(
         xlabel="x [mm]",
         ylabel="contact pressure [kPa]",
