@@ -12,7 +12,7 @@ from pellicle.arrays import Array
 from pellicle.components import Setting
 from pellicle.components.calls import branches_of
 from pellicle.config.run import Run
-from pellicle.contact.finished_step import FinishedStep
+from pellicle.contact.load_step import FinishedStep
 from pellicle.contact.skin_operators import skin_operators
 from pellicle.contact.time_step import (
     Memory,

@@ -12,7 +12,7 @@ from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.load_step import LoadStep, Value
 from pellicle.runs.relaxation_checks import least_domain
 
-from .surroundings import Surroundings
+from . import Surroundings
 
 # Domain that a solid needs, over that of the run, above which no grid spans it.
 _FARTHEST: Final = 100.0
