@@ -5,8 +5,9 @@ from __future__ import annotations
 from pellicle.components import HasMemory
 from pellicle.components.calls import branches_of
 from pellicle.config.run import Run
-from pellicle.contact.skin_operators import KEPT, rounded_stiffness
 from pellicle.contact.time_step import TimeStep
+
+from .relaxation import KEPT, rounded_stiffness
 
 # Peak memory in arrays of the grid's shape, eight bytes per cell, measured on Linux with glibc.
 # Arrays above 32 MB are given back when they are freed; of smaller ones malloc may keep three.

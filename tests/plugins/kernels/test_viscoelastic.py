@@ -10,8 +10,8 @@ import pytest
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.components import Branch
-from pellicle.contact.skin_operators import CarriedShare
 from pellicle.contact.time_step import Memory, TimeStep, left_behind, strain_under_skin
+from pellicle.runs.relaxation import CarriedShare
 from pellicle.surface import HasClosedForm, make_operator, mean_compliance
 from pellicle_plugins.kernels.power_law import power_law_series
 
