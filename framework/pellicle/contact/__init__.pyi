@@ -3,7 +3,6 @@ __all__: list[str]
 from .attraction import Attraction as Attraction
 from .caveats import Caveat as Caveat
 from .caveats import Status as Status
-from .dilation import dilated as dilated
 from .equilibrium import Equilibrium as Equilibrium
 from .equilibrium import measure as measure
 from .equilibrium import round_off as round_off
@@ -12,6 +11,7 @@ from .initial_guess import first_guess as first_guess
 from .initial_guess import with_force as with_force
 from .law import GapLaw as GapLaw
 from .law import Law as Law
+from .masks import dilated as dilated
 from .problem import Depth as Depth
 from .problem import Force as Force
 from .problem import Problem as Problem

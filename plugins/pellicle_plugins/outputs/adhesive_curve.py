@@ -15,7 +15,7 @@ from pellicle.arrays import Array
 from pellicle.components import Runs
 from pellicle.errors import ConfigError
 from pellicle.results.result import Result
-from pellicle.results.shape import is_periodic
+from pellicle.results.wording import is_periodic
 from pellicle.show.style import colour, sparse_marker
 from pellicle.units import Quantity, axis_unit
 from pellicle_plugins.validation.adhesive_path import curve_of

@@ -15,8 +15,8 @@ from pellicle.components.checked_law import law_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import Equilibrium, equilibrium_of
-from pellicle.contact.labels import labelled
 from pellicle.contact.load_step import FinishedStep, LoadStep, Value
+from pellicle.contact.masks import labelled
 from pellicle.contact.problem import Depth
 from pellicle.contact.solution import State, Stop
 
