@@ -111,11 +111,6 @@ def read(path: Path, without: Collection[str] = ()) -> xr.Dataset:
             return joined(steps)
 
 
-def scalars(path: Path) -> xr.Dataset:
-    """Return the numbers and texts of each step of a result file, without its fields."""
-    return read(path, without=["x", "y"])
-
-
 def attributes(path: Path) -> dict[str, Any]:
     """Return the attributes of a result file without reading its steps."""
     with opened(path) as file:

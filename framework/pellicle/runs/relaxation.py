@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -16,12 +16,7 @@ from pellicle.components import Kernel, Setting
 from pellicle.components.calls import branches_of
 from pellicle.config.run import Run
 from pellicle.contact.load_step import FinishedStep
-from pellicle.contact.time_step import (
-    Memory,
-    TimeStep,
-    left_behind,
-    strain_under_skin,
-)
+from pellicle.contact.time_step import Memory, TimeStep
 from pellicle.grid import Grid
 from pellicle.surface import HasCompliance, mean_compliance
 from pellicle.surface.outside import PlaneOperator
@@ -64,16 +59,19 @@ class Relaxation:
         """
         for finished in path[self._done :]:
             self._advance(finished.state.pressure, finished.displacement)
-        step, displacement = self._steps[self._done], None
+        step, left = self._steps[self._done], None
         if self._skin and not self._done and step.is_jump:
             return setting
+        history = self._memory.history(step)
         if self._skin:
             whole = self._skin[0](step)
             operator = whole.operator
-            displacement = partial(whole, integral=float(self._integral.history(step)))
+            if self._done:
+                left = -whole(history, float(self._integral.history(step)))
         else:
             operator = setting.operator.scaled(1 / step.stiffness)
-        left = left_behind(self._memory, step, displacement) if self._done else None
+            if self._done:
+                left = history / -step.stiffness
         return replace(setting, operator=operator, left=left)
 
     def _advance(self, pressure: Array, displacement: Array) -> None:
@@ -83,8 +81,8 @@ class Relaxation:
         if self._skin:
             force = np.asarray(pressure.sum() * self._cell_area)
             remaining = float(force - self._integral.history(step))
-            carried = partial(self._skin[1](step), integral=remaining)
-            strain = strain_under_skin(self._memory, step, pressure, carried)
+            # What the solid carries of the pressure, in units of its strain s = k₀ u.
+            strain = self._skin[1](step)(pressure - self._memory.history(step), remaining)
             self._integral = self._integral.after(step, np.asarray(remaining / step.stiffness))
         self._memory = self._memory.after(step, strain)
         self._done += 1

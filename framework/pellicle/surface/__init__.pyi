@@ -1,9 +1,9 @@
 __all__: list[str]
 
+from .convolution import Float as Float
 from .convolution import convolve as convolve
 from .grid_transfer import highest as highest
 from .grid_transfer import prolong as prolong
-from .operators import Float as Float
 from .operators import FreeOperator as FreeOperator
 from .operators import HasClosedForm as HasClosedForm
 from .operators import HasCompliance as HasCompliance

@@ -9,7 +9,7 @@ import copy
 import math
 from collections.abc import Callable
 from functools import cached_property
-from typing import Any, Protocol, Self, TypeVar, runtime_checkable
+from typing import Any, Protocol, Self, runtime_checkable
 
 import numpy as np
 import scipy.fft
@@ -20,11 +20,9 @@ from pellicle.checks import component_name, errors_attributed_to, read_only, rea
 from pellicle.errors import ConfigError, shown
 from pellicle.grid import Grid
 
-from .convolution import Workspace, convolve
+from .convolution import Float, Workspace, convolve
 from .hankel import Tabulated
 from .influence import cell_coefficients, warn_of_cells
-
-Float = TypeVar("Float", np.float32, np.float64)
 
 # Least displacement of a cell under its own pressure, over that of the finest wave.
 _LEAST_OWN = 0.25

@@ -47,7 +47,8 @@ def stiffness(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
     equilibrium, tolerance = step.equilibrium, run.solver.tolerance
     problem = replace(equilibrium.problem, control=Depth(equilibrium.depth))
     contact = equilibrium.contact
-    if problem.has_infinite_stiffness(contact):
+    if contact.all() and not problem.operator.has_mean_compliance:
+        # A period in full contact whose mean displacement is 0.
         measured = Stiffness(np.inf, 0.0)
     elif not contact.any():
         measured = Stiffness(0.0, 0.0)
