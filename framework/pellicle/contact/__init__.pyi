@@ -4,7 +4,9 @@ from .attraction import Attraction as Attraction
 from .caveats import Caveat as Caveat
 from .caveats import Status as Status
 from .equilibrium import Equilibrium as Equilibrium
+from .equilibrium import Stiffness as Stiffness
 from .equilibrium import measure as measure
+from .equilibrium import measure_stiffness as measure_stiffness
 from .equilibrium import round_off as round_off
 from .initial_guess import dot as dot
 from .initial_guess import first_guess as first_guess
@@ -21,5 +23,3 @@ from .solution import Progress as Progress
 from .solution import Solution as Solution
 from .solution import State as State
 from .solution import Stop as Stop
-from .stiffness import Stiffness as Stiffness
-from .stiffness import measure_stiffness as measure_stiffness

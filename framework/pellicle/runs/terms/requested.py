@@ -11,8 +11,8 @@ from pellicle.components.base import words_of_type
 from pellicle.components.calls import corrected_area, report_of, response_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
+from pellicle.contact.equilibrium import Stiffness, measure_stiffness
 from pellicle.contact.load_step import LoadStep
-from pellicle.contact.stiffness import Stiffness, measure_stiffness
 from pellicle.variables import Variable, corrected_fraction
 from pellicle.variables import corrected_area as area_variable
 
