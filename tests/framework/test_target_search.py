@@ -100,20 +100,22 @@ def test_every_trial_starts_from_the_step_before() -> None:
     assert all(start.pressure.sum() == pytest.approx(1.0) for start in starts)
 
 
-@pytest.mark.parametrize("goal", [-30.0, 0.0, 55.5])
+@pytest.mark.parametrize(("goal", "resolution"), [(-30.0, 1e-6), (0.0, 1e-6), (55.5, 0.0)])
 @pytest.mark.parametrize("guess", [None, -20.0, 3.0])
 @pytest.mark.parametrize("slope", [4.0, -4.0])
-def test_any_quantity_by_depth(goal: float, guess: float | None, slope: float) -> None:
+def test_any_quantity_by_depth(
+    goal: float, resolution: float, guess: float | None, slope: float
+) -> None:
     """A quantity of either sign, rising or falling, is found at the depth that has it.
 
-    Before first touch too.
+    Before first touch too, and with no resolution, which it cannot meet exactly.
     """
     target = pl.Search(
         goal,
         lambda step: slope * step.problem.control.value - 2.0,
         control=pl.Depth,
         increasing=slope > 0,
-        resolution=1e-6,
+        resolution=resolution,
         guess=guess,
     )
     reached = reach(setting(), target, Staircase(cells=lambda depth: 5), lambda *_: None)

@@ -59,7 +59,9 @@ def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) ->
 
 def _not_met(trials: _Trials, *, jumps: bool) -> Iterator[Caveat]:
     """Yield the caveat of a search that ended away from its goal, across which it may jump."""
-    search, met, is_near = trials.search, 0.0 in trials.excess.values(), trials.missed <= _NEAR
+    search, is_near = trials.search, trials.missed <= _NEAR
+    # Of a quantity that does not jump a search without a resolution finds values on either side.
+    met = 0.0 in trials.excess.values() or trials.missed <= trials.solver.tolerance
     if met and is_near:
         return
     values: dict[str, float | str] = {"quantity": search.quantity, "measure": trials.missed}
