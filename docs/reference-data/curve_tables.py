@@ -18,14 +18,11 @@ from scipy.optimize import newton
 
 from pellicle.arrays import Array
 from pellicle_plugins.axisymmetric import layer_curves, master_curves
-from pellicle_plugins.axisymmetric.abel_transform import HasAbelTransform
-from pellicle_plugins.axisymmetric.equation import solve
+from pellicle_plugins.axisymmetric.equation import HasAbelTransform, solve
 from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.axisymmetric.layer_curves import Shape
 from pellicle_plugins.axisymmetric.tensed_punch import punch
-from pellicle_plugins.indenters.cone import Cone
-from pellicle_plugins.indenters.paraboloid import Paraboloid
-from pellicle_plugins.indenters.sphere import Sphere
+from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid, Sphere
 
 SHAPES: tuple[Shape, ...] = ("smooth", "pointed", "punch")
 LENGTHS = master_curves.SCALE * np.expm1(np.arange(0.0, 23.1, 0.15))

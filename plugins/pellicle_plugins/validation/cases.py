@@ -14,10 +14,9 @@ from pellicle.results.result import Result
 from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
 from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.closed_forms import hertz
-from pellicle_plugins.closed_forms.boussinesq import flat_punch
 from pellicle_plugins.closed_forms.full_contact import pressure_amplitude
-from pellicle_plugins.closed_forms.sneddon import cone
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.closed_forms.sneddon import cone, flat_punch
+from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 from .adhesive_path import curve_of
 

@@ -12,7 +12,7 @@ from pellicle_plugins.closed_forms.maugis import (
     rigid_limit,
     transition_parameter,
 )
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 R, E, W = 2e-3, 3e4, 0.05
 STRENGTH = 1 / transition_parameter(R, E, W, 1.0)

@@ -12,9 +12,7 @@ from pellicle.components import HasForceCurve
 from pellicle_plugins.axisymmetric import master_curves
 from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.axisymmetric.tensed_punch import punch
-from pellicle_plugins.indenters.cone import Cone
-from pellicle_plugins.indenters.paraboloid import Paraboloid
-from pellicle_plugins.indenters.sphere import Sphere
+from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid, Sphere
 
 Array = NDArray[np.float64]
 ACCURACY = 1e-6

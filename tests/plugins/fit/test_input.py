@@ -18,7 +18,7 @@ import pellicle as pl
 from pellicle_fit.curves.cleaning import clean
 from pellicle_fit.curves.curve import Curve
 from pellicle_fit.curves.readers import read
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.pictures import drawn_width
 
 Array = NDArray[np.float64]

@@ -18,7 +18,7 @@ from pellicle import ConfigError, Grid, Kernel, Problem, Stop
 from pellicle.arrays import Array
 from pellicle.contact.problem import Depth, Force
 from pellicle.surface import make_operator
-from pellicle_plugins.kernels.bending_skin import BendingSkin
+from pellicle_plugins.kernels.skins import BendingSkin
 from pellicle_plugins.solvers.active_set import ActiveSet, ContactHistory
 from pellicle_plugins.solvers.conjugate_gradient import ConjugateGradient
 from pellicle_plugins.solvers.contact_cg import inner_solve
