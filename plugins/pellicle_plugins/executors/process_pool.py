@@ -12,7 +12,7 @@ from contextlib import contextmanager, suppress
 from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
 from queue import SimpleQueue
-from typing import Any, Generic, Self
+from typing import Any, Generic
 
 import cloudpickle
 import loky  # noqa: F401  (makes the start method "loky" known)
@@ -139,21 +139,21 @@ class ProcessPool(Generic[AnyTask]):
         self._free_memory: float | None = None
         """Memory available when no task was running [bytes]; None if unknown."""
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_error: object) -> None:
-        for worker in [*self._idle, *(worker for worker, _ in self._running.values())]:
-            worker.end()
-
     def outcomes(self, report: Report[AnyTask]) -> Iterator[tuple[AnyTask, Any]]:
-        """Yield each task with its outcome as it finishes, and report messages meanwhile."""
-        finished = self._start()
-        while self._running or finished:
-            yield from finished
-            # The next tasks start before the caller handles the finished ones.
-            finished = self._receive(report)
-            finished += self._start()
+        """Yield each task with its outcome as it finishes, and report messages meanwhile.
+
+        All workers end with the iterator.
+        """
+        try:
+            finished = self._start()
+            while self._running or finished:
+                yield from finished
+                # The next tasks start before the caller handles the finished ones.
+                finished = self._receive(report)
+                finished += self._start()
+        finally:
+            for worker in [*self._idle, *(worker for worker, _ in self._running.values())]:
+                worker.end()
 
     def _start(self) -> list[tuple[AnyTask, Any]]:
         """Start as many tasks as possible; return those that cannot start, with the error."""
@@ -175,7 +175,9 @@ class ProcessPool(Generic[AnyTask]):
                         "fewer points or fewer steps"
                     )
                 payload = pack(self._work, task)
-                worker = self._worker()
+                while self._idle and not self._idle[-1].alive:
+                    self._idle.pop().end()
+                worker = self._idle.pop() if self._idle else Worker(self._environment)
             except Exception as error:
                 refused.append((task, error))
                 continue
@@ -198,14 +200,6 @@ class ProcessPool(Generic[AnyTask]):
             self._idle.append(worker)
             finished.append((task, message))
         return finished
-
-    def _worker(self) -> Worker:
-        while self._idle:
-            worker = self._idle.pop()
-            if worker.alive:
-                return worker
-            worker.end()
-        return Worker(self._environment)
 
     def _fits(self, task: AnyTask, available: float | None) -> bool:
         """Return whether a task fits into the available memory, and beside the running tasks.
