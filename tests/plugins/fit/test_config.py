@@ -171,13 +171,6 @@ def test_bad_commands(cli: Cli) -> None:
     assert "curves: holds no curve" in cli("b.toml", code=2).stderr
 
 
-@pytest.mark.parametrize("tension", [0, "5 mN/m"])
-def test_rivals_of_a_fixed_tension_are_refused(tension: object) -> None:
-    """They were left out without a word; the message names both options."""
-    with pytest.raises(pl.ConfigError, match=r"compare.*fix\.tension"):
-        pl.FitConfig(indenter={"type": "cone"}, compare=True, fix={"tension": tension})
-
-
 def test_bad_arguments() -> None:
     """A configuration of several curves is not one for `fit`, nor has a force curve fields."""
     config = pl.FitConfig(indenter={"type": "sphere", "radius": "5 um"}, curves=["a", "b"])
