@@ -147,43 +147,6 @@ def test_full_contact_under_a_tensed_skin_is_exact_in_time() -> None:
         np.testing.assert_allclose(pressure, expected, rtol=0, atol=1e-12 * speed * 1e9)
 
 
-@pytest.mark.parametrize(
-    ("fields", "message"),
-    [
-        (
-            {"relaxation": [{"fraction": 0.7, "time": 1}, {"fraction": 0.4, "time": 2}]},
-            "sum to 1.1",
-        ),
-        ({"relaxation": [{"fraction": 0.7, "time": 0}]}, "relaxation.0.time"),
-        ({"relaxation": None}, "neither of relaxation and power_law"),
-        (
-            {"relaxation": RELAXATION, "power_law": {"exponent": 0.2, "time": 1}},
-            "both of relaxation and power_law",
-        ),
-        ({"power_law": {"exponent": 0.0, "time": 1}}, "power_law.exponent"),
-        ({"power_law": {"exponent": 0.2, "time": 1, "shortest": 1e4}}, "begin before it ends"),
-        (
-            {"power_law": {"exponent": 0.99, "time": 1, "shortest": 1e-9, "longest": 1e6}},
-            "shorten the span",
-        ),
-        ({"solid": {"type": "coated", "tension": 1, "substrate": HALF_SPACE}}, "coated has a skin"),
-        (
-            {"solid": {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 1}},
-            'type = "coated"',
-        ),
-        (
-            {"solid": {"type": "viscoelastic", "solid": HALF_SPACE, "relaxation": RELAXATION}},
-            "relaxes already",
-        ),
-    ],
-)
-def test_refuses(fields: dict[str, Any], message: str) -> None:
-    """What makes no solid is refused, and the message names it."""
-    with pytest.raises(pl.ConfigError) as caught:
-        viscoelastic(**fields)
-    assert message in str(caught.value)
-
-
 @pytest.mark.parametrize("fractions", [(0.7, 0.3), (0.1,) * 10])
 def test_liquid_is_allowed(fractions: tuple[float, ...]) -> None:
     """Fractions that sum to 1 in decimals are a liquid."""
