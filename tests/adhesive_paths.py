@@ -11,7 +11,7 @@ import xarray as xr
 
 import pellicle as pl
 from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 FORCE = pi
 """πwR."""

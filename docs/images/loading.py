@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 import pellicle as pl
 from pellicle.show import save_figure
 from pellicle_plugins.axisymmetric.indentation import indent
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 RADIUS, MODULUS, DEEPEST = 1e-3, 10e3, 40e-6
 TENSIONS = {0.0: ("C0", "o"), 0.5: ("C1", "s")}

@@ -14,7 +14,7 @@ import pellicle as pl
 from pellicle.show import save_figure
 from pellicle.show.style import OKABE_ITO
 from pellicle_plugins.axisymmetric.indentation import indent
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 RADIUS, MODULUS, DEPTH = 1e-3, 10e3, 50e-6
 TENSIONS = {0.0: (OKABE_ITO[0], "o"), 0.1: (OKABE_ITO[1], "s"), 1.0: (OKABE_ITO[2], "^")}

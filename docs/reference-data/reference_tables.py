@@ -14,6 +14,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from layer_equation import HalfSpace as HalfSpaceEquation
+from layer_equation import half_space, moments
 from scipy.interpolate import AAA
 from scipy.special import beta
 
@@ -23,15 +25,11 @@ from pellicle.errors import ConvergenceError
 from pellicle.surface.influence import cell_coefficients
 from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
 from pellicle_plugins.axisymmetric.indentation import indent
-from pellicle_plugins.axisymmetric.layer_equation import HalfSpace as HalfSpaceEquation
-from pellicle_plugins.axisymmetric.layer_equation import half_space, moments
 from pellicle_plugins.axisymmetric.tensed_punch import punch
 from pellicle_plugins.closed_forms.hertz import sphere
 from pellicle_plugins.closed_forms.sneddon import cone
-from pellicle_plugins.indenters.cone import Cone
-from pellicle_plugins.indenters.paraboloid import Paraboloid
-from pellicle_plugins.kernels.half_space import HalfSpace
-from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
+from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid
+from pellicle_plugins.kernels.half_spaces import HalfSpace, TensedMembrane
 
 Row = Sequence[float]
 RATIOS = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)

@@ -230,7 +230,7 @@ WALL_PRESSURE = "wall_pressure"
 CAVEATS: Final = "caveats"
 """Text of the caveats of a step, for programs: `pellicle.contact.caveats` reads it."""
 BEYOND_THEORY: Final = "beyond_theory"
-"""Text in the table of a study: what `limits` says of a run, if it says so of any."""
+"""Text in the table of a study: what `Result.beyond_theory` says of a run, if it says so of any."""
 REQUIRED = (*names_of("field", "status"), "depth", "force", "contact_area", "iterations")
 """Variables in the result files of every version."""
 

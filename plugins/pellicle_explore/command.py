@@ -43,14 +43,14 @@ def explore(
     from bokeh.document import Document
 
     import pellicle as pl
-    from pellicle_explore.measured import read
     from pellicle_explore.page import Explorer
+    from pellicle_explore.plots import read_measured
     from pellicle_explore.server import serve
 
     # It warns of each message to a page that has just been closed or reloaded.
     logging.getLogger("bokeh.server.views.ws").setLevel(logging.ERROR)
     run = pl.Run.from_toml(file or Path(__file__).with_name("start.toml"), set_ or [])
-    measured = read(curve) if curve else None
+    measured = read_measured(curve) if curve else None
 
     def tell(address: str) -> None:
         echo(f"{address}\nopen it in a browser on this machine; Ctrl-C ends it")

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import tomli_w
 from bokeh.document import Document
 from bokeh.layouts import column
-from bokeh.models.widgets import Checkbox, Div, PreText, Slider
+from bokeh.models.widgets import Checkbox, Div, PreText, Slider, TextInput
 
 import pellicle as pl
 from pellicle.errors import PellicleError
@@ -19,8 +19,55 @@ from pellicle.units import readable
 
 from .controls import Control, changed, configuration_of, controls, letting_go, sticking
 from .plots import Plots
-from .row import ControlRow
 from .solving import Frame, Solving
+
+_POSITIONS: Final = 200
+_DIGITS: Final = 4
+"""Significant digits of a value that a slider sets."""
+
+
+class ControlRow:
+    """A field, a slider, and room for why ``change`` refuses a text of the field."""
+
+    def __init__(self, control: Control, change: Callable[[Control, str], float]) -> None:
+        self._control, self._change = control, change
+        self._position = control.position(control.value)
+        start, end = control.position(0.0), control.position(float("inf"))
+        self._slider = Slider(
+            start=start,
+            end=end,
+            step=(end - start) / _POSITIONS,
+            value=self._position,
+            title=None,
+            show_value=False,
+        )
+        text = readable(control.value, control.quantity.unit, _DIGITS)
+        self._field = TextInput(title=control.label, value=text)
+        self._refusal = Div(render_as_text=True, styles={"color": "#b00020"}, visible=False)
+        self._field.on_change("value", self._take)
+        self._slider.on_change("value", self._move)
+        self.parts = (self._field, self._slider, self._refusal)
+        for part in self.parts:
+            part.sizing_mode = "stretch_width"
+
+    def _move(self, attribute: str, old: float, new: float) -> None:
+        """Put the value of the slider into the field, unless the slider follows the field."""
+        if new != self._position:
+            self._position, value = new, self._control.value_at(new)
+            self._field.value = readable(value, self._control.quantity.unit, _DIGITS)
+
+    def _take(self, attribute: str, old: str, new: str) -> None:
+        """Pass on a text; the slider follows it, or a message says why it is refused."""
+        message = ""
+        try:
+            position = self._control.position(self._change(self._control, new))
+        except ValueError as error:
+            message = str(error).removeprefix(f"{self._control.path}: ")
+        else:
+            # A slider that is dragged would fight against a position that is only rounded.
+            if abs(position - self._position) > self._slider.step / 2:
+                self._position = self._slider.value = position
+        self._refusal.text, self._refusal.visible = message, bool(message)
 
 
 class Explorer:

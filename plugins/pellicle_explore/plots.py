@@ -1,7 +1,9 @@
-"""The plots of the explorer: the profile, the pressure and the force curve of a run."""
+"""The plots of the explorer: profile, pressure, and the force curve beside a measured one."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,13 +13,32 @@ from bokeh.plotting import figure
 
 import pellicle as pl
 from pellicle.arrays import Array
+from pellicle.errors import ConfigError
 from pellicle.show import with_rim
 from pellicle.units import axis_unit
 
-from .measured import touch
 from .solving import Frame
 
 _BLUE, _ORANGE, _GREY = "#0072B2", "#D55E00", "#767676"
+
+
+def read_measured(path: Path) -> pl.Curve:
+    """Return the only force curve of a file, without the rows that lack a number."""
+    curve, *others = pl.read_curves(path, segment="approach").values()
+    if others:
+        raise ConfigError(f"holds {1 + len(others)} curves; give a file with one", "--curve")
+    rows = np.isfinite(curve.position) & np.isfinite(curve.force)
+    if np.unique(curve.position[rows]).size < 2:
+        raise ConfigError("has no two positions with a force; give a curve that moves", "--curve")
+    return replace(curve, position=curve.position[rows], force=curve.force[rows])
+
+
+def _touch(curve: pl.Curve) -> float:
+    """Return the share of the positions at which the force has risen by 5 % of its range."""
+    position = (curve.position - curve.position.min()) / np.ptp(curve.position)
+    start = np.median(curve.force[position <= 0.1])
+    above = curve.force > start + 0.05 * (curve.force.max() - start)
+    return float(position[above].min(initial=1.0))
 
 
 class Plots:
@@ -25,7 +46,7 @@ class Plots:
 
     def __init__(self, measured: pl.Curve | None) -> None:
         self._measured = measured
-        self.share = touch(measured) if measured else 0.0
+        self.share = _touch(measured) if measured else 0.0
         self._per_depth = self._per_force = 1.0
         self._cut, self._line, self._path, self._curve = cut, line, path, curve = [
             ColumnDataSource({name: [] for name in names.split()})

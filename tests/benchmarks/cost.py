@@ -38,7 +38,7 @@ import pellicle as pl
 from pellicle.contact import Problem
 from pellicle.contact import measure as measure_pressure
 from pellicle.surface import make_operator, operators
-from pellicle_plugins.solvers import circulant_stiffness
+from pellicle_plugins.solvers import preconditioner
 
 
 def problem(
@@ -89,7 +89,7 @@ def measure(
         operator(np.ones(given.grid.shape))
         one = seconds(lambda: operator(np.ones(given.grid.shape)))
         transforms: Counter[tuple[tuple[int, ...], str]] = Counter()
-        for module in (operators, circulant_stiffness):
+        for module in (operators, preconditioner):
             _count(module, transforms)
         used = operator.applications
         started = clock()

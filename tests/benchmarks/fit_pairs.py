@@ -38,7 +38,7 @@ from pellicle_fit.statistics.profile import chi_squared_threshold
 from pellicle_fit.statistics.rival import Rival
 from pellicle_fit.statistics.rivals import rivals
 from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 BEAD = Paraboloid(radius=RADIUS)
 ELASTIC = ClosedFormModel(BEAD)

@@ -24,7 +24,7 @@ import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.contact import Problem, State, height_scale, measure
 from pellicle.contact.initial_guess import with_force
-from pellicle.contact.start import PathPoint, start_of
+from pellicle.contact.load_step import FinishedStep, start_of
 from pellicle_plugins.solvers.contact_cg import inner_solve
 from pellicle_plugins.solvers.preconditioner import Preconditioner
 
@@ -73,7 +73,7 @@ def main() -> None:
     ):
         given, tolerance, _ = cost.problem(case, points, tension)
         sums, times, known = np.zeros(3), np.zeros(3), 0
-        path: list[PathPoint] = []
+        path: list[FinishedStep] = []
         with scipy.fft.set_workers(1):
             for index in range(options.number):
                 value = given.value * (1 + step) ** index
@@ -86,7 +86,15 @@ def main() -> None:
                 if last is not None:
                     known += with_known_contact(problem, tolerance, last.pressure, pressure)
                 equilibrium = measure(problem, pressure)
-                path = [*path[-1:], PathPoint(equilibrium.state, equilibrium.gap)]
+                finished = FinishedStep.of(
+                    {
+                        "pressure": pressure,
+                        "gap": equilibrium.gap,
+                        "displacement": equilibrium.displacement,
+                    },
+                    {"depth": equilibrium.depth, "contact_area": 0.0, "converged": True},
+                )
+                path = [*path[-1:], finished]
         print_row(
             *(case, f"{tension:g}", points, f"{step:.0%}"),
             *(f"{value / options.number:.1f}" for value in sums),

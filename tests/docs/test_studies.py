@@ -16,7 +16,7 @@ from pellicle.cli.app import app
 from pellicle.config.study import from_toml
 from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
 from pellicle_plugins.axisymmetric.indentation import indent
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.docs.blocks import ROOT
 
 STUDIES = ROOT / "docs/studies"

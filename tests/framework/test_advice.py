@@ -14,10 +14,9 @@ import pellicle as pl
 from pellicle.cli.app import app
 from pellicle.errors import ConfigError
 from pellicle.runs.advice import advise
-from pellicle_plugins.axisymmetric.abel_transform import HasAbelTransform
+from pellicle_plugins.axisymmetric.equation import HasAbelTransform
 from pellicle_plugins.axisymmetric.indentation import indent
-from pellicle_plugins.indenters.cone import Cone
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid
 
 MODULUS, DEPTH = 1e4, 2e-6
 SHAPES: dict[str, tuple[dict[str, Any], HasAbelTransform]] = {

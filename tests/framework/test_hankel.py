@@ -13,7 +13,7 @@ from pellicle.contact import Depth, Problem
 from pellicle.surface import make_operator
 from pellicle.surface.hankel import ACCURACY, Tabulated
 from pellicle.surface.influence import cell_coefficients
-from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
+from pellicle_plugins.kernels.half_spaces import TensedMembrane
 
 Array = NDArray[np.float64]
 Symbol = Callable[[Array], Array]

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from pellicle.surface.influence import cell_coefficients
-from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
+from pellicle_plugins.kernels.half_spaces import TensedMembrane
 from tests.physics.tables import reference_rows
 
 Array = NDArray[np.float64]

@@ -13,7 +13,7 @@ from pellicle import Grid, IterativeSolver, Problem, Solution, Solver, State, St
 from pellicle.arrays import Array
 from pellicle.contact.solution import Progress
 from pellicle.surface import make_operator
-from pellicle_plugins.kernels.half_space import HalfSpace
+from pellicle_plugins.kernels.half_spaces import HalfSpace
 
 
 class Iterate(NamedTuple):

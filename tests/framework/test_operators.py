@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pellicle import Grid
 from pellicle.surface import make_operator
-from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
+from pellicle_plugins.kernels.half_spaces import TensedMembrane
 
 
 @pytest.mark.parametrize("boundary", ["free", "periodic"])

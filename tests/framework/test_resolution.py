@@ -10,7 +10,7 @@ import pytest
 
 import pellicle as pl
 from pellicle.surface import make_operator
-from pellicle.surface.grid_checks import error_of_cells, warn_of_cells
+from pellicle.surface.influence import error_of_cells, warn_of_cells
 
 THICK = 10e-6
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle.surface.grid_checks import warn_of_period
+from pellicle.runs.compose import warn_of_period
 
 PERIODIC = pl.Grid(points=[24, 32], size=["0.6 mm", "0.8 mm"], boundary="periodic")
 X, Y = PERIODIC.coordinates()

@@ -26,9 +26,9 @@ from pellicle.results.dimensions import with_paths
 from pellicle.studies import runner as study_module
 from pellicle.studies.summary import failures, reasons
 from pellicle.studies.table import StudyTable, write
+from pellicle_plugins.executors.execution import Serial
 from pellicle_plugins.executors.processes import Processes
-from pellicle_plugins.executors.serial import Serial
-from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
+from pellicle_plugins.kernels.half_spaces import TensedMembrane
 from tests import small_run
 
 RUN = small_run.RUN | {"title": "Study"}

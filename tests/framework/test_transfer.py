@@ -8,7 +8,7 @@ import pytest
 from pellicle import Depth, Force, Grid, Problem
 from pellicle.surface import make_operator
 from pellicle.surface.grid_transfer import highest, prolong, restrict
-from pellicle_plugins.kernels.half_space import HalfSpace
+from pellicle_plugins.kernels.half_spaces import HalfSpace
 
 # Fine shape, coarse shape: halves, odd, primes, one cell, and numbers that share no factor.
 PAIRS = [

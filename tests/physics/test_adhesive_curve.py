@@ -11,8 +11,7 @@ from pellicle.analysis import AdhesiveCurve
 from pellicle.components import Indenter
 from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
 from pellicle_plugins.axisymmetric.indentation import indent
-from pellicle_plugins.indenters.cone import Cone
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid
 from pellicle_plugins.validation.adhesive_path import curve_of
 from tests.layered_contact import LayeredContact, layered_contact
 from tests.physics.tables import steps, tensed

@@ -7,7 +7,7 @@ from functools import cache
 import pytest
 import xarray as xr
 
-from pellicle.contact.finished_step import end_of
+from pellicle.contact.load_step import end_of
 from pellicle.results.step import Steps
 from tests.adhesive_paths import solved
 

@@ -11,7 +11,7 @@ import xarray as xr
 
 import pellicle as pl
 from pellicle_plugins.axisymmetric.indentation import indent
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.physics.tables import ROUGH as ROUGH_PUNCH
 from tests.physics.tables import half_space, paraboloid, steps, tensed
 

@@ -15,7 +15,7 @@ from pellicle.components.calls import solution_of
 from pellicle.contact import Problem, measure
 from pellicle.surface import make_operator
 from pellicle_plugins.axisymmetric.indentation import indent
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.physics.tables import ROUGH, Table, half_space, paraboloid, steps, tensed
 
 SKIN, BARE, TIP = tensed(1e4, 0.1), half_space(1e4), paraboloid(1e-3)

@@ -9,9 +9,8 @@ import pytest
 import xarray as xr
 from scipy.optimize import brentq
 
-from pellicle_plugins.closed_forms.boussinesq import flat_punch
 from pellicle_plugins.closed_forms.hertz import ellipse, sphere
-from pellicle_plugins.closed_forms.sneddon import cone
+from pellicle_plugins.closed_forms.sneddon import cone, flat_punch
 from pellicle_plugins.closed_forms.westergaard import wavy
 from tests.physics.tables import half_space, heights, paraboloid
 from tests.physics.tables import step as solved

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pellicle.arrays import Array
-from pellicle.contact.labels import Labels as Labels
-from pellicle.contact.labels import labelled
+from pellicle.contact.masks import Labels as Labels
+from pellicle.contact.masks import labelled
 from pellicle.grid import Grid
 
 

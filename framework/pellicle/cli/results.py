@@ -47,7 +47,7 @@ def print_steps(result: Result, *, si: bool = False) -> None:
 
 def print_contact(result: Result, *, si: bool = False) -> None:
     """Print the shape of the contact at each step, and of the zone around it."""
-    from pellicle.results.shape import means_something
+    from pellicle.results.wording import means_something
     from pellicle.variables import names_of
 
     data = result.dataset

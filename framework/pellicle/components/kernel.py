@@ -8,7 +8,7 @@ from typing import ClassVar, cast
 
 from pellicle.arrays import Array
 from pellicle.contact.time_step import Branch
-from pellicle.surface.kernel_calls import HasClosedForm, mean_compliance
+from pellicle.surface.operators import HasClosedForm, mean_compliance
 
 from .base import Component
 

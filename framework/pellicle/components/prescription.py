@@ -13,9 +13,9 @@ from pellicle.arrays import Array
 from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.initial_guess import overlap_pressure
 from pellicle.contact.law import Law
+from pellicle.contact.load_step import FinishedStep, start_of
 from pellicle.contact.problem import Depth, Force, Problem
 from pellicle.contact.solution import State
-from pellicle.contact.start import PathPoint, start_of
 from pellicle.grid import Grid
 from pellicle.surface.operators import Operator
 from pellicle.units import Quantity
@@ -44,7 +44,7 @@ class Setting:
     """The traction that acts across the gap; None for hard contact that does not stick."""
     left: Array | None = None
     """Displacement left behind by earlier load steps [m]; None if there is none."""
-    path: tuple[PathPoint, ...] = ()
+    path: tuple[FinishedStep, ...] = ()
     """The last two load steps, the earlier one first; fewer if there are no more."""
 
     @property
@@ -61,7 +61,7 @@ class Setting:
         return Problem(self.grid, self.operator, profile, control, law=self.law, left=self.left)
 
     def start(self, problem: Problem) -> State | None:
-        """Return the start of a solve of ``problem``; see `pellicle.contact.start.start_of`."""
+        """Return the start of a solve of ``problem``; see `pellicle.contact.load_step.start_of`."""
         return start_of(problem, self.state, self.path)
 
     def force_at(self, depth: float) -> float:

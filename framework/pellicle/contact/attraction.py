@@ -11,9 +11,8 @@ import numpy as np
 from pellicle.arrays import Array, Cells, Mask
 from pellicle.grid import Boundary
 
-from .dilation import dilated
-from .labels import labelled
 from .law import Law
+from .masks import dilated, labelled
 
 # Weights of a cell, its two neighbours and the one across the corner at the middle of a quarter of
 # the cell, where the gap is interpolated bilinearly.

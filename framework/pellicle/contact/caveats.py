@@ -18,7 +18,6 @@ from .solution import Stop
 # Between the caveats in the sentence of a step.
 _AND: Final = "; moreover, "
 Place = TypeVar("Place")
-_NONE: Final[Mapping[str, float | str]] = MappingProxyType({})
 
 
 class Status(Enum):
@@ -170,7 +169,7 @@ class Caveat(NamedTuple):
     """What limits a load step: a status, and the values that its sentence states."""
 
     status: Status
-    values: Mapping[str, float | str] = _NONE
+    values: Mapping[str, float | str] = MappingProxyType({})
     """Numbers in SI; units, quantities, members of `Stop` and variants by name."""
 
     @property

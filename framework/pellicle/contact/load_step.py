@@ -1,42 +1,29 @@
-"""A solved load step as one record, from the solve to its copy in the result."""
+"""A load step from its solve to its copy in the result, and what it leaves to those after it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal, NamedTuple
+from math import nan
+from typing import Any, Final, Self
+
+import numpy as np
+
+from pellicle.arrays import Array
 
 from .caveats import Caveat, ranked
 from .equilibrium import Equilibrium
-from .solution import Stop
+from .problem import Depth, Problem
+from .solution import State, Stop
+
+# Longest step, over the last one, to which is extrapolated.
+_FARTHEST: Final = 2.0
+# Beside a smooth contact the gap grows with this power of the distance.
+_GAP_POWER: Final = 1.5
+# Pressure of cells that join, over the greatest.
+_JOINING: Final = 1e-9
 
 Value = float | bool | int
-
-
-class Effort(NamedTuple):
-    """The effort of a load step."""
-
-    iterations: int
-    """Iterations of the solver, summed over all trials of a search."""
-    stop: Stop
-    applications: int = 0
-    """Applications of the operator on the finest grid."""
-
-
-class SearchEnd(NamedTuple):
-    """How a search for a measured quantity ended."""
-
-    quantity: str
-    unit: str
-    """SI unit of the quantity."""
-    missed: float
-    """|value − goal| / |goal|."""
-    how: Literal["met", "nearest", "not found"]
-    """"nearest" if the quantity jumps across the goal, "not found" if no control passes it."""
-    below: float
-    """The nearest value below the goal; −∞ if there is none."""
-    above: float
-    """The nearest value above the goal; ∞ if there is none."""
 
 
 @dataclass(frozen=True)
@@ -47,10 +34,15 @@ class LoadStep:
     """
 
     equilibrium: Equilibrium
-    effort: Effort
+    iterations: int
+    """Iterations of the solver, summed over all trials of a search."""
+    stop: Stop
     jumped: bool = False
     """Whether all contact was gained or lost since the start."""
-    search: SearchEnd | None = None
+    missed: float = 0.0
+    """|value − goal| / |goal| of a search."""
+    applications: int = 0
+    """Applications of the operator on the finest grid."""
     measures: Mapping[str, Value] = field(default_factory=dict)
     """Numbers besides those of the equilibrium, by the name of their variable."""
     caveats: tuple[Caveat, ...] = ()
@@ -68,3 +60,109 @@ class LoadStep:
             measures={**self.measures, **measures},
             caveats=ranked((*self.caveats, *caveats)),
         )
+
+
+@dataclass(frozen=True)
+class FinishedStep:
+    """What a load step leaves to those after it; its fields are views of those of the result."""
+
+    state: State
+    gap: Array
+    """Gap [m]; +inf where there is no indenter."""
+    displacement: Array
+    """Displacement of the surface [m]."""
+    area: float
+    """Contact area [m²]."""
+    energy: float
+    """`Equilibrium.energy` [J]; NaN if it is not known."""
+    converged: bool
+    jumped: bool
+    """Whether a part of the contact, or all of it, has jumped."""
+
+    @classmethod
+    def of(cls, fields: Mapping[str, Array], numbers: Mapping[str, Any]) -> Self:
+        """Return a step from its variables in a result, solved just now or read from a file."""
+        pressure = fields["pressure"]
+        return cls(
+            State(pressure, fields.get("wall_pressure", pressure), numbers["depth"]),
+            fields["gap"],
+            fields["displacement"],
+            numbers["contact_area"],
+            numbers.get("energy", nan),
+            bool(numbers["converged"]),
+            bool(numbers.get("jumped", False)),
+        )
+
+
+def end_of(path: Sequence[FinishedStep]) -> tuple[FinishedStep, ...]:
+    """Return the last two steps, the earlier one first.
+
+    Only the last one if the path jumped there, and none that did not converge or lies before such a
+    step.
+    """
+    points: list[FinishedStep] = []
+    for step in path[-2:]:
+        if step.jumped or not step.converged:
+            points.clear()
+        if step.converged:
+            points.append(step)
+    return tuple(points)
+
+
+def start_of(problem: Problem, state: State | None, path: Sequence[FinishedStep]) -> State | None:
+    """Return the start of a load step: the last two extrapolated to its control, or the last state.
+
+    ``path`` has the last two load steps, the earlier one first; fewer if there are no more.
+    Nothing is extrapolated across a reversal of the path, to more than twice the last step, and in
+    a solid that relaxes, whose next state also depends on what earlier steps have left behind.
+    Neither is it with a law, where there may be several equilibria: the descent from the last state
+    ends in the one that the path leads to.
+    """
+    if state is None or len(path) < 2 or problem.left is not None or problem.law:
+        return state
+    before, last = path
+    reached = [_control(problem, point.state) for point in (before, last)]
+    step = reached[1] - reached[0]
+    ratio = (problem.value - reached[1]) / step if step else 0.0
+    touches = before.state.contact.any() and last.state.contact.any()
+    if not 0 < ratio <= _FARTHEST or not touches:
+        return state
+    depth = last.state.depth + ratio * (last.state.depth - before.state.depth)
+    pressure = _pressure_ahead(problem, before, last, ratio)
+    return State(pressure, pressure, depth)
+
+
+def _control(problem: Problem, state: State) -> float:
+    """Return the depth of the base [m] or the force [N] of a state, as `Problem.value` is."""
+    total = float(state.pressure.sum())
+    if isinstance(problem.control, Depth):
+        return state.depth + problem.operator.deflection(total)
+    return total * problem.grid.cell_area
+
+
+def _pressure_ahead(
+    problem: Problem, before: FinishedStep, last: FinishedStep, ratio: float
+) -> Array:
+    """Return the extrapolated pressure [Pa], > 0 on the extrapolated contact.
+
+    In contact the pressure changes linearly, and cells where it falls to 0 leave. The gap of the
+    cells beside the contact changes linearly too; farther away the edge moves evenly through the
+    gap to the power 2/3, since the gap grows with the distance to the power 3/2. Cells whose gap
+    closes join with a pressure that only marks them.
+    """
+    contact = last.state.contact
+    pressure = last.state.pressure + ratio * (last.state.pressure - before.state.pressure)
+    np.maximum(pressure, 0.0, out=pressure)
+    # Only cells that came closer can join; a gap is infinite in both steps or in none.
+    coming = np.flatnonzero((last.gap < before.gap) & ~contact)
+    gaps = [np.maximum(point.gap.ravel()[coming], 0.0) for point in (before, last)]
+    linear = gaps[1] + ratio * (gaps[1] - gaps[0])
+    one, two = (gap ** (1 / _GAP_POWER) for gap in gaps)
+    # Cells beside the contact have an edge in common with one of its cells.
+    periodic = problem.grid.boundary == "periodic"
+    padded = np.pad(contact, 1, mode="wrap" if periodic else "constant")
+    rows, columns = padded[:, 1:-1], padded[1:-1]
+    beside = (rows[:-2] | rows[2:] | columns[:, :-2] | columns[:, 2:]).ravel()[coming]
+    joins = np.where(beside, linear, two + ratio * (two - one)) < 0
+    np.put(pressure, coming[joins], _JOINING * float(pressure.max()))
+    return pressure

@@ -134,13 +134,6 @@ class Problem:
         assert self.law
         return attraction(self.law, self.heights, gap, contact, self.grid.boundary)
 
-    def has_infinite_stiffness(self, contact: Mask) -> bool:
-        """Return whether the contact stiffness is infinite.
-
-        This is so in full contact on a periodic domain whose mean displacement is 0.
-        """
-        return bool(contact.all()) and not self.operator.has_mean_compliance
-
     def height_scale(self, contact: Mask | Cells, depth: float, total: float) -> float:
         """Return the length [m] to which gaps are compared.
 

@@ -5,12 +5,16 @@ shares g of it. A skin adds a stiffness that does not relax. If the displacement
 over a step, the problem at its end is exactly that of an elastic solid, γ times as stiff as the
 instantaneous one, whose surface the steps before have displaced. Without a skin the memory of the
 solid consists of displacements, cell by cell; under a skin, of pressures that the solid carries.
+
+With `Memory.history` h, the displacement u that a step without pressure leaves, to which A p adds,
+is −A h, and −h/γ without a skin: A = 1/(k_skin + γ k₀) is the operator of the step. Under a skin
+the strain is s = k₀ u = B (p − h), by the operator B = k₀/(k_skin + γ k₀) without unit.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, Self
 
@@ -105,26 +109,3 @@ class Memory:
         for index, (decay, weight) in enumerate(zip(step.decays, step.weights, strict=True)):
             branches[index] = decay * self.branches[index] + weight * growth
         return Memory(strain, branches)
-
-
-def left_behind(
-    memory: Memory, step: TimeStep, displacement: Callable[[Array], Array] | None = None
-) -> Array:
-    """Return the displacement [m] at the end of a step without pressure; A p adds to it.
-
-    Without a skin A is the operator of the instantaneous response over γ. Under a skin
-    ``displacement`` is A = 1/(k_skin + γ k₀) of the step [m/Pa], applied once.
-    """
-    history = memory.history(step)
-    left: Array = -displacement(history) if displacement else history / -step.stiffness
-    return left
-
-
-def strain_under_skin(
-    memory: Memory, step: TimeStep, pressure: Array, carried: Callable[[Array], Array]
-) -> Array:
-    """Return the strain s = k₀ u [Pa] at the end of a step, of a solid under a skin.
-
-    ``carried`` is the operator B = k₀/(k_skin + γ k₀), without unit, applied once.
-    """
-    return carried(pressure - memory.history(step))

@@ -5,21 +5,24 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from math import isfinite, nan, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from pellicle.analysis import Oscillation
+from pellicle.analysis.steepness import steepest
 from pellicle.contact.caveats import Caveat, Status, by_phrase, from_text
 from pellicle.errors import ConfigError, StorageError, first_of
 from pellicle.files import for_document, is_folder
 from pellicle.grid import Grid
 from pellicle.schema.notebook import summary
-from pellicle.units import axis_unit, readable
+from pellicle.units import DIGITS, axis_unit, readable
 from pellicle.variables import CAVEATS, COORDINATES, REQUIRED, VARIABLES
 
 from . import storage
-from .limits import beyond_theory
-from .path import label_of_step, oscillations_of, path_variables
+from .path import has_interaction, label_of_step, oscillations_of, path_variables
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,6 +31,10 @@ _SHOWN = "time", "depth", "force", "contact_area"
 _NO_CONTACT = "0.93"
 _MOST = 12
 """Rows of the table in a notebook."""
+_STEEPEST = 1.0
+"""Slope above which a contact without interaction is warned of; the theory is for 0.3."""
+_CELLS = 12
+"""Cells in the radius at pull-off below which its force is warned of."""
 
 
 @dataclass(frozen=True)
@@ -103,11 +110,44 @@ class Result:
         return self._of(Status.SMALL_DOMAIN)
 
     def beyond_theory(self) -> dict[str, str]:
-        """Return the limits that the contact exceeds by far, with messages; see `limits`.
+        """Return the limits that the largest contact, or that at pull-off, exceeds by far.
 
-        The equations are solved all the same, so the statuses do not show it.
+        The values are messages with the step and its numbers. The equations are solved all the
+        same, so the statuses do not show it. Slopes under an interaction are left out: they have a
+        status. So is pull-off by a range that is not that of the cells: no error of its force is
+        known.
         """
-        return beyond_theory(self.dataset, self.grid)
+        messages, summary, grid = dict[str, str](), self.path_summary, self.grid
+        cells = summary.get("pull_off_radius", nan) / sqrt(grid.cell_area)
+        if "force_error" in self.dataset and 0 < cells < _CELLS and min(grid.shape) > 1:
+            error = summary["pull_off_accuracy"] / -summary["pull_off"]
+            off = f"may be off by {error:.0%}" if isfinite(error) else "has no known error"
+            messages["the pull-off force is that of a contact of few cells"] = (
+                f"step {summary['pull_off_step']:.0f}: at pull-off the radius of the contact has "
+                f"{cells:.1f} cells, so the pull-off force {off}; use more points, or a smaller "
+                "grid.size"
+            )
+        last = self.dataset.isel(step=int(np.argmax(self.dataset["contact_area"].values)))
+        contact, displacement = last["contact"].values, last["displacement"].values
+        if not contact.any() or not np.isfinite(displacement).all():
+            return messages
+        step = int(last["step"])
+        thickness, deepest = last.attrs["depth_to_base"], float(displacement[contact].max())
+        if deepest > thickness:
+            messages["the surface is pressed through a layer to its rigid base"] = (
+                f"step {step}: the surface is pressed down by {readable(deepest, 'm', DIGITS)}, "
+                f"through a layer {readable(thickness, 'm', DIGITS)} thick to its rigid base: the "
+                "numbers are those of the equations, not of an experiment; press in less far"
+            )
+        slope = steepest(displacement, contact, grid)
+        # As it is told: an indenter of that very slope is not beyond it by rounding.
+        if round(slope, 1) > _STEEPEST and not has_interaction(self.dataset):
+            messages["slopes in contact are far beyond the theory"] = (
+                f"step {step}: slopes in contact reach {slope:.1f}, and the theory is for slopes "
+                "up to 0.3: force and area are those of the equations, not of an experiment; press "
+                "in less far"
+            )
+        return messages
 
     def caveats_by_phrase(self) -> dict[str, list[tuple[int, str]]]:
         """Return number and sentence of the steps with each kind of caveat, failures left out.

@@ -10,8 +10,7 @@ import xarray as xr
 from pellicle.analysis import ellipse, patches, perimeter
 from pellicle.contact.caveats import sentence_of, status_of, to_text
 from pellicle.contact.equilibrium import Equilibrium
-from pellicle.contact.finished_step import FinishedStep
-from pellicle.contact.load_step import LoadStep
+from pellicle.contact.load_step import FinishedStep, LoadStep
 from pellicle.grid import Grid
 from pellicle.variables import CAVEATS, VARIABLES, Variable
 
@@ -51,8 +50,8 @@ def step_dataset(
     values = {
         **_numbers(grid, equilibrium),
         **measures,
-        "iterations": step.effort.iterations,
-        "operator_applications": step.effort.applications,
+        "iterations": step.iterations,
+        "operator_applications": step.applications,
         "converged": status.converged,
         "status_code": status.name,
         "status": sentence_of(step.caveats),

@@ -4,7 +4,7 @@ A file is never changed in place: each version is written under another name, fl
 renamed, so that every file is complete at any moment. Rewriting the file for each step would take a
 time quadratic in the number of steps. So later steps are written to small files beside it, its
 segments. When these hold as many steps as the file itself, and at the end, they are merged into it.
-Reading merges them too.
+Reading merges them too, after verifying checksum and version.
 
 HDF5 writes to memory, and the bytes are then copied to disk, because HDF5 itself ends the process
 when the disk is full. What cannot be read or written raises a `StorageError` with the remedy.
@@ -14,23 +14,23 @@ from __future__ import annotations
 
 import glob
 import io
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from pellicle.errors import StorageError, shown
-from pellicle.files import atomic_write, storage_errors
+from pellicle.files import atomic_write, is_file, is_folder, storage_errors
 
 from . import checksum, netcdf
-from .result_file import SCHEMA_VERSION as SCHEMA_VERSION
-from .result_file import attributes_of, content, readable
-from .result_file import opened as opened
 
 if TYPE_CHECKING:
     import h5py
     import xarray as xr
 
+SCHEMA_VERSION = 3
+"""Version of the layout, in the attribute ``schema_version`` of every file."""
 REPLACING = (
     "choose another folder (-o DIR), or allow it to be replaced (--overwrite, overwrite=True)"
 )
@@ -62,7 +62,7 @@ def append(dataset: xr.Dataset, path: Path) -> None:
     """Add the steps of ``dataset`` to the result that `write` began."""
     first, *segments = _parts(path)
     with opened(first) as file:
-        identity, own = attributes_of(file).get("identity"), file["step"][:].tolist()
+        identity, own = _attributes_of(file).get("identity"), file["step"][:].tolist()
     waiting = [number for segment in segments for number in _step_numbers(segment)]
     last, following = (own + waiting)[-1], int(dataset["step"].values[0])
     if dataset.attrs.get("identity") != identity or following != last + 1:
@@ -103,7 +103,7 @@ def read(path: Path, without: Collection[str] = ()) -> xr.Dataset:
         try:
             for part in _parts(path):
                 with opened(part) as file:
-                    steps.append(content(file, without))
+                    steps.append(_content(file, without))
         except StorageError:
             if _segments(path) == segments:
                 raise
@@ -111,15 +111,10 @@ def read(path: Path, without: Collection[str] = ()) -> xr.Dataset:
             return joined(steps)
 
 
-def scalars(path: Path) -> xr.Dataset:
-    """Return the numbers and texts of each step of a result file, without its fields."""
-    return read(path, without=["x", "y"])
-
-
 def attributes(path: Path) -> dict[str, Any]:
     """Return the attributes of a result file without reading its steps."""
     with opened(path) as file:
-        return attributes_of(file)
+        return _attributes_of(file)
 
 
 def fields(path: Path, names: Sequence[str], step: int) -> tuple[dict[str, Any], list[Any]]:
@@ -133,7 +128,7 @@ def fields(path: Path, names: Sequence[str], step: int) -> tuple[dict[str, Any],
                     file[name][step].astype(bool) if name == "contact" else file[name][step]
                     for name in names
                 ]
-                return attributes_of(file), arrays
+                return _attributes_of(file), arrays
             step -= count
     raise StorageError(f"{path} does not have that many steps; run it again")
 
@@ -168,7 +163,7 @@ def joined(steps: list[xr.Dataset]) -> xr.Dataset:
 def table(path: Path) -> xr.Dataset:
     """Return the table of a study."""
     with opened(path, "table") as file:
-        return content(file)
+        return _content(file)
 
 
 def _step_numbers(path: Path) -> list[int]:
@@ -205,7 +200,7 @@ def _join(path: Path, segments: Sequence[Path], *more: xr.Dataset) -> None:
     added = [*(segment.stat().st_size for segment in segments), *(steps.nbytes for steps in more)]
     # Without room BytesIO would copy the content whenever HDF5 writes beyond its end.
     grown = io.BytesIO(bytes(size + sum(added) + _SMALL))
-    with readable(path), path.open("rb") as old, grown.getbuffer() as buffer:
+    with _readable(path), path.open("rb") as old, grown.getbuffer() as buffer:
         old.readinto(buffer[:size])
     with h5py.File(grown, "r+") as file:
         names = [name for name in file if file[name].maxshape[:1] == (None,)]
@@ -234,3 +229,80 @@ def _extend(file: h5py.File, values: Mapping[str, Any]) -> None:
     for name, added in values.items():
         file[name].resize(count + len(added), axis=0)
         file[name][count:] = added
+
+
+@contextmanager
+def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[h5py.File]:
+    """Yield the HDF5 file of a result or of the table of a study, for reading."""
+    if not is_file(path):
+        reason = "no such file; give a result file (.h5) that pellicle wrote"
+        if is_folder(path):
+            reason = "is a folder that holds no result yet; run it first, or give a result (.h5)"
+        raise StorageError(f"{path}: {reason}")
+    import h5py
+
+    with _readable(path):
+        # Before HDF5 parses the file, which for a changed byte can end the process.
+        is_sealed = checksum.verify(path)
+    with _readable(path), h5py.File(path) as file:
+        attributes = netcdf.attributes(file)
+        version = attributes.get("schema_version")
+        if version is None or not {"configuration", "versions"} <= attributes.keys():
+            raise StorageError(
+                f"{path}: not a result of pellicle; give an .h5 file that pellicle wrote"
+            )
+        if version != SCHEMA_VERSION:
+            raise StorageError(
+                f"{path}: schema version {version}, and this pellicle reads {SCHEMA_VERSION}; "
+                f"read it with what wrote it ({attributes['versions']}), or run it again"
+            )
+        if not is_sealed:
+            raise StorageError(
+                f"{path}: was changed after pellicle wrote it, its checksum is missing; restore it "
+                "from a copy, or run it again"
+            )
+        if kind == "result" and "axes" in attributes:
+            raise StorageError(
+                f"{path}: the table of a study, not a result; pellicle.run_study returns it, "
+                "xarray.load_dataset reads it, and runs/ holds the results"
+            )
+        if kind == "result" and (command := attributes.get("command")):
+            raise StorageError(
+                f"{path}: a table that pellicle {command} wrote, not a result; pellicle show "
+                f"{path.parent} prints it; for more, see pellicle {command} --help"
+            )
+        if kind == "table" and "axes" not in attributes:
+            raise StorageError(f"{path}: a result, not the table of a study")
+        yield file
+
+
+def _content(file: h5py.File, without: Collection[str] = ()) -> xr.Dataset:
+    """Return the dataset in a file, except variables with a dimension in ``without``."""
+    dataset = netcdf.dataset(file, without=without)
+    dataset.attrs = _attributes_of(file)
+    return dataset
+
+
+def _attributes_of(file: h5py.File) -> dict[str, Any]:
+    """Return the attributes of a file, without its schema version."""
+    return {n: value for n, value in netcdf.attributes(file).items() if n != "schema_version"}
+
+
+@contextmanager
+def _readable(path: Path) -> Iterator[None]:
+    """Turn exceptions that a damaged file causes into a StorageError that names the remedy."""
+    try:
+        yield
+    # h5py, numpy, xarray and json raise any of these for a file that is damaged or not HDF5.
+    except (
+        *(OSError, ValueError, LookupError, RuntimeError, AttributeError, TypeError),
+        MemoryError,
+    ) as error:
+        reason = str(error).partition("\n")[0] or "it does not fit in memory"
+        if "file signature not found" in reason:
+            reason = "it is not an HDF5 file"
+        beside = path.with_suffix(".h5")
+        remedy = str(beside) if is_file(beside) and beside != path else "an .h5 file"
+        raise StorageError(
+            f"{path}: not a readable result file ({reason}); give {remedy} that pellicle wrote"
+        ) from None

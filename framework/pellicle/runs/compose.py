@@ -1,10 +1,19 @@
-"""Create the operator and profile that all load steps of a run share; check the loading."""
+"""Create what all load steps of a run share; refuse or warn of what does not fit together."""
 
 from __future__ import annotations
 
-from pellicle.checks import errors_attributed_to
-from pellicle.components import Force, Search, Setting
+import math
+import warnings
+from functools import lru_cache
+from typing import Final
+
+import numpy as np
+
+from pellicle.arrays import Array
+from pellicle.checks import component_name, errors_attributed_to
+from pellicle.components import Component, Force, Search, Setting
 from pellicle.components.calls import (
+    branches_of,
     check_solver,
     check_value,
     instantaneous,
@@ -12,25 +21,39 @@ from pellicle.components.calls import (
     target_of,
 )
 from pellicle.components.checked_law import law_of
-from pellicle.config.run import Run
-from pellicle.errors import ConfigError
-from pellicle.surface.grid_checks import warn_of_cells, warn_of_period
+from pellicle.components.rules import CHEAP, Case, broken
+from pellicle.config.run import Run, components_in
+from pellicle.contact.time_step import stiffness_after
+from pellicle.errors import ConfigError, PluginError
+from pellicle.grid import Grid
+from pellicle.plugins import registry
+from pellicle.surface.influence import warn_of_cells
 from pellicle.surface.operators import make_operator
+from pellicle.units import readable
 
-from .relaxation_checks import warn_of_relaxation
-from .strangers import ask_strangers
+# A step between opposite edges above this multiple of steps inside means a non-periodic surface.
+_STEEPER: Final = 3.0
+# Largest stiffness in the end, over the instantaneous one, of a liquid; it is rounding.
+_LIQUID: Final = 1e-12
+# Relaxation times below this share of the shortest step are far below it.
+_FAST: Final = 0.01
 
 
 def compose(run: Run) -> Setting:
     """Return the setting of the first load step."""
-    ask_strangers(run)
+    case = Case(run.grid, run.kernel)
+    for component in components_in([run.kernel, run.indenter, run.interaction, run.corrections]):
+        if component.family in CHEAP and not _is_own(component):
+            # One that has no hash breaks its contract.
+            with errors_attributed_to(component):
+                _ask_stranger(component, case)
     with errors_attributed_to(run.kernel):
         operator = make_operator(instantaneous(run.kernel), run.grid)
         warn_of_cells(run.kernel.compliance, run.grid)
     profile = profile_of(run.indenter, run.grid)
     if run.indenter.footprint == "domain":
         warn_of_period(profile, run.grid)
-    warn_of_relaxation(run)
+    _warn_of_relaxation(run)
     law = law_of(run.interaction, run.kernel, run.grid) if run.interaction else None
     setting = Setting(run.grid, operator, profile, run.indenter.footprint, law=law)
     if law:
@@ -47,3 +70,71 @@ def compose(run: Run) -> Setting:
                 field,
             )
     return setting
+
+
+def _is_own(component: Component) -> bool:
+    """Return whether the class is one that the distribution of pellicle registers."""
+    registered = registry().components[component.family].get(getattr(component, "type", ""))
+    return (
+        registered is not None
+        and registered.component is type(component)
+        and registered.origin.is_own
+    )
+
+
+# Whether a rule holds depends on the values of a component and on the grid.
+@lru_cache(maxsize=256)
+def _ask_stranger(component: Component, case: Case) -> None:
+    """Refuse a component of others that breaks a rule; those inside it are asked on their own."""
+    if violation := broken(CHEAP[component.family], component, case):
+        raise PluginError(f"{component_name(component)} breaks the rule {violation}")
+
+
+def warn_of_period(heights: Array, grid: Grid) -> None:
+    """Warn if opposite edges of a periodic surface meet in a step.
+
+    The rms of this step is then more than three times that between any two neighbouring lines of
+    cells. ``heights`` [m] have the grid's shape.
+    """
+    if grid.boundary != "periodic" or not np.isfinite(heights).all():
+        return
+    for axis, name in enumerate("xy"):
+        lines = np.moveaxis(heights, axis, 0)
+        if len(lines) < 4:
+            continue
+        inside = float(np.sqrt((np.diff(lines, axis=0) ** 2).mean(axis=1)).max())
+        step = float(np.sqrt(((lines[0] - lines[-1]) ** 2).mean()))
+        if step > _STEEPER * inside:
+            warnings.warn(
+                f"the surface is not periodic along {name}: its edges meet in a step of "
+                f"{readable(step, 'm', 2)} (rms), where neighbouring cells differ by "
+                f"{readable(inside, 'm', 2)} at most; press it on "
+                'grid.boundary = "free", or make it periodic',
+                stacklevel=3,
+            )
+
+
+def _warn_of_relaxation(run: Run) -> None:
+    """Warn if a solid relaxes to a liquid, or far faster than the steps of its run.
+
+    A kernel that states its time span has a share of its own for all times beyond.
+    """
+    kernel, branches = run.kernel, branches_of(run.kernel)
+    if not branches:
+        return
+    shortest, longest = kernel.time_span()
+    if longest == math.inf and stiffness_after(branches, math.inf) < _LIQUID:
+        warnings.warn(
+            f"kernel: the shares of {kernel.type_name!r} that relax sum to 1, which makes the "
+            "solid a liquid: in the end only a skin carries; let them sum to less for a solid",
+            stacklevel=3,
+        )
+    least = min((duration for duration in run.loading.durations if duration > 0), default=0.0)
+    fastest = min(branch.time for branch in branches)
+    if shortest == 0.0 and fastest < _FAST * least:
+        warnings.warn(
+            f"loading: the shortest step takes {least:g} s, far longer than the relaxation time "
+            f"{fastest:g} s of a share of the solid, so that how this share relaxes is not seen; "
+            "use shorter steps where it matters, or a softer solid without the share",
+            stacklevel=3,
+        )

@@ -35,7 +35,7 @@ class Journal:
             exists = self.path.exists()
         if self.overwrite or not exists:
             return None
-        steps = storage.scalars(self.path)
+        steps = storage.read(self.path, without=["x", "y"])
         if steps.attrs.get("identity") != self.identity:
             return None
         storage.require_consecutive(steps, self.path)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from pellicle.components import HasMemory
 from pellicle.components.calls import branches_of
 from pellicle.config.run import Run
-from pellicle.contact.skin_operators import KEPT, rounded_stiffness
 from pellicle.contact.time_step import TimeStep
+
+from .relaxation import KEPT, rounded_stiffness
 
 # Peak memory in arrays of the grid's shape, eight bytes per cell, measured on Linux with glibc.
 # Arrays above 32 MB are given back when they are freed; of smaller ones malloc may keep three.
@@ -36,30 +37,20 @@ def memory_of(run: Run) -> float:
 
     The peak occurs in the last solve, when earlier steps and their file are in memory too. The size
     of the contact is unknown, so full contact is assumed, which takes up to a third more memory
-    than a small contact. A solver that is not a `HasMemory` counts as active_set.
+    than a small contact. A solver that is not a `HasMemory` counts as active_set. The history of a
+    solid that relaxes is its branches, twice as they are brought forward, what they leave behind
+    and the profile that it displaces; under a skin also the strain and the operators that are kept.
     """
-    grid, solver = run.grid, run.solver
+    grid, solver, branches = run.grid, run.solver, branches_of(run.kernel)
     cells = grid.points[0] * grid.points[1]
     operator = _LINE if grid.points[1] == 1 else _OPERATOR[grid.boundary]
     iterating = solver.arrays(grid) if isinstance(solver, HasMemory) else _SOLVER[grid.boundary]
     if run.interaction:
         iterating += _STICKS
-    kept = (_STEP + _SERIALISED) * (len(run.loading.values) - 1)
-    return _FIXED + 8 * cells * (operator + iterating + history_arrays(run) + kept)
-
-
-def history_arrays(run: Run) -> float:
-    """Return the peak memory of the history of a solid, in arrays of the grid's shape.
-
-    These are the branches, twice as they are brought forward, what they leave behind and the
-    profile that it displaces; under a skin also the strain and the operators that are kept.
-    """
-    kernel, branches = run.kernel, branches_of(run.kernel)
-    if not branches:
-        return 0.0
-    arrays = 2 * len(branches) + 3.0
-    if kernel.without_skin() != kernel:
+    history = 2 * len(branches) + 3.0 if branches else 0.0
+    if branches and run.kernel.without_skin() != run.kernel:
         steps = {TimeStep.of(branches, duration) for duration in run.loading.durations}
-        kept = min(KEPT, len({rounded_stiffness(step) for step in steps}))
-        arrays += 1 + kept * _PAIR[run.grid.boundary]
-    return arrays
+        stiffnesses = {rounded_stiffness(step) for step in steps}
+        history += 1 + min(KEPT, len(stiffnesses)) * _PAIR[grid.boundary]
+    kept = (_STEP + _SERIALISED) * (len(run.loading.values) - 1)
+    return _FIXED + 8 * cells * (operator + iterating + history + kept)

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
-from functools import partial
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Final
 
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.components import Setting
+from pellicle.checks import errors_attributed_to
+from pellicle.components import Kernel, Setting
 from pellicle.components.calls import branches_of
 from pellicle.config.run import Run
-from pellicle.contact.finished_step import FinishedStep
-from pellicle.contact.skin_operators import skin_operators
-from pellicle.contact.time_step import (
-    Memory,
-    TimeStep,
-    left_behind,
-    strain_under_skin,
-)
+from pellicle.contact.load_step import FinishedStep
+from pellicle.contact.time_step import Memory, TimeStep
+from pellicle.grid import Grid
+from pellicle.surface import HasCompliance, mean_compliance
+from pellicle.surface.outside import PlaneOperator
+
+KEPT: Final = 4
+"""Number of stiffnesses γ for which `skin_operators` are kept."""
+# Equal steps whose times differ by rounding share their operators.
+_DIGITS: Final = 12
 
 
 class Relaxation:
@@ -54,16 +59,19 @@ class Relaxation:
         """
         for finished in path[self._done :]:
             self._advance(finished.state.pressure, finished.displacement)
-        step, displacement = self._steps[self._done], None
+        step, left = self._steps[self._done], None
         if self._skin and not self._done and step.is_jump:
             return setting
+        history = self._memory.history(step)
         if self._skin:
             whole = self._skin[0](step)
             operator = whole.operator
-            displacement = partial(whole, integral=float(self._integral.history(step)))
+            if self._done:
+                left = -whole(history, float(self._integral.history(step)))
         else:
             operator = setting.operator.scaled(1 / step.stiffness)
-        left = left_behind(self._memory, step, displacement) if self._done else None
+            if self._done:
+                left = history / -step.stiffness
         return replace(setting, operator=operator, left=left)
 
     def _advance(self, pressure: Array, displacement: Array) -> None:
@@ -73,8 +81,53 @@ class Relaxation:
         if self._skin:
             force = np.asarray(pressure.sum() * self._cell_area)
             remaining = float(force - self._integral.history(step))
-            carried = partial(self._skin[1](step), integral=remaining)
-            strain = strain_under_skin(self._memory, step, pressure, carried)
+            # What the solid carries of the pressure, in units of its strain s = k₀ u.
+            strain = self._skin[1](step)(pressure - self._memory.history(step), remaining)
             self._integral = self._integral.after(step, np.asarray(remaining / step.stiffness))
         self._memory = self._memory.after(step, strain)
         self._done += 1
+
+
+@dataclass(frozen=True)
+class CarriedShare:
+    """The part of a pressure that the solid under a skin carries, as a kernel without unit."""
+
+    whole: HasCompliance
+    """The skin on the solid, γ times as stiff."""
+    solid: HasCompliance
+    """The solid alone, as stiff as it is at once."""
+
+    def compliance(self, q: Array) -> Array:
+        """Return k₀/(k_skin + γ k₀)."""
+        share: Array = self.whole.compliance(q) / self.solid.compliance(q)
+        return share
+
+    def mean_compliance(self) -> float:
+        """Return it at q = 0, where a skin carries nothing; ∞ if the mean is not displaced."""
+        solid = mean_compliance(self.solid)
+        return mean_compliance(self.whole) / solid if 0 < solid < math.inf else math.inf
+
+
+def skin_operators(
+    kernel: Kernel, grid: Grid
+) -> tuple[Callable[[TimeStep], PlaneOperator], Callable[[TimeStep], PlaneOperator]]:
+    """Return the operators of a step from pressure to displacement, and to what the solid carries.
+
+    The first is in m/Pa, the second without unit. Each is kept for `KEPT` stiffnesses γ.
+    """
+    solid = kernel.without_skin()
+
+    def kept(make: Callable[[float], HasCompliance]) -> Callable[[TimeStep], PlaneOperator]:
+        @lru_cache(maxsize=KEPT)
+        def operator(share: float) -> PlaneOperator:
+            with errors_attributed_to(kernel):
+                return PlaneOperator(make(share), grid)
+
+        return lambda step: operator(rounded_stiffness(step))
+
+    return kept(kernel.scaled), kept(lambda share: CarriedShare(kernel.scaled(share), solid))
+
+
+def rounded_stiffness(step: TimeStep) -> float:
+    """Return γ of a step in twelve digits, by which steps share operators."""
+    return float(f"{step.stiffness:.{_DIGITS}g}")

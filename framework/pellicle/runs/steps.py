@@ -14,20 +14,17 @@ from pellicle.components.calls import branches_of, solution_of, target_of
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
 from pellicle.contact.equilibrium import equilibrium_of
-from pellicle.contact.finished_step import FinishedStep, end_of
-from pellicle.contact.load_step import Effort, LoadStep
+from pellicle.contact.load_step import FinishedStep, LoadStep, end_of
 from pellicle.results.step import Steps, step_dataset
 
 from .progress import Bar
 from .relaxation import Relaxation
 from .target_search import reach
+from .terms import Surroundings, Term
 from .terms.adhesion import adhesion
 from .terms.contact import contact
-from .terms.corrections import corrected_variables, corrections
-from .terms.prescription import prescription
 from .terms.relaxation import relaxation
-from .terms.stiffness import stiffness
-from .terms.surroundings import Solve, Surroundings, Term
+from .terms.requested import corrected_variables, corrections, prescription, stiffness
 
 
 class Physics:
@@ -36,10 +33,15 @@ class Physics:
     def __init__(self, run: Run) -> None:
         self.memory = Relaxation(run) if branches_of(run.kernel) else None
         # Their measures are columns of a result in this order.
-        named = [contact, corrections, prescription]
-        named += [stiffness] * run.loading.stiffness + [relaxation]
-        named += [adhesion] * (run.interaction is not None)
-        self.terms: tuple[Term, ...] = tuple(partial(term, run) for term in named)
+        named = {
+            contact: True,
+            corrections: run.corrections,
+            prescription: True,
+            stiffness: run.loading.stiffness,
+            relaxation: self.memory or run.loading.times,
+            adhesion: run.interaction,
+        }
+        self.terms: tuple[Term, ...] = tuple(partial(t, run) for t, has in named.items() if has)
         self.variables = (*corrected_variables(run), *run.loading.prescription.variables)
 
 
@@ -66,9 +68,8 @@ def _next_step(
         setting = memory.setting(setting, path)
         applications = memory.applications
     step = solve_step(run, setting, run.loading.values[len(path)], monitor)
-    applications += step.effort.applications
-    step = replace(step, effort=step.effort._replace(applications=applications))
-    surroundings = Surroundings(setting, path, Solve(run.solver, monitor))
+    step = replace(step, applications=step.applications + applications)
+    surroundings = Surroundings(setting, path, monitor)
     for term in physics.terms:
         step = term(step, surroundings)
     seconds = time.perf_counter() - started
@@ -84,7 +85,6 @@ def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> Lo
     else:
         problem = setting.problem(target)
         solution = solution_of(run.solver, problem, setting.start(problem), monitor)
-        effort = Effort(solution.iterations, solution.stop)
-        step = LoadStep(equilibrium_of(problem, solution), effort, solution.jumped)
-    used = setting.operator.applications - applied
-    return replace(step, effort=step.effort._replace(applications=used))
+        equilibrium = equilibrium_of(problem, solution)
+        step = LoadStep(equilibrium, solution.iterations, solution.stop, solution.jumped)
+    return replace(step, applications=setting.operator.applications - applied)

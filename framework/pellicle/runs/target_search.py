@@ -8,21 +8,25 @@ located to a relative width, on the side nearer to the goal.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 
 from pellicle.components import Monitor, Solver
 from pellicle.components.calls import solution_of
 from pellicle.components.prescription import Search, Setting
+from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import Equilibrium, equilibrium_of
-from pellicle.contact.load_step import Effort, LoadStep, SearchEnd
+from pellicle.contact.load_step import LoadStep
 from pellicle.contact.problem import Depth
 from pellicle.contact.solution import Solution
 
 # Number of trials to bracket the goal, after which it counts as out of reach.
 _MOST_TRIALS: Final = 40
+# Relative distance from its goal above which a search has not converged.
+_NEAR: Final = 0.05
 
 
 def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) -> LoadStep:
@@ -46,17 +50,34 @@ def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) ->
         above = trials(high)
     if jumps := below < 0 < above:
         brentq(trials, low, high, xtol=search.width, rtol=1e-15)
-    how: Literal["met", "nearest", "not found"] = "nearest" if jumps else "not found"
-    end = SearchEnd(
-        search.quantity,
-        search.unit,
-        trials.missed,
-        "met" if 0.0 in trials.excess.values() else how,
-        trials.below,
-        trials.above,
+    solution = trials.solution
+    step = LoadStep(
+        trials.nearest, trials.iterations, solution.stop, solution.jumped, missed=trials.missed
     )
-    effort = Effort(trials.iterations, trials.solution.stop)
-    return LoadStep(trials.nearest, effort, trials.solution.jumped, end)
+    return step.having({}, _not_met(trials, jumps=jumps))
+
+
+def _not_met(trials: _Trials, *, jumps: bool) -> Iterator[Caveat]:
+    """Yield the caveat of a search that ended away from its goal, across which it may jump."""
+    search, is_near = trials.search, trials.missed <= _NEAR
+    # Of a quantity that does not jump a search without a resolution finds values on either side.
+    met = 0.0 in trials.excess.values() or trials.missed <= trials.solver.tolerance
+    if met and is_near:
+        return
+    values: dict[str, float | str] = {"quantity": search.quantity, "measure": trials.missed}
+    if jumps and not met:
+        values |= {"below": trials.below, "above": trials.above, "unit": search.unit}
+    of_area = search.quantity == "contact area"
+    if jumps and not met and is_near:
+        yield Caveat(Status.NEAREST_AREA if of_area else Status.NEAREST, values)
+        return
+    end = "not found"
+    if met:
+        end = "nothing nearer"
+    elif jumps:
+        end = "jump with a law" if trials.setting.law else "jump"
+    values |= {"tolerance": _NEAR, "end": end}
+    yield Caveat(Status.AREA if of_area else Status.NOT_REACHED, values)
 
 
 def _stride(excess: float, trials: int) -> float:

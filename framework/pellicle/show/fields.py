@@ -11,7 +11,7 @@ from pellicle.components.charts import Axis, Chart, Fields, Look, Panel, Series
 from pellicle.contact.problem import height_scale
 from pellicle.results.path import has_interaction, has_times, label_of_step
 from pellicle.results.result import Result
-from pellicle.results.shape import is_periodic
+from pellicle.results.wording import is_periodic
 from pellicle.units import readable
 
 from .rim import with_rim

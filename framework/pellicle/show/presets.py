@@ -11,8 +11,7 @@ from pellicle.components.charts import Axis, Chart, Fields, Look, Series
 from pellicle.results.dimensions import parts
 from pellicle.results.path import has_interaction, has_times
 from pellicle.results.result import Result
-from pellicle.results.shape import is_periodic
-from pellicle.results.wording import wording
+from pellicle.results.wording import is_periodic, wording
 from pellicle.variables import CONTACT_AREA, CORRECTED_AREA
 
 from .fields import pressure_map, profile

@@ -13,8 +13,7 @@ from pellicle.contact.caveats import Status, by_phrase, from_text
 from pellicle.errors import first_of
 from pellicle.results.derived import DERIVED
 from pellicle.results.dimensions import parts
-from pellicle.results.shape import means_something
-from pellicle.results.wording import Wording, wording
+from pellicle.results.wording import Wording, means_something, wording
 from pellicle.variables import BEYOND_THEORY, CAVEATS, names_of
 
 if TYPE_CHECKING:

@@ -9,33 +9,83 @@ import copy
 import math
 from collections.abc import Callable
 from functools import cached_property
-from typing import Any, Self, TypeVar
+from typing import Any, Protocol, Self, runtime_checkable
 
 import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array
-from pellicle.checks import component_name, read_only
+from pellicle.checks import component_name, errors_attributed_to, read_only, real_array, real_number
 from pellicle.errors import ConfigError, shown
 from pellicle.grid import Grid
 
-from .convolution import Workspace, convolve
-from .grid_checks import warn_of_cells
+from .convolution import Float, Workspace, convolve
 from .hankel import Tabulated
-from .influence import cell_coefficients
-from .kernel_calls import (
-    HasClosedForm,
-    HasCompliance,
-    checked_call,
-    mean_compliance,
-    positive_compliance,
-)
-
-Float = TypeVar("Float", np.float32, np.float64)
+from .influence import cell_coefficients, warn_of_cells
 
 # Least displacement of a cell under its own pressure, over that of the finest wave.
 _LEAST_OWN = 0.25
+
+
+class HasCompliance(Protocol):
+    """The part of a kernel that every operator needs."""
+
+    def compliance(self, q: Array) -> Array:
+        """Return G(q) [m/Pa] for wavenumbers q > 0 [rad/m]."""
+        ...
+
+
+@runtime_checkable
+class HasClosedForm(HasCompliance, Protocol):
+    """A kernel with formulas in real space; other kernels are tabulated on a free boundary."""
+
+    def greens_function(self, r: Array) -> Array:
+        """Return the displacement at distances r > 0 [m] from a unit force [m/N]."""
+        ...
+
+    def radial_primitive(self, r: Array) -> Array:
+        """Return ∫₀^r G(r') r' dr' [m³/N] for r ≥ 0 [m]."""
+        ...
+
+
+@runtime_checkable
+class HasMeanCompliance(HasCompliance, Protocol):
+    """A kernel that states the displacement of its surface under a uniform pressure."""
+
+    def mean_compliance(self) -> float:
+        """Return G(0) [m/Pa], the displacement per uniform pressure on a periodic domain.
+
+        If it is infinite, the mean displacement is set to 0 and depths are measured from the mean
+        plane.
+        """
+        ...
+
+
+def mean_compliance(kernel: HasCompliance) -> float:
+    """Return G(0) [m/Pa] of a kernel; ∞ if it does not state G(0), as for a half-space."""
+    if not isinstance(kernel, HasMeanCompliance):
+        return math.inf
+    with errors_attributed_to(kernel):
+        value = kernel.mean_compliance()
+    return real_number(kernel, "mean_compliance()", value)
+
+
+def checked_call(kernel: HasCompliance, name: str) -> Callable[[Array], Array]:
+    """Return a method of a kernel, wrapped to protect its argument and check its values.
+
+    The function raises PluginError if the kernel returns anything but an array of real
+    numbers of the shape of its argument.
+    """
+    method = getattr(kernel, name)
+    text = f"{name}({'q' if name == 'compliance' else 'r'})"
+
+    def call(argument: Array) -> Array:
+        with errors_attributed_to(kernel):
+            values = method(read_only(argument))
+        return real_array(kernel, text, values, argument.shape)
+
+    return call
 
 
 class Operator:
@@ -191,8 +241,17 @@ class PeriodicOperator(Operator):
         symbol = np.empty(q.shape)
         # The first wavenumber is 0.
         symbol.ravel()[0] = 0.0 if mean == math.inf else mean
-        compliance = checked_call(kernel, "compliance")
-        symbol.ravel()[1:] = positive_compliance(kernel, q.ravel()[1:], compliance(q.ravel()[1:]))
+        q = q.ravel()[1:]
+        symbol.ravel()[1:] = values = checked_call(kernel, "compliance")(q)
+        invalid = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
+        if invalid.size:
+            raise ConfigError(
+                f"compliance(q) of {component_name(kernel)} is {values[invalid[0]]:.3g} m/Pa at q "
+                f"= {q[invalid[0]]:.3g} rad/m; it has to be positive and finite, and may be beyond "
+                "the numbers that a computer has; check the parameters, or the formula if the "
+                "kernel is yours",
+                "kernel",
+            )
         if not mean >= 0:
             raise ConfigError(
                 f"mean_compliance() of {component_name(kernel)} is {mean:g} m/Pa; it has to be 0, "

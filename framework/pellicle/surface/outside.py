@@ -13,8 +13,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.grid import Grid
 
-from .kernel_calls import HasCompliance
-from .operators import make_operator
+from .operators import HasCompliance, make_operator
 
 # Edge of the larger plane over that of the domain, and its cells each way. With twice of both the
 # force of a flat punch with a tensed skin changes by 2e-4 in a domain of 8 contact radii.

@@ -15,7 +15,7 @@ from pellicle.components.calls import (
 )
 from pellicle.config.run import Run
 from pellicle.contact.equilibrium import Equilibrium, measure
-from pellicle.contact.load_step import Effort, LoadStep
+from pellicle.contact.load_step import LoadStep
 from pellicle.contact.solution import Stop
 from pellicle.errors import ConfigError
 from pellicle.results.step import step_dataset
@@ -69,7 +69,7 @@ def _value(prescription: Prescription, step: Equilibrium) -> float | None:
     name = prescription.type_name
     if name in report:
         return report[name]
-    data = step_dataset(setting.grid, 1, LoadStep(step, Effort(0, Stop.DONE)))
+    data = step_dataset(setting.grid, 1, LoadStep(step, 0, Stop.DONE))
     return float(data[name].item()) if name in data and data[name].size == 1 else None
 
 

@@ -11,10 +11,9 @@ import xarray as xr
 from pellicle.components import IterativeSolver, Solver
 from pellicle.components.calls import response_of, solution_of
 from pellicle.config.run import Run
-from pellicle.contact.equilibrium import measure
+from pellicle.contact.equilibrium import measure, measure_stiffness
 from pellicle.contact.problem import Depth, Force, Problem
 from pellicle.contact.solution import State, Stop
-from pellicle.contact.stiffness import measure_stiffness
 from pellicle.surface.operators import make_operator
 
 from .component import check

@@ -26,7 +26,7 @@ from pellicle.arrays import Array
 from pellicle.errors import ConfigError
 from pellicle_plugins.closed_forms.arguments import not_negative, positive
 
-from .abel_transform import HasAbelTransform
+from .equation import HasAbelTransform
 from .radius_curves import RadiusCurves, radius_at, radius_curves, xi_at
 from .tensed_punch import punch
 

@@ -1,6 +1,6 @@
 """Contact of a rigid axisymmetric indenter with a half-space under surface tension.
 
-``axisymmetric_equation`` has the equation and its solution. This module compares two mesh levels
+``equation`` has the equation and its solution. This module compares two mesh levels
 and determines the contact radius for a depth or a force.
 """
 
@@ -15,8 +15,7 @@ from pellicle.arrays import Array
 from pellicle.errors import ConfigError, ConvergenceError
 from pellicle_plugins.closed_forms.arguments import not_negative, positive, single
 
-from .abel_transform import HasAbelTransform
-from .equation import LEVELS, PanelSolution, solve, without_negligible
+from .equation import LEVELS, HasAbelTransform, PanelSolution, solve, without_negligible
 
 TOLERANCE = 1e-10
 EDGE_TOLERANCE = 1e-6

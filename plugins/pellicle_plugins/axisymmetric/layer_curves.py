@@ -1,10 +1,11 @@
 """Force against depth on a bonded layer under surface tension, interpolated between solutions.
 
-Force and depth are tabulated at given contact radii a (``layer_curve_nodes``).  There the equation
-is linear in the profile, so that force and depth of nine odd Chebyshev polynomials are those of
-every smooth profile.  The table holds them on a half-space, over s/a, and what the layer changes,
-over s/h, a/h and ν; s = 2τ₀/E*.  Between the radii, the logarithm of the force over that on a
-half-space at the same depth (``master_curves``) is interpolated over the depth.
+Force and depth are tabulated at given contact radii a (``docs/reference-data/curve_tables.py``).
+There the equation is linear in the profile, so that force and depth of nine odd Chebyshev
+polynomials are those of every smooth profile.  The table holds them on a half-space, over s/a,
+and what the layer changes, over s/h, a/h and ν; s = 2τ₀/E*.  Between the radii, the logarithm of
+the force over that on a half-space at the same depth (``master_curves``) is interpolated over the
+depth.
 
 The relative error of the force is below 1e-4 for contacts up to ten times as wide as the layer is
 thick, of a sphere up to a = 0.8 R.
@@ -223,7 +224,7 @@ def _table() -> dict[str, Array]:
 
 @cache
 def _half_space(shape: Shape) -> Interpolant:
-    """Return the interpolant over s/a of the columns that ``layer_curve_nodes`` describes."""
+    """Return the interpolant over s/a of the columns that ``curve_tables.row`` describes."""
     return stretched_spline(HALF_SPACE_LENGTHS, _table()[f"{shape}_half_space"], HALF_SPACE_SCALE)
 
 

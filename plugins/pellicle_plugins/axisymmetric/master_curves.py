@@ -9,8 +9,9 @@ P₀(δ), log(P/P₀) is a function of x alone for three of the indenters:
 
 For the sphere it is a function of x = s / √(δR) and δ/R: that of the paraboloid plus (δ/R) times a
 smooth function, tabulated for δ ≤ R.  The nodes are solutions of the axisymmetric equation
-(``master_curve_nodes``), interpolated by a spline of degree 5 in t = log(1 + x/SCALE), which is
-linear in x where tension hardly matters and logarithmic where it dominates.
+(``docs/reference-data/curve_tables.py``), interpolated by a spline of degree 5 in
+t = log(1 + x/SCALE), which is linear in x where tension hardly matters and logarithmic where it
+dominates.
 """
 
 from __future__ import annotations

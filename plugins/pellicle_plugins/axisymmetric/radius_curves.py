@@ -18,8 +18,7 @@ from numpy.polynomial import chebyshev
 from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
 
-from .abel_transform import HasAbelTransform
-from .equation import solve, without_negligible
+from .equation import HasAbelTransform, solve, without_negligible
 from .tensed_punch import unit_forces
 
 _PANEL = 2.0

@@ -1,6 +1,6 @@
 """Contact of a rigid flat punch with a half-space under surface tension.
 
-The integral equation of ``axisymmetric_equation`` with a flat profile is
+The integral equation of ``equation`` with a flat profile is
 ∫_{−a}^{a} φ(t) K(x − t) dt = E* δ, P = π ∫ φ.  Its solution approaches C (a² − t²)^(−1/2)
 at the edge, which represents a line load of total force π² C on the rim of the punch.
 """

@@ -14,7 +14,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pellicle.analysis import AdhesiveContact
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
 
@@ -84,20 +83,6 @@ def dugdale_contact(
         depth=unit**2 / radius * depth,
         force=pi * work_of_adhesion * radius * force,
     )
-
-
-def rigid_limit(
-    radius: float, reduced_modulus: float, work_of_adhesion: float, contact_radius: ArrayLike
-) -> AdhesiveContact:
-    """Return the limit λ → 0: Hertz contact pulled by 2πwR (Derjaguin, Muller & Toporov 1975).
-
-    At a = 0 this is the force of a rigid sphere on a rigid plane (Bradley 1932).  Parameters are as
-    for `dugdale_contact`.
-    """
-    positive(radius=radius, reduced_modulus=reduced_modulus, work_of_adhesion=work_of_adhesion)
-    a = np.asarray(contact_radius, dtype=float)
-    force = 4 / 3 * reduced_modulus * a**3 / radius - 2 * pi * work_of_adhesion * radius
-    return AdhesiveContact(a, a**2 / radius, force)
 
 
 def _zone_angle(radius: float, transition: float) -> float:

@@ -1,14 +1,16 @@
-"""Execute one task, in this or another process, and return its outcome."""
+"""Execute one task, in this or another process, and one after the other in this one."""
 
 from __future__ import annotations
 
 import pickle
-from typing import Any
+from collections.abc import Sequence
+from functools import partial
+from typing import Any, Literal
 
 import cloudpickle
 
 from pellicle import PellicleError
-from pellicle.components import AnyTask, Outcome, Say, Work
+from pellicle.components import AnyTask, Executor, Outcome, Outcomes, Report, Say, Work
 
 
 def execute(work: Work[AnyTask, Outcome], task: AnyTask, say: Say) -> Outcome | Exception:
@@ -55,3 +57,17 @@ def execute_remotely(payload: bytes, say: Say) -> bytes:
 
 def _line(error: Exception) -> str:
     return f"{type(error).__name__}: {error}"
+
+
+class Serial(Executor):
+    """One run after the other, in this process."""
+
+    type: Literal["serial"] = "serial"
+    examples = ({"threads": 1},)
+
+    def map(
+        self, work: Work[AnyTask, Outcome], tasks: Sequence[AnyTask], report: Report[AnyTask]
+    ) -> Outcomes[AnyTask, Outcome]:
+        """Yield each task, in order, with what ``work`` returned or raised."""
+        for task in tasks:
+            yield task, execute(work, task, partial(report, task))

@@ -46,5 +46,4 @@ class Processes(Executor):
         from .process_pool import ProcessPool
 
         workers = self.workers or max(1, loky.cpu_count() // self.threads)
-        with ProcessPool(work, tasks, workers, self.threads) as pool:
-            yield from pool.outcomes(report)
+        yield from ProcessPool(work, tasks, workers, self.threads).outcomes(report)

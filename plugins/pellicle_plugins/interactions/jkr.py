@@ -15,8 +15,7 @@ from pellicle.components import Interaction, Kernel
 from pellicle.contact import GapLaw
 from pellicle.units import WorkOfAdhesion
 
-from .linear import Linear
-from .zone import softening_strength
+from .finite_range import Linear, softening_strength
 
 # Width of the zone in cells. Narrower ones pin, because a row of cells along an axis stays: of 66
 # depths of a paraboloid with 256 points approach and retraction differed at 7 with 1.7 and 2.0

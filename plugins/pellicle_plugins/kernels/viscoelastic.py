@@ -13,9 +13,9 @@ from pellicle.schema import Model
 from pellicle.surface import mean_compliance
 from pellicle.units import Quantity, Time
 
+from .half_spaces import TensedMembrane
 from .power_law import PronySeries, power_law_series
-from .skin import Skin
-from .tensed_membrane import TensedMembrane
+from .skins import Skin
 
 # Fractions given in decimals may sum to 1 plus rounding.
 _ROUNDING: Final = 1e-12

@@ -16,7 +16,7 @@ from pellicle.arrays import Array
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
 from pellicle.errors import ConfigError
 from pellicle.results.result import Result
-from pellicle.results.shape import is_periodic
+from pellicle.results.wording import is_periodic
 from pellicle.units import Quantity
 from pellicle_plugins.validation.adhesive_path import curve_of
 

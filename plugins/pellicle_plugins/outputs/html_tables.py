@@ -13,8 +13,7 @@ from pellicle import Run
 from pellicle.config.describe import Input, inputs
 from pellicle.contact.caveats import from_text, verdict_of
 from pellicle.results.result import Result
-from pellicle.results.shape import means_something
-from pellicle.results.wording import Wording, wording, wording_of
+from pellicle.results.wording import Wording, means_something, wording, wording_of
 from pellicle.show.html import Cell, Column, Table
 from pellicle.studies.summary import progress_of, short_files
 from pellicle.units import DIGITS, readable

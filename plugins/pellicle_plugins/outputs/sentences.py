@@ -10,8 +10,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.results.path import has_interaction, has_times, label_of_step, prescribed_variable
-from pellicle.results.shape import has_one_shape, is_periodic
-from pellicle.results.wording import wording
+from pellicle.results.wording import has_one_shape, is_periodic, wording
 from pellicle.units import readable
 from pellicle.variables import VARIABLES
 

@@ -6,12 +6,13 @@ from typing import Final
 
 import numpy as np
 import scipy.sparse
+from numpy.typing import NDArray
 
 from pellicle.arrays import Mask
 from pellicle.contact import dilated
 from pellicle.surface import row_blocks, shared
 
-from .circulant_stiffness import Field
+Field = NDArray[np.float32]
 
 _SWEEPS: Final = 12
 # Eigenvalues of Δ² for waves of about eight cells and of two, in units of the cell.

@@ -12,8 +12,7 @@ import numpy as np
 from pellicle.arrays import Mask
 from pellicle.surface import blocks, shared
 
-from .biharmonic import Sweeps, sweeps_near, wrapped
-from .circulant_stiffness import Field
+from .biharmonic import Field, Sweeps, sweeps_near, wrapped
 
 Moments = tuple[Field, ...]
 

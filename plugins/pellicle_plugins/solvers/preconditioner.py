@@ -11,10 +11,9 @@ import scipy.fft
 
 from pellicle import Grid
 from pellicle.arrays import Array, Cells, Mask
-from pellicle.surface import Operator
+from pellicle.surface import Operator, convolve
 
-from .biharmonic import stretch_of
-from .circulant_stiffness import CirculantStiffness, Field
+from .biharmonic import Field, stretch_of
 from .multilevel_extension import Extension, bends
 
 # Without a margin, contact at the edge of a free domain couples to the opposite edge.
@@ -32,6 +31,34 @@ _COARSEST: Final = 32
 # Order of the stiffness at the size of a cell below which the surface is a bed of springs: that of
 # a bonded layer is 0.01, 0.25 and 0.8 where its thickness is 0.4, 0.8 and 1.6 cells.
 _BED: Final = 0.5
+
+
+class CirculantStiffness:
+    """K, the multiplication by k(q) = 1/G(q) over its greatest value, in single precision.
+
+    The periodic plane has ``shape`` cells of the size of those of ``operator``.
+    """
+
+    def __init__(self, operator: Operator, shape: tuple[int, int]) -> None:
+        dx, dy = operator.grid.spacing
+        plane = Grid(points=shape, size=(shape[0] * dx, shape[1] * dy), boundary="periodic")
+        q = np.hypot(*plane.wavenumbers())
+        # At q = 0 half of the stiffness of the longest wave keeps K positive definite.
+        q[0, 0] = 2 * np.pi / max(plane.size)
+        stiffness = 1 / operator.compliance(q)
+        stiffness[0, 0] /= 2
+        self.shape = shape
+        self._workspace = operator.workspace
+        self.greatest = float(stiffness.max())
+        """The stiffness of the stiffest wave [Pa/m]."""
+        self._symbol = np.asarray(stiffness / self.greatest, dtype=np.float32)
+
+    def __call__(self, field: Field, out: Field | None = None) -> Field:
+        """Return K applied to a field, in ``out``, which may be ``field``, or a new array.
+
+        For a field in m the pressure is `greatest` times this.
+        """
+        return convolve(field, self._symbol, self.shape, self._workspace, out)
 
 
 class Preconditioner:

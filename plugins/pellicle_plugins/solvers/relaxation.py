@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from pellicle.arrays import Array, Mask
 from pellicle.contact import Problem
 
-from .circulant_stiffness import CirculantStiffness, Field
+from .biharmonic import Field
 from .contact_cg import InnerSolution
-from .preconditioner import OnContact
+from .preconditioner import CirculantStiffness, OnContact
 
 # Enough steps to relax waves of up to about fourteen cells; inner solves relax longer waves.
 _STEPS: Final = 80

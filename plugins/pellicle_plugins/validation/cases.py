@@ -13,11 +13,9 @@ from pellicle.components import Case, Suite
 from pellicle.results.result import Result
 from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
 from pellicle_plugins.axisymmetric.indentation import indent
-from pellicle_plugins.closed_forms import hertz
-from pellicle_plugins.closed_forms.boussinesq import flat_punch
+from pellicle_plugins.closed_forms import hertz, sneddon
 from pellicle_plugins.closed_forms.full_contact import pressure_amplitude
-from pellicle_plugins.closed_forms.sneddon import cone
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 from .adhesive_path import curve_of
 
@@ -30,44 +28,38 @@ _WORK = 50e-3
 
 def closed_forms() -> Iterator[Case]:
     """Yield every case; cases that share a run follow each other."""
-    for make in (_hertz, _ellipse, _cone, _flat_punch, _tensed_paraboloid, _adhesion, _sine):
-        yield from make()
+    yield from _pressed()
+    yield from _adhesion()
+    yield from _sine()
 
 
-def _hertz() -> Iterator[Case]:
+def _pressed() -> Iterator[Case]:
+    """Yield the cases of indenters at a depth."""
+    round_ = {"type": "paraboloid", "radius": _RADIUS}
     true = hertz.sphere(_RADIUS, _MODULUS, depth=_DEPTH)
-    paraboloid = {"type": "paraboloid", "radius": _RADIUS}
     expected = true.force, pi * true.semi_x**2, true.peak_pressure
-    return _cases("Hertz paraboloid", "Hertz 1882", paraboloid, 3 * true.semi_x, *expected)
+    yield from _cases("Hertz paraboloid", "Hertz 1882", round_, 3 * true.semi_x, *expected)
 
-
-def _ellipse() -> Iterator[Case]:
-    true = hertz.ellipse(_RADIUS, 2 * _RADIUS, _MODULUS, depth=_DEPTH)
     quadric = {"type": "quadric", "radius_x": _RADIUS, "radius_y": 2 * _RADIUS}
-    expected = true.force, pi * true.semi_x * true.semi_y
-    return _cases("Hertz ellipse", "Hertz 1882", quadric, 3 * true.semi_y, *expected)
+    true = hertz.ellipse(_RADIUS, 2 * _RADIUS, _MODULUS, depth=_DEPTH)
+    area = pi * true.semi_x * true.semi_y
+    yield from _cases("Hertz ellipse", "Hertz 1882", quadric, 3 * true.semi_y, true.force, area)
 
-
-def _cone() -> Iterator[Case]:
-    true = cone(radians(70), _MODULUS, depth=_DEPTH)
     tip = {"type": "cone", "half_angle": radians(70)}
-    expected = true.force, pi * true.contact_radius**2
-    return _cases("cone", "Sneddon 1965", tip, 3 * true.contact_radius, *expected)
+    cone = sneddon.cone(radians(70), _MODULUS, depth=_DEPTH)
+    radius = cone.contact_radius
+    yield from _cases("cone", "Sneddon 1965", tip, 3 * radius, cone.force, pi * radius**2)
 
-
-def _flat_punch() -> Iterator[Case]:
     radius = 0.1 * _RADIUS
-    true = flat_punch(radius, _MODULUS, depth=_DEPTH)
     end = {"type": "flat_punch", "radius": radius}
-    return _cases("flat punch", "Sneddon 1965", end, 2.2 * radius, true.force, tolerance=1e-2)
+    force = sneddon.flat_punch(radius, _MODULUS, depth=_DEPTH).force
+    yield from _cases("flat punch", "Sneddon 1965", end, 2.2 * radius, force, tolerance=1e-2)
 
-
-def _tensed_paraboloid() -> Iterator[Case]:
-    true = indent(Paraboloid(radius=_RADIUS), _MODULUS, _TENSION, depth=_DEPTH)
-    paraboloid = {"type": "paraboloid", "radius": _RADIUS}
-    source, size = "integral equation, after Long et al. 2017", 2.6 * true.contact_radius
-    expected = true.force, pi * true.contact_radius**2, float(true.pressure(np.array(0.0)))
-    return _cases("tensed paraboloid", source, paraboloid, size, *expected, tension=_TENSION)
+    tensed = indent(Paraboloid(radius=_RADIUS), _MODULUS, _TENSION, depth=_DEPTH)
+    radius, source = tensed.contact_radius, "integral equation, after Long et al. 2017"
+    expected = tensed.force, pi * radius**2, float(tensed.pressure(np.array(0.0)))
+    size = 2.6 * radius
+    yield from _cases("tensed paraboloid", source, round_, size, *expected, tension=_TENSION)
 
 
 def _adhesion() -> Iterator[Case]:

@@ -16,10 +16,9 @@ from pellicle.results.derived import DERIVED, derive
 from pellicle.results.result import Result
 from pellicle.results.runs import StoredRuns
 from pellicle.variables import CORRECTED_AREA, CORRECTED_FRACTION, names_of
-from pellicle_plugins.axisymmetric.abel_transform import HasAbelTransform
+from pellicle_plugins.axisymmetric.equation import HasAbelTransform
 from pellicle_plugins.axisymmetric.indentation import AxisymmetricContact, indent
-from pellicle_plugins.kernels.half_space import HalfSpace
-from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
+from pellicle_plugins.kernels.half_spaces import HalfSpace, TensedMembrane
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,7 +9,7 @@ from pellicle.arrays import Array
 from pellicle.contact.attraction import Attraction, attraction
 from pellicle.contact.law import Law
 from pellicle.grid import Boundary
-from pellicle_plugins.interactions.linear import Linear
+from pellicle_plugins.interactions.finite_range import Linear
 
 SHAPE = (11, 14)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pellicle.arrays import Mask
-from pellicle.contact.dilation import dilated
+from pellicle.contact.masks import dilated
 from pellicle.grid import Boundary
 
 

@@ -9,9 +9,8 @@ import pytest
 
 from pellicle import Grid
 from pellicle.arrays import Array
-from pellicle.contact.equilibrium import measure
+from pellicle.contact.equilibrium import measure, measure_stiffness
 from pellicle.contact.problem import Depth, Force, Problem
-from pellicle.contact.stiffness import measure_stiffness
 from pellicle.surface.operators import make_operator
 from pellicle_plugins.kernels.winkler import Winkler
 

@@ -4,19 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from functools import partial
 
 import numpy as np
 import pytest
 
 from pellicle.arrays import Array
 from pellicle.components import Branch
-from pellicle.contact.time_step import (
-    Memory,
-    TimeStep,
-    left_behind,
-    strain_under_skin,
-)
+from pellicle.contact.time_step import Memory, TimeStep
 
 STIFFNESS, SKIN = 3e7, 1e7  # [Pa/m] of one wave
 SOLID = (Branch(0.4, 1.0), Branch(0.3, 0.05), Branch(0.1, 40.0))
@@ -30,7 +24,7 @@ def press_bare(
     branches: Sequence[Branch], memory: Memory, step: TimeStep, displacement: Array
 ) -> tuple[Array, Memory]:
     """Return the pressure that makes a displacement, and the memory, without a skin."""
-    left = left_behind(memory, step)
+    left = memory.history(step) / -step.stiffness
     pressure = STIFFNESS * step.stiffness * (displacement - left)
     return pressure, memory.after(step, displacement)
 
@@ -40,9 +34,9 @@ def press_skin(
 ) -> tuple[Array, Memory]:
     """Return the pressure that makes a displacement, and the memory, under a skin."""
     stiffness = SKIN + step.stiffness * STIFFNESS
-    left = left_behind(memory, step, lambda p: p / stiffness)
+    left = -memory.history(step) / stiffness
     pressure = stiffness * (displacement - left)
-    strain = strain_under_skin(memory, step, pressure, lambda p: p * (STIFFNESS / stiffness))
+    strain = (pressure - memory.history(step)) * (STIFFNESS / stiffness)
     np.testing.assert_allclose(strain, STIFFNESS * displacement, rtol=1e-12, atol=1e-15)
     return pressure, memory.after(step, strain)
 
@@ -99,10 +93,8 @@ def creep(stepper: Stepper, skin: float, number: int) -> float:
     for duration in [0.0] + [5.0 / number] * number:
         step = TimeStep.of(SLS, duration)
         stiffness = skin + step.stiffness * STIFFNESS
-        if skin:
-            left = left_behind(memory, step, partial(np.multiply, 1 / stiffness))
-        else:
-            left = left_behind(memory, step)
+        history = memory.history(step)
+        left = -history / stiffness if skin else history / -step.stiffness
         displacement = left + 1 / stiffness
         _, memory = stepper(SLS, memory, step, displacement)
     return displacement.item()

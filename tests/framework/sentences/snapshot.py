@@ -32,7 +32,7 @@ from tests.physics.frozen.fit_curves import CASES  # noqa: E402
 FILE, TABLE = HERE / "sentences.txt", HERE / "commands.txt"
 _VARYING = {
     # The words of numpy, h5py and the system.
-    r"(cannot be read as \w+ )\(.*?\)(;|$)": r"\1(…)\2",
+    r"(cannot be read as [\w ]+ )\(.*?\)(;|$)": r"\1(…)\2",
     r"\(Unable to .*\); give": "(…); give",
     # The words of typer.
     r"^error: (No such|Missing argument|Invalid value).*? see": "error: …; see",

@@ -9,14 +9,12 @@ import numpy as np
 import pytest
 
 from pellicle.errors import ConfigError
-from pellicle_plugins.axisymmetric.abel_transform import HasAbelTransform
 from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion, punch_pull_off
+from pellicle_plugins.axisymmetric.equation import HasAbelTransform
 from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.axisymmetric.radius_curves import radius_curves
 from pellicle_plugins.axisymmetric.tensed_punch import punch
-from pellicle_plugins.indenters.cone import Cone
-from pellicle_plugins.indenters.paraboloid import Paraboloid
-from pellicle_plugins.indenters.sphere import Sphere
+from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid, Sphere
 
 DATA = Path(__file__).parents[2] / "data" / "jkr_tension.csv"
 LINES = [line for line in DATA.read_text(encoding="utf-8").splitlines() if line[0] != "#"]

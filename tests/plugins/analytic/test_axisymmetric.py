@@ -6,14 +6,12 @@ import numpy as np
 import pytest
 
 from pellicle.errors import ConfigError
-from pellicle_plugins.axisymmetric.abel_transform import HasAbelTransform
+from pellicle_plugins.axisymmetric.equation import HasAbelTransform
 from pellicle_plugins.axisymmetric.indentation import AxisymmetricContact, indent
 from pellicle_plugins.axisymmetric.tensed_punch import punch
 from pellicle_plugins.closed_forms.hertz import sphere
 from pellicle_plugins.closed_forms.sneddon import cone
-from pellicle_plugins.indenters.cone import Cone
-from pellicle_plugins.indenters.paraboloid import Paraboloid
-from pellicle_plugins.indenters.sphere import Sphere
+from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid, Sphere
 
 DATA = Path(__file__).parents[2] / "data" / "paraboloid.csv"
 ROWS = [

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
+import curve_tables
 import numpy as np
 import pytest
+from layer_equation import half_space, moments
 from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle_plugins.axisymmetric import layer_curves
-from pellicle_plugins.axisymmetric.layer_equation import half_space, moments
 from tests.layered_contact import layered_contact, tensed_layer_contact
 
 Array = NDArray[np.float64]
@@ -83,6 +84,16 @@ def test_between_nodes_it_is_the_equation(name: str) -> None:
         depth = a * solved.depth
         curve = indenter.layer_force_curve(depth, length, thickness, ratio)
         assert curve.force[0] == pytest.approx(float(solved.force[0]) * a**2, rel=1e-4)
+
+
+@pytest.mark.parametrize(("shape", "length", "confinement"), [("smooth", 9, 20), ("punch", 0, 30)])
+def test_the_table_is_what_its_script_makes(
+    shape: layer_curves.Shape, length: int, confinement: int
+) -> None:
+    """A node of the table, made anew, is that of the file."""
+    s, a = layer_curves.LENGTHS[length], layer_curves.CONFINEMENTS[confinement]
+    shipped = layer_curves._table()[f"{shape}_layer"][:, length, confinement]
+    assert curve_tables.change_by_layer(shape, s, a) == pytest.approx(shipped, rel=1e-5, abs=1e-8)
 
 
 @pytest.mark.parametrize("name", SHAPES)

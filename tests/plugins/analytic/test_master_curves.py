@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+import curve_tables
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle.components import HasForceCurve
+from pellicle_plugins.axisymmetric import master_curves
 from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.axisymmetric.tensed_punch import punch
-from pellicle_plugins.indenters.cone import Cone
-from pellicle_plugins.indenters.paraboloid import Paraboloid
-from pellicle_plugins.indenters.sphere import Sphere
+from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid, Sphere
 
 Array = NDArray[np.float64]
 ACCURACY = 1e-6
@@ -65,6 +65,14 @@ def test_sphere_solves_the_equation(contact: float, ratio: float) -> None:
     )
     force = _curve("sphere", exact.depth, ratio * contact * RADIUS)[0]
     assert force == pytest.approx(exact.force, rel=ACCURACY)
+
+
+def test_the_table_is_what_its_script_makes() -> None:
+    """Nodes of the table, made anew, are those of the file."""
+    shipped = master_curves._table()["flat_punch"]
+    made = curve_tables.flat_punch(curve_tables.LENGTHS[::60])
+    assert made["x"] == shipped["x"][::60]
+    assert made["log_ratio"] == pytest.approx(shipped["log_ratio"][::60], rel=1e-9)
 
 
 @pytest.mark.parametrize("type_", ["paraboloid", "sphere", "cone", "flat_punch"])

@@ -24,7 +24,7 @@ from bokeh.models.widgets import Checkbox, Slider, TextInput
 
 import pellicle as pl
 from pellicle.errors import ConfigError
-from pellicle_explore import measured, solving
+from pellicle_explore import plots, solving
 from pellicle_explore.controls import changed, configuration_of, controls, letting_go, sticking
 from pellicle_explore.page import Explorer
 from pellicle_explore.server import serve
@@ -427,9 +427,9 @@ def test_slider_and_field_follow_each_other(start: pl.Run) -> None:
 
 def test_a_measured_curve_begins_at_its_contact_point(start: pl.Run, curve: Path) -> None:
     """All rows with numbers are shown, and the contact point can be shifted."""
-    laid_over = measured.read(curve)
+    laid_over = plots.read_measured(curve)
     assert laid_over.position.size == 99
-    assert measured.touch(laid_over) == pytest.approx(1 / 3, abs=0.1)
+    assert plots._touch(laid_over) == pytest.approx(1 / 3, abs=0.1)
     page = Page(start, laid_over)
     page.rest()
     slider = page.document.select_one({"type": Slider, "start": 0.0, "end": 1.0})
@@ -445,11 +445,11 @@ def test_one_curve_is_laid_over(tmp_path: Path, curve: Path) -> None:
     for name in ("a.csv", "b.csv"):
         (tmp_path / name).write_bytes(curve.read_bytes())
     with pytest.raises(ConfigError, match=r"--curve: holds 2 curves; give a file with one"):
-        measured.read(tmp_path)
+        plots.read_measured(tmp_path)
     still = tmp_path / "still.csv"
     still.write_text("position [m],force [N]\n" + "1e-6,1e-9\n" * 9, encoding="utf-8")
     with pytest.raises(ConfigError, match="give a curve that moves"):
-        measured.read(still)
+        plots.read_measured(still)
 
 
 def answer(address: str, path: str, **headers: str) -> http.client.HTTPResponse:
@@ -530,7 +530,7 @@ def test_a_port_that_is_taken_is_said(address: str) -> None:
 @pytest.fixture
 def explorer(start: pl.Run, curve: Path) -> Iterator[str]:
     """Return the address of a running explorer."""
-    laid_over = measured.read(curve)
+    laid_over = plots.read_measured(curve)
 
     def fill(document: Document) -> None:
         Explorer(start, laid_over, document)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle_plugins.indenters.sphere import Sphere
+from pellicle_plugins.indenters.of_revolution import Sphere
 
 DEPTH = np.linspace(-1e-6, 2e-6, 60)
 FORCE = 1e4 * Sphere(radius=1e-5).force_curve(DEPTH, 1e-7).force

@@ -23,9 +23,7 @@ from pellicle.units import Quantity
 from pellicle_fit.models.force_model import tension_model
 from pellicle_fit.statistics.likelihood import Likelihood
 from pellicle_fit.statistics.noise import resolution
-from pellicle_plugins.indenters.cone import Cone
-from pellicle_plugins.indenters.paraboloid import Paraboloid
-from pellicle_plugins.indenters.sphere import Sphere
+from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid, Sphere
 from tests.plugins.fit.conftest import ends_of, holds
 
 Array = NDArray[np.float64]

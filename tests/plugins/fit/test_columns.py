@@ -270,70 +270,11 @@ def test_matlab(tmp_path: Path, write: Callable[[Path], str], count: int) -> Non
         curves(path)
 
 
-@pytest.mark.parametrize(
-    ("columns", "words"),
-    [
-        ("Z extension nm", "is not of the form"),
-        ("", "is not of the form"),
-        ("Z = piezo nm", "'piezo' is not a role; "),
-        (
-            "Z = extension nN",
-            "is not a unit of extension; give it in m or a multiple, e.g. 'extension [nm]'",
-        ),
-        ("Z = force V", "a signal in volts is a column deflection"),
-        ("a = force N, b = force N", "'a' and 'b' are both force"),
-        ("a = force N, a = time s", "names a column twice"),
-        ({"a": 1}, "columns.a: 1 is not a role"),
-        (3, "is not a table or a text"),
-    ],
-)
-def test_bad_columns(columns: object, words: str) -> None:
-    """Roles and units that do not exist are refused before any file is read."""
-    with pytest.raises(pl.ConfigError, match="columns") as raised:
-        Calibration(columns=columns)
-    assert words in str(raised.value)
-
-
 def test_columns_have_one_order() -> None:
     """The same roles in another order or form are the same configuration."""
     text = 'Defl=deflection nm,  "Z" = Extension  nm'
     assert column_map(text) == column_map({"Z": "extension nm", "Defl": "deflection nm"})
     assert list(column_map(text)) == ["Z", "Defl"]
-
-
-@pytest.mark.parametrize(
-    ("name", "content", "columns", "words"),
-    [
-        (
-            "a.csv",
-            b"Z,F\n1,2\n",
-            "Y = position um, F = force nN",
-            "no column 'Y' (it has 'Z', 'F')",
-        ),
-        ("a.csv", b"1,2\n1,2\n", "1 = position um, 3 = force nN", "its number from 1 to 2"),
-        ("a.csv", b"Z,F,F\n1,2,3\n", "Z = position um, F = force nN", "has 2 columns 'F'"),
-        ("a.csv", b"Z,F\n1,2\n", "Z = position um", "has to name each column"),
-        ("a.csv", b"1,2\n3,4\n", None, "name its columns (--columns"),
-        ("a.xlsx", b"PK\x03\x04", None, "is a spreadsheet; save the sheet of each curve as CSV"),
-        ("a.ods", b"PK\x03\x04", "1 = force N", "is a spreadsheet"),
-        ("a.mat", b"no such thing", "z = force N", "cannot be read as a MATLAB file"),
-        ("a.mat", b"MATLAB 5.0 MAT-file" + bytes(200), "z = force N", "cannot be read as"),
-        ("a.h5", b"\x89HDF\r\n\x1a\nbroken", "z = force N", "cannot be read as an HDF5 file"),
-        ("a.ibw", b"", "z = force N", "states what its columns are; leave columns out"),
-    ],
-)
-def test_bad_files(
-    tmp_path: Path, name: str, content: bytes, columns: str | None, words: str
-) -> None:
-    """What a file lacks is said with what it has."""
-    (tmp_path / name).write_bytes(content)
-    error: object
-    try:
-        (error,) = read(tmp_path / name, Calibration(columns=columns)).values()
-    except pl.PellicleError as raised:
-        error = raised
-    assert isinstance(error, pl.PellicleError)
-    assert words in str(error)
 
 
 def _ramp(pause: str, noise: float) -> tuple[Array, Array]:

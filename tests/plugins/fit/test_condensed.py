@@ -15,7 +15,7 @@ from pellicle_fit.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSI
 from pellicle_fit.statistics.condensed import Condensation
 from pellicle_fit.statistics.likelihood import Likelihood
 from pellicle_fit.statistics.pooled_likelihood import Pool
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 MODEL = ClosedFormModel(Paraboloid(radius=5e-6))
 BEST: Coordinates = {

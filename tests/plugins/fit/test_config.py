@@ -34,31 +34,18 @@ fix = { tension = "5 mN/m" }
 executor = { type = "processes", workers = 1 }
 """
 FILE = f'{BODY}\n[indenter]\ntype = "sphere"\nradius = "5 um"\n'
-ARGUMENTS = (
-    *("--indenter", "sphere", "--radius", "5 um", "--poissons-ratio", "0.4"),
-    *("--fix", "tension=5 mN/m", "--baseline", "offset", "--spring-constant", "0.5 N/m"),
-    *("--set", "executor.type=processes", "--set", "executor.workers=1", "--set", "grid_points=32"),
-)
 
 
-def measure(path: Path, radius: float = 5e-6, points: int = 60) -> None:
+def measure(path: Path, radius: float = 5e-6) -> None:
     """Write a curve of a sphere on a solid of 2 kPa under 5 mN/m."""
     path.parent.mkdir(exist_ok=True)
-    depth = np.linspace(-0.3, 1.0, points) * 0.3 * radius
+    depth = np.linspace(-0.3, 1.0, 60) * 0.3 * radius
     sphere = pl.indenter("sphere", radius=radius)
     force = 2e3 * sphere.force_curve(depth, 5e-6).force  # type: ignore[attr-defined]
-    force += 0.005 * force.max() * np.random.default_rng(points).standard_normal(points)
+    force += 0.005 * force.max() * np.random.default_rng(60).standard_normal(60)
     rows = np.column_stack([depth * 1e6, force * 1e9])
     header = "position [um],force [nN]"
     np.savetxt(path, rows, delimiter=",", header=header, comments="", fmt="%.12g")
-
-
-def without_configuration(text: str) -> Any:
-    """Return JSON without the configuration, in which names of files may differ, and the time."""
-    data = json.loads(text)
-    del data["date"], data["wall_time"]
-    assert data.pop("configuration")["indenter"] == {"type": "sphere", "radius": 5e-6}
-    return data
 
 
 def test_three_ways_make_one_object(tmp_path: Path) -> None:
@@ -73,26 +60,6 @@ def test_three_ways_make_one_object(tmp_path: Path) -> None:
     (tmp_path / "again.toml").write_text(config.to_toml(), encoding="utf-8")
     assert config == pl.FitConfig.from_toml(tmp_path / "again.toml")
     assert config == pickle.loads(pickle.dumps(config))
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("no_rivals", "shared_fits")
-def test_three_ways_give_one_result(cli: Cli) -> None:
-    """Many curves and a pool: the numbers are equal to the last digit."""
-    for name in ("beads/a.csv", "beads/b.csv"):
-        measure(Path(name), points=60 + ord(name[6]))
-    Path("bead.toml").write_text(f'curves = ["beads/a.csv"]{FILE}', encoding="utf-8")
-    config = pl.FitConfig.from_toml("bead.toml")
-    pool = without_configuration(cli("bead.toml", "beads", "--pool", "--json").stdout)
-    assert pool == without_configuration(cli("beads", *ARGUMENTS, "--pool", "--json").stdout)
-    assert pool == without_configuration(pl.fit_pooled("beads", config="bead.toml").to_json())
-    many = cli("bead.toml", "beads", "--json").stdout
-    assert many == cli("beads", *ARGUMENTS, "--json").stdout
-    table = pl.fit_many("beads", config=config, progress=False)
-    same = pl.fit_many("beads", radius="5 um", progress=False, **OPTIONS)
-    assert table.identical(same)
-    moduli = [row["reduced_modulus"]["value"] for row in json.loads(many)["curves"]]
-    assert table["reduced_modulus"].values.tolist() == moduli
 
 
 def test_paths_start_from_the_folder_of_the_file(tmp_path: Path) -> None:
@@ -169,13 +136,6 @@ def test_bad_commands(cli: Cli) -> None:
     assert "No such file" in cli("b.toml", code=2).stderr
     Path("b.toml").write_text(FILE, encoding="utf-8")
     assert "curves: holds no curve" in cli("b.toml", code=2).stderr
-
-
-@pytest.mark.parametrize("tension", [0, "5 mN/m"])
-def test_rivals_of_a_fixed_tension_are_refused(tension: object) -> None:
-    """They were left out without a word; the message names both options."""
-    with pytest.raises(pl.ConfigError, match=r"compare.*fix\.tension"):
-        pl.FitConfig(indenter={"type": "cone"}, compare=True, fix={"tension": tension})
 
 
 def test_bad_arguments() -> None:

@@ -22,7 +22,7 @@ import pellicle as pl
 from pellicle.errors import ConfigError
 from pellicle_fit.curves.curve import Axis
 from pellicle_fit.population.images import force_maps
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.plugins.fit import instruments
 from tests.plugins.fit.conftest import skip_rivals
 from tests.plugins.fit.test_many import curve, save

@@ -18,7 +18,7 @@ import pellicle as pl
 from pellicle_fit.curves.cleaning import clean
 from pellicle_fit.curves.curve import Curve
 from pellicle_fit.curves.readers import read
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.pictures import drawn_width
 
 Array = NDArray[np.float64]
@@ -164,15 +164,6 @@ def test_tables(cli: Cli, header: str, separator: str) -> None:
 
 
 @pytest.mark.usefixtures("no_rivals")
-def test_columns_of_other_names(cli: Cli) -> None:
-    """A table whose columns nobody knows is refused with what its first line has."""
-    _write(*_curve(), "Indentation (um),Force (nN)")
-    message = cli("curve.csv", *OPTIONS, code=2).stderr
-    assert "has no column position or depth" in message
-    assert "'indentation', 'force'" in message
-
-
-@pytest.mark.usefixtures("no_rivals")
 def test_decimal_commas(cli: Cli) -> None:
     """Between semicolons a comma is decimal."""
     Path("curve.csv").write_text("depth [nm];force [nN]\n1,5;2,25\n2,5;\n", encoding="utf-8")
@@ -291,24 +282,6 @@ def test_sphere_is_not_sunk() -> None:
         pl.fit(*_curve(), indenter="sphere", radius=RADIUS / 1000)
 
 
-@pytest.mark.parametrize(
-    ("header", "words"),
-    [
-        ("position,force", "no unit"),
-        ("position [um],force [V]", "spring constant"),
-        ("position [um],force [nm]", "not a unit of force"),
-        ("position [um],load [nN]", "no column force"),
-        ("height [um],force [nN]", "spring_constant: is missing"),
-        ("1.0,2.0", "no column force"),
-        ("force [nN],force [nN]", "several columns force"),
-    ],
-)
-def test_bad_headers(cli: Cli, header: str, words: str) -> None:
-    """A header that lacks something says what, in words."""
-    _write(*_curve(), header=header)
-    assert words in cli("curve.csv", *OPTIONS, code=2).stderr
-
-
 def _changed(what: str) -> tuple[Array, Array]:
     position, force = _curve()
     match what:
@@ -361,33 +334,3 @@ def test_retract_on_request() -> None:
     assert any("adhered" in message for message in fit.messages)
     with pytest.raises(pl.ConfigError, match="into the solid: this is an approach, and"):
         pl.fit(*_curve(), indenter="paraboloid", radius=RADIUS, segment="retract")
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (("nothing.csv", *OPTIONS), "cannot be read"),
-        (("curve.csv", "-i", "paraboloid"), "indenter.radius: is missing"),
-        (("curve.csv", "-i", "paraboloid", "--radius", "10"), "text without a unit"),
-        (("curve.csv", "-i", "ball", "--radius", "10 um"), "'ball' is not an indenter"),
-        (("curve.csv", "-i", "self_affine", "--radius", "10 um"), "indenter"),
-        (("curve.csv", *OPTIONS, "--fix", "tension"), "name=value"),
-        (("curve.csv", *OPTIONS, "--fix", "modulus=1"), "is not a parameter"),
-        (("curve.csv", *OPTIONS, "--fix", "tension=-1"), "≥ 0"),
-        (("curve.csv", *OPTIONS, "--fix", "tension=1 V"), "is a voltage; give"),
-        (("curve.csv", *OPTIONS, "--spring-constant", "1 N"), "is a force; give"),
-        (("curve.csv", *OPTIONS, "--fix", "tension=1e300"), "≤ 1e+30 N/m"),
-        (("curve.csv", *OPTIONS, "--fix", "reduced_modulus=1e300"), "≤ 1e+30 Pa"),
-        (("curve.csv", *OPTIONS, "--fix", "contact_point=-1e300"), "≥ -1e+30 m"),
-        (("curve.csv", *OPTIONS, "--baseline", "cubic"), "not allowed"),
-        (("curve.csv", *OPTIONS, "--segment", "all"), "not allowed"),
-        (("curve.csv", *OPTIONS, "--poissons-ratio", "0.7"), "≤ 0.5"),
-        (("curve.csv", *OPTIONS, "--set", "grid.points=9"), "grid: is not a field here"),
-        (("curve.csv", *OPTIONS, "--set", "kernel=winkler"), "kernel: 'winkler' has no field"),
-        (("curve.csv", *OPTIONS, "--set", "kernel=bonded_layer"), "put it under a skin"),
-    ],
-)
-def test_bad_options(cli: Cli, arguments: tuple[str, ...], words: str) -> None:
-    """Options that are not allowed say what is."""
-    _write(*_curve())
-    assert words in cli(*arguments, code=2).stderr

@@ -17,7 +17,7 @@ from pellicle_fit.models.force_model import tension_model
 from pellicle_fit.parameters import CONTACT_POINT, OFFSET, SLOPE, TENSION, Coordinates
 from pellicle_fit.parameters import MODULUS as REDUCED_MODULUS
 from pellicle_fit.statistics.likelihood import Likelihood
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.plugins.fit import instruments
 from tests.plugins.fit.conftest import holds
 

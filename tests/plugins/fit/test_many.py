@@ -29,7 +29,7 @@ from pellicle_fit.population.table import table
 from pellicle_fit.statistics.chi_squared import Minimum
 from pellicle_fit.statistics.likelihood import Likelihood
 from pellicle_fit.statistics.rivals import NONE
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
 

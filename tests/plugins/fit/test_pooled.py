@@ -24,7 +24,7 @@ from pellicle_fit.report.page import save_report
 from pellicle_fit.statistics.likelihood import Likelihood
 from pellicle_fit.statistics.pooled_likelihood import Pool
 from pellicle_fit.statistics.profile import widen
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.pictures import drawn_width
 from tests.plugins.fit.conftest import ends_of, holds
 

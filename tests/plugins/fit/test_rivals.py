@@ -39,9 +39,7 @@ from pellicle_fit.statistics.rival import Rival
 from pellicle_fit.statistics.rivals import MARGIN, NONE, TENSED
 from pellicle_fit.verdict import decision, judge
 from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
-from pellicle_plugins.indenters.cone import Cone
-from pellicle_plugins.indenters.paraboloid import Paraboloid
-from pellicle_plugins.indenters.sphere import Sphere
+from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid, Sphere
 from tests.plugins.fit.conftest import ends_of, holds
 
 Array = NDArray[np.float64]

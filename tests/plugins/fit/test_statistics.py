@@ -18,10 +18,7 @@ from pellicle_fit.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSI
 from pellicle_fit.report.figures import save_figure
 from pellicle_fit.statistics.chi_squared import ChiSquared
 from pellicle_fit.statistics.likelihood import Likelihood
-from pellicle_plugins.indenters.cone import Cone
-from pellicle_plugins.indenters.flat_punch import FlatPunch
-from pellicle_plugins.indenters.paraboloid import Paraboloid
-from pellicle_plugins.indenters.sphere import Sphere
+from pellicle_plugins.indenters.of_revolution import Cone, FlatPunch, Paraboloid, Sphere
 from tests.pictures import drawn_width
 from tests.plugins.fit.conftest import ends_of
 

@@ -33,10 +33,6 @@ def _profile(indenter: pl.Indenter, points: int = 32) -> np.ndarray:
     return indenter.profile(*grid(points).coordinates())
 
 
-def _make(table: dict[str, Any]) -> pl.Indenter:
-    return pl.registry().make(pl.Indenter, table)
-
-
 def _solve(indenter: dict[str, Any], points: int, **loading: object) -> pl.Result:
     kernel = {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "1 N/m"}
     size = {"points": points, "size": SIZE}
@@ -158,28 +154,6 @@ def _run(indenter: dict[str, Any]) -> pl.Run:
     return pl.Run(**bead(grid=grid, indenter=indenter, loading={"depth": "1 um"}))
 
 
-@pytest.mark.parametrize(
-    ("indenter", "field", "message"),
-    [
-        ({"type": "sum", "parts": []}, "indenter.parts", "1 or more"),
-        (
-            {"type": "sum", "parts": [QUADRIC, {"type": "scaled", "factor": -1, "part": ROUGH}]},
-            "indenter.parts.1.factor",
-            "≥ 0",
-        ),
-        ({"type": "sum", "parts": [{"type": "shpere"}]}, "indenter.parts.0.type", "'sphere'"),
-        ({"type": "rotated", "angle": 1, "part": ROUGH}, "indenter.part", "ends where the domain"),
-        ({"type": "rotated", "angle": "30 m", "part": QUADRIC}, "indenter.angle", "rad"),
-    ],
-)
-def test_bad_fields_are_named(indenter: dict[str, Any], field: str, message: str) -> None:
-    """A message names the field with its whole path, and what is allowed."""
-    with pytest.raises(pl.ConfigError) as caught:
-        _run(indenter)
-    assert [problem.field for problem in caught.value.problems] == [field]
-    assert message in str(caught.value)
-
-
 def test_part_that_does_not_fit_the_grid_is_named() -> None:
     """An error on the grid has the path of the part, through every level."""
     heights = {"type": "scaled", "factor": 2, "part": pl.indenter("heights", values=[[1]], unit=1)}
@@ -187,14 +161,6 @@ def test_part_that_does_not_fit_the_grid_is_named() -> None:
         pl.ConfigError, match=r"^indenter\.parts\.1\.part\.values: .* shape \(1, 1\)"
     ):
         pl.run(_run({"type": "sum", "parts": [QUADRIC, heights]}), progress=False)
-
-
-def test_parts_that_do_not_meet_are_refused() -> None:
-    """Two punches side by side have no sum."""
-    punch = {"type": "flat_punch", "radius": "0.1 mm"}
-    parts = [{"type": "shifted", "x": x, "part": punch} for x in ("-0.2 mm", "0.2 mm")]
-    with pytest.raises(pl.ConfigError, match=r"indenter\.parts: do not overlap anywhere"):
-        pl.run(_run({"type": "sum", "parts": parts}), progress=False)
 
 
 NESTED = """

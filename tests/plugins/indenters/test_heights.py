@@ -59,14 +59,6 @@ def test_text_has_a_header(tmp_path: Path, above: str, below: str) -> None:
     assert profile == pytest.approx((ROUGH - ROUGH.max()) * 1e-6, rel=1e-14)
 
 
-@pytest.mark.parametrize("row", ["3 NA 5", "#N/A 4 5", "- - -", "3 4x 5"])
-def test_row_with_words_is_refused(tmp_path: Path, row: str) -> None:
-    """No row is lost in silence, below which the others would move up."""
-    (tmp_path / "a.txt").write_text(f"1 2 3\n{row}\n4 5 6\n")
-    with pytest.raises(pl.ConfigError, match=r"^path: .* among the numbers of line 2; write nan"):
-        pl.indenter("heights", path=tmp_path / "a.txt", unit="1 um")
-
-
 @pytest.mark.parametrize("floats", ["raise", "warn"])
 @pytest.mark.parametrize(("scale", "unit"), [(1e30, 1e90), (1e-30, 1e-90)])
 def test_heights_beyond_numbers(

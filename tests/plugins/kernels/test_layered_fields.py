@@ -62,41 +62,6 @@ def test_nested_fields_can_be_set(file: Path) -> None:
     assert changed(file, "kernel.substrate=rigid")["substrate"] == "rigid"
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ("layers.1.thickness=0", "kernel.layers.1.thickness: 0 is not allowed; give a value > 0 m"),
-        ("layers.0.reduced_modulus=1", "kernel.layers.0: two moduli; give exactly one"),
-        ("layers.0={poissons_ratio=0.5,thickness=1}", "kernel.layers.0: no modulus; give"),
-        ("layers.2.thickness=1", "kernel.layers has no entry 2; give one of its 2"),
-        ("layers=[]", "kernel.layers: [] is not allowed; give a list of 1 or more"),
-        ("layers=[3]", "kernel.layers.0: 3 is not allowed; give a table"),
-        ("substrate='stiff'", "kernel.substrate: 'stiff' is not allowed; give \"rigid\", or a"),
-        ("substrate={}", "kernel.substrate.poissons_ratio: is missing"),
-        ("substrate.thickness=1", "kernel.substrate.thickness: is not a field here"),
-    ],
-)
-def test_a_message_names_the_nested_field(file: Path, change: str, words: str) -> None:
-    """What cannot be used is named with its whole path, the values allowed and the remedy."""
-    with pytest.raises(pl.ConfigError) as caught:
-        changed(file, f"kernel.{change}")
-    assert words in str(caught.value)
-
-
-def test_every_problem_is_named_at_once() -> None:
-    """Two wrong layers and a wrong substrate are three messages."""
-    layers = [{"youngs_modulus": -1, "poissons_ratio": 0.5, "thickness": 0}, {"thickness": "x"}]
-    with pytest.raises(pl.ConfigError) as caught:
-        pl.kernel("layered", layers=layers, substrate={"poissons_ratio": 2, "youngs_modulus": 1})
-    assert [problem.field for problem in caught.value.problems] == [
-        "layers.0.youngs_modulus",
-        "layers.0.thickness",
-        "layers.1.poissons_ratio",
-        "layers.1.thickness",
-        "substrate.poissons_ratio",
-    ]
-
-
 def test_a_study_varies_a_nested_field(file: Path) -> None:
     """An axis may be a field of one layer, which the run then may leave out."""
     data = tomllib.loads(TOML)

@@ -166,31 +166,6 @@ def test_coated_takes_its_substrate_in_any_form() -> None:
     assert hash(by_table) == hash(pickle.loads(pickle.dumps(by_component)))
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"thickness": "-1 mm"}, "substrate.thickness: '-1 mm' is not allowed"),
-        ({"thicknes": 1}, "substrate.thicknes: is not a field here; did you mean 'thickness'"),
-        (
-            {"type": "bonded"},
-            "substrate.type: 'bonded' is not a kernel; did you mean 'bonded_layer'",
-        ),
-    ],
-)
-def test_what_is_wrong_with_a_substrate_is_named(change: dict[str, Any], message: str) -> None:
-    """Errors say the dotted path of the field, in a run with the kernel's in front."""
-    substrate = LAYER | change
-    with pytest.raises(pl.ConfigError, match=f"^{message}"):
-        pl.kernel("coated", substrate=substrate)
-    with pytest.raises(pl.ConfigError, match=f"^kernel.{message}"):
-        pl.Run(
-            grid={"points": 8, "size": 1},
-            kernel={"type": "coated", "substrate": substrate},
-            indenter={"type": "paraboloid", "radius": 1},
-            loading={"depth": 1e-3},
-        )
-
-
 def test_winkler_answers_where_it_is_pressed() -> None:
     """Each cell of a bed of springs sinks by its own pressure over the stiffness."""
     grid = pl.Grid(points=[12, 9], size=1e-3, boundary="periodic")

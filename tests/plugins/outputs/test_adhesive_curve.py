@@ -93,28 +93,6 @@ def test_why_there_is_no_curve_is_told_in_the_files(
     assert re.search(message, summary["status"])
 
 
-@pytest.mark.parametrize(
-    ("message", "changed"),
-    [
-        ("loading.stiffness = true", {"loading": {"depth": "5 um"}}),
-        ("periodic|one contact", {"grid": {**BEAD["grid"], "boundary": "periodic"}}),
-        ("work_of_adhesion: .*> 0", {"outputs": [OUTPUT | {"work_of_adhesion": 0.0}]}),
-        ("work_of_adhesion: .*> 0", {"outputs": [OUTPUT | {"work_of_adhesion": "-1 J/m^2"}]}),
-        (
-            "work_of_adhesion: .* is a force; give",
-            {"outputs": [OUTPUT | {"work_of_adhesion": "1 N"}]},
-        ),
-    ],
-)
-def test_runs_without_an_adhesive_curve_are_refused(
-    message: str, changed: dict[str, Any], tmp_path: Path
-) -> None:
-    """Each is refused with the output's name and what to change."""
-    configuration = BEAD | {"loading": {"depth": ["5 um"], "stiffness": True}} | changed
-    with pytest.raises(ConfigError, match=f"outputs.0.*{message}"):
-        pl.run(configuration, directory=tmp_path, progress=False, threads=1)
-
-
 def test_a_path_with_adhesion_is_refused() -> None:
     """Adhesion would count twice."""
     result = pl.run(BEAD | {"loading": {"depth": "5 um"}, "outputs": []}, progress=False).dataset

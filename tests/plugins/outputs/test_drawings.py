@@ -81,28 +81,14 @@ def test_an_output_that_fails_keeps_no_other_from_drawing(tmp_path: Path) -> Non
     assert (tmp_path / "study-distributions.png").exists()
 
 
-@pytest.mark.parametrize(
-    ("output", "message"),
-    [
-        ({"type": "curves", "by": "kernel.tensoin"}, "not an axis of the table; did you mean"),
-        ({"type": "curves", "by": TENSION}, "would go over indenter.radius and step"),
-        ({"type": "maps", "by": "seed"}, "not an axis of the table"),
-        ({"type": "maps", "field": "presure"}, "did you mean 'pressure'"),
-        ({"type": "profiles", "y": "presure"}, "did you mean 'pressure'"),
-        ({"type": "curves", "y": "foce", "by": TENSION}, "did you mean 'force'"),
-        ({"type": "curves", "by": "step", "label": "{foce}"}, "did you mean 'force'"),
-        ({"type": "curves", "extrapolate": True, "by": RADIUS, "over": TENSION}, "at least 3"),
-        ({"type": "adhesive_curve", "work_of_adhesion": 1.0}, "stiffness"),
-    ],
-)
-def test_what_cannot_be_drawn_is_named(
-    output: dict[str, Any], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The message says which axis or name there is, and nothing is solved before."""
+def test_what_cannot_be_drawn_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The message says which axis there is, and nothing is solved before."""
     monkeypatch.chdir(tmp_path)
-    plan = study({"type": "maps", "name": "good"}, output)
+    plan = study({"type": "maps", "name": "good"}, {"type": "curves", "by": TENSION})
     (tmp_path / "plan.toml").write_text(tomli_w.dumps(plan), encoding="utf-8")
-    with pytest.raises(pl.ConfigError, match=rf"^outputs\.1.*{message}"):
+    with pytest.raises(
+        pl.ConfigError, match=r"^outputs\.1.*would go over indenter.radius and step"
+    ):
         pl.run_study(plan, tmp_path, progress=False)
     for command in (["run", "--dry-run"], ["check"]):
         done = CliRunner().invoke(app, [*command, "plan.toml"])

@@ -6,7 +6,6 @@ import json
 import re
 import xml.etree.ElementTree as ET
 from pathlib import Path
-from typing import Any
 
 import matplotlib
 import numpy as np
@@ -127,23 +126,6 @@ def test_the_profile_meets_the_contact_and_shows_the_whole_gap() -> None:
     assert gap.max() > 0.3e-6
     assert chart.y[1].limits == (0.0, None)
     assert chart.title == "depth 200 nm, y = 29.7 µm"
-
-
-@pytest.mark.parametrize(
-    "output",
-    [
-        {"type": "curves", "x": "x"},
-        {"type": "curves", "y": "pressure"},
-        {"type": "curves", "x": "depth", "y": ["force", "contact"]},
-    ],
-)
-def test_curves_of_fields_say_what_to_write(output: dict[str, Any], tmp_path: Path) -> None:
-    """A field has no value for a step: the message names the functions that make one of it."""
-    with pytest.raises(
-        pl.ConfigError,
-        match=r"^outputs\.0: .* a value for each cell .* inside mean, sum, min, max",
-    ):
-        pl.run({**RUN, "outputs": [output]}, directory=tmp_path, progress=False)
 
 
 @pytest.mark.parametrize(("x", "places"), [("x", 16), ("depth", 1)])

@@ -113,19 +113,6 @@ def test_any_run_leaves_its_result(tmp_path: Path) -> None:
         xr.testing.assert_identical(pl.load(folder / "two-steps.h5").dataset, result.dataset)
 
 
-def test_result_replaces_its_own_only(tmp_path: Path) -> None:
-    """The same run may be repeated; another one only replaces it when told to."""
-    run = _run([])
-    for _ in range(2):
-        pl.run(run, directory=tmp_path, progress=False)
-    other = _run([], loading={"depth": ["7 um"]})
-    with pytest.raises(pl.StorageError, match=r"another configuration.*--overwrite"):
-        pl.run(other, directory=tmp_path, progress=False)
-    assert pl.load(tmp_path / "two-steps.h5").dataset.sizes["step"] == 2
-    pl.run(other, directory=tmp_path, progress=False, overwrite=True)
-    assert pl.load(tmp_path / "two-steps.h5").dataset.sizes["step"] == 1
-
-
 class Recording(pl.Output):
     """Keeps the steps that it is given, and how many the result on the disk has then."""
 
@@ -163,17 +150,6 @@ def test_steps_come_once_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     seen.clear()
     pl.run(run, directory=tmp_path, progress=False)
     assert [number for number, _ in seen] == [1, 2]
-
-
-def test_a_folder_that_cannot_be_written_is_known_before_solving(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The message has the name of the file and what to do."""
-    monkeypatch.setattr(steps, "solve_step", None)
-    (tmp_path / "file").write_text("in the way")
-    message = r"two-steps.*cannot be written.*choose another folder"
-    with pytest.raises(pl.StorageError, match=message):
-        pl.run(_run([]), directory=tmp_path / "file" / "folder", progress=False)
 
 
 def test_library_writes_nothing_unasked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,7 @@ import pytest
 import pellicle as pl
 from pellicle.show import profile, up_to_rim
 from pellicle_plugins.axisymmetric.indentation import indent
-from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 RADIUS, MODULUS, DEPTH, SIZE = 1e-3, 10e3, 50e-6, 0.8e-3
 

@@ -50,14 +50,6 @@ def test_a_bad_style_file_is_named(content: str | None, tmp_path: Path) -> None:
         save_figure(lambda figure: None, tmp_path / "a", ["png"], style=FigureStyle(file=file))
 
 
-@pytest.mark.parametrize("width", [85, "85", "0 mm", "3 N"])
-def test_bad_widths(width: object) -> None:
-    """Bare numbers are metres, of which no page has 85."""
-    output = {"type": "figures", "style": {"width": width}}
-    with pytest.raises(pl.ConfigError, match=r"style\.width"):
-        pl.Run(**bead(outputs=[output]))
-
-
 def test_legend_has_colours_and_markers_of_the_lines(table: Any) -> None:
     """Each curve of a study differs from the others by colour and by marker, as in the legend."""
     figure = Figure()

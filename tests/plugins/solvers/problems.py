@@ -14,7 +14,7 @@ from pellicle.contact.equilibrium import Equilibrium, measure
 from pellicle.contact.problem import Depth, Force
 from pellicle.surface.operators import make_operator
 from pellicle_plugins.indenters.self_affine import SelfAffine
-from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
+from pellicle_plugins.kernels.half_spaces import TensedMembrane
 
 Boundary = Literal["free", "periodic"]
 Prescribed = Literal["depth", "force"]

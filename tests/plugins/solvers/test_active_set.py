@@ -18,8 +18,8 @@ from pellicle import ConfigError, Grid, Kernel, Problem, Stop
 from pellicle.arrays import Array
 from pellicle.contact.problem import Depth, Force
 from pellicle.surface import make_operator
-from pellicle_plugins.kernels.bending_skin import BendingSkin
-from pellicle_plugins.solvers.active_set import ActiveSet, ContactHistory
+from pellicle_plugins.kernels.skins import BendingSkin
+from pellicle_plugins.solvers.active_set import ActiveSet
 from pellicle_plugins.solvers.conjugate_gradient import ConjugateGradient
 from pellicle_plugins.solvers.contact_cg import inner_solve
 from pellicle_plugins.solvers.preconditioner import Preconditioner
@@ -414,41 +414,6 @@ def test_a_contact_that_all_cells_have_left_is_joined_by_what_penetrates() -> No
     np.testing.assert_array_equal(
         inner.misclassified, np.flatnonzero(problem.profile + 0.05 > 1e-10)
     )
-
-
-def test_history_counts_contacts_that_come_back_until_fewer_are_wrong() -> None:
-    """It makes progress as long as each contact has fewer wrong cells than any before."""
-    first, second = np.eye(4, dtype=bool), np.eye(4, dtype=bool)[::-1]
-    history = ContactHistory().after(first, 5)
-    assert history.after(second, 4).makes_progress
-    history = history.after(second, 5)
-    assert history.returns == 0
-    assert not history.makes_progress
-    assert history.after(first, 4).makes_progress
-    again = history.after(first, 5)
-    assert again.returns == 1
-    assert not again.makes_progress
-    assert again.after(second, 5).returns == 1
-    assert again.after(first, 5).returns == 2
-    assert again.after(~first, 4).makes_progress
-
-
-@pytest.mark.parametrize("boundary", BOUNDARIES)
-def test_an_inner_solve_may_end_at_a_share_of_its_error(boundary: Boundary) -> None:
-    """Sooner than at its goal, once the gap has shrunk to that share of what it was."""
-    problem = make(32, boundary, plate(1e-5), paraboloid, "depth", 0.05)
-    on_contact = Preconditioner(problem.operator).on(problem.profile > -0.02)
-    before = float((problem.profile + 0.05)[on_contact.contact].max())
-    applications = []
-    for reduction in (0.1, 1e-3, 0.0):
-        done = problem.operator.applications
-        fields = np.zeros((2, *problem.grid.shape))
-        inner = inner_solve(
-            problem, on_contact, fields[0], fields[1], 1e-9, certainty=np.inf, reduction=reduction
-        )
-        assert inner.error <= max(reduction * before, 1e-5 * before)
-        applications.append(problem.operator.applications - done)
-    assert applications[0] < applications[1] < applications[2]
 
 
 # --- The end ---------------------------------------------------------------------------------

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from pellicle import Kernel
-from pellicle_plugins.kernels.bending_skin import BendingSkin
+from pellicle_plugins.kernels.skins import BendingSkin
 from pellicle_plugins.solvers import biharmonic
 from pellicle_plugins.solvers import multilevel_extension as extension
 from pellicle_plugins.solvers.multilevel_extension import (

@@ -8,7 +8,7 @@ import pytest
 from pellicle import Problem, Stop
 from pellicle.arrays import Array
 from pellicle.contact import measure
-from pellicle_plugins.kernels.bending_skin import BendingSkin
+from pellicle_plugins.kernels.skins import BendingSkin
 from pellicle_plugins.solvers import active_set, few_cells
 from pellicle_plugins.solvers.active_set import ActiveSet
 from pellicle_plugins.solvers.few_cells import solved_on_few_cells

@@ -11,8 +11,8 @@ import pytest
 
 import pellicle as pl
 from pellicle.components.checked_law import law_of
+from pellicle.contact.load_step import FinishedStep, start_of
 from pellicle.contact.problem import Depth, Force
-from pellicle.contact.start import PathPoint, start_of
 from pellicle_plugins.solvers.active_set import ActiveSet
 from tests.plugins.solvers.problems import Shape, make, rough, skin, solve
 
@@ -31,14 +31,17 @@ def problem(shape: str, boundary: Any, tension: float = 0.01, shift: int = 0) ->
     return replace(here, profile=np.roll(here.profile, shift, (0, 1)))
 
 
-def steps(here: pl.Problem, values: list[float]) -> list[PathPoint]:
-    """Return the points of a path, each solved on its own."""
+def steps(here: pl.Problem, values: list[float]) -> list[FinishedStep]:
+    """Return the steps of a path, each solved on its own."""
     kind = type(here.control)
     found = (solve(replace(here, control=kind(v)), SOLVER).equilibrium for v in values)
-    return [PathPoint(equilibrium.state, equilibrium.gap) for equilibrium in found]
+    return [
+        FinishedStep(e.state, e.gap, e.displacement, 0.0, e.energy, converged=True, jumped=False)
+        for e in found
+    ]
 
 
-def ahead(here: pl.Problem, path: list[PathPoint]) -> pl.State:
+def ahead(here: pl.Problem, path: list[FinishedStep]) -> pl.State:
     """Return the state that is extrapolated from a path."""
     start = start_of(here, path[-1].state, path)
     assert start is not None

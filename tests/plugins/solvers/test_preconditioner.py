@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from pellicle import Grid, Problem
-from pellicle_plugins.kernels.bending_skin import BendingSkin
+from pellicle_plugins.kernels.skins import BendingSkin
 from pellicle_plugins.solvers.contact_cg import _Directions
 from pellicle_plugins.solvers.preconditioner import (
     OnContact,

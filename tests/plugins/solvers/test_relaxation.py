@@ -7,11 +7,10 @@ import pytest
 
 from pellicle import Problem
 from pellicle.arrays import Array, Mask
-from pellicle_plugins.kernels.bending_skin import BendingSkin
+from pellicle_plugins.kernels.skins import BendingSkin
 from pellicle_plugins.solvers import relaxation
-from pellicle_plugins.solvers.circulant_stiffness import CirculantStiffness
 from pellicle_plugins.solvers.contact_cg import InnerSolution
-from pellicle_plugins.solvers.preconditioner import Preconditioner
+from pellicle_plugins.solvers.preconditioner import CirculantStiffness, Preconditioner
 from pellicle_plugins.solvers.relaxation import relaxed
 from tests.plugins.solvers.problems import make
 

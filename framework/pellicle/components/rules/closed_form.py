@@ -16,7 +16,7 @@ from collections.abc import Callable
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.surface.kernel_calls import HasClosedForm
+from pellicle.surface.operators import HasClosedForm
 
 # Relative difference that an approximate closed form may have; a wrong one differs by more.
 _ALLOWED = 1e-3

@@ -10,8 +10,7 @@ from pellicle.arrays import Array
 from pellicle.components.calls.kernel import branches_of
 from pellicle.components.kernel import Kernel
 from pellicle.grid import Grid
-from pellicle.surface.kernel_calls import HasClosedForm, mean_compliance
-from pellicle.surface.operators import make_operator
+from pellicle.surface.operators import HasClosedForm, make_operator, mean_compliance
 
 from .closed_form import contradiction_of_compliance, contradiction_of_primitive
 from .comparison import difference, not_pure, not_vectorised

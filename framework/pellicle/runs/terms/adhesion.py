@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
-from pellicle.analysis.steepness import rim_slope, steepest
-from pellicle.components import Force
+from pellicle.analysis.steepness import steepest
+from pellicle.components import Force, Monitor
+from pellicle.components.calls import solution_of
 from pellicle.components.checked_law import law_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
-from pellicle.contact.equilibrium import Equilibrium
-from pellicle.contact.load_step import LoadStep, Value
+from pellicle.contact.equilibrium import Equilibrium, equilibrium_of
+from pellicle.contact.load_step import FinishedStep, LoadStep, Value
+from pellicle.contact.masks import labelled
 from pellicle.contact.problem import Depth
-from pellicle.contact.solution import Stop
-from pellicle.runs.jumps import asperity_jumped, jump_energy
+from pellicle.contact.solution import State, Stop
 
-from .surroundings import Solve, Surroundings
+from . import Surroundings
 
 # Widths of two zones over that of the step, for the limit of no width.
 _WIDER: Final = (1.5, 3.0)
@@ -33,16 +34,24 @@ _CELLS_ERROR: Final = 0.55
 _HALVINGS: Final = 6
 # Slope beyond which the theory of small slopes does not hold.
 _STEEPEST: Final = 0.3
+# Relative change of G(q) q² over a decade below which it is the limit of short waves.
+_CONSTANT: Final = 0.05
+# Share of |ΔF Δδ|/2 by which the trapezoidal rule may miss the work of a step without a jump. It
+# is 1/3 for F ∝ √(δ − δ₀), the steepest that a force falls before it jumps.
+_MISSED: Final = 0.5
+# Share of |F Δδ| that does not count as a jump: the change of the energy with the place of the edge
+# on the cells, 0.005 at two cells in the zone.
+_UNCERTAIN: Final = 0.01
 
 
 def adhesion(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
     """Add jumps, the limit of the force, and whether zone and slopes are those of the theory."""
     setting, equilibrium, jumped_as_whole = surroundings.setting, step.equilibrium, step.jumped
-    if step.effort.stop is Stop.PULLED_OFF:
-        step = step.having({}, [_pulled_off(step, surroundings)])
-    lost = jump_energy(setting.path, equilibrium, run.solver.tolerance)
-    jumped = jumped_as_whole or lost > 0 or asperity_jumped(setting.state, equilibrium)
-    limit = _force_limit(run, equilibrium, surroundings.solve)
+    if step.stop is Stop.PULLED_OFF:
+        step = step.having({}, [_pulled_off(run, step, surroundings)])
+    lost = _jump_energy(setting.path, equilibrium, run.solver.tolerance)
+    jumped = jumped_as_whole or lost > 0 or _asperity_jumped(setting.state, equilibrium)
+    limit = _force_limit(run, equilibrium, surroundings.monitor)
     step = step.having({"jumped": jumped, "jump_energy": lost, **limit})
     if not step.converged:
         return step
@@ -54,19 +63,29 @@ def adhesion(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
 
 
 def _limits(run: Run, equilibrium: Equilibrium) -> Iterator[Caveat]:
-    """Yield whether the zone has too few cells, and whether slopes are beyond the theory."""
+    """Yield whether the zone has too few cells, and whether slopes are beyond the theory.
+
+    With a surface tension τ₀, the limit of 1/(G q²) for short waves, the energy per area w that is
+    released bends the surface at the rim by an angle √(2w/τ₀) (Young–Dupré at small slopes).
+    Without one the slope of the theory has no bound, and depends on the range of the interaction.
+    """
+    law = equilibrium.problem.law
     assert run.interaction
+    assert law
     cells, fewest = equilibrium.zone_width / run.grid.cell_size, run.interaction.least_cells
     if cells < fewest:
         yield Caveat(Status.COARSE_ZONE, {"cells": cells, "least": fewest})
     slope = steepest(equilibrium.problem.heights, equilibrium.contact, run.grid)
     if equilibrium.contact.any():
-        slope = max(slope, rim_slope(run.kernel.compliance, equilibrium))
+        q = 1e3 * np.pi / min(run.grid.spacing) * np.array([1.0, 10.0])
+        a, b = run.kernel.compliance(q) * q**2
+        if abs(b / a - 1) < _CONSTANT:
+            slope = max(slope, float(np.sqrt(2 * law.work_of_adhesion() * b)))
     if slope > _STEEPEST:
         yield Caveat(Status.STEEP, {"slope": slope, "most": _STEEPEST})
 
 
-def _force_limit(run: Run, equilibrium: Equilibrium, solve: Solve) -> dict[str, Value]:
+def _force_limit(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> dict[str, Value]:
     """Return the force [N] for no width of the zone, and the error [N] of that of the step.
 
     The step is solved again at its depth with two wider zones. The forces differ from that of no
@@ -78,8 +97,9 @@ def _force_limit(run: Run, equilibrium: Equilibrium, solve: Solve) -> dict[str, 
     empty if the interaction has no such limit.
     """
     sticky = run.interaction
-    wider_laws = [law for factor in _WIDER if (law := sticky.wider(factor))] if sticky else []
-    if not sticky or not wider_laws:
+    assert sticky
+    wider_laws = [law for factor in _WIDER if (law := sticky.wider(factor))]
+    if not wider_laws:
         return {}
     if not equilibrium.contact.any():
         return {"force_extrapolated": equilibrium.force, "force_error": 0.0}
@@ -91,7 +111,7 @@ def _force_limit(run: Run, equilibrium: Equilibrium, solve: Solve) -> dict[str, 
             law=law_of(sticky, run.kernel, run.grid, resolved),
             control=Depth(equilibrium.depth),
         )
-        _, wider = solve(problem, wider.state)
+        wider = equilibrium_of(problem, solution_of(run.solver, problem, wider.state, monitor))
         if not (wider.contact.any() and wider.residual <= run.solver.tolerance):
             return {"force_extrapolated": np.nan, "force_error": np.nan}
         forces.append(wider.force)
@@ -106,7 +126,7 @@ def _force_limit(run: Run, equilibrium: Equilibrium, solve: Solve) -> dict[str, 
     return {"force_extrapolated": float(limit), "force_error": error}
 
 
-def _pulled_off(step: LoadStep, surroundings: Surroundings) -> Caveat:
+def _pulled_off(run: Run, step: LoadStep, surroundings: Surroundings) -> Caveat:
     """Return the caveat with two forces [N], of which the contact of the last state carries one."""
     setting, force = surroundings.setting, step.equilibrium.problem.control.value
     state = setting.state
@@ -115,9 +135,62 @@ def _pulled_off(step: LoadStep, surroundings: Surroundings) -> Caveat:
     carried, lost = float(state.pressure.sum()) * setting.grid.cell_area, force
     for _ in range(_HALVINGS):
         middle = 0.5 * (carried + lost)
-        solution, _ = surroundings.solve(setting.problem(Force(middle)), state)
-        if solution.stop is Stop.PULLED_OFF:
+        problem = setting.problem(Force(middle))
+        if solution_of(run.solver, problem, state, surroundings.monitor).stop is Stop.PULLED_OFF:
             lost = middle
         else:
             carried = middle
     return Caveat(Status.PULLED_OFF, {"force": force, "carried": carried, "lost": lost})
+
+
+def _asperity_jumped(before: State | None, equilibrium: Equilibrium) -> bool:
+    """Return whether a whole patch of contact and zone has come or gone since the state ``before``.
+
+    Without a range of its own, adhesion holds a contact down to a finite radius, at which it jumps
+    off (Johnson, Kendall & Roberts 1971), and a contact that begins jumps to a finite radius. A law
+    of a real range may let go gradually, so it counts as no jump there.
+    """
+    problem = equilibrium.problem
+    if before is None or not problem.law or not problem.law.needs_contact:
+        return False
+    patches = before.pressure != 0, equilibrium.pressure != 0
+    for mask, other in (patches, patches[::-1]):
+        labels, number = labelled(mask, problem.grid.boundary, 4)
+        if np.unique(labels[mask & other]).size < number:
+            return True
+    return False
+
+
+def _jump_energy(path: Sequence[FinishedStep], equilibrium: Equilibrium, tolerance: float) -> float:
+    """Return the energy [J] that jumps have lost since the end of a path; 0 if too little to tell.
+
+    ``path`` has the last two steps, or fewer, solved to the residual ``tolerance``.
+
+    Without a jump the energy changes by the work ∫F dδ of the step, whatever is prescribed; a jump
+    loses the rest. That counts if it is more than the trapezoidal rule may miss, so every jump
+    shows once the steps are small enough. The rule misses a share of |ΔF Δδ|/2 where F is
+    monotonic. Across an extremum, where ΔF may be 0, it misses one of |B Δδ|/2, B being the
+    departure of F from the slope of the step before: F″Δδ³/12 for a constant F″, which is 1/3 at
+    most. Energies are known to the tolerance of their elastic and adhesive parts, which may cancel.
+
+    NaN where the energy is not known, or the last step did not converge.
+    """
+    if not path:
+        return float("nan")
+    problem, last = equilibrium.problem, path[-1]
+    assert problem.law
+    cell = problem.grid.cell_area
+    forces = [*(float(point.state.pressure.sum()) * cell for point in path), equilibrium.force]
+    steps = np.diff([*(point.state.depth for point in path), equilibrium.depth])
+    acting = np.count_nonzero(equilibrium.pressure) * cell
+    parts = max(abs(last.energy), abs(equilibrium.energy))
+    parts += 2 * acting * problem.law.work_of_adhesion()
+    step, greatest = float(steps[-1]), max(map(abs, forces[-2:]))
+    lost = last.energy - equilibrium.energy + 0.5 * (forces[-2] + forces[-1]) * step
+    varies = abs(forces[-1] - forces[-2])
+    if len(path) == 2 and steps[0]:
+        bend = forces[-1] - forces[-2] - (forces[1] - forces[0]) / steps[0] * step
+        # The slope of a step that was almost held is that of its errors.
+        varies = max(varies, min(abs(bend), greatest))
+    share = 0.5 * _MISSED * varies + _UNCERTAIN * greatest
+    return 0.0 if lost <= share * abs(step) + tolerance * parts else lost

@@ -11,7 +11,7 @@ from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.load_step import LoadStep
 
-from .surroundings import Surroundings
+from . import Surroundings
 
 # The force of a paraboloid is right to 8 % on nine or twelve cells, to 14 % on five, on fewer not.
 _RESOLVED = 13
@@ -42,7 +42,7 @@ def _failures(run: Run, step: LoadStep, value: float) -> Iterator[Caveat]:
         if not residual <= tolerance:
             yield Caveat(
                 status,
-                {"measure": residual, "tolerance": tolerance, "stop": step.effort.stop.name},
+                {"measure": residual, "tolerance": tolerance, "stop": step.stop.name},
             )
     reach, loading = equilibrium.contact | equilibrium.zone, run.loading
     # A period one cell wide has no border in that direction: the problem is plane there.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 import numpy as np
@@ -10,12 +11,19 @@ from pellicle.components.calls import branches_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.load_step import LoadStep, Value
-from pellicle.runs.relaxation_checks import least_domain
+from pellicle.contact.time_step import stiffness_after
+from pellicle.runs.relaxation import CarriedShare
 
-from .surroundings import Surroundings
+from . import Surroundings
 
 # Domain that a solid needs, over that of the run, above which no grid spans it.
 _FARTHEST: Final = 100.0
+# Softest solid, over its instantaneous stiffness, and longest wave, over a third of the domain,
+# that are told from a liquid.
+_SOFTEST: Final = 1e-9
+_LONGEST: Final = 1e9
+# 8 radii of a contact, to each of which its counted cells may add a hundredth.
+_RADII: Final = 7.9
 
 
 def relaxation(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
@@ -31,7 +39,7 @@ def relaxation(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep
         measures["energy"] = np.nan
     area = np.count_nonzero(step.equilibrium.contact) * run.grid.cell_area
     largest_area = max(area, *(finished.area for finished in surroundings.path), 0.0)
-    needed, smallest = least_domain(run, index, largest_area), min(run.grid.size)
+    needed, smallest = _least_domain(run, index, largest_area), min(run.grid.size)
     if needed <= smallest or not step.converged:
         return step.having(measures)
     values: dict[str, float | str] = {
@@ -42,3 +50,31 @@ def relaxation(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep
         "remedy": "larger domain" if needed <= _FARTHEST * smallest else "no domain",
     }
     return step.having(measures, [Caveat(Status.SMALL_DOMAIN, values)])
+
+
+def _least_domain(run: Run, index: int, largest_area: float) -> float:
+    """Return the edge [m] that a domain needs at a step, for what its solid carries outside.
+
+    It is 8 radii of the largest contact so far, since a solid remembers a contact that has shrunk,
+    or 7.9 of those that the cells of ``largest_area`` [m²] count; and 3 times the length 1/q of the
+    wave for which the skin is as stiff as the solid is after the duration of the run so far: 2τ₀/E*
+    under a tension. It is 0 where there is nothing outside: at the first step, without a skin, and
+    on a periodic boundary.
+    """
+    kernel, branches = run.kernel, branches_of(run.kernel)
+    if not index or not branches or run.grid.boundary == "periodic":
+        return 0.0
+    solid = kernel.without_skin()
+    if solid == kernel:
+        return 0.0
+    elapsed = math.fsum(run.loading.durations[: index + 1])
+    share = max(_SOFTEST, stiffness_after(branches, elapsed))
+    carried = CarriedShare(kernel.scaled(share), solid)
+    shortest = 3 / min(run.grid.size)
+    radius = math.sqrt(largest_area / math.pi)
+    length = 0.0
+    if share * carried.compliance(np.array([shortest])).item() < 0.5:
+        waves = shortest * np.geomspace(1 / _LONGEST, 1.0, 1 + 20 * round(math.log10(_LONGEST)))
+        stiff = np.flatnonzero(share * carried.compliance(waves) >= 0.5)
+        length = 1 / float(waves[stiff[-1]]) if stiff.size else math.inf
+    return max(_RADII * radius, 3 * length)

@@ -1,4 +1,4 @@
-"""The area of the cells in contact."""
+"""The area of the cells in contact, and the radius of a circle of that area."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pellicle.contact import Equilibrium
 from pellicle.errors import ConfigError
 from pellicle.units import readable
 
-RESIDUAL = Variable(
+_RESIDUAL = Variable(
     "residual_area", "1", "relative error of the prescribed contact area or radius", "residual"
 )
 
@@ -24,19 +24,19 @@ class ContactArea(Prescription):
     examples = ({},)
     unit: ClassVar[str] = "m2"
     at_least: ClassVar[float | None] = 0.0
-    variables: ClassVar[tuple[Variable, ...]] = (RESIDUAL,)
+    variables: ClassVar[tuple[Variable, ...]] = (_RESIDUAL,)
 
     def check(self, setting: Setting, value: float) -> None:
         """Refuse an area that the indenter cannot have on this grid."""
-        if problem := unreachable(setting, value):
+        if problem := _unreachable(setting, value):
             raise ConfigError(f"{readable(value, self.unit)} is {problem}")
 
     def target(self, setting: Setting, value: float) -> Force | Search:
         """Return a search for the force with this contact area; no force for an area of 0."""
-        return area_search(setting, value)
+        return _area_search(setting, value)
 
 
-def unreachable(setting: Setting, area: float) -> str:
+def _unreachable(setting: Setting, area: float) -> str:
     """Return the reason why a contact area [m²] is impossible on this grid; empty if possible."""
     if setting.law and not area > 0:
         return "lost at no certain depth where the contact sticks; prescribe depth"
@@ -60,7 +60,7 @@ def unreachable(setting: Setting, area: float) -> str:
     return ""
 
 
-def area_search(setting: Setting, area: float) -> Force | Search:
+def _area_search(setting: Setting, area: float) -> Force | Search:
     """Return the search for a contact area [m²], starting near the force of the last step."""
     if not area > 0:
         return Force(0.0)
@@ -93,3 +93,22 @@ def area_search(setting: Setting, area: float) -> Force | Search:
         quantity="contact area",
         unit="m2",
     )
+
+
+class ContactRadius(Prescription):
+    """Radius of the circle with the area of the cells in contact [m]."""
+
+    type: Literal["contact_radius"] = "contact_radius"
+    examples = ({},)
+    unit: ClassVar[str] = "m"
+    at_least: ClassVar[float | None] = 0.0
+    variables: ClassVar[tuple[Variable, ...]] = (_RESIDUAL,)
+
+    def check(self, setting: Setting, value: float) -> None:
+        """Refuse a radius that the contact cannot have on this grid."""
+        if problem := _unreachable(setting, np.pi * value**2):
+            raise ConfigError(f"{readable(value, self.unit)} is {problem}")
+
+    def target(self, setting: Setting, value: float) -> Force | Search:
+        """Return the search for the force with the area of the circle."""
+        return _area_search(setting, np.pi * value**2)

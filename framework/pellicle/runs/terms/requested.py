@@ -1,0 +1,60 @@
+"""What a configuration asks for: corrected areas, measures of its prescription, the stiffness."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from pellicle.components import Depth
+from pellicle.components.base import words_of_type
+from pellicle.components.calls import corrected_area, report_of, response_of
+from pellicle.config.run import Run
+from pellicle.contact.caveats import Caveat, Status
+from pellicle.contact.equilibrium import Stiffness, measure_stiffness
+from pellicle.contact.load_step import LoadStep
+from pellicle.variables import Variable, corrected_fraction
+from pellicle.variables import corrected_area as area_variable
+
+from . import Surroundings
+
+
+def corrections(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
+    """Add the contact area by each correction, and after these the shares of the domain."""
+    areas = [corrected_area(c, step.equilibrium.contact, run.grid) for c in run.corrections]
+    values = [*areas, *(area / run.grid.area for area in areas)]
+    names = [variable.name for variable in corrected_variables(run)]
+    return step.having(dict(zip(names, values, strict=True)))
+
+
+def corrected_variables(run: Run) -> tuple[Variable, ...]:
+    """Return the variables of the corrected areas, and after these of the shares."""
+    types = [(c.type_name, words_of_type(type(c), c.type_name)) for c in run.corrections]
+    areas = [area_variable(*type_) for type_ in types]
+    return (*areas, *map(corrected_fraction, areas))
+
+
+def prescription(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
+    """Add the variables of the prescription; that of kind ``residual`` is what a search missed."""
+    prescribed = run.loading.prescription
+    report = report_of(prescribed, surroundings.setting, step.equilibrium)
+    report |= {v.name: step.missed for v in prescribed.variables if v.name not in report}
+    return step.having(report)
+
+
+def stiffness(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
+    """Add the contact stiffness [N/m], δ being the depth of the indenter."""
+    equilibrium, tolerance = step.equilibrium, run.solver.tolerance
+    problem = replace(equilibrium.problem, control=Depth(equilibrium.depth))
+    contact = equilibrium.contact
+    if contact.all() and not problem.operator.has_mean_compliance:
+        # A period in full contact whose mean displacement is 0.
+        measured = Stiffness(np.inf, 0.0)
+    elif not contact.any():
+        measured = Stiffness(0.0, 0.0)
+    else:
+        response = response_of(run.solver, problem, equilibrium.state, surroundings.monitor)
+        measured = measure_stiffness(problem, contact, response, equilibrium.attraction)
+    missed = Caveat(Status.STIFFNESS, {"measure": measured.residual, "tolerance": tolerance})
+    unknown = not measured.residual <= tolerance
+    return step.having({"stiffness": measured.value}, [missed] if unknown else [])
