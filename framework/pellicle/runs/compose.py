@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from pellicle.checks import errors_attributed_to
 from pellicle.components import Force, Search, Setting
-from pellicle.components.calls import (
-    check_solver,
-    check_value,
-    instantaneous,
-    profile_of,
-    target_of,
-)
-from pellicle.components.checked_law import law_of
+from pellicle.components.indenter import profile_of
+from pellicle.components.interaction import law_of
+from pellicle.components.kernel import instantaneous
+from pellicle.components.prescription import check_value, target_of
+from pellicle.components.solver import check_solver
 from pellicle.config.run import Run
 from pellicle.errors import ConfigError
 from pellicle.surface.grid_checks import warn_of_cells, warn_of_period

@@ -10,7 +10,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.components import Setting
-from pellicle.components.calls import branches_of
+from pellicle.components.kernel import branches_of
 from pellicle.config.run import Run
 from pellicle.contact.finished_step import FinishedStep
 from pellicle.contact.skin_operators import skin_operators

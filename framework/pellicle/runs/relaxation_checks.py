@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from pellicle.components.calls import branches_of
+from pellicle.components.kernel import branches_of
 from pellicle.config.run import Run
 from pellicle.contact.skin_operators import CarriedShare
 from pellicle.contact.time_step import stiffness_after

@@ -14,8 +14,8 @@ from typing import Final, Literal
 import numpy as np
 
 from pellicle.components import Monitor, Solver
-from pellicle.components.calls import solution_of
 from pellicle.components.prescription import Search, Setting
+from pellicle.components.solver import solution_of
 from pellicle.contact.equilibrium import Equilibrium, equilibrium_of
 from pellicle.contact.load_step import Effort, LoadStep, SearchEnd
 from pellicle.contact.problem import Depth

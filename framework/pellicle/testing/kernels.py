@@ -6,7 +6,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.components import Kernel
-from pellicle.components.calls import instantaneous
+from pellicle.components.kernel import instantaneous
 from pellicle.components.rules import Case
 from pellicle.components.rules.closed_form import displacement_of_centre
 from pellicle.grid import Grid

@@ -15,8 +15,7 @@ from typing import Any, NamedTuple
 import xarray as xr
 
 from pellicle.components import Output, Runs
-from pellicle.components.calls import require_files
-from pellicle.components.output import stem_of
+from pellicle.components.output import require_files, stem_of
 from pellicle.config.run import Run
 from pellicle.config.study import Study
 from pellicle.results.derived import FIRST_RUN

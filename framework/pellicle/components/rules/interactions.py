@@ -8,8 +8,7 @@ from typing import Final
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.components.checked_law import law_of
-from pellicle.components.interaction import Interaction
+from pellicle.components.interaction import Interaction, law_of
 from pellicle.contact.law import Law
 
 from .rule import Case

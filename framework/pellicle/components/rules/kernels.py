@@ -7,8 +7,7 @@ import math
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.components.calls.kernel import branches_of
-from pellicle.components.kernel import Kernel
+from pellicle.components.kernel import Kernel, branches_of
 from pellicle.grid import Grid
 from pellicle.surface.kernel_calls import HasClosedForm, mean_compliance
 from pellicle.surface.operators import make_operator

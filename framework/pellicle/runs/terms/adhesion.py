@@ -10,7 +10,7 @@ import numpy as np
 
 from pellicle.analysis.steepness import rim_slope, steepest
 from pellicle.components import Force
-from pellicle.components.checked_law import law_of
+from pellicle.components.interaction import law_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import Equilibrium

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pellicle.components.base import words_of_type
-from pellicle.components.calls import corrected_area
+from pellicle.components.correction import corrected_area
 from pellicle.config.run import Run
 from pellicle.contact.load_step import LoadStep
 from pellicle.variables import Variable, corrected_fraction

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from pellicle.arrays import Array
 from pellicle.components import Monitor, Setting, Solver
-from pellicle.components.calls import response_of, solution_of
+from pellicle.components.solver import response_of, solution_of
 from pellicle.contact.equilibrium import Equilibrium, equilibrium_of
 from pellicle.contact.finished_step import FinishedStep
 from pellicle.contact.load_step import LoadStep
