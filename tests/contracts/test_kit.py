@@ -7,7 +7,7 @@ import pytest
 import pellicle as pl
 from pellicle import testing
 from pellicle.components import FAMILIES, Component
-from pellicle.testing.rules import require_close
+from pellicle.testing.component import require_close
 
 
 def test_keeps_its_contract(component: Component) -> None:

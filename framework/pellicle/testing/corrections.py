@@ -8,8 +8,7 @@ from pellicle.arrays import Mask
 from pellicle.checks import real_number
 from pellicle.components import AreaCorrection
 
-from .component import check
-from .rules import require, require_close, rules_of
+from .component import check, require, require_close, rules_of
 from .small_runs import solved
 
 _SPACING = (2e-6, 3e-6)

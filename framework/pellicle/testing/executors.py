@@ -16,8 +16,7 @@ from uuid import uuid4
 
 from pellicle.components import Executor, Say
 
-from .component import check
-from .rules import require, rules_of
+from .component import check, require, rules_of
 from .small_runs import ignore
 
 _TASKS = 7

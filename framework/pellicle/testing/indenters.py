@@ -11,8 +11,7 @@ from pellicle.components.indenter import profile_of
 from pellicle.errors import shown
 from pellicle.grid import Grid
 
-from .component import check
-from .rules import require, require_close, rules_of
+from .component import check, require, require_close, rules_of
 from .small_runs import solved
 
 

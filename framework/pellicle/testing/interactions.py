@@ -12,8 +12,7 @@ from pellicle.components.rules import Case
 from pellicle.grid import Grid
 from pellicle.plugins import registry
 
-from .component import check
-from .rules import require, require_close, rules_of
+from .component import check, require, require_close, rules_of
 from .small_runs import solved
 
 _RADIUS = 1e-3

@@ -12,8 +12,7 @@ from pellicle.components.rules.closed_form import displacement_of_centre
 from pellicle.grid import Grid
 from pellicle.surface.operators import displacement
 
-from .component import check
-from .rules import require_close, rules_of
+from .component import check, require_close, rules_of
 from .small_runs import solved
 
 _WIDTH = 1e-4

@@ -25,8 +25,7 @@ from pellicle.runs.progress import RunProgress
 from pellicle.runs.runner import execute, solve
 from pellicle.studies import runner as studies
 
-from .component import check
-from .rules import require, rules_of
+from .component import check, require, rules_of
 from .small_runs import PARABOLOID
 
 _STEPS = 2

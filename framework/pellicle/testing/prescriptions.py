@@ -18,8 +18,7 @@ from pellicle.results.step import step_dataset
 from pellicle.runs.compose import compose
 from pellicle.runs.target_search import reach
 
-from .component import check
-from .rules import require, require_close, rules_of
+from .component import check, require, require_close, rules_of
 from .small_runs import HALF_SPACE, ROUGH, ignore
 
 # A contact area of whole cells misses its value by more than other quantities do.

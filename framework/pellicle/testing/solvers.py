@@ -17,8 +17,7 @@ from pellicle.contact.solution import State, Stop
 from pellicle.contact.stiffness import measure_stiffness
 from pellicle.surface.operators import make_operator
 
-from .component import check
-from .rules import require, require_close, rules_of
+from .component import check, require, require_close, rules_of
 from .small_runs import PARABOLOID, ROUGH, ignore, solved
 
 _SKIN = {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 1.0}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -13,8 +14,7 @@ from pellicle.surface.kernel_calls import HasClosedForm, mean_compliance
 from pellicle.surface.operators import make_operator
 
 from .closed_form import contradiction_of_compliance, contradiction_of_primitive
-from .comparison import difference, not_pure, not_vectorised
-from .rule import Case
+from .rule import Case, difference
 
 # Relative rounding error of formulas that nearly cancel.
 _ROUNDING = 1e-9
@@ -40,6 +40,15 @@ def _lengths(grid: Grid) -> tuple[float, float]:
     return min(grid.spacing), math.hypot(*grid.size)
 
 
+def _not_pure(function: Callable[[Array], Array], argument: Array, name: str) -> str:
+    """Return how a function changes its argument, or its value when it is called again."""
+    passed = argument.copy()
+    first = np.array(function(passed))
+    return difference(passed, argument, f"after {name}, its argument") or difference(
+        function(passed), first, f"the second {name}"
+    )
+
+
 def compliance_is_positive_and_finite(kernel: Kernel, case: Case) -> str:
     """The compliance is positive and finite for every wave of a grid."""
     q = _waves(case.grid, 200)
@@ -50,12 +59,22 @@ def compliance_is_positive_and_finite(kernel: Kernel, case: Case) -> str:
 
 def compliance_is_vectorised(kernel: Kernel, case: Case) -> str:
     """compliance(q) is a float array of the shape of q; each value depends on its own q only."""
-    return not_vectorised(kernel.compliance, _waves(case.grid), "compliance(q)", relative=_ROUNDING)
+    q = _waves(case.grid)
+    single = [np.ravel(kernel.compliance(value.copy()))[0] for value in np.split(q, q.size)]
+    for shape in ((24,), (4, 6), (2, 3, 4)):
+        values = kernel.compliance(q.reshape(shape).copy())
+        if not (isinstance(values, np.ndarray) and values.dtype == np.float64):
+            dtype = getattr(values, "dtype", "no")
+            return f"compliance(q) is {type(values).__name__} of {dtype} dtype"
+        words = f"compliance(q) for an argument of shape {shape}"
+        if differs := difference(values, np.reshape(single, shape), words, relative=_ROUNDING):
+            return differs
+    return ""
 
 
 def compliance_leaves_its_argument(kernel: Kernel, case: Case) -> str:
     """A kernel is pure: it does not change q, and a second call returns the same."""
-    return not_pure(kernel.compliance, _waves(case.grid), "compliance(q)")
+    return _not_pure(kernel.compliance, _waves(case.grid), "compliance(q)")
 
 
 def compliance_does_not_grow_for_short_waves(kernel: Kernel, case: Case) -> str:
@@ -172,7 +191,7 @@ def closed_form_leaves_its_argument(kernel: Kernel, case: Case) -> str:
     """greens_function(r) and radial_primitive(r) do not change r."""
     r = np.geomspace(*_lengths(case.grid), 9)
     methods = [(name, getattr(kernel, name)) for name in _FORMS if hasattr(kernel, name)]
-    return next(filter(None, (not_pure(method, r, f"{name}(r)") for name, method in methods)), "")
+    return next(filter(None, (_not_pure(method, r, f"{name}(r)") for name, method in methods)), "")
 
 
 def primitive_is_the_integral_of_the_closed_form(kernel: Kernel, case: Case) -> str:
