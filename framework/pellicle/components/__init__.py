@@ -50,17 +50,6 @@ from .solver import Solver as Solver
 from .validation import Case as Case
 from .validation import Suite as Suite
 
-FAMILIES: dict[str, type[Component]] = {
-    family.family: family
-    for family in (
-        Kernel,
-        Indenter,
-        Interaction,
-        Solver,
-        AreaCorrection,
-        Output,
-        Executor,
-        Prescription,
-    )
-}
+_OWN = Kernel, Indenter, Interaction, Solver, AreaCorrection, Output, Executor, Prescription
+FAMILIES: dict[str, type[Component]] = {base.family: base for base in _OWN}
 """The base class of each of pellicle's own families, by name."""

@@ -24,8 +24,13 @@ class FromRegistry:
     def __get_pydantic_core_schema__(
         self, source: type[Component], handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
+        def made(value: object) -> Component:
+            from pellicle.plugins import registry
+
+            return registry().make(source, value)
+
         return core_schema.no_info_plain_validator_function(
-            lambda value: _made(source, value),
+            made,
             serialization=core_schema.plain_serializer_function_ser_schema(
                 lambda component, info: component.model_dump(
                     mode=info.mode, exclude_none=info.exclude_none, context=info.context
@@ -45,9 +50,3 @@ class FromRegistry:
         while "family" not in inner.get("metadata", {}):
             inner = inner["schema"]
         return {FAMILY: inner["metadata"]["family"]}
-
-
-def _made(base: type[Component], value: object) -> Component:
-    from pellicle.plugins import registry
-
-    return registry().make(base, value)

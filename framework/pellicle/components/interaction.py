@@ -86,13 +86,7 @@ def law_of(
     """Return the law of an interaction, resolved on a grid.
 
     ``resolved`` is by default that of the interaction; `Interaction.wider` returns others.
-
-    Raises
-    ------
-    ConfigError
-        The range is less than the rounding error of what the strength displaces.
-    PluginError
-        The law breaks its contract.
+    A range that is less than the rounding error of what the strength displaces is refused.
     """
     resolved = resolved or interaction.resolved
 

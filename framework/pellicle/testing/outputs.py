@@ -10,11 +10,11 @@ from fnmatch import fnmatch
 from functools import cache, lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, NamedTuple
+from typing import Any
 
 import xarray as xr
 
-from pellicle.components import Output, Runs
+from pellicle.components import Output
 from pellicle.components.output import require_files, stem_of
 from pellicle.config.run import Run
 from pellicle.config.study import Study
@@ -60,17 +60,6 @@ def _dataset() -> xr.Dataset:
     return solve(_run()).dataset
 
 
-def _as_run_or_study(output: Output, steps: xr.Dataset) -> Runs:
-    """Return a run of some steps, as a study of that run if the output shows studies only."""
-    configuration = _run().to_json()
-    runs = StoredRuns.of_run(steps, configuration)
-    if output.scope != "study":
-        return runs
-    attributes = {"axes": json.dumps({_VARIED: [_VARIED]}), FIRST_RUN: configuration}
-    table = runs.table.expand_dims({_VARIED: [1.0]}).assign_attrs(attributes)
-    return replace(runs, table=table)
-
-
 @contextmanager
 def _stem() -> Iterator[Path]:
     """Yield the stem of a run in an empty folder."""
@@ -79,11 +68,16 @@ def _stem() -> Iterator[Path]:
 
 
 def _write(output: Output, stem: Path, steps: xr.Dataset) -> tuple[Path, ...]:
-    """Call the output as a run does; return the files that it returns."""
-    own = stem_of(output, stem)
+    """Call the output as a run does, or a study if it shows those alone; return its files."""
+    own, configuration = stem_of(output, stem), _run().to_json()
     for index in range(steps.sizes["step"]):
         output.step(steps.isel(step=slice(index, index + 1)), own)
-    return output.write(_as_run_or_study(output, steps), own)
+    runs = StoredRuns.of_run(steps, configuration)
+    if output.scope == "study":
+        attributes = {"axes": json.dumps({_VARIED: [_VARIED]}), FIRST_RUN: configuration}
+        table = runs.table.expand_dims({_VARIED: [1.0]}).assign_attrs(attributes)
+        runs = replace(runs, table=table)
+    return output.write(runs, own)
 
 
 def _contents(folder: Path) -> dict[str, bytes]:
@@ -102,24 +96,17 @@ def _written(output: Output, steps: xr.Dataset) -> dict[str, bytes]:
         return _contents(stem.parent)
 
 
-class Whole(NamedTuple):
-    """What an output makes of all steps."""
-
-    contents: dict[str, bytes]
-    leaves_data: bool
-
-
 @lru_cache(maxsize=1)
-def _whole(output: Output) -> Whole:
-    """Write all steps, for several rules: drawing takes long."""
+def _whole(output: Output) -> tuple[dict[str, bytes], bool]:
+    """Return what is written for all steps, for several rules, and whether it left their data."""
     data = _dataset().copy(deep=True)
-    contents = _written(output, data)
-    return Whole(contents, data.identical(_dataset()))
+    return _written(output, data), data.identical(_dataset())
 
 
 def leaves_its_data_as_they_are(output: Output) -> None:
     """step() and write() change nothing of their arguments: other outputs get them too."""
-    require(_whole(output).leaves_data, "the data of the run differ afterwards")
+    _, leaves_data = _whole(output)
+    require(leaves_data, "the data of the run differ afterwards")
 
 
 def leaves_the_files_it_returns(output: Output) -> None:
@@ -150,7 +137,7 @@ def loses_no_step(output: Output) -> None:
     if output.scope != "run":
         return
     whole = _dataset()
-    contents, again = _whole(output).contents, _written(output, whole)
+    (contents, _), again = _whole(output), _written(output, whole)
     # A file with a date or a random name differs between two equal runs, and proves nothing.
     steady = {name for name, content in again.items() if content == contents.get(name)}
     if not steady:

@@ -93,12 +93,9 @@ def target_is_pure(prescription: Prescription, values: Sequence[float]) -> None:
     setting, _, _ = _reference_steps()
     for value in _values(prescription, values):
         check_value(prescription, setting, value, "")
-        first, second = (_numbers(target_of(prescription, setting, value)) for _ in range(2))
+        members = (vars(target_of(prescription, setting, value)).items() for _ in range(2))
+        first, second = ({k: v for k, v in target if k != "measure"} for target in members)
         require(first == second, f"{second} after {first}")
-
-
-def _numbers(target: object) -> dict[str, Any]:
-    return {name: value for name, value in vars(target).items() if name != "measure"}
 
 
 def values_are_refused_in_words(prescription: Prescription, values: Sequence[float]) -> None:
