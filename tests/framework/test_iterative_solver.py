@@ -34,7 +34,8 @@ class Played(IterativeSolver):
 
     def residual(self, problem: Problem, state: Any) -> float:
         """Return the residual of an iterate."""
-        return self.measures[state[0]][0]
+        index: int = state[0]
+        return self.measures[index][0]
 
     def pressure(self, state: Any) -> Array:
         """Return no pressure."""

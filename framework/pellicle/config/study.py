@@ -18,8 +18,7 @@ from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError, Problem, all_problems, shown
 from pellicle.results.derived import constants
 from pellicle.schema.expression import CONSTANTS, FUNCTIONS, evaluate, names_in
-from pellicle.schema.from_file import FromFile, overridden, read_toml
-from pellicle.schema.input_path import paths_relative_to
+from pellicle.schema.from_file import FromFile, overridden, paths_relative_to, read_toml
 from pellicle.schema.notebook import summary
 from pellicle.schema.paths import get, python_names
 from pellicle.schema.ranges import Axes, expand

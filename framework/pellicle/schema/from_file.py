@@ -1,25 +1,57 @@
-"""TOML files, and models that can be read from a file, such as a run or a study."""
+"""TOML files, models that are read from one, such as a run or a study, and the paths in it."""
 
 from __future__ import annotations
 
 import json
 import re
 import tomllib
-from collections.abc import Iterable, Mapping
-from contextlib import suppress
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
-from typing import Any, Self
+from typing import Annotated, Any, Final, Self
 
 import tomli_w
+from pydantic import AfterValidator, PlainSerializer, SerializationInfo
 
 from pellicle.errors import ConfigError, shown
 
-from .input_path import PORTABLE, paths_relative_to
 from .model import Model
 from .paths import replaced
 
 _OF_A_VALUE = "Invalid value", "Expected newline", "Unclosed array", "Unclosed inline table"
 """Beginnings of messages of the parser on a value, or on what follows it."""
+PORTABLE: Final = "portable"
+"""Context of ``model_dump`` that writes the names of files without their folders."""
+_folder: ContextVar[Path | None] = ContextVar("folder", default=None)
+
+
+@contextmanager
+def paths_relative_to(folder: Path | None) -> Iterator[None]:
+    """Resolve relative paths in a configuration against ``folder``, the folder of its file.
+
+    None stands for the folder of the file being read or, without one, the current folder.
+    """
+    token = _folder.set(folder or _folder.get() or Path.cwd())
+    try:
+        yield
+    finally:
+        _folder.reset(token)
+
+
+def _from_folder(path: Path) -> Path:
+    folder = _folder.get()
+    return path if folder is None else (folder / path).absolute()
+
+
+def _written(path: Path, info: SerializationInfo) -> Path | str:
+    if info.context == PORTABLE:
+        return path.name
+    return str(path) if info.mode_is_json() else path
+
+
+InputPath = Annotated[Path, AfterValidator(_from_folder), PlainSerializer(_written)]
+"""An input file; in a TOML file, relative to that file."""
 
 
 class FromFile(Model):

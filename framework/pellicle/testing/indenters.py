@@ -46,10 +46,8 @@ def profile_is_accepted(indenter: Indenter, grid: Grid) -> None:
 
 def profile_is_pure(indenter: Indenter, grid: Grid) -> None:
     """profile(x, y) does not change x or y, and a second call returns an equal, new array."""
-    points = grid.coordinates()
-    first = indenter.profile(*points)
-    for name, after, before in zip("xy", points, grid.coordinates(), strict=True):
-        require(np.array_equal(after, before), f"profile(x, y) changes {name}")
+    # `profile_is_accepted` has asked with read-only coordinates.
+    first = indenter.profile(*grid.coordinates())
     expected = first.copy()
     if first.flags.writeable:
         first[...] = -np.inf

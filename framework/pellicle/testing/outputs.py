@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from fnmatch import fnmatch
 from functools import cache, lru_cache
@@ -60,13 +58,6 @@ def _dataset() -> xr.Dataset:
     return solve(_run()).dataset
 
 
-@contextmanager
-def _stem() -> Iterator[Path]:
-    """Yield the stem of a run in an empty folder."""
-    with TemporaryDirectory() as folder:
-        yield Path(folder) / "indent"
-
-
 def _write(output: Output, stem: Path, steps: xr.Dataset) -> tuple[Path, ...]:
     """Call the output as a run does, or a study if it shows those alone; return its files."""
     own, configuration = stem_of(output, stem), _run().to_json()
@@ -91,7 +82,8 @@ def _contents(folder: Path) -> dict[str, bytes]:
 
 def _written(output: Output, steps: xr.Dataset) -> dict[str, bytes]:
     """Return the content of each file that the output writes for some steps."""
-    with _stem() as stem:
+    with TemporaryDirectory() as folder:
+        stem = Path(folder) / "indent"
         _write(output, stem, steps)
         return _contents(stem.parent)
 
@@ -111,7 +103,8 @@ def leaves_its_data_as_they_are(output: Output) -> None:
 
 def leaves_the_files_it_returns(output: Output) -> None:
     """A run, also if interrupted and repeated, has the files of write(), with its `suffixes`."""
-    with _stem() as stem:
+    with TemporaryDirectory() as folder:
+        stem = Path(folder) / "indent"
         own = stem_of(output, stem).name
         # Interrupted after each step, the run is repeated with the same stem.
         for steps in range(1, _STEPS + 1):
@@ -156,7 +149,8 @@ def works_in_a_run(output: Output) -> None:
     """A run with this output alone has its files beside the result file."""
     if output.scope == "study":
         return
-    with _stem() as stem:
+    with TemporaryDirectory() as folder:
+        stem = Path(folder) / "indent"
         run = _run().model_copy(update={"outputs": (output,)})
         journal, bar = Journal(stem, run.identity), RunProgress(_STEPS, False)
         for path in execute(run, journal, (output,), bar).files:
