@@ -115,9 +115,8 @@ class Registry:
         table = value if isinstance(value, Mapping) else {}
         if "type" not in table and base.family in self.components:
             listing = ", ".join(sorted(self.components[base.family]))
-            reason = f"{shown(value)} is not a table"
-            if isinstance(value, Mapping):
-                reason = "has no type"
+            is_table = isinstance(value, Mapping)
+            reason = "has no type" if is_table else f"{shown(value)} is not a table"
             raise ConfigError(f"{reason}; give a table with type = one of: {listing}")
         component = self.find(base.family, table.get("type"))
         if not issubclass(component, base):

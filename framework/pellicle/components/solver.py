@@ -12,13 +12,7 @@ import numpy as np
 from pydantic import Field
 
 from pellicle.arrays import Array
-from pellicle.checks import (
-    component_name,
-    errors_attributed_to,
-    read_only,
-    real_array,
-    real_number,
-)
+from pellicle.checks import component_name, errors_attributed_to, read_only, real_array, real_number
 from pellicle.contact.equilibrium import round_off
 from pellicle.contact.problem import Problem
 from pellicle.contact.solution import Progress, Solution, State, Stop
@@ -206,7 +200,10 @@ def solution_of(
     with errors_attributed_to(solver):
         value = solver.solve(view, None if start is None else _read_only_state(start), monitor)
     state = _checked_state(solver, problem, value)
-    jumped = bool(value.jumped) or (adheres and _in_contact(state) != _in_contact(start))
+    jumped = bool(value.jumped)
+    if adheres:
+        touched = start is not None and bool(start.contact.any())
+        jumped = jumped or bool(state.contact.any()) != touched
     return Solution(state, int(value.iterations), value.stop, jumped)
 
 
@@ -236,10 +233,6 @@ def _checked_state(solver: Solver, problem: Problem, value: object) -> State:
     wall = real_array(solver, "solve().state.wall", value.state.wall, problem.grid.shape)
     depth = real_number(solver, "solve().state.depth", value.state.depth)
     return State(pressure, wall.copy(), depth)
-
-
-def _in_contact(state: State | None) -> bool:
-    return state is not None and bool(state.contact.any())
 
 
 def response_of(solver: Solver, problem: Problem, state: State, monitor: Monitor) -> Array:

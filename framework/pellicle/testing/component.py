@@ -63,11 +63,7 @@ def require_close(actual: ArrayLike, expected: ArrayLike, name: str, **allowed: 
 
 
 def check(
-    component: object,
-    family: str,
-    rules: list[Rule],
-    *arguments: Any,
-    cases: Iterable[Case] = (),
+    component: object, family: str, rules: list[Rule], *arguments: Any, cases: Iterable[Case] = ()
 ) -> None:
     """Check the rules of all components, then those of the family.
 
@@ -90,10 +86,7 @@ def is_an_instance(component: object, family: str) -> None:
         raise AssertionError(
             f"{component.__name__} is a class; pass an instance: {component.__name__}(…)"
         )
-    require(
-        isinstance(component, base),
-        f"{component!r}, which is not a pellicle.{base.__name__}",
-    )
+    require(isinstance(component, base), f"{component!r}, which is not a pellicle.{base.__name__}")
 
 
 def class_can_be_registered(component: Component) -> None:

@@ -131,12 +131,8 @@ def step_has_what_is_prescribed(prescription: Prescription, values: Sequence[flo
         else:
             problem = setting.problem(target)
             step = measure(problem, solution_of(solver, problem, None, ignore).pressure)
-        require_close(
-            step.force,
-            reference.force,
-            f"the force [N] at {value:g} {prescription.unit}",
-            relative=_NEAR,
-        )
+        what = f"the force [N] at {value:g} {prescription.unit}"
+        require_close(step.force, reference.force, what, relative=_NEAR)
         again = _value(prescription, step)
         if again is not None:
             require_close(again, value, f"{prescription.type_name} prescribed", relative=_NEAR)
