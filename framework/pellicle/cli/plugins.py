@@ -100,7 +100,7 @@ def plugins(
 def _check(name: str | None, json: bool) -> None:
     """Check the examples of the components of a name; exit with 1 if one breaks its contract."""
     from pellicle.plugins import registry
-    from pellicle.testing.installed import verdict_on_examples
+    from pellicle.testing.component import verdict_on_examples
 
     heads = "family", "type", "origin", "verdict"
     rows, kept = [], True

@@ -18,8 +18,7 @@ from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError, Problem, all_problems, shown
 from pellicle.results.derived import constants
 from pellicle.schema.expression import CONSTANTS, FUNCTIONS, evaluate, names_in
-from pellicle.schema.from_file import FromFile, read
-from pellicle.schema.input_path import paths_relative_to
+from pellicle.schema.from_file import FromFile, overridden, paths_relative_to, read_toml
 from pellicle.schema.notebook import summary
 from pellicle.schema.paths import get, python_names
 from pellicle.schema.ranges import Axes, expand
@@ -37,7 +36,7 @@ _MOST = 100_000
 
 def from_toml(path: str | Path, overrides: Iterable[str] = ()) -> Run | Study:
     """Return the study that a TOML file describes, or the run if it has no table ``study``."""
-    kind = Study if "study" in read(path, overrides) else Run
+    kind = Study if "study" in overridden(read_toml(Path(path)), overrides) else Run
     return kind.from_toml(path, overrides)
 
 
