@@ -18,7 +18,7 @@ from pellicle.schema.ranges import Values
 from pellicle.units import DIGITS, quantity_of, readable
 from pellicle.variables import ROLE, WORDS, WORDS_OF_VALUES
 
-from .legs import VALUES
+from .load_steps import VALUES
 from .points import short
 from .run import Run
 from .words import field_words, words_at

@@ -14,8 +14,7 @@ from pellicle.errors import ConfigError, PluginError
 from pellicle.plugins import Registered, registry
 from pellicle.variables import words_of_name
 
-from .legs import KINDS, with_quantity
-from .load_steps import LoadSteps
+from .load_steps import KINDS, LoadSteps, with_quantity
 from .loading import Loading, keys_of, prescribed_in, prescriptions
 
 
@@ -86,7 +85,7 @@ def fields_of_table(table: Mapping[str, Any], field: FieldInfo | None) -> Mappin
     A component that is not installed has none.
     """
     if steps := _load_steps(field):
-        kind = next((kind for kind in KINDS if kind.key in table), None)
+        kind = next((kind for key, kind in KINDS.items() if key in table), None)
         return with_quantity(kind, steps.quantity).model_fields if kind else {}
     model: type[BaseModel] | None = model_in(field.annotation) if field else None
     if "type" in table:
