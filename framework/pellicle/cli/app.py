@@ -19,8 +19,7 @@ from pellicle.commands import commands, errors_attributed_to, load_command, type
 from pellicle.errors import PellicleError, PluginError
 from pellicle.origins import Broken
 
-from .exits import BAD_INPUT, CRASHED, INTERRUPTED
-from .printing import echo, only_json, print_warning
+from .printing import BAD_INPUT, CRASHED, INTERRUPTED, echo, only_json, print_warning
 
 _FIRST = "run", "check"
 _LAST = "explain", "plugins", "schema", "new", "show", "plot", "validate"

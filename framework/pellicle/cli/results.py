@@ -1,25 +1,36 @@
-"""Print results and tables of studies, and exit by how they converged."""
+"""Print results and tables of studies, and exit by how they converged.
+
+Commands import it when they are called: unlike them it imports what it needs at once.
+"""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import typer
+import xarray as xr
 
+from pellicle.contact.caveats import Status, from_text, verdict_of
 from pellicle.files import for_document
+from pellicle.results.path import prescribed_variable
+from pellicle.results.result import Result
+from pellicle.results.shape import means_something
+from pellicle.results.wording import wording, wording_of
+from pellicle.studies.summary import (
+    columns,
+    failures,
+    path_columns,
+    progress_of,
+    reasons,
+    runs_of,
+)
+from pellicle.units import DIGITS, Scale, printed, readable
+from pellicle.variables import CAVEATS, VARIABLES, names_of
 
-from .exits import NOT_CONVERGED
-from .printing import echo, print_columns, print_json, print_warning
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    import xarray as xr
-
-    from pellicle.contact.caveats import Status
-    from pellicle.results.result import Result
+from .printing import NOT_CONVERGED, echo, print_columns, print_json, print_warning
 
 
 def print_origin(data: xr.Dataset) -> None:
@@ -30,10 +41,6 @@ def print_origin(data: xr.Dataset) -> None:
 
 def print_steps(result: Result, *, si: bool = False) -> None:
     """Print a row for each step."""
-    from pellicle.contact.caveats import from_text, verdict_of
-    from pellicle.results.path import prescribed_variable
-    from pellicle.variables import CAVEATS, names_of
-
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
     printed_names = {"time", "depth", "force", *areas, *names_of("other")}
@@ -47,9 +54,6 @@ def print_steps(result: Result, *, si: bool = False) -> None:
 
 def print_contact(result: Result, *, si: bool = False) -> None:
     """Print the shape of the contact at each step, and of the zone around it."""
-    from pellicle.results.shape import means_something
-    from pellicle.variables import names_of
-
     data = result.dataset
     # Files of earlier versions lack some.
     names = [name for name in names_of("contact", "interaction") if name in data]
@@ -60,8 +64,6 @@ def print_contact(result: Result, *, si: bool = False) -> None:
 
 def print_path(result: Result, *, si: bool = False) -> None:
     """Print the events on the path and its work, where there is an interaction."""
-    from pellicle.units import DIGITS, Scale, printed, readable
-    from pellicle.variables import VARIABLES, names_of
 
     def value(number: float, unit: str) -> str:
         text = Scale(1.0, printed(unit)).text(number, 6) if si else readable(number, unit, DIGITS)
@@ -70,43 +72,33 @@ def print_path(result: Result, *, si: bool = False) -> None:
     summary, events = result.path_summary, names_of("path")
     rows = [(VARIABLES[name], number) for name, number in summary.items() if name in events]
     if rows:
-        columns = [
-            ("path", [variable.words for variable, _ in rows]),
-            ("value", [value(number, variable.unit) for variable, number in rows]),
-            ("meaning", [variable.meaning for variable, _ in rows]),
-        ]
-        print_columns(columns)
+        names = "path", [variable.words for variable, _ in rows]
+        values = "value", [value(number, variable.unit) for variable, number in rows]
+        print_columns([names, values, ("meaning", [variable.meaning for variable, _ in rows])])
 
 
 def print_oscillations(result: Result, *, si: bool = False) -> None:
     """Print a row for each oscillation on the path."""
-    from pellicle.results.wording import wording_of
-    from pellicle.variables import names_of
-
     if oscillations := result.oscillations:
-        columns = []
+        table = []
         for name in names_of("oscillation"):
             values = [getattr(oscillation, name) for oscillation in oscillations]
             column = wording_of(name, values, si=si)
-            columns.append((column.head, [column.number(value) for value in values]))
-        print_columns(columns, "oscillations")
+            table.append((column.head, [column.number(value) for value in values]))
+        print_columns(table, "oscillations")
 
 
 def _columns(data: xr.Dataset, names: Sequence[str], si: bool) -> list[tuple[str, list[str]]]:
     """Return head and cells of the steps and of variables."""
-    from pellicle.results.wording import wording
-
-    columns = [("step", [str(number) for number in data["step"].values.tolist()])]
+    table = [("step", [str(number) for number in data["step"].values.tolist()])]
     for name in names:
         column = wording(data[name], si=si)
-        columns.append((column.head, [column.number(v) for v in data[name].values.tolist()]))
-    return columns
+        table.append((column.head, [column.number(v) for v in data[name].values.tolist()]))
+    return table
 
 
 def print_runs(table: xr.Dataset, *, si: bool = False) -> None:
     """Print parameters, last step and verdict of each run of a study, and its path."""
-    from pellicle.studies.summary import columns, path_columns
-
     print_columns(columns(table, si=si))
     print_columns(path_columns(table, si=si), "path")
 
@@ -129,8 +121,6 @@ def print_result_json(result: Result, files: Sequence[Path] = ()) -> None:
 
 def print_study_json(table: xr.Dataset, files: Sequence[Path] = ()) -> None:
     """Print a study as JSON: its origin, and the numbers of each step of each run in SI."""
-    from pellicle.studies.summary import progress_of, runs_of
-
     runs = []
     for run in runs_of(table):
         done, planned, verdict = progress_of(run)
@@ -167,8 +157,6 @@ def _origin(data: xr.Dataset) -> dict[str, Any]:
 
 def _steps(data: xr.Dataset) -> list[dict[str, Any]]:
     """Return the numbers and texts of each step by name."""
-    from pellicle.variables import CAVEATS
-
     names = [
         "step",
         *(str(n) for n, variable in data.data_vars.items() if variable.dims == ("step",)),
@@ -219,8 +207,6 @@ def _steps_text(numbers: Sequence[int]) -> str:
 
 def exit_by_status(table: xr.Dataset) -> None:
     """Print which runs of a study did not converge; exit unless all did."""
-    from pellicle.studies.summary import failures, reasons
-
     if message := failures(table):
         for reason in reasons(table):
             echo(for_document(reason), err=True)

@@ -11,16 +11,7 @@ import typer
 from pellicle.errors import ConfigError
 from pellicle.hookspecs import RegisterCommand, hookimpl
 
-from .exits import INTERRUPTED
-from .printing import echo, print_json, print_table, print_warning
-from .results import (
-    exit_by_convergence,
-    exit_by_status,
-    print_result_json,
-    print_runs,
-    print_steps,
-    print_study_json,
-)
+from .printing import INTERRUPTED, echo, print_json, print_table, print_warning
 
 if TYPE_CHECKING:
     from pellicle.config.run import Run
@@ -151,6 +142,8 @@ def _run_one(
     from pellicle.runs.runner import execute, standard_outputs
     from pellicle.units import DIGITS, readable
 
+    from .results import exit_by_convergence, print_result_json, print_steps
+
     steps = len(run.loading.values)
     journal, bar = Journal(stem, run.identity, overwrite), RunProgress(steps, not display.quiet)
     try:
@@ -179,6 +172,8 @@ def _run_study(
     study: Study, folder: Path, display: _Display, *, threads: int | None, overwrite: bool
 ) -> None:
     from pellicle.studies.runner import execute
+
+    from .results import exit_by_status, print_runs, print_study_json
 
     try:
         result = execute(
