@@ -97,16 +97,18 @@ class _Display(NamedTuple):
 def _print_plan(configuration: Run | Study, stem: Path, overwrite: bool, json: bool) -> None:
     from pellicle.config.study import Study
     from pellicle.runs.journal import Journal
-    from pellicle.studies.runner import RunTask, plan, tasks
+    from pellicle.studies.runner import RunTask, tasks
     from pellicle.units import readable
 
     if isinstance(configuration, Study):
-        planned = list(plan(tasks(configuration, stem.parent, overwrite=overwrite)))
+        planned = tasks(configuration, stem.parent, overwrite=overwrite)
     else:
         journal = Journal(stem, configuration.identity, overwrite)
-        planned = list(plan([RunTask(configuration.title or stem.name, configuration, journal)]))
-    rows = []
-    for task, finished, problem in planned:
+        planned = [RunTask(configuration.title or stem.name, configuration, journal)]
+    rows, done = [], 0
+    for task in planned:
+        _, finished, problem = task.stored()
+        done += finished >= task.steps
         nx, ny = task.run.grid.points
         state = f"{finished} of {task.steps} steps done" if finished < task.steps else "done"
         rows.append(
@@ -123,9 +125,8 @@ def _print_plan(configuration: Run | Study, stem: Path, overwrite: bool, json: b
     if json:
         print_json({"runs": rows})
         return
-    print_table(["run", "file", "points", "size", "steps", "memory", "state"], rows)
-    done = sum(finished >= task.steps for task, finished, _ in planned)
-    most = max(task.memory for task, *_ in planned) / 1e6
+    print_table([*rows[0]], rows)
+    most = max(task.memory for task in planned) / 1e6
     echo(
         f"{len(planned)} run{'s' * (len(planned) > 1)}, {done} done, "
         f"{len(planned) - done} to do; at most {most:.3g} MB each"

@@ -58,10 +58,11 @@ def points_of(table: Mapping[str, Any], dimensions: Mapping[str, Axes]) -> Itera
         if not problems:
             yield Point(index, run)
     if problems:
-        total = math.prod(shape)
         raise ConfigError(
-            Problem(field, _with_runs(message, runs, total) if field[:4] == "run." else message)
-            for (field, message), runs in problems.items()
+            Problem(problem.field, f"{problem.message} (in the run of {first_of(runs)})")
+            if problem.field[:4] == "run." and len(runs) < math.prod(shape)
+            else problem
+            for problem, runs in problems.items()
         )
 
 
@@ -83,13 +84,6 @@ def _located(problem: Problem, table: Mapping[str, Any], values: Mapping[str, An
             prefix = "" if shown(value) in problem.message else f"{shown(value)}: "
             return Problem(f"vary.{key}", f"{prefix}{problem.message}")
     return Problem(f"run.{problem.field}".removesuffix("."), problem.message)
-
-
-def _with_runs(message: str, runs: list[str], total: int) -> str:
-    """Return a message with the runs that it concerns, unless it concerns all."""
-    if len(runs) == total:
-        return message
-    return f"{message} (in the run of {first_of(runs)})"
 
 
 def short(value: object) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from typing import Any, get_args, get_origin
 
@@ -99,6 +99,12 @@ def fields_of_table(table: Mapping[str, Any], field: FieldInfo | None) -> Mappin
 
 def model_in(annotation: Any) -> type[BaseModel] | None:
     """Return the model that a field holds, alone or in a list."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return annotation
-    return next(filter(None, map(model_in, get_args(annotation))), None)
+    types = (part for part in parts_of(annotation) if isinstance(part, type))
+    return next((type_ for type_ in types if issubclass(type_, BaseModel)), None)
+
+
+def parts_of(annotation: Any) -> Iterator[Any]:
+    """Yield an annotation, and those that it is made of."""
+    yield annotation
+    for part in get_args(annotation):
+        yield from parts_of(part)

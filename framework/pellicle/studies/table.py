@@ -41,16 +41,17 @@ class StudyTable:
         }
         steps = {point.position: len(point.run.loading.values) for point in study.points}
         shape = *study.shape, max(steps.values())
-        self._texts = {name: np.full(shape, "", dtype=object) for name in _TEXTS}
+        self._values: dict[str, np.ndarray[Any, np.dtype[Any]]] = {
+            name: np.full(shape, "", dtype=object) for name in _TEXTS
+        }
         self._runs = np.full(study.shape, "", dtype=object)
         for point in study.points:
             count = steps[point.position]
-            self._texts["status"][point.position][:count] = Status.NOT_RUN.value
-            self._texts["status_code"][point.position][:count] = Status.NOT_RUN.name
+            self._values["status"][point.position][:count] = Status.NOT_RUN.value
+            self._values["status_code"][point.position][:count] = Status.NOT_RUN.name
             self._runs[point.position] = point.run.identity[:16]
         self.beyond_theory = np.full(study.shape, "", dtype=object)
         """What is far beyond the theory in each run."""
-        self._numbers: dict[str, np.ndarray[Any, np.dtype[Any]]] = {}
         self._descriptions: dict[str, dict[str, str]] = {}
 
     def put(self, index: tuple[int, ...], scalars: xr.Dataset) -> None:
@@ -58,12 +59,9 @@ class StudyTable:
         count = scalars.sizes["step"]
         for name, variable in scalars.data_vars.items():
             self._descriptions.setdefault(str(name), dict(variable.attrs))
-            if name in _TEXTS:
-                self._texts[str(name)][index][:count] = variable.values
-                continue
             missing = False if variable.dtype == bool else np.nan
-            empty = np.full(self._texts["status"].shape, missing)
-            self._numbers.setdefault(str(name), empty)[index][:count] = variable.values
+            empty = np.full(self._values["status"].shape, missing)
+            self._values.setdefault(str(name), empty)[index][:count] = variable.values
 
     def recall(self, earlier: xr.Dataset) -> None:
         """Take over what an earlier table of the same runs says to be beyond the theory."""
@@ -75,20 +73,19 @@ class StudyTable:
 
     def fail(self, index: tuple[int, ...], reason: str) -> None:
         """Record why the remaining steps of a run are missing."""
-        codes = self._texts["status_code"][index]
+        codes = self._values["status_code"][index]
         missing = codes == Status.NOT_RUN.name
         codes[missing] = Status.FAILED.name
-        self._texts["status"][index][missing] = Caveat(Status.FAILED, {"reason": reason}).sentence
+        self._values["status"][index][missing] = Caveat(Status.FAILED, {"reason": reason}).sentence
 
     def dataset(self) -> xr.Dataset:
         """Return the table, with NaN for missing numbers."""
         dimensions = *self._study.dimensions, "step"
+        numbers = [name for name in self._values if name not in _TEXTS]
         variables: dict[str, Any] = {
-            name: (dimensions, _whole(values, name), self._descriptions[name])
-            for name, values in self._numbers.items()
+            name: (dimensions, _whole(self._values[name], name), self._descriptions.get(name, {}))
+            for name in (*numbers, *_TEXTS)
         }
-        for name, texts in self._texts.items():
-            variables[name] = dimensions, texts.copy(), self._descriptions.get(name, {})
         description = {"long_name": "name of the run's file"}
         variables["run"] = dimensions[:-1], self._runs.copy(), description
         if self.beyond_theory.astype(bool).any():
@@ -100,11 +97,11 @@ class StudyTable:
         }
         coordinates["step"] = (
             "step",
-            np.arange(1, self._texts["status"].shape[-1] + 1),
+            np.arange(1, self._values["status"].shape[-1] + 1),
             {"long_name": "load step, counted from 1"},
         )
         table = with_path(xr.Dataset(variables, coordinates, self._attributes))
-        if not self._numbers:
+        if not numbers:
             return table
         return derive(table, self._study.derived, units_of(self._study.points[0].run))
 
