@@ -33,14 +33,6 @@ def study(vary: object = None, **others: Any) -> Study:
     return Study(run=RUN, vary={} if vary is None else vary, **others)
 
 
-def test_copy_with_other_axes_has_their_runs() -> None:
-    """The runs of a copy are those of its axes."""
-    copy = study({TENSION: [1, 2]}).model_copy(update={"vary": {TENSION: (3.0,)}})
-    assert [point.run.to_json() for point in copy.points] == [
-        point.run.to_json() for point in study({TENSION: [3]}).points
-    ]
-
-
 def test_product() -> None:
     """Each value is combined with each; the last axis varies fastest."""
     plan = study({TENSION: [0, "10 mN/m"], "indenter.radius": ["1 mm", "2 mm", "3 mm"]})

@@ -42,9 +42,8 @@ def check(
     from pellicle.config.study import Study, from_toml
     from pellicle.runs.advice import advise
     from pellicle.runs.memory_estimate import memory_of
-    from pellicle.studies.planned import check_outputs
     from pellicle.studies.summary import run_names
-    from pellicle.studies.table import StudyTable
+    from pellicle.studies.table import StudyTable, check_outputs
 
     allowed = _allowed(error.strip())
     configuration = from_toml(file, set_ or ())

@@ -21,10 +21,10 @@ from pellicle.plugins import Registered, registry
 from pellicle.schema.messages import similar
 from pellicle.units import quantity_of, readable
 
+from .describe import model_in, parts_of
 from .loading import Loading, Options, keys_of, prescriptions
 from .run import Run
 from .study import Study
-from .words import model_in, parts_of
 
 _TABLES: Mapping[str, type[BaseModel]] = {
     "run": Run,

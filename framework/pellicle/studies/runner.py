@@ -38,7 +38,6 @@ from pellicle.runs.progress import ProgressReporter
 from pellicle.variables import BEYOND_THEORY
 
 from . import table
-from .planned import check_outputs
 from .summary import caveats, failures, progress_of, run_names
 
 _TABLE_SHARE = 0.05
@@ -150,7 +149,7 @@ def run_study(
 
 def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[RunTask]:
     """Return all runs of a study, finished or not; its outputs have to fit it."""
-    check_outputs(study)
+    table.check_outputs(study)
     outputs = tuple(o for o in study.points[0].run.outputs or () if o.scope == "run")
     names = run_names(table.StudyTable(study).dataset())
     return [
