@@ -178,13 +178,6 @@ def test_plugins_as_json(cli: Cli) -> None:
     assert listed["broken"] == []
 
 
-def test_plugins_as_a_table(cli: Cli) -> None:
-    """`pellicle plugins` lists the same for people."""
-    lines = cli("plugins").stdout.splitlines()
-    assert lines[0].split() == ["family", "type", "origin", "version", "description"]
-    assert any(line.split()[:3] == ["kernel", "half_space", "pellicle"] for line in lines)
-
-
 def test_plugins_are_checked_over_their_examples(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     """`pellicle plugins --check` names the rule that an example breaks, and ends with 1 then."""
     kept = json.loads(cli("plugins", "--check", "correction.yastrebov", "--json").stdout)

@@ -42,21 +42,18 @@ def check(
     from pellicle.config.study import Study, from_toml
     from pellicle.runs.advice import advise
     from pellicle.runs.memory_estimate import memory_of
-    from pellicle.studies.summary import run_names
-    from pellicle.studies.table import StudyTable, check_outputs
+    from pellicle.studies.runner import tasks
 
     allowed = _allowed(error.strip())
     configuration = from_toml(file, set_ or ())
     for doubt in doubtful_scales(configuration).values():
         print_warning(doubt)
     if isinstance(configuration, Study):
-        check_outputs(configuration)
-        names = run_names(StudyTable(configuration).dataset())
-        runs = [point.run for point in configuration.points]
+        runs = [(task.name, task.run) for task in tasks(configuration, Path())]
     else:
-        names, runs = [""], [configuration]
+        runs = [("", configuration)]
     checked = []
-    for name, run in zip(names, runs, strict=True):
+    for name, run in runs:
         try:
             checked.append(_Checked(name, run, advise(run, allowed), memory_of(run)))
         except ConfigError as problem:
@@ -67,7 +64,7 @@ def check(
             | {"steps": [step._asdict() for step in advice.steps], "memory": needed}
             for _, _, advice, needed in checked
         ]
-        of_runs = [{"run": name, **of_run} for name, of_run in zip(names, data, strict=True)]
+        of_runs = [{"run": one.name, **of_run} for one, of_run in zip(checked, data, strict=True)]
         print_json({"runs": of_runs} if isinstance(configuration, Study) else data[0])
         raise typer.Exit(NOT_CONVERGED if any(one.advice.at_edge for one in checked) else 0)
     if isinstance(configuration, Study):

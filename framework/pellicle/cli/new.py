@@ -95,7 +95,6 @@ def _examples() -> dict[str, tuple[str, Path]]:
 
 
 def _write_new(path: Path, content: bytes) -> None:
-    """Write a file that must not exist."""
     from pellicle.files import storage_errors
 
     with storage_errors(path):

@@ -6,19 +6,16 @@ import math
 from collections.abc import Iterable, Mapping, Sequence, Sized
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, assert_never, cast
+from typing import Annotated, Any, NamedTuple, assert_never, cast
 
-from pydantic import Field, create_model
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, create_model
+from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import core_schema
 
 from pellicle.errors import ConfigError, all_problems, shown
 from pellicle.schema.model import Model
 from pellicle.schema.ranges import RANGE, SPACINGS, ramp, ranged
 from pellicle.units import Quantity
-
-if TYPE_CHECKING:
-    from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
-    from pydantic.json_schema import JsonSchemaValue
 
 _MOST = 1_000_000
 # Three samples are the fewest that show an amplitude and a phase; four meet both extremes.
@@ -139,7 +136,6 @@ def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
 
 
 def _leg(entry: object, quantity: Quantity) -> Leg:
-    """Return one leg."""
     if isinstance(entry, Leg):
         entry = entry.model_dump()
     if not isinstance(entry, Mapping):
