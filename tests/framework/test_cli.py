@@ -102,13 +102,6 @@ def test_quiet(cli: Cli) -> None:
     assert len(Path("a/a.csv").read_text(encoding="utf-8").splitlines()) == 3
 
 
-def test_output_folder(cli: Cli) -> None:
-    """``-o`` chooses the folder, and files are named after the run file."""
-    cli("new", "a.toml")
-    result = cli("run", "a.toml", *SMALL, "-o", "b/c", "--set", "outputs=[]")
-    assert _files_named(result.stdout) == [Path("b/c/a.h5")]
-
-
 def test_threads(cli: Cli) -> None:
     """The number of threads does not change the result."""
     cli("new", "a.toml")

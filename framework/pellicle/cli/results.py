@@ -105,18 +105,10 @@ def print_runs(table: xr.Dataset, *, si: bool = False) -> None:
 
 def print_result_json(result: Result, files: Sequence[Path] = ()) -> None:
     """Print a result as JSON: its origin, and the numbers of each step in SI."""
-    data = result.dataset
-    print_json(
-        {
-            **_origin(data),
-            "converged": result.converged and data.sizes["step"] == result.planned_steps,
-            "planned_steps": result.planned_steps,
-            "steps": _steps(data),
-            "path": result.path_summary,
-            "units": _units(data),
-            "files": list(map(str, files)),
-        }
-    )
+    data, planned = result.dataset, result.planned_steps
+    converged = result.converged and data.sizes["step"] == planned
+    steps, path = _steps(data), result.path_summary
+    _print_json(data, files, converged=converged, planned_steps=planned, steps=steps, path=path)
 
 
 def print_study_json(table: xr.Dataset, files: Sequence[Path] = ()) -> None:
@@ -140,19 +132,17 @@ def print_study_json(table: xr.Dataset, files: Sequence[Path] = ()) -> None:
                 "path": per_run,
             }
         )
-    print_json(
-        {
-            **_origin(table),
-            "converged": all(run["converged"] for run in runs),
-            "runs": runs,
-            "units": _units(table),
-            "files": list(map(str, files)),
-        }
-    )
+    _print_json(table, files, converged=all(run["converged"] for run in runs), runs=runs)
 
 
-def _origin(data: xr.Dataset) -> dict[str, Any]:
-    return {name: data.attrs.get(name, "") for name in ("title", "date", "versions")}
+def _print_json(data: xr.Dataset, files: Sequence[Path], **own: object) -> None:
+    origin = {name: data.attrs.get(name, "") for name in ("title", "date", "versions")}
+    units = {
+        name: variable.attrs["units"]
+        for name, variable in data.variables.items()
+        if variable.attrs.get("units", "1") != "1"
+    }
+    print_json({**origin, **own, "units": units, "files": list(map(str, files))})
 
 
 def _steps(data: xr.Dataset) -> list[dict[str, Any]]:
@@ -164,14 +154,6 @@ def _steps(data: xr.Dataset) -> list[dict[str, Any]]:
     columns = [data[name].values.tolist() for name in names]
     steps = [dict(zip(names, row, strict=True)) for row in zip(*columns, strict=True)]
     return [step | {CAVEATS: json.loads(step[CAVEATS] or "[]")} for step in steps]
-
-
-def _units(data: xr.Dataset) -> dict[str, str]:
-    return {
-        str(name): variable.attrs["units"]
-        for name, variable in data.variables.items()
-        if variable.attrs.get("units", "1") != "1"
-    }
 
 
 def exit_by_convergence(result: Result) -> None:
