@@ -19,14 +19,7 @@ from pellicle.results.path import prescribed_variable
 from pellicle.results.result import Result
 from pellicle.results.shape import means_something
 from pellicle.results.wording import wording, wording_of
-from pellicle.studies.summary import (
-    columns,
-    failures,
-    path_columns,
-    progress_of,
-    reasons,
-    runs_of,
-)
+from pellicle.studies import summary
 from pellicle.units import DIGITS, Scale, printed, readable
 from pellicle.variables import CAVEATS, VARIABLES, names_of
 
@@ -69,8 +62,9 @@ def print_path(result: Result, *, si: bool = False) -> None:
         text = Scale(1.0, printed(unit)).text(number, 6) if si else readable(number, unit, DIGITS)
         return "none" if number != number else text
 
-    summary, events = result.path_summary, names_of("path")
-    rows = [(VARIABLES[name], number) for name, number in summary.items() if name in events]
+    events = names_of("path")
+    numbers = result.path_summary.items()
+    rows = [(VARIABLES[name], number) for name, number in numbers if name in events]
     if rows:
         names = "path", [variable.words for variable, _ in rows]
         values = "value", [value(number, variable.unit) for variable, number in rows]
@@ -99,8 +93,8 @@ def _columns(data: xr.Dataset, names: Sequence[str], si: bool) -> list[tuple[str
 
 def print_runs(table: xr.Dataset, *, si: bool = False) -> None:
     """Print parameters, last step and verdict of each run of a study, and its path."""
-    print_columns(columns(table, si=si))
-    print_columns(path_columns(table, si=si), "path")
+    print_columns(summary.columns(table, si=si))
+    print_columns(summary.path_columns(table, si=si), "path")
 
 
 def print_result_json(result: Result, files: Sequence[Path] = ()) -> None:
@@ -114,8 +108,8 @@ def print_result_json(result: Result, files: Sequence[Path] = ()) -> None:
 def print_study_json(table: xr.Dataset, files: Sequence[Path] = ()) -> None:
     """Print a study as JSON: its origin, and the numbers of each step of each run in SI."""
     runs = []
-    for run in runs_of(table):
-        done, planned, verdict = progress_of(run)
+    for run in summary.runs_of(table):
+        done, planned, verdict = summary.progress_of(run)
         axes = {str(n): value.item() for n, value in run.coords.items() if n != "step"}
         per_run = {
             str(name): variable.item()
@@ -189,8 +183,8 @@ def _steps_text(numbers: Sequence[int]) -> str:
 
 def exit_by_status(table: xr.Dataset) -> None:
     """Print which runs of a study did not converge; exit unless all did."""
-    if message := failures(table):
-        for reason in reasons(table):
+    if message := summary.failures(table):
+        for reason in summary.reasons(table):
             echo(for_document(reason), err=True)
         echo(message, err=True)
         raise typer.Exit(NOT_CONVERGED)
