@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 import pellicle as pl
 from pellicle.show import save_figure
-from pellicle.show.lines import EDGE_CELLS, edge_cells
+from pellicle.show.fields import EDGE_CELLS, edge_cells
 from pellicle.show.style import OKABE_ITO
 from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Paraboloid

@@ -4,16 +4,11 @@ from __future__ import annotations
 
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from .printing import echo
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from pellicle.results.result import Result
 
 
 class Format(StrEnum):
@@ -46,12 +41,11 @@ def plot(
     from pellicle.studies.runner import is_table, read
 
     chosen = [str(format_) for format_ in formats or [Format.PNG]]
-    shown: Result | xr.Dataset
     if is_table(results):
-        shown, folder = read(results)
-        name = "study"
+        table, folder = read(results)
+        paths = save_figures(table, directory or folder, "study", chosen)
     else:
         file = file_of_run(results)
-        shown, folder, name = load(file), file.parent, file.stem
-    for path in save_figures(shown, directory or folder, name, chosen):
+        paths = save_figures(load(file), directory or file.parent, file.stem, chosen)
+    for path in paths:
         echo(f"wrote {path}")

@@ -1,5 +1,6 @@
 __all__: list[str]
 
+from .fields import edge_cells as edge_cells
 from .fields import pressure_map as pressure_map
 from .fields import profile as profile
 from .fields import show_field as show_field
@@ -14,7 +15,6 @@ from .html import Section as Section
 from .html import Table as Table
 from .html import Text as Text
 from .html import page as page
-from .lines import edge_cells as edge_cells
 from .maps import Field as Field
 from .maps import Frame as Frame
 from .maps import Maps as Maps

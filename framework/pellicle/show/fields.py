@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pellicle.arrays import Array
+from pellicle.arrays import Array, Mask
 from pellicle.contact.problem import height_scale
 from pellicle.results.path import has_interaction, has_times, label_of_step
 from pellicle.results.result import Result
 from pellicle.results.wording import is_periodic
 from pellicle.units import axis_unit
 
-from .lines import EDGE_CELLS, edge_cells
 from .style import NO_CONTACT, add_colour_bar
 
 if TYPE_CHECKING:
@@ -24,6 +23,10 @@ if TYPE_CHECKING:
 
 DIVERGING = "RdBu_r"
 """The colours of fields that are negative where an interaction pulls."""
+EDGE_CELLS = "cells at the edge of contact"
+"""Name of the cells whose pressure is that of the grid."""
+_EDGE = 3
+_RESOLVED = 16
 _OPEN = 4.0
 """Largest gap along a line, over the depth, up to which the whole line is drawn."""
 
@@ -162,6 +165,23 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
         gap_axes.set_ylim(top=float(data["depth"]) * gap_scale)
     elif opens and not near.all():
         gap_axes.set_ylim(top=float(gap[near].max()) * gap_scale)
+
+
+def edge_cells(contact: Mask) -> Mask:
+    """Return which cells along a line through one contact are its three outermost at each end.
+
+    Their pressure depends on where the edge of contact passes through them, most where tension
+    makes it jump there. Lines through several contacts or fewer than 16 cells have none.
+    """
+    edge = np.zeros(contact.shape, dtype=bool)
+    (cells,) = np.nonzero(contact)
+    if cells.size < _RESOLVED or cells[-1] - cells[0] + 1 != cells.size:
+        return edge
+    if cells[0] > 0:
+        edge[cells[:_EDGE]] = True
+    if cells[-1] < contact.size - 1:
+        edge[cells[-_EDGE:]] = True
+    return edge
 
 
 def _caption(result: Result, step: int) -> str:

@@ -57,20 +57,13 @@ def over_time(result: Result, figure: Figure) -> None:
     for axes, (name, hue) in zip(panels, _OVER_TIME.items(), strict=True):
         y_axis = wording(data[name])
         y = data[name].values * y_axis.scale.factor
-        axes.plot(t, y, color=hue, linestyle="-", mfc="white", **_marked(t.size))
-        axes.plot(t[~good], y[~good], "x", color="red", markersize=9)
+        _draw_line(axes, t, y, good, None, color=hue, linestyle="-", marker="o")
         axes.set_ylabel(y_axis.head)
         axes.axhline(0.0, color="0.4", linewidth=0.6)
         axes.grid(alpha=0.3)
     panels[0].set_title(data.attrs.get("title", ""))
     panels[-1].set_xlabel(time_axis.head)
     figure.align_ylabels(panels)
-
-
-def _marked(count: int, marker: str = "o") -> dict[str, Any]:
-    """Return keywords of ``Axes.plot`` for a line over ``count`` steps, with markers if few."""
-    few = count <= _MOST_MARKED
-    return {"marker": marker if few else "", "markersize": 4}
 
 
 _OVER_TIME = {"force": "C0", "depth": "C1", "contact_area": "C2"}
@@ -214,10 +207,11 @@ def _draw_line(
 ) -> None:
     """Draw a line over the steps of a run, in the legs of its ``path`` if there is one.
 
-    Red crosses lie on the steps that are not ``good``.
+    Red crosses lie on the steps that are not ``good``; without a path, few steps have markers.
     """
     if path is None:
-        axes.plot(x, y, mfc="white", **style | _marked(x.size, style["marker"]))
+        marker = style["marker"] if x.size <= _MOST_MARKED else ""
+        axes.plot(x, y, mfc="white", **style | {"marker": marker, "markersize": 4})
     else:
         draw_legs(axes, path, x, y, markersize=4, **style)
     axes.plot(x[~good], y[~good], "x", color="red", markersize=9)

@@ -12,7 +12,7 @@ from pellicle.components import Runs
 from pellicle.results.derived import as_array
 from pellicle.results.path import has_interaction
 from pellicle.schema.expression import names_in
-from pellicle.show.lines import EDGE_CELLS, edge_cells
+from pellicle.show.fields import EDGE_CELLS, edge_cells
 from pellicle.show.style import LINES, MARKERS, colour
 from pellicle_plugins.validation.reference import exact_line
 

@@ -11,8 +11,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 import pellicle as pl
-from pellicle.show.fields import pressure_map
-from pellicle.show.lines import edge_cells
+from pellicle.show.fields import edge_cells, pressure_map
 from pellicle.show.plotting import study_curves
 from pellicle.show.saving import save_figure
 from pellicle.show.style import FigureStyle, is_log_spaced
