@@ -29,13 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Command:
-    """A command, as `hookspecs.RegisterCommand` gets it.
-
-    Raises
-    ------
-    PluginError
-        A value is not of the form that is asked for.
-    """
+    """A command, as `hookspecs.RegisterCommand` gets it."""
 
     function: Callable[..., None]
     file: str = ""
@@ -153,11 +147,6 @@ def refuse_file_of_another(model: type[BaseModel], keys: Set[str]) -> None:
     """Refuse the content of a file that is for another command than the one of ``model``.
 
     It has all keys that the other file requires, and the other model knows more of its keys.
-
-    Raises
-    ------
-    ConfigError
-        The file is for another command.
     """
     others = {
         name: other

@@ -23,7 +23,6 @@ COMMAND = "command."
 """What the names of entry points of commands begin with."""
 REMEDY = f"uninstall one, or name its distribution in {DISABLE}"
 """What to do where several plugins claim one name."""
-_OWN = "pellicle"
 Loaded = TypeVar("Loaded")
 # Standard output is the process's: of two threads that redirect it at once the second would restore
 # what the first has redirected.
@@ -48,15 +47,7 @@ class Origin:
     @property
     def is_own(self) -> bool:
         """Whether it is a part of pellicle."""
-        return self.distribution == _OWN
-
-    def is_disabled(self, disable: str) -> bool:
-        """Return whether the value of the environment variable `DISABLE` switches it off."""
-        if self.is_own:
-            return False
-        named = {_same(name) for name in disable.split(",")} - {""}
-        names = {"1", "true", "all", _same(self.distribution), _same(self.entry_point)}
-        return bool(named & names)
+        return self.distribution == "pellicle"
 
     def __str__(self) -> str:
         return f"{self.distribution} {self.version} (entry point {self.entry_point!r})"
@@ -80,8 +71,13 @@ def claimed_by(origins: Iterable[Origin]) -> str:
 
 def in_order(entries: Iterable[EntryPoint], disable: str) -> Iterator[tuple[EntryPoint, bool]]:
     """Yield each entry point once, by name, and whether the value of `DISABLE` switches it off."""
+    named = {_same(name) for name in disable.split(",")} - {""}
     for entry in sorted(set(entries), key=lambda entry: (entry.name, entry.value)):
-        yield entry, bool(disable) and Origin.of(entry).is_disabled(disable)
+        is_off = False
+        if named and not (origin := Origin.of(entry)).is_own:
+            names = _same(origin.distribution), _same(origin.entry_point)
+            is_off = not named.isdisjoint({"1", "true", "all", *names})
+        yield entry, is_off
 
 
 def isolated(entry: EntryPoint, load: Callable[[], Loaded]) -> Loaded | Broken:

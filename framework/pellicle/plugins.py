@@ -1,4 +1,4 @@
-"""The registry of installed components.
+"""The registry of installed components, and components by the name of their type.
 
 pluggy's own loader stops at the first broken plugin, silently drops the second of two equal names
 and leaves a failing plugin half registered. So each entry point is loaded separately here, and its
@@ -9,14 +9,23 @@ from __future__ import annotations
 
 import inspect
 import os
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cache, partial
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any, Literal, TypeVar, get_args, get_origin
 
 from . import hookspecs
-from .components import FAMILIES, Component, Prescription, Suite
+from .components import (
+    FAMILIES,
+    Component,
+    Indenter,
+    Interaction,
+    Kernel,
+    Prescription,
+    Solver,
+    Suite,
+)
 from .components.prescription import OPTIONS
 from .errors import ConfigError, PellicleError, PluginError, shown
 from .origins import COMMAND, REMEDY, claimed_by, in_order, isolated
@@ -106,9 +115,8 @@ class Registry:
         table = value if isinstance(value, Mapping) else {}
         if "type" not in table and base.family in self.components:
             listing = ", ".join(sorted(self.components[base.family]))
-            reason = f"{shown(value)} is not a table"
-            if isinstance(value, Mapping):
-                reason = "has no type"
+            is_table = isinstance(value, Mapping)
+            reason = "has no type" if is_table else f"{shown(value)} is not a table"
             raise ConfigError(f"{reason}; give a table with type = one of: {listing}")
         component = self.find(base.family, table.get("type"))
         if not issubclass(component, base):
@@ -135,17 +143,33 @@ def registry() -> Registry:
     return load(entry_points(group=GROUP), os.environ.get(DISABLE, ""))
 
 
+def _factory(family: type[AnyComponent], example: str) -> Callable[..., AnyComponent]:
+    def make(type: str, /, **fields: Any) -> AnyComponent:  # noqa: A002 - name of the field
+        return registry().make(family, {"type": type, **fields})
+
+    name = family.__name__.lower()
+    make.__name__ = make.__qualname__ = name
+    make.__doc__ = f"""Return the {name} of a type with its fields, such as ``{name}({example})``.
+
+    Raises
+    ------
+    ConfigError
+        No such type, or fields that it does not allow.
+    """
+    return make
+
+
+kernel = _factory(Kernel, '"half_space", reduced_modulus="10 kPa"')
+indenter = _factory(Indenter, '"sphere", radius="5 um"')
+interaction = _factory(Interaction, '"jkr", work_of_adhesion="50 mJ/m2"')
+solver = _factory(Solver, '"conjugate_gradient", tolerance=1e-6')
+
+
 def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
     """Load each plugin separately, and return the registry.
 
-    Parameters
-    ----------
-    entries
-        Entry points that name component classes, or modules with hooks of `pellicle.hookspecs`;
-        those of commands are skipped.
-    disable
-        ``"1"`` or ``"all"`` switches off every plugin that is not pellicle's own; otherwise a
-        comma-separated list of distributions or entry points to switch off.
+    Entry points name component classes, or modules with hooks of `pellicle.hookspecs`; those of
+    commands are skipped. ``disable`` is the value of the environment variable `DISABLE`.
     """
     claims: dict[tuple[str, str], list[Registered]] = {}
     families = dict(FAMILIES)

@@ -11,7 +11,7 @@ import pytest
 
 from pellicle.components import FAMILIES, Component
 from pellicle.plugins import registry
-from pellicle.schema.input_path import paths_relative_to
+from pellicle.schema.from_file import paths_relative_to
 
 EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
     family: {

@@ -3,15 +3,8 @@
 import numpy as np
 import pytest
 
-from pellicle import AreaCorrection, Run
+from pellicle import Run
 from pellicle.runs.runner import solve
-
-
-def test_correction_takes_area_off(correction: AreaCorrection) -> None:
-    """Cells count as in contact where any of them is, so the area is less than they cover."""
-    x, y = np.mgrid[0:40, 0:30]
-    contact = np.sin(x / 3) * np.cos(y / 4) + 0.3 * np.sin(x / 5 + y) > 0
-    assert correction.area(contact, (2e-6, 3e-6)) < 6e-12 * np.count_nonzero(contact)
 
 
 def test_result_has_the_periodic_area() -> None:

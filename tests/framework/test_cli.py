@@ -6,7 +6,6 @@ import json
 import os
 import subprocess
 import sys
-import tomllib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -15,7 +14,6 @@ from typer.testing import CliRunner, Result
 
 import pellicle as pl
 from pellicle.cli.app import app
-from pellicle.commands import commands
 from pellicle.plugins import registry
 from tests.pictures import drawn_width
 
@@ -96,38 +94,12 @@ def test_new_does_not_overwrite(cli: Cli) -> None:
     assert "no/mine.toml: cannot be written" in cli("new", "no/mine.toml", code=2).stderr
 
 
-def test_starter_file_is_commented_toml(cli: Cli) -> None:
-    """The starter file is TOML with a comment on most of what it says."""
-    cli("new", "a.toml")
-    text = Path("a.toml").read_text(encoding="utf-8")
-    assert set(tomllib.loads(text)) >= {"title", "grid", "kernel", "indenter", "loading"}
-    assert text.count("#") > 10
-
-
 def test_quiet(cli: Cli) -> None:
     """`--quiet` prints nothing at all when all is well."""
     cli("new", "a.toml")
     result = cli("run", "a.toml", *SMALL, "--quiet", "--set", "outputs=[{type='csv'}]")
     assert result.output == ""
     assert len(Path("a/a.csv").read_text(encoding="utf-8").splitlines()) == 3
-
-
-def test_output_folder(cli: Cli) -> None:
-    """``-o`` chooses the folder, and files are named after the run file."""
-    cli("new", "a.toml")
-    result = cli("run", "a.toml", *SMALL, "-o", "b/c", "--set", "outputs=[]")
-    assert _files_named(result.stdout) == [Path("b/c/a.h5")]
-
-
-def test_set_reaches_the_result(cli: Cli) -> None:
-    """What ``--set`` says is what was run, and what the file records."""
-    cli("new", "a.toml")
-    cli("run", "a.toml", *SMALL, "--set", "kernel.tension=5 mN/m", "--set", "outputs=[]")
-    assert [path.name for path in Path("a").iterdir()] == ["a.h5"]
-    cli("run", "a.toml", *SMALL, "--set", "kernel.tension=5 mN/m")
-    configuration = pl.load("a/a.h5").configuration
-    assert configuration["kernel"]["tension"] == pytest.approx(0.005)
-    assert configuration["grid"]["points"] == [32, 32]
 
 
 def test_threads(cli: Cli) -> None:
@@ -199,13 +171,6 @@ def test_plugins_as_json(cli: Cli) -> None:
     assert listed["broken"] == []
 
 
-def test_plugins_as_a_table(cli: Cli) -> None:
-    """`pellicle plugins` lists the same for people."""
-    lines = cli("plugins").stdout.splitlines()
-    assert lines[0].split() == ["family", "type", "origin", "version", "description"]
-    assert any(line.split()[:3] == ["kernel", "half_space", "pellicle"] for line in lines)
-
-
 def test_plugins_are_checked_over_their_examples(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     """`pellicle plugins --check` names the rule that an example breaks, and ends with 1 then."""
     kept = json.loads(cli("plugins", "--check", "correction.yastrebov", "--json").stdout)
@@ -215,19 +180,6 @@ def test_plugins_are_checked_over_their_examples(cli: Cli, monkeypatch: pytest.M
     broken = cli("plugins", "--check", "yastrebov", code=1).stdout
     assert "Yastrebov breaks the rule no_contact_has_no_area" in broken
     assert "'springs' is neither a type" in cli("plugins", "--check", "springs", code=2).stderr
-
-
-def test_schema(cli: Cli) -> None:
-    """`pellicle schema` prints JSON that knows the installed components."""
-    schema = json.loads(cli("schema").stdout)
-    assert "tensed_membrane" in json.dumps(schema["properties"]["kernel"])
-
-
-@pytest.mark.parametrize("command", commands())
-def test_help(cli: Cli, command: str) -> None:
-    """Every command explains itself."""
-    assert command in cli("--help").stdout
-    assert "Usage" in cli(command, "--help").stdout
 
 
 def test_module_is_the_command(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator
-from importlib.metadata import Distribution, EntryPoint, entry_points
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
@@ -13,6 +13,7 @@ from typer.testing import CliRunner, Result
 from pellicle import commands
 from pellicle.cli.app import app
 from pellicle.origins import GROUP
+from tests.installed import entry_point
 
 HELLO = '''
 from pathlib import Path
@@ -45,21 +46,6 @@ NO_MODEL = registers("hello, file='nothing.there:Model'")
 Install = Callable[..., None]
 
 
-class Installed(Distribution):
-    """A distribution that exists in memory only."""
-
-    def __init__(self, name: str) -> None:
-        self.header = f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.5\n"
-
-    def read_text(self, filename: str) -> str | None:
-        """Return the metadata; there is no other file."""
-        return self.header if filename == "METADATA" else None
-
-    def locate_file(self, path: object) -> Path:
-        """Return the path of a file, of which there is none."""
-        raise FileNotFoundError(path)
-
-
 @pytest.fixture
 def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install]:
     """Return a function that installs ``hello`` of a package beside the commands that there are."""
@@ -72,9 +58,7 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install
         module = f"{package}_{tmp_path.name.replace('-', '_')}"
         (tmp_path / f"{module}.py").write_text(f"{HELLO}\n{more}\n", encoding="utf-8")
         named = module if "register_commands" in more else f"{module}:hello"
-        entry = EntryPoint(f"command.{name}", named, GROUP)
-        vars(entry)["dist"] = Installed(package)
-        entries.add(entry)
+        entries.add(entry_point(f"command.{name}", named, package, "1.5"))
         forget()
 
     def forget() -> None:

@@ -222,12 +222,6 @@ STARTER: dict[str, Any] = tomllib.loads(
 )
 
 
-def test_schema_is_one() -> None:
-    """The JSON schema is itself valid and accepts the starter file."""
-    Draft202012Validator.check_schema(pl.json_schema())
-    validator().validate(STARTER)
-
-
 def test_schema_allows_components_within_components() -> None:
     """A kernel that holds a kernel, itself one that holds a kernel, is as in a file."""
     inner: dict[str, Any] = {"type": "half_space", "reduced_modulus": "1 kPa"}

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 import pellicle as pl
 from pellicle.cli.app import app
 from pellicle.files import read_text
-from pellicle.schema.toml import read_toml
+from pellicle.schema.from_file import read_toml
 from pellicle_fit.curves.readers import read as read_curves
 
 RUN = """

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import pellicle as pl
+from pellicle.schema import InputPath, Model
 
 HEIGHTS = 1e-1 * np.add.outer(np.arange(8.0), np.arange(8.0) ** 2)
 FILE = """
@@ -24,6 +25,14 @@ kernel = { type = "half_space", reduced_modulus = "10 kPa" }
 indenter = { type = "heights", path = "../data/a.npy", unit = "1 um" }
 loading = { depth = "30 um" }
 """
+
+
+class InputFile(Model):
+    """A model with a file."""
+
+    path: InputPath
+
+
 VARY = '[study]\nvary = { "indenter.path" = ["../data/a.npy", "../data/b.npy"] }\n'
 
 
@@ -90,6 +99,7 @@ def test_given_paths_mean_the_same_from_anywhere(
         assert copy == run
     assert json.loads(run.to_json())["indenter"]["path"] == str(file)
     assert json.loads(run.to_json(portable=True))["indenter"]["path"] == "a.npy"
+    assert InputFile(path="a/b.npy").path == Path("a/b.npy")
     study = pl.Study.from_toml(project / "runs" / "s.toml")
     paths = [point.run.indenter.model_dump()["path"] for point in study.points]
     assert [path.name for path in paths] == ["a.npy", "b.npy"]

@@ -2,77 +2,64 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Literal, NamedTuple
+from typing import Any, Literal
 
 import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle import Grid, IterativeSolver, Problem, Solution, Solver, State, Stop
+from pellicle import Grid, IterativeSolver, Problem, Solution, State, Stop
 from pellicle.arrays import Array
 from pellicle.contact.solution import Progress
 from pellicle.surface import make_operator
 from pellicle_plugins.kernels.half_spaces import HalfSpace
 
 
-class Iterate(NamedTuple):
-    """An index into what is played, and the progress up to there."""
-
-    place: int
-    progress: Progress
-
-
 class Played(IterativeSolver):
-    """Goes through given residuals, and gives up after three that bring no progress."""
+    """Goes through given measures, of which the first is the residual; iterates are progress."""
 
     type: Literal["played"] = "played"
-    residuals: list[float]
-    misclassified: list[int]
-    counts: bool = False
+    measures: list[tuple[float, ...]]
+    gives_up: bool = False
+    """Whether it stalls after three iterates that bring no progress in any measure."""
 
-    def begin(self, problem: Problem, start: State | None) -> Iterate:
+    def begin(self, problem: Problem, start: State | None) -> Any:
         """Return the first iterate."""
-        return Iterate(0, Progress().after(*self.measures(0)))
+        return 0, Progress().after(*self.measures[0])
 
-    def step(self, problem: Problem, state: Iterate) -> Iterate:
+    def step(self, problem: Problem, state: Any) -> Any:
         """Return the next iterate."""
-        index = state.place + 1
-        return Iterate(index, state.progress.after(*self.measures(index)))
+        index, progress = state
+        return index + 1, progress.after(*self.measures[index + 1])
 
-    def measures(self, index: int) -> Sequence[float]:
-        """Return the residual, and the misclassified cells if they count as progress."""
-        return self.residuals[index], *self.misclassified[index : index + self.counts]
-
-    def residual(self, problem: Problem, state: Iterate) -> float:
+    def residual(self, problem: Problem, state: Any) -> float:
         """Return the residual of an iterate."""
-        return self.residuals[state.place]
+        index: int = state[0]
+        return self.measures[index][0]
 
-    def pressure(self, state: Iterate) -> Array:
+    def pressure(self, state: Any) -> Array:
         """Return no pressure."""
         return np.zeros((4, 4))
 
-    def terminate(self, problem: Problem, state: Iterate) -> Stop | None:
-        """Return whether it stalls."""
-        return Stop.STALLED if state.progress.stagnant >= 3 else None
+    def terminate(self, problem: Problem, state: Any) -> Stop | None:
+        """Return whether it stalls; the loop asks for more by itself."""
+        if self.gives_up and state[1].stagnant >= 3:
+            return Stop.STALLED
+        return super().terminate(problem, state)
 
 
-class Endless(Played):
-    """Never gives up by itself."""
-
-    def terminate(self, problem: Problem, state: Iterate) -> Stop | None:
-        """Leave it to the loop."""
-        return IterativeSolver.terminate(self, problem, state)
-
-
-def solve(solver: Solver) -> tuple[Solution, list[int]]:
+def solve(residuals: list[float], **fields: Any) -> tuple[Solution, list[int]]:
     """Return the solution of a problem, and the iterations that the monitor was called with."""
     grid = Grid(points=4, size=1.0, boundary="periodic")
     operator = make_operator(HalfSpace(reduced_modulus=1.0), grid)
     problem = Problem(grid, operator, np.zeros(grid.shape), pl.Force(1.0))
     iterations: list[int] = []
+    solver = Played(**{"measures": [(r,) for r in residuals], "tolerance": 1e-8} | fields)
     solution = solver.solve(problem, None, lambda iteration, ratio: iterations.append(iteration))
     return solution, iterations
+
+
+MISCLASSIFIED = [9, 8, 7, 6, 5, 5, 5, 5, 0]
 
 
 @pytest.mark.parametrize(
@@ -87,16 +74,10 @@ def solve(solver: Solver) -> tuple[Solution, list[int]]:
 )
 def test_end(counts: bool, residuals: list[float], stop: Stop, iterations: int) -> None:
     """Three iterations without a new least of anything that counts end it."""
-    solution, monitored = solve(
-        Played(
-            residuals=residuals,
-            misclassified=[9, 8, 7, 6, 5, 5, 5, 5, 0],
-            counts=counts,
-            tolerance=1e-8,
-        )
-    )
-    assert solution.stop is stop
-    assert solution.iterations == iterations
+    pairs = zip(residuals, MISCLASSIFIED, strict=False)
+    more = {"measures": [*pairs]} if counts else {}
+    solution, monitored = solve(residuals, gives_up=True, **more)
+    assert (solution.stop, solution.iterations) == (stop, iterations)
     assert monitored == list(range(iterations + 1))
 
 
@@ -110,15 +91,13 @@ def test_end(counts: bool, residuals: list[float], stop: Stop, iterations: int) 
 )
 def test_end_by_default(residuals: list[float], stop: Stop, iterations: int) -> None:
     """The sum of the grid's edges and 200 more iterations without a new least residual end it."""
-    solution, _ = solve(Endless(residuals=residuals, misclassified=[], tolerance=1e-8))
+    solution, _ = solve(residuals)
     assert (solution.stop, solution.iterations) == (stop, iterations)
 
 
 @pytest.mark.parametrize("limit", [1, 5])
 def test_limit(limit: int) -> None:
     """No more iterations than allowed, and one that ends it is not lost."""
-    residuals = [1.0] * 5 + [0.0]
-    solver = Endless(residuals=residuals, misclassified=[], max_iterations=limit, tolerance=1e-8)
     stop = Stop.DONE if limit == 5 else Stop.ITERATION_LIMIT
-    solution, _ = solve(solver)
+    solution, _ = solve([1.0] * 5 + [0.0], max_iterations=limit)
     assert (solution.stop, solution.iterations) == (stop, limit)

@@ -6,7 +6,7 @@ import sys
 import tomllib
 from collections.abc import Callable
 from importlib import import_module
-from importlib.metadata import Distribution, EntryPoint, entry_points
+from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,7 @@ from pellicle.components import FAMILIES
 from pellicle.config.explain import explanations, words_by_kind
 from pellicle.config.json_schema import model_schema
 from pellicle.plugins import GROUP, Broken, Origin, Registry, load, registry
+from tests.installed import Installed, entry_point
 
 BUILT_INS = tuple(entry_points(group=GROUP, name="kernel.half_space"))
 SOFT = '''
@@ -89,21 +90,6 @@ Plugin = Callable[..., EntryPoint]
 _numbers = itertools.count()
 
 
-class Installed(Distribution):
-    """A distribution that exists in memory only."""
-
-    def __init__(self, name: str, version: str) -> None:
-        self.header = f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n"
-
-    def read_text(self, filename: str) -> str | None:
-        """Return the metadata; there is no other file."""
-        return self.header if filename == "METADATA" else None
-
-    def locate_file(self, path: object) -> Path:
-        """Refuse: there are no files."""
-        raise FileNotFoundError(path)
-
-
 @pytest.fixture
 def plugin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Plugin:
     """Return a function that writes a plugin module and returns its entry point."""
@@ -118,10 +104,7 @@ def plugin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Plugin:
     ) -> EntryPoint:
         module = f"stranger_{next(_numbers)}"
         (tmp_path / f"{module}.py").write_text(source, encoding="utf-8")
-        entry = EntryPoint(name, f"{module}:{class_}".removesuffix(":"), GROUP)
-        # What importlib.metadata does itself when it reads a distribution (3.11 to 3.14).
-        vars(entry).update(dist=Installed(distribution, version))
-        return entry
+        return entry_point(name, f"{module}:{class_}".removesuffix(":"), distribution, version)
 
     return write
 
@@ -279,8 +262,7 @@ def test_one_plugin_may_bring_several_families(plugin: Plugin) -> None:
         f"{SUITE}(list)\n"
     )
     first = plugin(more, name="everything")
-    second = EntryPoint("correction.exact", first.value, GROUP)
-    vars(second).update(dist=first.dist)
+    second = entry_point("correction.exact", first.value, "stranger", "1.2")
     plugins = load([first, second])
     assert plugins.find("correction", "exact").__name__ == "Exact"
     assert plugins.find("kernel", "soft").__name__ == "Soft"

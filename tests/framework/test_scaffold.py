@@ -7,9 +7,8 @@ import pytest
 from typer.testing import CliRunner
 
 from pellicle import ConfigError, StorageError
-from pellicle.cli import scaffold
 from pellicle.cli.app import app
-from pellicle.cli.scaffold import write_plugin
+from pellicle.cli.new import write_plugin
 from pellicle.components import FAMILIES
 from pellicle.plugins import Registry
 
@@ -97,7 +96,7 @@ def test_family_of_a_plugin(
     )
     monkeypatch.syspath_prepend(tmp_path)
     families = {"effect": import_module(name).Effect}
-    monkeypatch.setattr(scaffold, "registry", lambda: Registry({"effect": {}}, families))
+    monkeypatch.setattr("pellicle.plugins.registry", lambda: Registry({"effect": {}}, families))
     if is_package:
         folder = write_plugin("effect", "mine", tmp_path)
         assert (folder / "pellicle_mine.py").read_text(encoding="utf-8") == "module of Mine\n"

@@ -82,14 +82,9 @@ def make_output(type_: str, **fields: Any) -> Output:
             [make_output("curves", name="a", formats=["svg"]), make_output("profiles", name="A")],
             r"^outputs\.1\.name: 'profiles' would write NAME-A\.csv, as outputs\.0",
         ),
-        ([Silent(), Silent()], r"^outputs\.1\.type: 'silent' would write NAME-silent\*, as"),
         (
             [Named(name="a"), Named(), Named(name="a")],
             r"^outputs\.2\.name: .* NAME-a\*, as outputs\.0",
-        ),
-        (
-            [Silent(), make_output("spectrum", name="silent")],
-            r"^outputs\.1\.name: 'spectrum' would write NAME-silent\.png, as outputs\.0",
         ),
     ],
 )

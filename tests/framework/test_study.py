@@ -330,15 +330,6 @@ def test_a_study_is_not_loaded_as_a_result(tmp_path: Path) -> None:
             pl.load(path)
 
 
-def test_title_and_outputs_make_no_other_run(tmp_path: Path) -> None:
-    """What is drawn of a finished run may be changed afterwards."""
-    run = RUN | {"solver": Counting(), "outputs": None}
-    pl.run(run, directory=tmp_path, progress=False)
-    Counting.solved.clear()
-    pl.run(run | {"outputs": [{"type": "csv"}]}, directory=tmp_path, progress=False)
-    assert Counting.solved == []
-
-
 @pytest.fixture
 def full_disk(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[int], None]]:
     """Return a function that fills the disk after so many more files have been written."""

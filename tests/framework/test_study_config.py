@@ -33,14 +33,6 @@ def study(vary: object = None, **others: Any) -> Study:
     return Study(run=RUN, vary={} if vary is None else vary, **others)
 
 
-def test_copy_with_other_axes_has_their_runs() -> None:
-    """The runs of a copy are those of its axes."""
-    copy = study({TENSION: [1, 2]}).model_copy(update={"vary": {TENSION: (3.0,)}})
-    assert [point.run.to_json() for point in copy.points] == [
-        point.run.to_json() for point in study({TENSION: [3]}).points
-    ]
-
-
 def test_product() -> None:
     """Each value is combined with each; the last axis varies fastest."""
     plan = study({TENSION: [0, "10 mN/m"], "indenter.radius": ["1 mm", "2 mm", "3 mm"]})
@@ -187,15 +179,11 @@ def test_round_trips() -> None:
     jsonschema.validate(json.loads(plan.to_json()), pl.json_schema())
 
 
-def test_a_study_is_no_run_and_a_run_no_study(tmp_path: Path) -> None:
-    """Each says what the other is for."""
-    plain = pl.Run(**RUN).to_toml()
-    (tmp_path / "run.toml").write_text(plain, encoding="utf-8")
-    (tmp_path / "study.toml").write_text(f"{plain}[study.vary]\nkernel.tension = [1]")
+def test_a_run_is_no_study(tmp_path: Path) -> None:
+    """It says what makes it one."""
+    (tmp_path / "run.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
     with pytest.raises(pl.ConfigError, match="study: is missing, so this is a single run"):
         pl.run_study(tmp_path / "run.toml")
-    with pytest.raises(pl.ConfigError, match="makes this a study: use run_study"):
-        pl.run(tmp_path / "study.toml")
 
 
 @pytest.mark.parametrize(

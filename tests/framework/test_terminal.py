@@ -22,8 +22,7 @@ from typer.testing import CliRunner, Result
 import pellicle as pl
 from pellicle.cli import new
 from pellicle.cli.app import app
-from pellicle.cli.exits import BAD_INPUT, CRASHED
-from pellicle.cli.printing import print_columns
+from pellicle.cli.printing import BAD_INPUT, CRASHED, print_columns
 from pellicle.components import FAMILIES, Case
 from pellicle.config.explain import explanations
 from pellicle.runs import validation

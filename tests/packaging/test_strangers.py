@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle.cli.scaffold import write_plugin
+from pellicle.cli.new import write_plugin
 from pellicle.components import FAMILIES
 
 HERE = Path(__file__).parent

@@ -5,38 +5,24 @@ is ``result.grid``. On a free boundary there is no contact beyond the domain; on
 opposite edges are neighbours.
 """
 
-from __future__ import annotations
-
-from .adhesive_curve import AdhesiveContact, AdhesiveCurve, adhesive_curve
-from .distribution import Distribution, distribution
-from .ellipse import Ellipse, ellipse
-from .extrapolation import Extrapolation, extrapolate
-from .oscillation import Oscillation, oscillations
-from .patches import Patches, coordination, patches
-from .path_summary import Leg, PathSummary, legs, path_summary
-from .perimeter import perimeter
-from .spectrum import Spectrum, spectrum
-
-__all__ = [
-    "AdhesiveContact",
-    "AdhesiveCurve",
-    "Distribution",
-    "Ellipse",
-    "Extrapolation",
-    "Leg",
-    "Oscillation",
-    "Patches",
-    "PathSummary",
-    "Spectrum",
-    "adhesive_curve",
-    "coordination",
-    "distribution",
-    "ellipse",
-    "extrapolate",
-    "legs",
-    "oscillations",
-    "patches",
-    "path_summary",
-    "perimeter",
-    "spectrum",
-]
+from .adhesive_curve import AdhesiveContact as AdhesiveContact
+from .adhesive_curve import AdhesiveCurve as AdhesiveCurve
+from .adhesive_curve import adhesive_curve as adhesive_curve
+from .distribution import Distribution as Distribution
+from .distribution import distribution as distribution
+from .ellipse import Ellipse as Ellipse
+from .ellipse import ellipse as ellipse
+from .extrapolation import Extrapolation as Extrapolation
+from .extrapolation import extrapolate as extrapolate
+from .oscillation import Oscillation as Oscillation
+from .oscillation import oscillations as oscillations
+from .patches import Patches as Patches
+from .patches import coordination as coordination
+from .patches import patches as patches
+from .path_summary import Leg as Leg
+from .path_summary import PathSummary as PathSummary
+from .path_summary import legs as legs
+from .path_summary import path_summary as path_summary
+from .perimeter import perimeter as perimeter
+from .spectrum import Spectrum as Spectrum
+from .spectrum import spectrum as spectrum

@@ -12,14 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from pellicle.arrays import Array, Mask
 
-Direction = Literal["approach", "retraction"]
-
 
 class Leg(NamedTuple):
     """Steps of a path between two turns, both turns included."""
 
     steps: slice
-    direction: Direction
+    direction: Literal["approach", "retraction"]
 
 
 @dataclass(frozen=True)

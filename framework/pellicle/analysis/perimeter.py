@@ -51,7 +51,4 @@ def perimeter(contact: ArrayLike, grid: Grid) -> float:
         ((1, 1), across, pi / 4),
         ((1, -1), across, pi / 4),
     )
-    total = 0.0
-    for step, between, angle in directions:
-        total += angle * between * switches(step) / 2
-    return total
+    return sum(angle * between * switches(step) / 2 for step, between, angle in directions)

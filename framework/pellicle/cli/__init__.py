@@ -4,9 +4,9 @@ What a command of a plugin may use is listed here. Heavy imports are inside the 
 ``pellicle --help`` answers at once.
 """
 
-from .exits import BAD_INPUT as BAD_INPUT
-from .exits import INTERRUPTED as INTERRUPTED
-from .exits import NOT_CONVERGED as NOT_CONVERGED
+from .printing import BAD_INPUT as BAD_INPUT
+from .printing import INTERRUPTED as INTERRUPTED
+from .printing import NOT_CONVERGED as NOT_CONVERGED
 from .printing import echo as echo
 from .printing import print_columns as print_columns
 from .printing import print_json as print_json

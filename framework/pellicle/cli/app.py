@@ -19,8 +19,7 @@ from pellicle.commands import commands, errors_attributed_to, load_command, type
 from pellicle.errors import PellicleError, PluginError
 from pellicle.origins import Broken
 
-from .exits import BAD_INPUT, CRASHED, INTERRUPTED
-from .printing import echo, only_json, print_warning
+from .printing import BAD_INPUT, CRASHED, INTERRUPTED, echo, only_json, print_warning
 
 _FIRST = "run", "check"
 _LAST = "explain", "plugins", "schema", "new", "show", "plot", "validate"
@@ -77,33 +76,31 @@ class _Listed(TyperCommand):
         return command.make_context(*args, **kwargs)
 
 
-def _misuse(error: Any) -> str:
-    """Return in one line what is wrong with the words on a command line, as typer found it."""
-    message = str(error.format_message())
-    if getattr(error, "param", None) is not None and error.message:
-        # typer checks values with pydantic.
-        details: list[Any] = getattr(error.__cause__, "errors", list)()
-        reason = error.message.rstrip(".")
-        if details and (cause := details[0].get("ctx", {}).get("error")):
-            reason = str(cause)
-        elif details:
-            from pellicle.schema.messages import refusal
-
-            reason = refusal(details[0])
-        message = f"{error.param.opts[0]}: {reason}"
-    command = error.ctx.command_path if error.ctx else "pellicle"
-    return f"{message.rstrip('.')}{'' if message.endswith('?') else ';'} see `{command} --help`"
-
-
 @contextmanager
 def _misuse_in_one_line() -> Iterator[None]:
+    """Print in one line what is wrong with the words on a command line, as typer found it."""
     try:
         yield
-    except Exception as error:
+    except Exception as raised:
         # The exceptions of click, which typer includes or imports; one of them is the help.
-        if not hasattr(error, "format_message") or type(error).__name__ == "NoArgsIsHelpError":
+        if not hasattr(raised, "format_message") or type(raised).__name__ == "NoArgsIsHelpError":
             raise
-        echo(f"error: {_misuse(error)}", err=True)
+        error: Any = raised
+        message = str(error.format_message())
+        if getattr(error, "param", None) is not None and error.message:
+            # typer checks values with pydantic.
+            details: list[Any] = getattr(error.__cause__, "errors", list)()
+            reason = error.message.rstrip(".")
+            if details and (cause := details[0].get("ctx", {}).get("error")):
+                reason = str(cause)
+            elif details:
+                from pellicle.schema.messages import refusal
+
+                reason = refusal(details[0])
+            message = f"{error.param.opts[0]}: {reason}"
+        command = error.ctx.command_path if error.ctx else "pellicle"
+        end = "" if message.endswith("?") else ";"
+        echo(f"error: {message.rstrip('.')}{end} see `{command} --help`", err=True)
         raise typer.Exit(BAD_INPUT) from None
 
 

@@ -6,18 +6,16 @@ import math
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
 from pellicle.errors import ConfigError
 
-from .exits import NOT_CONVERGED
-from .printing import echo, print_json, print_table, print_warning
+from .printing import NOT_CONVERGED, echo, print_json, print_table, print_warning
 
 if TYPE_CHECKING:
     from pellicle.config.run import Run
-    from pellicle.config.study import Study
     from pellicle.runs.advice import Advice
 
 _IN_WAVE = 8
@@ -42,15 +40,65 @@ def check(
     """Check a run or a study, and estimate its errors and memory from coarser grids."""
     from pellicle.config.doubtful_scales import doubtful_scales
     from pellicle.config.study import Study, from_toml
+    from pellicle.runs.advice import advise
+    from pellicle.runs.memory_estimate import memory_of
+    from pellicle.studies.runner import tasks
 
     allowed = _allowed(error.strip())
     configuration = from_toml(file, set_ or ())
     for doubt in doubtful_scales(configuration).values():
         print_warning(doubt)
     if isinstance(configuration, Study):
-        _check_study(configuration, allowed, json=json)
+        runs = [(task.name, task.run) for task in tasks(configuration, Path())]
     else:
-        _check_run(configuration, allowed, json=json)
+        runs = [("", configuration)]
+    checked = []
+    for name, run in runs:
+        try:
+            checked.append(_Checked(name, run, advise(run, allowed), memory_of(run)))
+        except ConfigError as problem:
+            raise ConfigError(f"{problem} (run with {name})") if name else problem from None
+    if json:
+        data = [
+            advice._asdict()
+            | {"steps": [step._asdict() for step in advice.steps], "memory": needed}
+            for _, _, advice, needed in checked
+        ]
+        of_runs = [{"run": one.name, **of_run} for one, of_run in zip(checked, data, strict=True)]
+        print_json({"runs": of_runs} if isinstance(configuration, Study) else data[0])
+        raise typer.Exit(NOT_CONVERGED if any(one.advice.at_edge for one in checked) else 0)
+    if isinstance(configuration, Study):
+        _print_study(checked, allowed)
+    else:
+        _print_run(checked[0], allowed)
+    cells = min(one.advice.cells_in_wave or math.inf for one in checked)
+    if cells < _IN_WAVE * (1 - 1e-9):
+        echo(
+            f"the shortest wave of the indenter has {cells:.3g} cells: areas are known to a tenth "
+            f"or two only; use {_IN_WAVE} or more"
+        )
+    if reaching := [one for one in checked if one.advice.at_edge]:
+        for name, _, advice, _ in reaching:
+            steps = f"step{'s' * (len(advice.at_edge) > 1)} {', '.join(map(str, advice.at_edge))}"
+            echo(f"{name}{': ' * bool(name)}the contact of {steps} reaches the edge of the domain")
+        echo(f"{_domain(reaching)} holds every step; the errors are for such a domain")
+        raise typer.Exit(NOT_CONVERGED)
+    if isinstance(configuration, Study) and all(one.advice.size for one in checked):
+        echo(
+            f"every contact fits into a smaller domain: {_domain(checked)}; the points of a run "
+            "are for the domain that fits its own"
+        )
+
+
+class _Checked(NamedTuple):
+    """A run with its advice."""
+
+    name: str
+    """The values that distinguish it in its study; empty for a single run."""
+    run: Run
+    advice: Advice
+    memory: float
+    """Memory that it needs [bytes]."""
 
 
 def _allowed(text: str) -> float:
@@ -65,17 +113,11 @@ def _allowed(text: str) -> float:
     )
 
 
-def _check_run(run: Run, error: float, *, json: bool) -> None:
-    from pellicle.runs.advice import advise
-    from pellicle.runs.memory_estimate import memory_of
+def _print_run(checked: _Checked, error: float) -> None:
     from pellicle.units import readable
 
-    advice = advise(run, error)
-    needed = memory_of(run)
-    if json:
-        print_json(_data(advice, needed))
-        raise typer.Exit(NOT_CONVERGED if advice.at_edge else 0)
-    quantities = [name for name in ("force", "depth") if _is_unknown(advice, name)]
+    _, run, advice, needed = checked
+    quantities = [q for q in ("force", "depth") if _worst(advice, f"{q}_error") > _ROUND_OFF]
     rows = [
         {
             "step": str(step.step),
@@ -90,88 +132,32 @@ def _check_run(run: Run, error: float, *, json: bool) -> None:
     nx, ny = run.grid.points
     echo(f"{nx} × {ny} cells need {needed / 1e6:.3g} MB; errors are at most about these")
     if advice.size and not advice.at_edge:
-        x, y = (readable(edge, "m", 3) for edge in advice.size)
-        echo(f'the contact fits into a smaller domain: grid.size = ["{x}", "{y}"]')
+        echo(f"the contact fits into a smaller domain: {_domain([checked])}")
     if advice.size or advice.points != run.grid.points:
         nx, ny = advice.points
         of, on = " and ".join(quantities), ", on that domain" if advice.size else ""
         echo(f"for {_share(error)} of {of} in every step{on}: grid.points = [{nx}, {ny}]")
-    _warn_of_waves([advice])
-    _refuse_edge([(advice, "")])
 
 
-def _warn_of_waves(checked: Sequence[Advice]) -> None:
-    """Print the fewest cells in the shortest wave of an indenter, if they are few."""
-    cells = min((advice.cells_in_wave or math.inf for advice in checked), default=math.inf)
-    if cells < _IN_WAVE * (1 - 1e-9):
-        echo(
-            f"the shortest wave of the indenter has {cells:.3g} cells: areas are known to a tenth "
-            f"or two only; use {_IN_WAVE} or more"
-        )
-
-
-def _refuse_edge(checked: Sequence[tuple[Advice, str]]) -> None:
-    """Print of which domains the contact reaches the edge, and one for all; exit if there are any.
-
-    ``checked`` has the advice of each run with its name, empty for a single run.
-    """
-    from pellicle.units import readable
-
-    reaching = [(advice, name) for advice, name in checked if advice.at_edge]
-    if not reaching:
-        return
-    for advice, name in reaching:
-        steps = f"step{'s' * (len(advice.at_edge) > 1)} {', '.join(map(str, advice.at_edge))}"
-        echo(f"{name}{': ' * bool(name)}the contact of {steps} reaches the edge of the domain")
-    x, y = (readable(max(a.size[n] for a, _ in reaching if a.size), "m", 3) for n in (0, 1))
-    echo(f'grid.size = ["{x}", "{y}"] holds every step; the errors are for such a domain')
-    raise typer.Exit(NOT_CONVERGED)
-
-
-def _row(name: str, advice: Advice, needed: float, error: float) -> dict[str, str]:
-    """Return the line of a run in the table of a study; ``needed`` is its memory [bytes]."""
-    across = [step.cells for step in advice.steps if not math.isnan(step.error)]
-    nx, ny = advice.points
-    return {
-        "run": name,
-        "steps": str(len(advice.steps)),
-        "fewest cells across": f"{min(across):.0f}" if across else "0",
-        "error": _share(_worst(advice, "error")),
-        "error of area": _share(_worst(advice, "area_error")),
-        f"points for {_share(error)} of force and depth": f"{nx} × {ny}",
-        "memory": f"{needed / 1e6:.3g} MB",
-    }
-
-
-def _check_study(study: Study, error: float, *, json: bool) -> None:
-    """Print the worst of each run, and how many runs exceed the allowed error.
-
-    A smaller domain is suggested only where it fits every run.
-    """
-    from pellicle.runs.advice import advise
-    from pellicle.runs.memory_estimate import memory_of
-    from pellicle.studies.planned import check_outputs
-    from pellicle.studies.summary import run_names
-    from pellicle.studies.table import StudyTable
-    from pellicle.units import readable
-
-    check_outputs(study)
-    names = run_names(StudyTable(study).dataset())
-    checked: list[tuple[str, Advice, float]] = []
-    for name, point in zip(names, study.points, strict=True):
-        try:
-            checked.append((name, advise(point.run, error), memory_of(point.run)))
-        except ConfigError as problem:
-            raise ConfigError(f"{problem} (run with {name})") from None
-    if json:
-        print_json(
-            {"runs": [{"run": name, **_data(advice, needed)} for name, advice, needed in checked]}
-        )
-        raise typer.Exit(NOT_CONVERGED if any(a.at_edge for _, a, _ in checked) else 0)
-    rows = [_row(name, advice, needed, error) for name, advice, needed in checked]
+def _print_study(checked: Sequence[_Checked], error: float) -> None:
+    """Print the worst of each run, and how many runs exceed the allowed error."""
+    rows = []
+    for name, _, advice, needed in checked:
+        across = [step.cells for step in advice.steps if not math.isnan(step.error)]
+        nx, ny = advice.points
+        row = {
+            "run": name,
+            "steps": str(len(advice.steps)),
+            "fewest cells across": f"{min(across):.0f}" if across else "0",
+            "error": _share(_worst(advice, "error")),
+            "error of area": _share(_worst(advice, "area_error")),
+            f"points for {_share(error)} of force and depth": f"{nx} × {ny}",
+            "memory": f"{needed / 1e6:.3g} MB",
+        }
+        rows.append(row)
     print_table(list(rows[0]), rows)
-    errors = [(w, name) for name, advice, _ in checked if (w := _worst(advice, "error")) == w]
-    areas = [(w, name) for name, advice, _ in checked if (w := _worst(advice, "area_error")) == w]
+    errors = [(w, one.name) for one in checked if (w := _worst(one.advice, "error")) == w]
+    areas = [(w, one.name) for one in checked if (w := _worst(one.advice, "area_error")) == w]
     many = sum(w > error for w, _ in errors)
     echo(
         f"{len(checked)} runs; in {many} the error of force or depth may exceed "
@@ -180,38 +166,20 @@ def _check_study(study: Study, error: float, *, json: bool) -> None:
     if errors:
         (worst, of_force), (area, of_area) = max(errors), max(areas)
         echo(f"the worst: {_share(worst)}, with {of_force}; of area {_share(area)}, with {of_area}")
-    _warn_of_waves([advice for _, advice, _ in checked])
-    _refuse_edge([(advice, name) for name, advice, _ in checked])
-    if any(advice.size is None for _, advice, _ in checked):
-        return
-    edges = [max(advice.size[axis] for _, advice, _ in checked if advice.size) for axis in (0, 1)]
-    x, y = (readable(edge, "m", 3) for edge in edges)
-    echo(
-        f'every contact fits into a smaller domain: grid.size = ["{x}", "{y}"]; the points of a '
-        "run are for the domain that fits its own"
-    )
 
 
-def _data(advice: Advice, needed: float) -> dict[str, Any]:
-    return {
-        "steps": [step._asdict() for step in advice.steps],
-        "points": advice.points,
-        "size": advice.size,
-        "at_edge": advice.at_edge,
-        "cells_in_wave": advice.cells_in_wave,
-        "memory": needed,
-    }
+def _domain(checked: Sequence[_Checked]) -> str:
+    """Return the setting of a domain that holds the contacts of several runs."""
+    from pellicle.units import readable
+
+    x, y = (max(one.advice.size[n] for one in checked if one.advice.size) for n in (0, 1))
+    return f'grid.size = ["{readable(x, "m", 3)}", "{readable(y, "m", 3)}"]'
 
 
 def _worst(advice: Advice, of: str) -> float:
     """Return the largest of an error over the steps; NaN without contact."""
     errors = [getattr(step, of) for step in advice.steps]
     return max((e for e in errors if not math.isnan(e)), default=math.nan)
-
-
-def _is_unknown(advice: Advice, name: str) -> bool:
-    """Return whether a quantity has errors beyond round-off in a step: it is not prescribed."""
-    return _worst(advice, f"{name}_error") > _ROUND_OFF
 
 
 def _share(value: float) -> str:

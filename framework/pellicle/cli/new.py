@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import re
+import sys
+from importlib.resources import files
 from importlib.util import find_spec
+from keyword import iskeyword
 from pathlib import Path
+from string import Template
 from typing import Annotated
 
 import typer
@@ -13,6 +17,8 @@ from pellicle.commands import usable_commands
 from pellicle.errors import ConfigError, StorageError
 
 from .printing import echo
+
+_NAME = re.compile(r"[a-z][a-z0-9]*([-_][a-z0-9]+)*")
 
 
 def new(
@@ -51,8 +57,6 @@ def new(
         return
     if example is not None:
         raise ConfigError("and --plugin exclude each other; give one of them", "--example")
-    from .scaffold import write_plugin
-
     if path is None:
         raise ConfigError(f"is missing; for example: pellicle new --plugin {plugin} mine", "NAME")
     folder = write_plugin(plugin, str(path), Path())
@@ -91,13 +95,6 @@ def _examples() -> dict[str, tuple[str, Path]]:
 
 
 def _write_new(path: Path, content: bytes) -> None:
-    """Write a file that must not exist.
-
-    Raises
-    ------
-    StorageError
-        It exists, or cannot be written.
-    """
     from pellicle.files import storage_errors
 
     with storage_errors(path):
@@ -106,3 +103,78 @@ def _write_new(path: Path, content: bytes) -> None:
                 file.write(content)
         except FileExistsError:
             raise StorageError(f"{path} exists already; give another name") from None
+
+
+def write_plugin(family: str, name: str, parent: Path) -> Path:
+    """Write a complete package that adds a component, and return its folder, inside ``parent``.
+
+    The package of the family's base class has a folder ``templates/FAMILY``. ``name`` is the
+    component's type, such as ``graded`` or ``graded-solid``.
+    """
+    from pellicle.files import storage_errors
+
+    template = _template(family)
+    names = _names(family, name)
+    folder = parent / names["distribution"]
+    package = files("pellicle") / "templates" / "package"
+    sources = {
+        "pyproject.toml": package / "pyproject.toml",
+        "README.md": package / "README.md",
+        f"{names['module']}.py": template / "module",
+        f"test_{names['module']}.py": template / "test",
+        f"{names['type']}.toml": template / "example",
+    }
+    with storage_errors(folder):
+        try:
+            folder.mkdir()
+        except FileExistsError:
+            raise StorageError(f"{folder} exists already; give another name") from None
+        for file, source in sources.items():
+            text = Template(source.read_text(encoding="utf-8")).substitute(names)
+            (folder / file).write_text(text, encoding="utf-8")
+    return folder
+
+
+def _template(family: str) -> Path:
+    """Return the folder of a family's template, in the package of its base class."""
+    from pellicle.plugins import registry
+
+    families = registry().families
+    if family not in families:
+        raise ConfigError(
+            f"{family!r} is not a family; give one of {', '.join(families)}", "--plugin"
+        )
+    package = families[family].__module__.partition(".")[0]
+    for path in getattr(sys.modules[package], "__path__", ()):
+        if (template := Path(path, "templates", family)).is_dir():
+            return template
+    raise ConfigError(f"{package} has no template of the family {family!r}", "--plugin")
+
+
+def _names(family: str, name: str) -> dict[str, str]:
+    """Return the names that derive from that of the component."""
+    from pellicle.plugins import registry
+
+    type_ = name.replace("-", "_")
+    class_name = "".join(word.capitalize() for word in type_.split("_"))
+    if not _NAME.fullmatch(name) or iskeyword(type_) or iskeyword(class_name):
+        raise ConfigError(
+            f"{name!r} cannot be the name of a component; give lower-case words of letters a to z "
+            "and digits, joined by - or _, such as 'graded-solid'",
+            "NAME",
+        )
+    if owner := registry().components[family].get(type_):
+        noun = f"{'an' if family[0] in 'aeiou' else 'a'} {family}"
+        raise ConfigError(
+            f"{type_!r} is already the type of {noun} from {owner.origin}; give another", "NAME"
+        )
+    module = f"pellicle_{type_}"
+    if find_spec(module):
+        raise ConfigError(f"a module {module} is installed already; give another name", "NAME")
+    return {
+        "family": family,
+        "type": type_,
+        "class_name": class_name,
+        "module": module,
+        "distribution": module.replace("_", "-"),
+    }

@@ -4,16 +4,11 @@ from __future__ import annotations
 
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from .printing import echo
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from pellicle.results.result import Result
 
 
 class Format(StrEnum):
@@ -46,13 +41,12 @@ def plot(
     from pellicle.studies.runner import is_table, read
 
     chosen = [str(format_) for format_ in formats or [Format.PNG]]
-    shown: Result | xr.Dataset
     if is_table(results):
-        shown, folder = read(results)
-        name = "study"
+        table, folder = read(results)
+        drawn, name = figures(table), "study"
     else:
         file = file_of_run(results)
-        shown, folder, name = load(file), file.parent, file.stem
-    drawn = ((f"-{suffix}", [figure]) for suffix, figure in figures(shown).items())
-    for path in write_charts(drawn, (directory or folder) / name, chosen):
+        drawn, folder, name = figures(load(file)), file.parent, file.stem
+    shown = ((f"-{suffix}", [figure]) for suffix, figure in drawn.items())
+    for path in write_charts(shown, (directory or folder) / name, chosen):
         echo(f"wrote {path}")

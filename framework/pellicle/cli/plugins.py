@@ -11,8 +11,7 @@ from pellicle.commands import commands, file_models, typer_command
 from pellicle.errors import ConfigError
 from pellicle.origins import Broken, Origin, claimed_by
 
-from .exits import NOT_CONVERGED
-from .printing import echo, print_json, print_table
+from .printing import NOT_CONVERGED, echo, print_json, print_table
 
 
 def plugins(
@@ -41,23 +40,13 @@ def plugins(
     owners = {name: [*map(Origin.of, entries)] for name, entries in commands().items()}
     made = {name: typer_command(name) for name in owners}
     installed = [
-        (family, registered.type, registered.origin, registered.summary)
+        (family, type_, registered.origin, registered.summary)
         for family, members in contents.components.items()
-        for registered in members.values()
+        for type_, registered in members.items()
     ] + [
         ("command", name, owners[name][0], (command.help or "").partition("\n")[0])
         for name, command in made.items()
         if not isinstance(command, Broken)
-    ]
-    rows = [
-        {
-            "family": family,
-            "type": type_,
-            "origin": origin.distribution,
-            "version": origin.version,
-            "description": summary,
-        }
-        for family, type_, origin, summary in installed
     ]
     clashes: dict[tuple[str, str], Sequence[Origin]] = {
         **contents.clashes,
@@ -68,28 +57,29 @@ def plugins(
         for name, loaded in (*file_models().items(), *made.items())
         if isinstance(loaded, Broken) and ("command", name) not in clashes
     }
+    unusable = [
+        (broken.origin.entry_point, [broken.origin], broken.error)
+        for broken in (*contents.broken, *failed.values())
+    ] + [(".".join(name), origins, claimed_by(origins)) for name, origins in clashes.items()]
+    heads = "family", "type", "origin", "version", "description"
+    rows = [
+        dict(zip(heads, (family, type_, of.distribution, of.version, summary), strict=True))
+        for family, type_, of, summary in installed
+    ]
     broken = [
         {
-            "entry_point": broken.origin.entry_point,
-            "origin": broken.origin.distribution,
-            "version": broken.origin.version,
-            "error": broken.error,
+            "entry_point": name,
+            "origin": ", ".join(origin.distribution for origin in origins),
+            "version": ", ".join(origin.version for origin in origins),
+            "error": error,
         }
-        for broken in (*contents.broken, *failed.values())
-    ] + [
-        {
-            "entry_point": f"{family}.{type_}",
-            "origin": ", ".join(owner.distribution for owner in owners),
-            "version": ", ".join(owner.version for owner in owners),
-            "error": claimed_by(owners),
-        }
-        for (family, type_), owners in clashes.items()
+        for name, origins, error in unusable
     ]
     disabled = [str(origin) for origin in contents.disabled]
     if json:
         print_json({"components": rows, "broken": broken, "disabled": disabled})
         return
-    print_table(["family", "type", "origin", "version", "description"], rows)
+    print_table(heads, rows)
     if broken:
         echo("broken:")
         print_table(["entry_point", "origin", "version", "error"], broken)
@@ -100,7 +90,7 @@ def plugins(
 def _check(name: str | None, json: bool) -> None:
     """Check the examples of the components of a name; exit with 1 if one breaks its contract."""
     from pellicle.plugins import registry
-    from pellicle.testing.installed import verdict_on_examples
+    from pellicle.testing.component import verdict_on_examples
 
     heads = "family", "type", "origin", "verdict"
     rows, kept = [], True

@@ -1,4 +1,4 @@
-"""Tables and JSON on the terminal."""
+"""Texts, tables and JSON on the terminal, and exit codes."""
 
 from __future__ import annotations
 
@@ -18,6 +18,8 @@ from pellicle.files import for_document
 if TYPE_CHECKING:
     from rich.console import Console
 
+NOT_CONVERGED, BAD_INPUT, CRASHED, INTERRUPTED = 1, 2, 70, 130
+"""70 is EX_SOFTWARE of sysexits.h; Python's own 1 for a traceback would mean NOT_CONVERGED."""
 _UNBOUNDED = 100_000
 """Width of what is not a terminal: lines are as long as they need be, for `grep`."""
 _texts: ContextVar[list[str] | None] = ContextVar("JSON of a command", default=None)
@@ -33,9 +35,9 @@ def echo(text: str = "", err: bool = False) -> None:
     _write(f"{text}\n", err)
 
 
-def print_table(names: Sequence[str], rows: Sequence[Mapping[str, str]], caption: str = "") -> None:
+def print_table(names: Sequence[str], rows: Sequence[Mapping[str, str]]) -> None:
     """Print rows under the names of their columns."""
-    print_columns([(name, [row[name] for row in rows]) for name in names], caption)
+    print_columns([(name, [row[name] for row in rows]) for name in names])
 
 
 def print_columns(columns: Sequence[tuple[str, Sequence[str]]], caption: str = "") -> None:

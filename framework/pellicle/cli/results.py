@@ -1,25 +1,28 @@
-"""Print results and tables of studies, and exit by how they converged."""
+"""Print results and tables of studies, and exit by how they converged.
+
+Commands import it when they are called: unlike them it imports what it needs at once.
+"""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import typer
+import xarray as xr
 
+from pellicle.contact.caveats import Status, from_text, verdict_of
 from pellicle.files import for_document
+from pellicle.results.path import prescribed_variable
+from pellicle.results.result import Result
+from pellicle.results.wording import means_something, wording, wording_of
+from pellicle.studies import summary
+from pellicle.units import DIGITS, Scale, printed, readable
+from pellicle.variables import CAVEATS, VARIABLES, names_of
 
-from .exits import NOT_CONVERGED
-from .printing import echo, print_columns, print_json, print_warning
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    import xarray as xr
-
-    from pellicle.contact.caveats import Status
-    from pellicle.results.result import Result
+from .printing import NOT_CONVERGED, echo, print_columns, print_json, print_warning
 
 
 def print_origin(data: xr.Dataset) -> None:
@@ -30,10 +33,6 @@ def print_origin(data: xr.Dataset) -> None:
 
 def print_steps(result: Result, *, si: bool = False) -> None:
     """Print a row for each step."""
-    from pellicle.contact.caveats import from_text, verdict_of
-    from pellicle.results.path import prescribed_variable
-    from pellicle.variables import CAVEATS, names_of
-
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
     printed_names = {"time", "depth", "force", *areas, *names_of("other")}
@@ -47,9 +46,6 @@ def print_steps(result: Result, *, si: bool = False) -> None:
 
 def print_contact(result: Result, *, si: bool = False) -> None:
     """Print the shape of the contact at each step, and of the zone around it."""
-    from pellicle.results.wording import means_something
-    from pellicle.variables import names_of
-
     data = result.dataset
     # Files of earlier versions lack some.
     names = [name for name in names_of("contact", "interaction") if name in data]
@@ -60,80 +56,59 @@ def print_contact(result: Result, *, si: bool = False) -> None:
 
 def print_path(result: Result, *, si: bool = False) -> None:
     """Print the events on the path and its work, where there is an interaction."""
-    from pellicle.units import DIGITS, Scale, printed, readable
-    from pellicle.variables import VARIABLES, names_of
 
     def value(number: float, unit: str) -> str:
         text = Scale(1.0, printed(unit)).text(number, 6) if si else readable(number, unit, DIGITS)
         return "none" if number != number else text
 
-    summary, events = result.path_summary, names_of("path")
-    rows = [(VARIABLES[name], number) for name, number in summary.items() if name in events]
+    events = names_of("path")
+    numbers = result.path_summary.items()
+    rows = [(VARIABLES[name], number) for name, number in numbers if name in events]
     if rows:
-        columns = [
-            ("path", [variable.words for variable, _ in rows]),
-            ("value", [value(number, variable.unit) for variable, number in rows]),
-            ("meaning", [variable.meaning for variable, _ in rows]),
-        ]
-        print_columns(columns)
+        names = "path", [variable.words for variable, _ in rows]
+        values = "value", [value(number, variable.unit) for variable, number in rows]
+        print_columns([names, values, ("meaning", [variable.meaning for variable, _ in rows])])
 
 
 def print_oscillations(result: Result, *, si: bool = False) -> None:
     """Print a row for each oscillation on the path."""
-    from pellicle.results.wording import wording_of
-    from pellicle.variables import names_of
-
     if oscillations := result.oscillations:
-        columns = []
+        table = []
         for name in names_of("oscillation"):
             values = [getattr(oscillation, name) for oscillation in oscillations]
             column = wording_of(name, values, si=si)
-            columns.append((column.head, [column.number(value) for value in values]))
-        print_columns(columns, "oscillations")
+            table.append((column.head, [column.number(value) for value in values]))
+        print_columns(table, "oscillations")
 
 
 def _columns(data: xr.Dataset, names: Sequence[str], si: bool) -> list[tuple[str, list[str]]]:
     """Return head and cells of the steps and of variables."""
-    from pellicle.results.wording import wording
-
-    columns = [("step", [str(number) for number in data["step"].values.tolist()])]
+    table = [("step", [str(number) for number in data["step"].values.tolist()])]
     for name in names:
         column = wording(data[name], si=si)
-        columns.append((column.head, [column.number(v) for v in data[name].values.tolist()]))
-    return columns
+        table.append((column.head, [column.number(v) for v in data[name].values.tolist()]))
+    return table
 
 
 def print_runs(table: xr.Dataset, *, si: bool = False) -> None:
     """Print parameters, last step and verdict of each run of a study, and its path."""
-    from pellicle.studies.summary import columns, path_columns
-
-    print_columns(columns(table, si=si))
-    print_columns(path_columns(table, si=si), "path")
+    print_columns(summary.columns(table, si=si))
+    print_columns(summary.path_columns(table, si=si), "path")
 
 
 def print_result_json(result: Result, files: Sequence[Path] = ()) -> None:
     """Print a result as JSON: its origin, and the numbers of each step in SI."""
-    data = result.dataset
-    print_json(
-        {
-            **_origin(data),
-            "converged": result.converged and data.sizes["step"] == result.planned_steps,
-            "planned_steps": result.planned_steps,
-            "steps": _steps(data),
-            "path": result.path_summary,
-            "units": _units(data),
-            "files": list(map(str, files)),
-        }
-    )
+    data, planned = result.dataset, result.planned_steps
+    converged = result.converged and data.sizes["step"] == planned
+    steps, path = _steps(data), result.path_summary
+    _print_json(data, files, converged=converged, planned_steps=planned, steps=steps, path=path)
 
 
 def print_study_json(table: xr.Dataset, files: Sequence[Path] = ()) -> None:
     """Print a study as JSON: its origin, and the numbers of each step of each run in SI."""
-    from pellicle.studies.summary import progress_of, runs_of
-
     runs = []
-    for run in runs_of(table):
-        done, planned, verdict = progress_of(run)
+    for run in summary.runs_of(table):
+        done, planned, verdict = summary.progress_of(run)
         axes = {str(n): value.item() for n, value in run.coords.items() if n != "step"}
         per_run = {
             str(name): variable.item()
@@ -150,25 +125,21 @@ def print_study_json(table: xr.Dataset, files: Sequence[Path] = ()) -> None:
                 "path": per_run,
             }
         )
-    print_json(
-        {
-            **_origin(table),
-            "converged": all(run["converged"] for run in runs),
-            "runs": runs,
-            "units": _units(table),
-            "files": list(map(str, files)),
-        }
-    )
+    _print_json(table, files, converged=all(run["converged"] for run in runs), runs=runs)
 
 
-def _origin(data: xr.Dataset) -> dict[str, Any]:
-    return {name: data.attrs.get(name, "") for name in ("title", "date", "versions")}
+def _print_json(data: xr.Dataset, files: Sequence[Path], **own: object) -> None:
+    origin = {name: data.attrs.get(name, "") for name in ("title", "date", "versions")}
+    units = {
+        name: variable.attrs["units"]
+        for name, variable in data.variables.items()
+        if variable.attrs.get("units", "1") != "1"
+    }
+    print_json({**origin, **own, "units": units, "files": list(map(str, files))})
 
 
 def _steps(data: xr.Dataset) -> list[dict[str, Any]]:
     """Return the numbers and texts of each step by name."""
-    from pellicle.variables import CAVEATS
-
     names = [
         "step",
         *(str(n) for n, variable in data.data_vars.items() if variable.dims == ("step",)),
@@ -176,14 +147,6 @@ def _steps(data: xr.Dataset) -> list[dict[str, Any]]:
     columns = [data[name].values.tolist() for name in names]
     steps = [dict(zip(names, row, strict=True)) for row in zip(*columns, strict=True)]
     return [step | {CAVEATS: json.loads(step[CAVEATS] or "[]")} for step in steps]
-
-
-def _units(data: xr.Dataset) -> dict[str, str]:
-    return {
-        str(name): variable.attrs["units"]
-        for name, variable in data.variables.items()
-        if variable.attrs.get("units", "1") != "1"
-    }
 
 
 def exit_by_convergence(result: Result) -> None:
@@ -219,10 +182,8 @@ def _steps_text(numbers: Sequence[int]) -> str:
 
 def exit_by_status(table: xr.Dataset) -> None:
     """Print which runs of a study did not converge; exit unless all did."""
-    from pellicle.studies.summary import failures, reasons
-
-    if message := failures(table):
-        for reason in reasons(table):
+    if message := summary.failures(table):
+        for reason in summary.reasons(table):
             echo(for_document(reason), err=True)
         echo(message, err=True)
         raise typer.Exit(NOT_CONVERGED)

@@ -11,16 +11,7 @@ import typer
 from pellicle.errors import ConfigError
 from pellicle.hookspecs import RegisterCommand, hookimpl
 
-from .exits import INTERRUPTED
-from .printing import echo, print_json, print_table, print_warning
-from .results import (
-    exit_by_convergence,
-    exit_by_status,
-    print_result_json,
-    print_runs,
-    print_steps,
-    print_study_json,
-)
+from .printing import INTERRUPTED, echo, print_json, print_table, print_warning
 
 if TYPE_CHECKING:
     from pellicle.config.run import Run
@@ -106,16 +97,18 @@ class _Display(NamedTuple):
 def _print_plan(configuration: Run | Study, stem: Path, overwrite: bool, json: bool) -> None:
     from pellicle.config.study import Study
     from pellicle.runs.journal import Journal
-    from pellicle.studies.runner import RunTask, plan, tasks
+    from pellicle.studies.runner import RunTask, tasks
     from pellicle.units import readable
 
     if isinstance(configuration, Study):
-        planned = list(plan(tasks(configuration, stem.parent, overwrite=overwrite)))
+        planned = tasks(configuration, stem.parent, overwrite=overwrite)
     else:
         journal = Journal(stem, configuration.identity, overwrite)
-        planned = list(plan([RunTask(configuration.title or stem.name, configuration, journal)]))
-    rows = []
-    for task, finished, problem in planned:
+        planned = [RunTask(configuration.title or stem.name, configuration, journal)]
+    rows, done = [], 0
+    for task in planned:
+        _, finished, problem = task.stored()
+        done += finished >= task.steps
         nx, ny = task.run.grid.points
         state = f"{finished} of {task.steps} steps done" if finished < task.steps else "done"
         rows.append(
@@ -132,9 +125,8 @@ def _print_plan(configuration: Run | Study, stem: Path, overwrite: bool, json: b
     if json:
         print_json({"runs": rows})
         return
-    print_table(["run", "file", "points", "size", "steps", "memory", "state"], rows)
-    done = sum(finished >= task.steps for task, finished, _ in planned)
-    most = max(task.memory for task, *_ in planned) / 1e6
+    print_table([*rows[0]], rows)
+    most = max(task.memory for task in planned) / 1e6
     echo(
         f"{len(planned)} run{'s' * (len(planned) > 1)}, {done} done, "
         f"{len(planned) - done} to do; at most {most:.3g} MB each"
@@ -150,6 +142,8 @@ def _run_one(
     from pellicle.runs.progress import RunProgress
     from pellicle.runs.runner import execute, standard_outputs
     from pellicle.units import DIGITS, readable
+
+    from .results import exit_by_convergence, print_result_json, print_steps
 
     steps = len(run.loading.values)
     journal, bar = Journal(stem, run.identity, overwrite), RunProgress(steps, not display.quiet)
@@ -179,6 +173,8 @@ def _run_study(
     study: Study, folder: Path, display: _Display, *, threads: int | None, overwrite: bool
 ) -> None:
     from pellicle.studies.runner import execute
+
+    from .results import exit_by_status, print_runs, print_study_json
 
     try:
         result = execute(

@@ -10,20 +10,7 @@ import typer
 from pellicle.commands import errors_attributed_to, usable_commands
 from pellicle.errors import StorageError
 
-from .exits import NOT_CONVERGED
-from .printing import echo
-from .results import (
-    exit_by_convergence,
-    exit_by_status,
-    print_contact,
-    print_origin,
-    print_oscillations,
-    print_path,
-    print_result_json,
-    print_runs,
-    print_steps,
-    print_study_json,
-)
+from .printing import NOT_CONVERGED, echo
 
 
 def show(
@@ -44,16 +31,18 @@ def show(
     from pellicle.studies.runner import is_table, read
     from pellicle.studies.summary import caveats
 
+    from . import results as prints
+
     if is_table(results):
         table, _ = read(results)
         if json:
-            print_study_json(table)
+            prints.print_study_json(table)
         else:
-            print_origin(table)
-            print_runs(table, si=si)
+            prints.print_origin(table)
+            prints.print_runs(table, si=si)
         for message in caveats(table):
             echo(message, err=True)
-        exit_by_status(table)
+        prints.exit_by_status(table)
         return
     try:
         result = load(results)
@@ -65,14 +54,14 @@ def show(
         raise
     total, done = result.planned_steps, result.dataset.sizes["step"]
     if json:
-        print_result_json(result)
+        prints.print_result_json(result)
     else:
-        print_origin(result.dataset)
-        print_steps(result, si=si)
-        print_contact(result, si=si)
-        print_path(result, si=si)
-        print_oscillations(result, si=si)
-    exit_by_convergence(result)
+        prints.print_origin(result.dataset)
+        prints.print_steps(result, si=si)
+        prints.print_contact(result, si=si)
+        prints.print_path(result, si=si)
+        prints.print_oscillations(result, si=si)
+    prints.exit_by_convergence(result)
     if done < total:
         echo(f"interrupted: {done} of {total} steps are finished; run it again", err=True)
         raise typer.Exit(NOT_CONVERGED)

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from pellicle.errors import PluginError
 
 from .printing import echo, print_columns, print_json
-
-if TYPE_CHECKING:
-    from pellicle.components import Case
-    from pellicle.runs.validation import CheckedCase
 
 _DIGITS = 8
 
@@ -21,7 +17,9 @@ def validate(
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Solve the shipped problems of known solution; exit code 0 only if all agree."""
+    from pellicle.plugins import registry
     from pellicle.runs.validation import validate as verdicts
+    from pellicle.units import axis_unit
 
     done = list(verdicts())
     if not done:
@@ -43,35 +41,23 @@ def validate(
         ]
         print_json({"passed": passed, "cases": cases})
     else:
-        names = "case", [verdict.case.name for verdict in done]
-        sources = "source", [verdict.case.source for verdict in done]
-        numbers = [
-            ("expected", [_value(v.case.expected, v.case) for v in done]),
-            ("computed", [_value(v.computed, v.case) for v in done]),
-            ("error", [f"{verdict.error:.1e}" for verdict in done]),
-            ("allowed", [f"{verdict.case.tolerance:.0e}" for verdict in done]),
-            ("verdict", ["ok" if v.passed else f"FAILED {v.problem}".strip() for v in done]),
-        ]
-        print_columns([names, *numbers, sources])
-        echo(_summary(done))
+        units = [v.case.unit.translate({ord("²"): "2", ord("³"): "3"}) for v in done]
+        # Digits to compare, in the unit that suits the expected value.
+        scales = [axis_unit(v.case.expected, u) for v, u in zip(done, units, strict=True)]
+        shown = [*zip(done, scales, strict=True)]
+        columns = {
+            "case": [v.case.name for v in done],
+            "expected": [scale.text(v.case.expected, _DIGITS) for v, scale in shown],
+            "computed": [scale.text(v.computed, _DIGITS) for v, scale in shown],
+            "error": [f"{v.error:.1e}" for v in done],
+            "allowed": [f"{v.case.tolerance:.0e}" for v in done],
+            "verdict": ["ok" if v.passed else f"FAILED {v.problem}".strip() for v in done],
+            "source": [v.case.source for v in done],
+        }
+        print_columns([*columns.items()])
+        failed, count = sum(not v.passed for v in done), len(done)
+        outcome = f"{failed} of {count} cases failed" if failed else f"all {count} cases passed"
+        solved = {v.case.configuration["kernel"]["type"] for v in done}
+        others = ", ".join(sorted(registry().components["kernel"].keys() - solved))
+        echo(f"{outcome}; no case is about the kernels {others}" if others else outcome)
     raise typer.Exit(0 if passed else 1)
-
-
-def _summary(done: list[CheckedCase]) -> str:
-    """Return how many cases passed, and the kernels of which no case exists."""
-    from pellicle.plugins import registry
-
-    failed = sum(not verdict.passed for verdict in done)
-    outcome = f"{failed} of {len(done)} cases failed" if failed else f"all {len(done)} cases passed"
-    solved = {verdict.case.configuration["kernel"]["type"] for verdict in done}
-    others = sorted(registry().components["kernel"].keys() - solved)
-    left_out = f"; no case is about the kernels {', '.join(others)}" if others else ""
-    return f"{outcome}{left_out}"
-
-
-def _value(value: float, case: Case) -> str:
-    """Return a value in the unit that suits the expected one, with digits to compare."""
-    from pellicle.units import axis_unit
-
-    unit = case.unit.translate({ord("²"): "2", ord("³"): "3"})
-    return axis_unit(case.expected, unit).text(value, _DIGITS)

@@ -14,6 +14,7 @@ from pellicle.grid import shape_of_run as shape_of_run
 from pellicle.variables import Variable as Variable
 
 from .base import Component as Component
+from .base import FromRegistry as FromRegistry
 from .charts import Axis as Axis
 from .charts import Chart as Chart
 from .charts import Column as Column
@@ -34,7 +35,6 @@ from .executor import Task as Task
 from .executor import Threads as Threads
 from .executor import Work as Work
 from .executor import Workers as Workers
-from .from_registry import FromRegistry as FromRegistry
 from .indenter import ContactRadius as ContactRadius
 from .indenter import Footprint as Footprint
 from .indenter import ForceCurve as ForceCurve
@@ -59,17 +59,6 @@ from .solver import Solver as Solver
 from .validation import Case as Case
 from .validation import Suite as Suite
 
-FAMILIES: dict[str, type[Component]] = {
-    family.family: family
-    for family in (
-        Kernel,
-        Indenter,
-        Interaction,
-        Solver,
-        AreaCorrection,
-        Output,
-        Executor,
-        Prescription,
-    )
-}
+_OWN = Kernel, Indenter, Interaction, Solver, AreaCorrection, Output, Executor, Prescription
+FAMILIES: dict[str, type[Component]] = {base.family: base for base in _OWN}
 """The base class of each of pellicle's own families, by name."""

@@ -8,7 +8,7 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
-from pellicle.checks import component_name
+from pellicle.checks import component_name, errors_attributed_to
 from pellicle.errors import ConfigError, PluginError, shown
 
 from .base import Component
@@ -188,3 +188,25 @@ def _shared(some: Iterable[str], others: Sequence[str]) -> str:
         if fnmatchcase(other.casefold(), one.casefold()):
             return other
     return ""
+
+
+def files_of(output: Output, runs: Runs, stem: Path) -> tuple[Path, ...]:
+    """Let an output write its files for a run or study with the given stem; return their paths."""
+    with errors_attributed_to(output):
+        files = output.write(runs, stem_of(output, stem))
+    require_files(output, files, stem)
+    return tuple(files)
+
+
+def require_files(output: Output, files: object, stem: Path) -> None:
+    """Refuse the value that write() of an output returned unless it lists files of its own stem."""
+    own = stem_of(output, stem)
+    call = f"{component_name(output)}: write(runs, stem) returned"
+    if not isinstance(files, (tuple, list)) or not all(isinstance(path, Path) for path in files):
+        raise PluginError(
+            f"{call} {shown(files)}; it has to return a tuple of pathlib.Path, empty if there is "
+            "none"
+        )
+    for path in files:
+        if not str(path).startswith(str(own)):
+            raise PluginError(f"{call} {path}; its files have to begin with the stem, {own}")

@@ -11,17 +11,16 @@ import numpy as np
 
 from pellicle.components import Component
 from pellicle.components.base import role_of, words_of_type
-from pellicle.schema.input_path import PORTABLE
+from pellicle.schema.from_file import PORTABLE
 from pellicle.schema.model import Model
 from pellicle.schema.paths import get, walk
 from pellicle.schema.ranges import Values
-from pellicle.units import DIGITS, quantity_of, readable
+from pellicle.units import DIGITS, quantity_of, readable, split
 from pellicle.variables import ROLE, WORDS, WORDS_OF_VALUES
 
-from .legs import VALUES
-from .points import short
+from .describe import field_words, words_at
+from .load_steps import VALUES
 from .run import Run
-from .words import field_words, words_at
 
 
 class Coordinate(NamedTuple):
@@ -128,6 +127,18 @@ def _single(value: Any, given: Any) -> Any:
     if several and not isinstance(given, (list, tuple, Mapping)):
         return value[0]
     return str(given) if isinstance(value, Path) else value
+
+
+def short(value: object) -> str:
+    """Return a value as short text for the name of a run."""
+    if isinstance(value, Model):
+        value = {"type": getattr(value, "type_name", "?")}
+    if isinstance(value, Mapping):
+        return str(value.get("type", "{…}"))
+    text = value if isinstance(value, str) else json.dumps(value, default=str)
+    if (parts := split(text)) is not None:
+        text = f"{parts[0]:.6g} {parts[1]}".rstrip()
+    return text if len(text) <= 30 else f"{text[:29]}…"
 
 
 def units_of(run: Run) -> dict[str, str]:

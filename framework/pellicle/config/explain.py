@@ -21,21 +21,22 @@ from pellicle.plugins import Registered, registry
 from pellicle.schema.messages import similar
 from pellicle.units import quantity_of, readable
 
+from .describe import model_in, parts_of
 from .loading import Loading, Options, keys_of, prescriptions
 from .run import Run
 from .study import Study
-from .words import model_in
 
-_EXAMPLES: Mapping[type[BaseModel], tuple[str, Mapping[str, Any]]] = {
-    Grid: ("grid", {"points": 256, "size": "0.4 mm", "boundary": "free"}),
-    Loading: ("loading", {"depth": {"start": "1 um", "stop": "5 um", "num": 5}}),
-    Study: ("study.vary", {"kernel.tension": ["0 mN/m", "10 mN/m", "50 mN/m"]}),
-}
 _TABLES: Mapping[str, type[BaseModel]] = {
     "run": Run,
     "grid": Grid,
     "loading": Loading,
     "study": Study,
+}
+_EXAMPLES: Mapping[str, str] = {
+    "run": "",
+    "grid": '[grid]\npoints = 256\nsize = "0.4 mm"\nboundary = "free"',
+    "loading": '[loading]\ndepth = { start = "1 um", stop = "5 um", num = 5 }',
+    "study": '[study.vary]\n"kernel.tension" = ["0 mN/m", "10 mN/m", "50 mN/m"]',
 }
 _KINDS: Mapping[type, str] = {bool: "true or false", int: "whole number", float: "number"}
 
@@ -109,19 +110,17 @@ def words_by_kind(tables: Mapping[str, type[BaseModel]]) -> dict[str, list[str]]
 
 
 def _of_table(name: str, model: type[BaseModel]) -> Explanation:
-    rows = [] if model is Loading else rows_of(model.model_fields)
+    rows = rows_of((Options if model is Loading else model).model_fields)
     if model is Study:
         rows = [row for row in rows if row.name != "run"]
     if model is Loading:
+        of_types = []
         for type_, component in prescriptions().items():
             for row in rows_of(keys_of(component)):
                 required = "one of these" if row.name == type_ else f"with {type_}"
-                if row.name not in Options.model_fields:
-                    rows.append(row._replace(default=row.default.replace("required", required)))
-        rows += rows_of(Options.model_fields)
-    example = _toml(*_EXAMPLES[model]) if model in _EXAMPLES else ""
-    if name not in _TABLES:
-        example = _lines(dict(example_values(model)))
+                of_types.append(row._replace(default=row.default.replace("required", required)))
+        rows = [row for row in of_types if row.name not in Options.model_fields] + rows
+    example = _EXAMPLES[name] if name in _EXAMPLES else _lines(dict(example_values(model)))
     return Explanation(name, "table", "", _documentation(model), rows, example)
 
 
@@ -131,11 +130,13 @@ def _of_component(entry: Registered) -> Explanation:
     if refusal := refusal_of_example(entry.component):
         example = "\n# ".join(["# none; it would be refused:", *refusal.splitlines()])
     else:
-        example = _toml(entry.component.place, example_table(entry))
-    is_prescription = family == "prescription"
-    fields = (
-        keys_of(prescriptions()[entry.type]) if is_prescription else entry.component.model_fields
-    )
+        name = entry.component.place.replace("[]", "")
+        # A line for each key, and inner tables on one.
+        head = f"[[{name}]]" if entry.component.place.endswith("[]") else f"[{name}]"
+        example = f"{head}\n{_lines(example_table(entry))}"
+    fields = entry.component.model_fields
+    if issubclass(entry.component, Prescription):
+        fields = keys_of(entry.component)
     text = _documentation(entry.component)
     return Explanation(entry.type, family, origin, text, rows_of(fields), example)
 
@@ -179,25 +180,18 @@ def _default(value: Any, unit: str) -> str:
 
 
 def _is_list(annotation: Any) -> bool:
-    return get_origin(annotation) in (tuple, list) or any(map(_is_list, get_args(annotation)))
-
-
-def _takes_file(annotation: Any) -> bool:
-    return annotation is Path or any(map(_takes_file, get_args(annotation)))
+    return any(get_origin(part) in (tuple, list) for part in parts_of(annotation))
 
 
 def _kind(annotation: Any) -> str:
     """Return the kind of value of a field without a unit, in words."""
     if get_origin(annotation) is Literal:
         return " or ".join(map(str, get_args(annotation)))
-    if isinstance(annotation, type):
-        if issubclass(annotation, BaseModel):
+    type_ = dict if get_origin(annotation) is dict else annotation
+    if isinstance(type_, type):
+        if issubclass(type_, (BaseModel, dict)):
             return "table"
-        if issubclass(annotation, (str, Path)):
-            return "text"
-        return _KINDS.get(annotation, "table" if issubclass(annotation, dict) else "")
-    if get_origin(annotation) is dict:
-        return "table"
+        return "text" if issubclass(type_, (str, Path)) else _KINDS.get(type_, "")
     inner = [a for a in get_args(annotation) if a is not NoneType and a is not ...]
     kinds = list(dict.fromkeys(filter(None, map(_kind, inner))))
     if get_origin(annotation) in (tuple, list):
@@ -207,7 +201,8 @@ def _kind(annotation: Any) -> str:
 
 def refusal_of_example(component: type[Component]) -> str:
     """Return why a component refuses the values of its example; empty if it takes them."""
-    files = {name for name, i in component.model_fields.items() if _takes_file(i.annotation)}
+    fields = component.model_fields.items()
+    files = {name for name, info in fields if Path in parts_of(info.annotation)}
     try:
         component(**dict(example_values(component)))
     except ConfigError as error:
@@ -225,13 +220,6 @@ def example_table(entry: Registered) -> Mapping[str, Any]:
     if issubclass(component, Prescription):
         return {entry.type: [component.quantity().example], **values}
     return {"type": entry.type, **values}
-
-
-def _toml(place: str, table: Mapping[str, Any]) -> str:
-    """Return a table at its place as TOML, with a line for each key and inner tables on one."""
-    name = place.replace("[]", "")
-    head = f"[[{name}]]" if place.endswith("[]") else f"[{name}]"
-    return f"{head}\n{_lines(table)}"
 
 
 def _lines(table: Mapping[str, Any]) -> str:

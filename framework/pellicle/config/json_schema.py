@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
 from pellicle.components import Component
-from pellicle.components.from_registry import FAMILY
+from pellicle.components.base import FAMILY
 from pellicle.plugins import registry
 
 from .run import Run

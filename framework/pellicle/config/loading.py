@@ -32,8 +32,7 @@ from pellicle.schema.messages import nearest
 from pellicle.schema.model import Model
 from pellicle.units import Quantity
 
-from .legs import Leg, Sample, sampled
-from .load_steps import LoadSteps
+from .load_steps import Leg, LoadSteps, Sample, sampled
 
 # Messages name these first.
 _USUAL = "depth", "force", "mean_pressure"

@@ -34,7 +34,7 @@ from pellicle.components import (
     Output,
     Solver,
 )
-from pellicle.components.calls import branches_of
+from pellicle.components.kernel import branches_of
 from pellicle.components.output import ResultFile, refuse_shared_files
 from pellicle.errors import ConfigError
 from pellicle.files import is_file

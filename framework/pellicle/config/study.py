@@ -1,43 +1,49 @@
-"""The configuration of a study: a run, the parameters that vary, and the executor."""
+"""The configuration of a study: a run, the parameters that vary, the executor, and all runs."""
 
 from __future__ import annotations
 
 import itertools
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, NamedTuple, Self
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from pellicle.components import Executor, FromRegistry
 from pellicle.components.output import refuse_shared_files
-from pellicle.errors import ConfigError, Problem, all_problems, shown
+from pellicle.errors import ConfigError, Problem, all_problems, first_of, shown
 from pellicle.results.derived import constants
 from pellicle.schema.expression import CONSTANTS, FUNCTIONS, evaluate, names_in
-from pellicle.schema.from_file import FromFile, read
-from pellicle.schema.input_path import paths_relative_to
+from pellicle.schema.from_file import FromFile, overridden, paths_relative_to, read_toml
 from pellicle.schema.notebook import summary
-from pellicle.schema.paths import get, python_names
+from pellicle.schema.paths import get, python_names, replaced
 from pellicle.schema.ranges import Axes, expand
 from pellicle.variables import BEYOND_THEORY, FIELDS, VARIABLES
 
-from .coordinates import Coordinate, as_json, coordinate, tell_apart
-from .points import Point, points_of
+from .coordinates import Coordinate, as_json, coordinate, short, tell_apart
+from .describe import words_at
 from .run import Run
-from .words import words_at
 
 DEFAULT_EXECUTOR = "serial"
 _MOST = 100_000
 """Largest number of runs, which are all created before the first is solved."""
 
 
+class Point(NamedTuple):
+    """One run of a study."""
+
+    position: tuple[int, ...]
+    """Index along each dimension of the study."""
+    run: Run
+
+
 def from_toml(path: str | Path, overrides: Iterable[str] = ()) -> Run | Study:
     """Return the study that a TOML file describes, or the run if it has no table ``study``."""
-    kind = Study if "study" in read(path, overrides) else Run
+    kind = Study if "study" in overridden(read_toml(Path(path)), overrides) else Run
     return kind.from_toml(path, overrides)
 
 
@@ -128,7 +134,7 @@ class Study(FromFile):
         """The runs, with the last dimension varying fastest."""
         # Workers may run in another current folder.
         with paths_relative_to(None):
-            return tuple(points_of(self.run, self.dimensions))
+            return tuple(_points_of(self.run, self.dimensions))
 
     @property
     def dimensions(self) -> dict[str, Axes]:
@@ -272,3 +278,64 @@ class Study(FromFile):
                         )
                     evaluate(text, dict.fromkeys(allowed - {*FIELDS}, np.float64(1.0)))
                 allowed.add(name)
+
+
+def _points_of(table: Mapping[str, Any], dimensions: Mapping[str, Axes]) -> Iterator[Point]:
+    """Yield the runs of a study, the last dimension varying fastest.
+
+    ``table`` holds the fields that all runs share; ``dimensions`` is `Study.dimensions`.
+    """
+    problems: dict[Problem, list[str]] = {}
+    names: dict[str, str] = {}
+    shared = dict(table)
+    shape = [len(next(iter(axes.values()))) for axes in dimensions.values()]
+    for index in itertools.product(*map(range, shape)):
+        values = {
+            key: of_axis[number]
+            for number, axes in zip(index, dimensions.values(), strict=True)
+            for key, of_axis in axes.items()
+        }
+        name = ", ".join(f"{key} = {short(value)}" for key, value in values.items())
+        try:
+            run = _run(shared, values)
+        except ConfigError as error:
+            for problem in error.problems:
+                problems.setdefault(_located(problem, table, values), []).append(name)
+            continue
+        if not names:
+            # Fields that do not vary are created once: an indenter may hold a large surface.
+            varied = {key.partition(".")[0] for key in values}
+            shared |= {field: getattr(run, field) for field in run.model_fields_set - varied}
+        if (identity := run.identity) in names:
+            message = f"({names[identity]}) and ({name}) are the same run; leave one out"
+            problems[Problem("vary", message)] = []
+        names[identity] = name
+        if not problems:
+            yield Point(index, run)
+    if problems:
+        raise ConfigError(
+            Problem(problem.field, f"{problem.message} (in the run of {first_of(runs)})")
+            if problem.field[:4] == "run." and len(runs) < math.prod(shape)
+            else problem
+            for problem, runs in problems.items()
+        )
+
+
+def _run(shared: Mapping[str, Any], values: Mapping[str, Any]) -> Run:
+    data: Any = shared
+    for key, value in values.items():
+        try:
+            data = replaced(data, key, value)
+        except ConfigError as error:
+            raise error.within(key) from None
+    return Run(**data)
+
+
+def _located(problem: Problem, table: Mapping[str, Any], values: Mapping[str, Any]) -> Problem:
+    """Return a problem under the name of the axis that caused it, or of the run if none did."""
+    for key, value in values.items():
+        is_new_table = key.startswith(f"{problem.field}.") and get(table, problem.field) is None
+        if f"{problem.field}.".startswith(f"{key}.") or is_new_table:
+            prefix = "" if shown(value) in problem.message else f"{shown(value)}: "
+            return Problem(f"vary.{key}", f"{prefix}{problem.message}")
+    return Problem(f"run.{problem.field}".removesuffix("."), problem.message)

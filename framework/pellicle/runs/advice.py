@@ -13,7 +13,7 @@ from scipy.ndimage import binary_dilation
 
 from pellicle.arrays import Array, Mask
 from pellicle.components.base import role_of
-from pellicle.components.calls import profile_of
+from pellicle.components.indenter import profile_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Status
 from pellicle.errors import ConfigError

@@ -12,16 +12,12 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to
 from pellicle.components import Component, Force, Search, Setting
-from pellicle.components.calls import (
-    branches_of,
-    check_solver,
-    check_value,
-    instantaneous,
-    profile_of,
-    target_of,
-)
-from pellicle.components.checked_law import law_of
+from pellicle.components.indenter import profile_of
+from pellicle.components.interaction import law_of
+from pellicle.components.kernel import branches_of, instantaneous
+from pellicle.components.prescription import check_value, target_of
 from pellicle.components.rules import CHEAP, Case, broken
+from pellicle.components.solver import check_solver
 from pellicle.config.run import Run, components_in
 from pellicle.contact.time_step import stiffness_after
 from pellicle.errors import ConfigError, PluginError

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pellicle.components import HasMemory
-from pellicle.components.calls import branches_of
+from pellicle.components.kernel import branches_of
 from pellicle.config.run import Run
 from pellicle.contact.time_step import TimeStep
 

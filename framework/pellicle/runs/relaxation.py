@@ -13,7 +13,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.checks import errors_attributed_to
 from pellicle.components import Kernel, Setting
-from pellicle.components.calls import branches_of
+from pellicle.components.kernel import branches_of
 from pellicle.config.run import Run
 from pellicle.contact.load_step import FinishedStep
 from pellicle.contact.time_step import Memory, TimeStep

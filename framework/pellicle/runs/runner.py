@@ -18,8 +18,7 @@ import xarray as xr
 from pellicle import memory
 from pellicle.checks import checked_threads, errors_attributed_to, read_only_dataset
 from pellicle.components import Output
-from pellicle.components.calls import files_of
-from pellicle.components.output import Runs, stem_of
+from pellicle.components.output import Runs, files_of, stem_of
 from pellicle.config.run import Run
 from pellicle.errors import ConfigError, ConvergenceWarning
 from pellicle.grid import Grid

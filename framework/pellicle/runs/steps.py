@@ -10,7 +10,9 @@ from functools import partial
 import xarray as xr
 
 from pellicle.components import Monitor, Search, Setting
-from pellicle.components.calls import branches_of, solution_of, target_of
+from pellicle.components.kernel import branches_of
+from pellicle.components.prescription import target_of
+from pellicle.components.solver import solution_of
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
 from pellicle.contact.equilibrium import equilibrium_of

@@ -3,9 +3,10 @@ __all__: list[str]
 from .expression import evaluate as evaluate
 from .expression import names_in as names_in
 from .from_file import FromFile as FromFile
+from .from_file import InputPath as InputPath
 from .from_file import overridden as overridden
-from .input_path import InputPath as InputPath
-from .input_path import paths_relative_to as paths_relative_to
+from .from_file import paths_relative_to as paths_relative_to
+from .from_file import read_toml as read_toml
 from .matlab import read_mat as read_mat
 from .messages import nearest as nearest
 from .model import Model as Model
@@ -13,4 +14,3 @@ from .notebook import summary as summary
 from .paths import get as get
 from .paths import replaced as replaced
 from .paths import walk as walk
-from .toml import read_toml as read_toml

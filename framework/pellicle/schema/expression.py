@@ -106,9 +106,6 @@ def evaluate(
     except (SyntaxError, ValueError):
         raise ConfigError(f"{shown(text)} is not arithmetic; write it with {_ALLOWED}") from None
 
-    def name_of(node: ast.Name) -> str:
-        return dotted[int(node.id[1:])]
-
     def value(node: ast.AST) -> Any:
         match node:
             case ast.Expression(body=body):
@@ -117,16 +114,16 @@ def evaluate(
                 pass
             case ast.Constant(value=int() | float() as number):
                 return np.float64(number)
-            case ast.Name():
-                if (name := name_of(node)) not in values:
+            case ast.Name(id=place):
+                if (name := dotted[int(place[1:])]) not in values:
                     raise ConfigError(f"{shown(name)} in {shown(text)}: {nearest(name, values)}")
                 return values[name]
             case ast.UnaryOp(op=op, operand=operand) if type(op) in _OPERATORS:
                 return _OPERATORS[type(op)](value(operand))
             case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATORS:
                 return _OPERATORS[type(op)](value(left), value(right))
-            case ast.Call(func=ast.Name() as function, args=[argument], keywords=[]):
-                if (name := name_of(function)) not in callables:
+            case ast.Call(func=ast.Name(id=place), args=[argument], keywords=[]):
+                if (name := dotted[int(place[1:])]) not in callables:
                     hint = nearest(name, callables)
                     raise ConfigError(f"{shown(name)} in {shown(text)} is not a function; {hint}")
                 return callables[name](value(argument))

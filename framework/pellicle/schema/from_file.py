@@ -1,20 +1,57 @@
-"""Models that can be read from a file, such as a run or a study."""
+"""TOML files, models that are read from one, such as a run or a study, and the paths in it."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+import re
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
-from typing import Any, Self
+from typing import Annotated, Any, Final, Self
 
 import tomli_w
+from pydantic import AfterValidator, PlainSerializer, SerializationInfo
 
 from pellicle.errors import ConfigError, shown
 
-from .input_path import PORTABLE, paths_relative_to
 from .model import Model
 from .paths import replaced
-from .toml import parse_override, read_toml
+
+_OF_A_VALUE = "Invalid value", "Expected newline", "Unclosed array", "Unclosed inline table"
+"""Beginnings of messages of the parser on a value, or on what follows it."""
+PORTABLE: Final = "portable"
+"""Context of ``model_dump`` that writes the names of files without their folders."""
+_folder: ContextVar[Path | None] = ContextVar("folder", default=None)
+
+
+@contextmanager
+def paths_relative_to(folder: Path | None) -> Iterator[None]:
+    """Resolve relative paths in a configuration against ``folder``, the folder of its file.
+
+    None stands for the folder of the file being read or, without one, the current folder.
+    """
+    token = _folder.set(folder or _folder.get() or Path.cwd())
+    try:
+        yield
+    finally:
+        _folder.reset(token)
+
+
+def _from_folder(path: Path) -> Path:
+    folder = _folder.get()
+    return path if folder is None else (folder / path).absolute()
+
+
+def _written(path: Path, info: SerializationInfo) -> Path | str:
+    if info.context == PORTABLE:
+        return path.name
+    return str(path) if info.mode_is_json() else path
+
+
+InputPath = Annotated[Path, AfterValidator(_from_folder), PlainSerializer(_written)]
+"""An input file; in a TOML file, relative to that file."""
 
 
 class FromFile(Model):
@@ -66,7 +103,7 @@ class FromFile(Model):
         PluginError
             A component named in the file is broken.
         """
-        data = read(path, overrides)
+        data = overridden(read_toml(Path(path)), overrides)
         with paths_relative_to(Path(path).parent):
             return cls.from_mapping(data)
 
@@ -100,17 +137,55 @@ class FromFile(Model):
         return tomli_w.dumps(json.loads(self.to_json()))
 
 
-def read(path: str | Path, overrides: Iterable[str] = ()) -> dict[str, Any]:
-    """Return the content of a TOML file after applying the overrides of ``--set``."""
-    return overridden(read_toml(Path(path)), overrides)
+def read_toml(path: Path) -> dict[str, Any]:
+    """Return the content of a TOML file.
+
+    Raises
+    ------
+    ConfigError
+        The file cannot be read, or is not TOML; the message names line and column.
+    """
+    try:
+        # Some editors write a byte order mark before UTF-8.
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise ConfigError(
+            f"{path}: {error.strerror}; give a TOML file (`pellicle new` writes one)"
+        ) from None
+    except UnicodeDecodeError as error:
+        line = error.object.count(b"\n", 0, error.start) + 1
+        raise ConfigError(
+            f"{path}: not a text file in UTF-8 (see line {line}); give a TOML file in UTF-8"
+        ) from None
+    except ValueError as error:
+        raise ConfigError(f"{path}: not valid TOML: {_reason(str(error))}") from None
+
+
+def _reason(message: str) -> str:
+    """Return what is wrong in a TOML text, and the remedy, given the message of the parser."""
+    if twice := re.match(r"Cannot declare \((.*?),?\) twice(.*)", message):
+        table = ".".join(name.strip(" '\"") for name in twice[1].split(","))
+        return f"[{table}] is there already{twice[2]}; leave one [{table}], with the keys of both"
+    if message.startswith("Cannot overwrite a value"):
+        return f"{message.replace('Cannot overwrite a value', 'A key is given twice')}; leave one"
+    quotes = ": texts, and values with a unit, stand in quotes"
+    return f"{message}; correct it there{quotes if message.startswith(_OF_A_VALUE) else ''}"
 
 
 def overridden(data: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:
-    """Return a configuration after applying overrides such as ``"a.b=1"``."""
+    """Return a configuration after applying overrides such as ``"a.b=1"``, of ``--set``.
+
+    A value that is not valid TOML counts as text.
+    """
     for text in overrides:
-        key, value = parse_override(text)
+        key, equals, value = text.partition("=")
+        if not equals or not all(key.strip().split(".")):
+            raise ConfigError(f"--set {text!r} is not of the form a.b=value, e.g. grid.points=128")
+        parsed: object = value.strip()
+        with suppress(ValueError):
+            parsed = tomllib.loads(f"value = {value}")["value"]
         try:
-            data = replaced(data, key, value)
+            data = replaced(data, key.strip(), parsed)
         except ConfigError as error:
             raise ConfigError(f"--set {text!r}: {error}") from None
     return data

@@ -29,15 +29,13 @@ def get(at: Any, path: str) -> Any:
     return at
 
 
-def walk(
-    at: Any, path: str = "", field: FieldInfo | None = None
-) -> list[tuple[str, Any, FieldInfo | None]]:
+def walk(at: Any, path: str = "") -> list[tuple[str, Any, FieldInfo | None]]:
     """Return path, value and field of each value below ``at``, outer ones before inner ones.
 
     Entries of a list have the field of the list; those of a table have none.
     """
     values: list[tuple[str, Any, FieldInfo | None]] = []
-    waiting = [(path, at, field)]
+    waiting: list[tuple[str, Any, FieldInfo | None]] = [(path, at, None)]
     while waiting:
         place, value, field = waiting.pop()
         prefix = f"{place}." if values else path

@@ -11,7 +11,7 @@ from pydantic import Field
 
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
-from pellicle.schema.input_path import InputPath
+from pellicle.schema.from_file import InputPath
 from pellicle.schema.model import Model
 from pellicle.units import Quantity
 from pellicle.variables import ROLE, SEED

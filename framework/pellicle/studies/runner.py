@@ -38,7 +38,6 @@ from pellicle.runs.progress import ProgressReporter
 from pellicle.variables import BEYOND_THEORY
 
 from . import table
-from .planned import check_outputs
 from .summary import caveats, failures, progress_of, run_names
 
 _TABLE_SHARE = 0.05
@@ -71,12 +70,13 @@ class RunTask:
         """Number of load steps of the whole run."""
         return len(self.run.loading.values)
 
-    def stored(self) -> tuple[xr.Dataset | None, str]:
-        """Return the numbers of the steps in its file, if any, and why it cannot be used, if so."""
+    def stored(self) -> tuple[xr.Dataset | None, int, str]:
+        """Return the steps in its file, if any, their number, and why it cannot be used, if so."""
         try:
-            return self.journal.finished(), ""
+            numbers = self.journal.finished()
         except StorageError as error:
-            return None, str(error)
+            return None, 0, str(error)
+        return numbers, 0 if numbers is None else numbers.sizes["step"], ""
 
 
 class StudyResult(NamedTuple):
@@ -149,7 +149,7 @@ def run_study(
 
 def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[RunTask]:
     """Return all runs of a study, finished or not; its outputs have to fit it."""
-    check_outputs(study)
+    table.check_outputs(study)
     outputs = tuple(o for o in study.points[0].run.outputs or () if o.scope == "run")
     names = run_names(table.StudyTable(study).dataset())
     return [
@@ -326,21 +326,13 @@ def _recorded_warnings() -> Iterator[list[warnings.WarningMessage]]:
         _recording.release()
 
 
-def plan(runs: Sequence[RunTask]) -> Iterator[tuple[RunTask, int, str]]:
-    """Yield each run, the number of its finished steps, and why its file cannot be used, if so."""
-    for task in runs:
-        numbers, problem = task.stored()
-        yield task, 0 if numbers is None else numbers.sizes["step"], problem
-
-
 def _collect(task: RunTask, rows: table.StudyTable) -> int:
     """Copy the steps in the file of a run into the table; return their number."""
     # A run whose file cannot be used will fail with a message that names the remedy.
-    numbers, _ = task.stored()
-    if numbers is None:
-        return 0
-    rows.put(task.index, numbers)
-    return numbers.sizes["step"]
+    numbers, count, _ = task.stored()
+    if numbers is not None:
+        rows.put(task.index, numbers)
+    return count
 
 
 def read(path: Path) -> tuple[xr.Dataset, Path]:

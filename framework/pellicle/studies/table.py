@@ -1,4 +1,4 @@
-"""The table of a study: the numbers of its runs over the varied parameters."""
+"""The table of a study: the numbers of its runs over the varied parameters, first without any."""
 
 from __future__ import annotations
 
@@ -10,16 +10,20 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from pellicle.checks import errors_attributed_to
+from pellicle.components import Runs
 from pellicle.config.coordinates import units_of
 from pellicle.config.provenance import facts_of, now_with
 from pellicle.config.study import Study
 from pellicle.contact.caveats import Caveat, Status
+from pellicle.errors import ConfigError
 from pellicle.files import atomic_write, for_document
 from pellicle.results import storage
-from pellicle.results.derived import DERIVED, FIRST_RUN, VARYING, derive, header
+from pellicle.results.derived import CELLS, DERIVED, FIRST_RUN, VARYING, derive, header
 from pellicle.results.dimensions import with_python_names
 from pellicle.results.path import with_path
-from pellicle.variables import BEYOND_THEORY, CAVEATS, VARIABLES
+from pellicle.results.runs import StoredRuns
+from pellicle.variables import BEYOND_THEORY, CAVEATS, FIELDS, VARIABLES, WALL_PRESSURE
 
 _TEXTS = "status_code", "status", CAVEATS
 
@@ -41,16 +45,17 @@ class StudyTable:
         }
         steps = {point.position: len(point.run.loading.values) for point in study.points}
         shape = *study.shape, max(steps.values())
-        self._texts = {name: np.full(shape, "", dtype=object) for name in _TEXTS}
+        self._values: dict[str, np.ndarray[Any, np.dtype[Any]]] = {
+            name: np.full(shape, "", dtype=object) for name in _TEXTS
+        }
         self._runs = np.full(study.shape, "", dtype=object)
         for point in study.points:
             count = steps[point.position]
-            self._texts["status"][point.position][:count] = Status.NOT_RUN.value
-            self._texts["status_code"][point.position][:count] = Status.NOT_RUN.name
+            self._values["status"][point.position][:count] = Status.NOT_RUN.value
+            self._values["status_code"][point.position][:count] = Status.NOT_RUN.name
             self._runs[point.position] = point.run.identity[:16]
         self.beyond_theory = np.full(study.shape, "", dtype=object)
         """What is far beyond the theory in each run."""
-        self._numbers: dict[str, np.ndarray[Any, np.dtype[Any]]] = {}
         self._descriptions: dict[str, dict[str, str]] = {}
 
     def put(self, index: tuple[int, ...], scalars: xr.Dataset) -> None:
@@ -58,12 +63,9 @@ class StudyTable:
         count = scalars.sizes["step"]
         for name, variable in scalars.data_vars.items():
             self._descriptions.setdefault(str(name), dict(variable.attrs))
-            if name in _TEXTS:
-                self._texts[str(name)][index][:count] = variable.values
-                continue
             missing = False if variable.dtype == bool else np.nan
-            empty = np.full(self._texts["status"].shape, missing)
-            self._numbers.setdefault(str(name), empty)[index][:count] = variable.values
+            empty = np.full(self._values["status"].shape, missing)
+            self._values.setdefault(str(name), empty)[index][:count] = variable.values
 
     def recall(self, earlier: xr.Dataset) -> None:
         """Take over what an earlier table of the same runs says to be beyond the theory."""
@@ -75,20 +77,19 @@ class StudyTable:
 
     def fail(self, index: tuple[int, ...], reason: str) -> None:
         """Record why the remaining steps of a run are missing."""
-        codes = self._texts["status_code"][index]
+        codes = self._values["status_code"][index]
         missing = codes == Status.NOT_RUN.name
         codes[missing] = Status.FAILED.name
-        self._texts["status"][index][missing] = Caveat(Status.FAILED, {"reason": reason}).sentence
+        self._values["status"][index][missing] = Caveat(Status.FAILED, {"reason": reason}).sentence
 
     def dataset(self) -> xr.Dataset:
         """Return the table, with NaN for missing numbers."""
         dimensions = *self._study.dimensions, "step"
+        numbers = [name for name in self._values if name not in _TEXTS]
         variables: dict[str, Any] = {
-            name: (dimensions, _whole(values, name), self._descriptions[name])
-            for name, values in self._numbers.items()
+            name: (dimensions, _whole(self._values[name], name), self._descriptions.get(name, {}))
+            for name in (*numbers, *_TEXTS)
         }
-        for name, texts in self._texts.items():
-            variables[name] = dimensions, texts.copy(), self._descriptions.get(name, {})
         description = {"long_name": "name of the run's file"}
         variables["run"] = dimensions[:-1], self._runs.copy(), description
         if self.beyond_theory.astype(bool).any():
@@ -100,11 +101,11 @@ class StudyTable:
         }
         coordinates["step"] = (
             "step",
-            np.arange(1, self._texts["status"].shape[-1] + 1),
+            np.arange(1, self._values["status"].shape[-1] + 1),
             {"long_name": "load step, counted from 1"},
         )
         table = with_path(xr.Dataset(variables, coordinates, self._attributes))
-        if not self._numbers:
+        if not numbers:
             return table
         return derive(table, self._study.derived, units_of(self._study.points[0].run))
 
@@ -132,3 +133,42 @@ def write(table: xr.Dataset, directory: Path) -> tuple[Path, Path]:
         exists = cells[columns.index("status")] != ""
         writer.writerows(zip(*(column[exists].tolist() for column in cells), strict=True))
     return whole, text
+
+
+def check_outputs(study: Study) -> None:
+    """Refuse settings of outputs that do not fit the axes, runs and numbers of a study."""
+    runs = _planned(study)
+    for number, output in enumerate(study.points[0].run.outputs or ()):
+        if output.scope == "run":
+            continue
+        try:
+            with errors_attributed_to(output), np.errstate(all="ignore"):
+                output.check(runs)
+        except ConfigError as error:
+            raise error.within(f"outputs.{number}") from None
+
+
+def _planned(study: Study) -> Runs:
+    """Return the runs of a study with NaN for all numbers, and their last steps on four cells."""
+    table = StudyTable(study).dataset()
+    steps = table["status"]
+    variables = {v.name: v for point in study.points for v in point.run.variables}
+    for name, variable in variables.items():
+        of_run = variable.kind in ("path", "oscillation")
+        like = steps.isel(step=-1, drop=True) if of_run else steps
+        empty = np.full(like.shape, variable.type != "truth" and np.nan)
+        table[name] = like.dims, empty, variable.attributes
+    points = {point.run.identity[:16]: point for point in study.points}
+
+    def last_step(name: str) -> xr.Dataset:
+        position, run = points[name].position, points[name].run
+        where = *position, [len(run.loading.values) - 1]
+        row = table.isel(dict(zip(steps.dims, where, strict=True))).reset_coords(drop=True)
+        for field in (*FIELDS, *[WALL_PRESSURE] * bool(run.interaction)):
+            cells = np.zeros((1, 2, 2), bool if VARIABLES[field].type == "truth" else float)
+            row[field] = ("step", *CELLS), cells, VARIABLES[field].attributes
+        sides = [edge / 4 * np.array([-1, 1]) for edge in run.grid.size]
+        row = row.assign_coords(dict(zip(CELLS, sides, strict=True)))
+        return row.assign_attrs(configuration=run.to_json(), **facts_of([run]))
+
+    return StoredRuns(derive(table, study.derived, {}), last_step, study.to_json(portable=True))

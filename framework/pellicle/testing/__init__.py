@@ -8,22 +8,11 @@ a test framework; under pytest a plain function is enough::
         check_kernel(Graded(reduced_modulus="10 kPa", length="0.1 mm", exponent=0.5))
 """
 
-from .corrections import check_correction
-from .executors import check_executor
-from .indenters import check_indenter
-from .interactions import check_interaction
-from .kernels import check_kernel
-from .outputs import check_output
-from .prescriptions import check_prescription
-from .solvers import check_solver
-
-__all__ = [
-    "check_correction",
-    "check_executor",
-    "check_indenter",
-    "check_interaction",
-    "check_kernel",
-    "check_output",
-    "check_prescription",
-    "check_solver",
-]
+from .corrections import check_correction as check_correction
+from .executors import check_executor as check_executor
+from .indenters import check_indenter as check_indenter
+from .interactions import check_interaction as check_interaction
+from .kernels import check_kernel as check_kernel
+from .outputs import check_output as check_output
+from .prescriptions import check_prescription as check_prescription
+from .solvers import check_solver as check_solver

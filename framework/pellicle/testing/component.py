@@ -1,36 +1,69 @@
-"""Contract rules that components of all families keep."""
+"""How contract rules are asked, and those that components of all families keep."""
 
 from __future__ import annotations
 
+import importlib
 import inspect
 import json
 import pickle
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any, get_args
 
+import numpy as np
 import tomli_w
+from numpy.typing import ArrayLike
 from pydantic import ValidationError
 
 from pellicle.components import FAMILIES, Component
-from pellicle.components.rules import CHEAP, Case
+from pellicle.components.rules import CHEAP, Case, required
+from pellicle.components.rules.rule import difference
+from pellicle.components.rules.rule import rules_of as rules_of
 from pellicle.config.explain import refusal_of_example
 from pellicle.errors import ConfigError, PellicleError
-from pellicle.plugins import GROUP, checked_type, family_of, registry
+from pellicle.plugins import GROUP, Registered, checked_type, family_of, registry
 from pellicle.units import quantity_of
 
-from .rules import Rule, keep, require
-
+Rule = Callable[..., str | None]
+"""A function of a component that raises, or returns what is wrong, if the component breaks it."""
 _LONGEST_SUMMARY = 100
 
 
+def keep(rules: Iterable[Rule], component: Any, *arguments: Any) -> None:
+    """Call each rule; raise AssertionError with class, rule and violation of the first broken."""
+    for rule in rules:
+        cause = None
+        try:
+            # Formulas may overflow; what that leads to is a violation or harmless.
+            with np.errstate(all="ignore"):
+                violation = rule(component, *arguments)
+        except AssertionError as error:
+            violation = str(error)
+        except Exception as error:
+            violation, cause = f"{type(error).__name__}: {error}", error
+        if violation:
+            raise AssertionError(
+                f"{type(component).__name__} breaks the rule {rule.__name__}\n"
+                f"required: {required(rule)}\n"
+                f"violation: {violation}"
+            ) from cause
+
+
+def require(holds: bool | np.bool_, message: str) -> None:
+    """Raise AssertionError with a message unless a condition holds, under ``python -O`` too."""
+    if not holds:
+        raise AssertionError(message)
+
+
+def require_close(actual: ArrayLike, expected: ArrayLike, name: str, **allowed: float) -> None:
+    """Raise AssertionError with the largest difference if two arrays differ; see `difference`."""
+    violation = difference(actual, expected, name, **allowed)
+    require(not violation, violation)
+
+
 def check(
-    component: object,
-    family: str,
-    rules: list[Rule],
-    *arguments: Any,
-    cases: Iterable[Case] = (),
+    component: object, family: str, rules: list[Rule], *arguments: Any, cases: Iterable[Case] = ()
 ) -> None:
     """Check the rules of all components, then those of the family.
 
@@ -53,10 +86,7 @@ def is_an_instance(component: object, family: str) -> None:
         raise AssertionError(
             f"{component.__name__} is a class; pass an instance: {component.__name__}(…)"
         )
-    require(
-        isinstance(component, base),
-        f"{component!r}, which is not a pellicle.{base.__name__}",
-    )
+    require(isinstance(component, base), f"{component!r}, which is not a pellicle.{base.__name__}")
 
 
 def class_can_be_registered(component: Component) -> None:
@@ -120,7 +150,7 @@ def goes_through_json(component: Component) -> None:
 
 def goes_through_toml(component: Component) -> None:
     """The component written as TOML reproduces the component."""
-    again = type(component)(**_by_toml(_table(component)))
+    again = type(component)(**tomllib.loads(tomli_w.dumps(_table(component))))
     require(again == component, f"{again!r} of {component!r}")
 
 
@@ -128,10 +158,6 @@ def _table(component: Component) -> dict[str, Any]:
     """Return the component as a table of a file."""
     table: dict[str, Any] = json.loads(component.model_dump_json(exclude_none=True))
     return table
-
-
-def _by_toml(table: dict[str, Any]) -> dict[str, Any]:
-    return tomllib.loads(tomli_w.dumps(table))
 
 
 def unknown_field_is_refused(component: Component) -> None:
@@ -194,7 +220,7 @@ def is_registered(component: Component) -> None:
 def goes_through_the_registry(component: Component) -> None:
     """The registry reproduces a component from its table, and returns a component unchanged."""
     base = family_of(type(component))
-    for table in (_table(component), _by_toml(_table(component)), component.model_dump()):
+    for table in (_table(component), component.model_dump()):
         again = registry().make(base, table)
         require(again == component, f"{again!r} of {component!r}")
     require(registry().make(base, component) is component, "a component is copied")
@@ -213,3 +239,21 @@ RULES: list[Rule] = [
     takes_its_example,
     libraries_are_installed,
 ]
+
+
+def verdict_on_examples(registered: Registered) -> tuple[bool, str]:
+    """Return whether the examples of a component keep its contract, and in words how far.
+
+    Without examples only what registration requires of the class has been checked.
+    """
+    family = registered.component.family
+    kit = getattr(importlib.import_module(__package__), f"check_{family}", None)
+    if kit is None or not registered.examples:
+        lack = "examples" if kit else f"checks of the family {family!r}"
+        return True, f"class rules only: there are no {lack}"
+    for number, example in enumerate(registered.examples, start=1):
+        try:
+            kit(registered.component(**example))
+        except Exception as error:
+            return False, f"example {number}: {error}"
+    return True, "keeps its contract"

@@ -8,8 +8,7 @@ from pellicle.arrays import Mask
 from pellicle.checks import real_number
 from pellicle.components import AreaCorrection
 
-from .component import check
-from .rules import require, require_close, rules_of
+from .component import check, require, require_close, rules_of
 from .small_runs import solved
 
 _SPACING = (2e-6, 3e-6)
@@ -36,6 +35,11 @@ def _islands() -> Mask:
     return contact
 
 
+def _require_area(area: float, expected: float, which: str) -> None:
+    """Require an area [m²], up to rounding."""
+    require_close(area, expected, f"the area [m²] {which}", relative=1e-12)
+
+
 def area_is_pure(correction: AreaCorrection) -> None:
     """area(contact, spacing) is a number, the same in a second call, and contact is unchanged."""
     contact = _islands()
@@ -54,7 +58,7 @@ def no_contact_has_no_area(correction: AreaCorrection) -> None:
 def full_contact_is_the_domain(correction: AreaCorrection) -> None:
     """In full contact the area is that of the domain."""
     area = correction.area(np.ones((8, 6), dtype=bool), _SPACING)
-    require_close(area, 48 * _CELL, "the area [m²] of full contact", relative=1e-12)
+    _require_area(area, 48 * _CELL, "of full contact")
 
 
 def area_is_near_the_count(correction: AreaCorrection) -> None:
@@ -74,9 +78,7 @@ def area_scales_with_the_cells(correction: AreaCorrection) -> None:
     area = correction.area(_islands(), _SPACING)
     for factor in (1e-3, 7.0):
         larger = correction.area(_islands(), (factor * _SPACING[0], factor * _SPACING[1]))
-        require_close(
-            larger, factor**2 * area, f"the area [m²] of cells {factor:g} × as wide", relative=1e-12
-        )
+        _require_area(larger, factor**2 * area, f"of cells {factor:g} × as wide")
 
 
 def area_does_not_depend_on_the_view(correction: AreaCorrection) -> None:
@@ -89,9 +91,7 @@ def area_does_not_depend_on_the_view(correction: AreaCorrection) -> None:
         ("shifted", np.roll(contact, (1, -1), axis=(0, 1)), _SPACING),
         ("with x and y exchanged", contact.T, _SPACING[::-1]),
     ):
-        require_close(
-            correction.area(cells, spacing), area, f"the area [m²] {view}", relative=1e-12
-        )
+        _require_area(correction.area(cells, spacing), area, view)
 
 
 def periodic_area_has_no_seam(correction: AreaCorrection) -> None:
@@ -100,14 +100,10 @@ def periodic_area_has_no_seam(correction: AreaCorrection) -> None:
         return
     contact = _islands()
     area = correction.periodic_area(contact, _SPACING)
-    require_close(
-        area, correction.area(contact, _SPACING), "the area [m²] inside the domain", relative=1e-12
-    )
+    _require_area(area, correction.area(contact, _SPACING), "inside the domain")
     for shift in ((7, 0), (0, 11), (20, 15)):
         shifted = correction.periodic_area(np.roll(contact, shift, axis=(0, 1)), _SPACING)
-        require_close(
-            shifted, area, f"the area [m²] shifted by {shift} cells across the edge", relative=1e-12
-        )
+        _require_area(shifted, area, f"shifted by {shift} cells across the edge")
 
 
 def goes_into_the_result(correction: AreaCorrection) -> None:

@@ -7,13 +7,12 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.components import Interaction, Kernel
+from pellicle.components import Interaction
 from pellicle.components.rules import Case
 from pellicle.grid import Grid
-from pellicle.plugins import registry
+from pellicle.plugins import kernel
 
-from .component import check
-from .rules import require, require_close, rules_of
+from .component import check, require, require_close, rules_of
 from .small_runs import solved
 
 _RADIUS = 1e-3
@@ -38,7 +37,7 @@ def run_under_a_pull_converges(interaction: Interaction) -> None:
     unit = np.pi * _at_rest(interaction.energy) * _RADIUS
     data = solved(
         grid={"points": 64, "size": size, "boundary": "free"},
-        kernel=_kernel(modulus),
+        kernel=kernel("half_space", reduced_modulus=modulus),
         interaction=interaction,
         loading={"force": [0.1 * unit, -0.5 * unit]},
         solver={"type": "active_set", "tolerance": 1e-6},
@@ -53,8 +52,9 @@ def _cases(interaction: Interaction) -> Iterator[Case]:
     if interaction.cutoff() != 0:
         yield Case(Grid(points=16, size=1.0, boundary="free"))
     modulus, size = _sizes(interaction)
+    solid = kernel("half_space", reduced_modulus=modulus)
     for points in (16, 256):
-        yield Case(Grid(points=points, size=size, boundary="free"), _kernel(modulus))
+        yield Case(Grid(points=points, size=size, boundary="free"), solid)
 
 
 def _sizes(interaction: Interaction) -> tuple[float, float]:
@@ -77,7 +77,3 @@ def _sizes(interaction: Interaction) -> tuple[float, float]:
 def _at_rest(function: Callable[[Array], Array]) -> float:
     """Return minus a function of a closed gap."""
     return -float(np.ravel(function(np.zeros(1)))[0])
-
-
-def _kernel(modulus: float) -> Kernel:
-    return registry().make(Kernel, {"type": "half_space", "reduced_modulus": modulus})

@@ -6,14 +6,13 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.components import Kernel
-from pellicle.components.calls import instantaneous
+from pellicle.components.kernel import instantaneous
 from pellicle.components.rules import Case
 from pellicle.components.rules.closed_form import displacement_of_centre
 from pellicle.grid import Grid
 from pellicle.surface.operators import displacement
 
-from .component import check
-from .rules import require_close, rules_of
+from .component import check, require_close, rules_of
 from .small_runs import solved
 
 _WIDTH = 1e-4

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from fnmatch import fnmatch
 from functools import cache, lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, NamedTuple
+from typing import Any
 
 import xarray as xr
 
-from pellicle.components import Output, Runs
-from pellicle.components.calls import require_files
-from pellicle.components.output import stem_of
+from pellicle.components import Output
+from pellicle.components.output import require_files, stem_of
 from pellicle.config.run import Run
 from pellicle.config.study import Study
 from pellicle.results.derived import FIRST_RUN
@@ -26,8 +23,7 @@ from pellicle.runs.progress import RunProgress
 from pellicle.runs.runner import execute, solve
 from pellicle.studies import runner as studies
 
-from .component import check
-from .rules import require, rules_of
+from .component import check, require, rules_of
 from .small_runs import PARABOLOID
 
 _STEPS = 2
@@ -62,30 +58,17 @@ def _dataset() -> xr.Dataset:
     return solve(_run()).dataset
 
 
-def _as_run_or_study(output: Output, steps: xr.Dataset) -> Runs:
-    """Return a run of some steps, as a study of that run if the output shows studies only."""
-    configuration = _run().to_json()
-    runs = StoredRuns.of_run(steps, configuration)
-    if output.scope != "study":
-        return runs
-    attributes = {"axes": json.dumps({_VARIED: [_VARIED]}), FIRST_RUN: configuration}
-    table = runs.table.expand_dims({_VARIED: [1.0]}).assign_attrs(attributes)
-    return replace(runs, table=table)
-
-
-@contextmanager
-def _stem() -> Iterator[Path]:
-    """Yield the stem of a run in an empty folder."""
-    with TemporaryDirectory() as folder:
-        yield Path(folder) / "indent"
-
-
 def _write(output: Output, stem: Path, steps: xr.Dataset) -> tuple[Path, ...]:
-    """Call the output as a run does; return the files that it returns."""
-    own = stem_of(output, stem)
+    """Call the output as a run does, or a study if it shows those alone; return its files."""
+    own, configuration = stem_of(output, stem), _run().to_json()
     for index in range(steps.sizes["step"]):
         output.step(steps.isel(step=slice(index, index + 1)), own)
-    return output.write(_as_run_or_study(output, steps), own)
+    runs = StoredRuns.of_run(steps, configuration)
+    if output.scope == "study":
+        attributes = {"axes": json.dumps({_VARIED: [_VARIED]}), FIRST_RUN: configuration}
+        table = runs.table.expand_dims({_VARIED: [1.0]}).assign_attrs(attributes)
+        runs = replace(runs, table=table)
+    return output.write(runs, own)
 
 
 def _contents(folder: Path) -> dict[str, bytes]:
@@ -99,34 +82,29 @@ def _contents(folder: Path) -> dict[str, bytes]:
 
 def _written(output: Output, steps: xr.Dataset) -> dict[str, bytes]:
     """Return the content of each file that the output writes for some steps."""
-    with _stem() as stem:
+    with TemporaryDirectory() as folder:
+        stem = Path(folder) / "indent"
         _write(output, stem, steps)
         return _contents(stem.parent)
 
 
-class Whole(NamedTuple):
-    """What an output makes of all steps."""
-
-    contents: dict[str, bytes]
-    leaves_data: bool
-
-
 @lru_cache(maxsize=1)
-def _whole(output: Output) -> Whole:
-    """Write all steps, for several rules: drawing takes long."""
+def _whole(output: Output) -> tuple[dict[str, bytes], bool]:
+    """Return what is written for all steps, for several rules, and whether it left their data."""
     data = _dataset().copy(deep=True)
-    contents = _written(output, data)
-    return Whole(contents, data.identical(_dataset()))
+    return _written(output, data), data.identical(_dataset())
 
 
 def leaves_its_data_as_they_are(output: Output) -> None:
     """step() and write() change nothing of their arguments: other outputs get them too."""
-    require(_whole(output).leaves_data, "the data of the run differ afterwards")
+    _, leaves_data = _whole(output)
+    require(leaves_data, "the data of the run differ afterwards")
 
 
 def leaves_the_files_it_returns(output: Output) -> None:
     """A run, also if interrupted and repeated, has the files of write(), with its `suffixes`."""
-    with _stem() as stem:
+    with TemporaryDirectory() as folder:
+        stem = Path(folder) / "indent"
         own = stem_of(output, stem).name
         # Interrupted after each step, the run is repeated with the same stem.
         for steps in range(1, _STEPS + 1):
@@ -152,7 +130,7 @@ def loses_no_step(output: Output) -> None:
     if output.scope != "run":
         return
     whole = _dataset()
-    contents, again = _whole(output).contents, _written(output, whole)
+    (contents, _), again = _whole(output), _written(output, whole)
     # A file with a date or a random name differs between two equal runs, and proves nothing.
     steady = {name for name, content in again.items() if content == contents.get(name)}
     if not steady:
@@ -171,7 +149,8 @@ def works_in_a_run(output: Output) -> None:
     """A run with this output alone has its files beside the result file."""
     if output.scope == "study":
         return
-    with _stem() as stem:
+    with TemporaryDirectory() as folder:
+        stem = Path(folder) / "indent"
         run = _run().model_copy(update={"outputs": (output,)})
         journal, bar = Journal(stem, run.identity), RunProgress(_STEPS, False)
         for path in execute(run, journal, (output,), bar).files:

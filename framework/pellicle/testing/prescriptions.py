@@ -7,12 +7,8 @@ from functools import cache
 from typing import Any
 
 from pellicle.components import Force, Prescription, Search, Setting, Solver
-from pellicle.components.calls import (
-    check_value,
-    report_of,
-    solution_of,
-    target_of,
-)
+from pellicle.components.prescription import check_value, report_of, target_of
+from pellicle.components.solver import solution_of
 from pellicle.config.run import Run
 from pellicle.contact.equilibrium import Equilibrium, measure
 from pellicle.contact.load_step import LoadStep
@@ -22,8 +18,7 @@ from pellicle.results.step import step_dataset
 from pellicle.runs.compose import compose
 from pellicle.runs.target_search import reach
 
-from .component import check
-from .rules import require, require_close, rules_of
+from .component import check, require, require_close, rules_of
 from .small_runs import HALF_SPACE, ROUGH, ignore
 
 # A contact area of whole cells misses its value by more than other quantities do.
@@ -98,12 +93,9 @@ def target_is_pure(prescription: Prescription, values: Sequence[float]) -> None:
     setting, _, _ = _reference_steps()
     for value in _values(prescription, values):
         check_value(prescription, setting, value, "")
-        first, second = (_numbers(target_of(prescription, setting, value)) for _ in range(2))
+        members = (vars(target_of(prescription, setting, value)).items() for _ in range(2))
+        first, second = ({k: v for k, v in target if k != "measure"} for target in members)
         require(first == second, f"{second} after {first}")
-
-
-def _numbers(target: object) -> dict[str, Any]:
-    return {name: value for name, value in vars(target).items() if name != "measure"}
 
 
 def values_are_refused_in_words(prescription: Prescription, values: Sequence[float]) -> None:
@@ -139,12 +131,8 @@ def step_has_what_is_prescribed(prescription: Prescription, values: Sequence[flo
         else:
             problem = setting.problem(target)
             step = measure(problem, solution_of(solver, problem, None, ignore).pressure)
-        require_close(
-            step.force,
-            reference.force,
-            f"the force [N] at {value:g} {prescription.unit}",
-            relative=_NEAR,
-        )
+        what = f"the force [N] at {value:g} {prescription.unit}"
+        require_close(step.force, reference.force, what, relative=_NEAR)
         again = _value(prescription, step)
         if again is not None:
             require_close(again, value, f"{prescription.type_name} prescribed", relative=_NEAR)

@@ -9,7 +9,7 @@ import xarray as xr
 from pellicle.config.run import Run
 from pellicle.runs.runner import solve
 
-from .rules import require
+from .component import require
 
 HALF_SPACE = {"type": "half_space", "reduced_modulus": 1e4}
 PARABOLOID = {"type": "paraboloid", "radius": "1 mm"}

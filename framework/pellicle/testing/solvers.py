@@ -9,15 +9,14 @@ import numpy as np
 import xarray as xr
 
 from pellicle.components import IterativeSolver, Solver
-from pellicle.components.calls import response_of, solution_of
+from pellicle.components.solver import response_of, solution_of
 from pellicle.config.run import Run
 from pellicle.contact.equilibrium import measure, measure_stiffness
 from pellicle.contact.problem import Depth, Force, Problem
 from pellicle.contact.solution import State, Stop
 from pellicle.surface.operators import make_operator
 
-from .component import check
-from .rules import require, require_close, rules_of
+from .component import check, require, require_close, rules_of
 from .small_runs import PARABOLOID, ROUGH, ignore, solved
 
 _SKIN = {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 1.0}

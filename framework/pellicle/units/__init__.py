@@ -49,8 +49,6 @@ _EXAMPLES = {
     "s": "1 s",
     "Hz": "1 Hz",
 }
-
-
 _LIMITS = (
     (">", "exclusiveMinimum", operator.gt),
     ("≥", "minimum", operator.ge),

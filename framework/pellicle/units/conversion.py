@@ -5,13 +5,10 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from functools import cache, lru_cache
-from typing import TYPE_CHECKING, Any
+from functools import lru_cache
+from typing import Any
 
 from pellicle.errors import shown
-
-if TYPE_CHECKING:
-    import pint
 
 NUMBER_AND_UNIT = re.compile(
     r"([-+]?(?:nan\b|inf(?:inity)?\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*(.*)",
@@ -53,16 +50,6 @@ _NOUNS = {
 """Nouns for values, by a unit of their dimension."""
 
 
-@cache
-def pint_registry() -> pint.UnitRegistry[Any]:
-    """Return the registry that all of the application shares."""
-    # pint takes a fifth of a second to import, so it is imported only for a text with a unit.
-    import pint
-
-    registry: pint.UnitRegistry[Any] = pint.application_registry.get()  # type: ignore[no-untyped-call]
-    return registry
-
-
 def split(text: str) -> tuple[float, str] | None:
     """Return number and unit of a text like ``"10 kPa"``; None for any other text."""
     match = NUMBER_AND_UNIT.fullmatch(text.strip())
@@ -75,12 +62,15 @@ def one(unit: str) -> Any:
 
 
 def _quantity(number: float, unit: str) -> Any:
-    """Return a number of a unit as a pint quantity."""
+    """Return a number of a unit as a pint quantity of the registry that the process shares."""
+    # pint takes a fifth of a second to import, so it is imported only for a text with a unit.
+    import pint
+
     # Runs of blanks can be divided among the parts of the pattern in more ways than can be tried.
     spelled = _POWER_BEHIND.sub(r"**\1", " ".join(unit.split()))
     if len(spelled) <= _LONGEST_UNIT and _UNIT.fullmatch(spelled):
         try:
-            quantity = pint_registry().Quantity(number, spelled)
+            quantity = pint.application_registry.get().Quantity(number, spelled)  # type: ignore[no-untyped-call]
             quantity.to_base_units()
             return quantity
         except Exception:

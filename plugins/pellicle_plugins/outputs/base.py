@@ -12,8 +12,8 @@ import numpy as np
 from pydantic import Field
 
 from pellicle.components import Axis, Output, Runs
+from pellicle.config.describe import words_at
 from pellicle.config.run import Run
-from pellicle.config.words import words_at
 from pellicle.errors import ConfigError, StorageError
 from pellicle.results.derived import configuration_of, names
 from pellicle.results.result import Result

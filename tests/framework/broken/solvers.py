@@ -44,11 +44,6 @@ def answers(fault: str, run: Refused | Marked, response: Any) -> Broken:
     return Broken(fault, run, "stiffness", response=response)
 
 
-def starts(change: Callable[[Any], Any]) -> Any:
-    """Return a method that uses its start in another way."""
-    return lambda f, problem, start, monitor: f(problem, start and change(start), monitor)
-
-
 def after(change: Callable[[Any, Any], Any]) -> Any:
     """Return a method whose solution is changed where there is a start."""
 

@@ -11,8 +11,7 @@ import pellicle as pl
 from pellicle import testing
 from pellicle.components.rules import CHEAP
 from pellicle.testing import executors
-from pellicle.testing.component import RULES
-from pellicle.testing.rules import rules_of
+from pellicle.testing.component import RULES, rules_of
 from tests.framework.broken.catalogue import RULE, Broken, Refused, Taken, make
 from tests.framework.broken.corrections import CORRECTIONS
 from tests.framework.broken.executors import EXECUTORS

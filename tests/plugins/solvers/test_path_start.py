@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle.components.checked_law import law_of
+from pellicle.components.interaction import law_of
 from pellicle.contact.load_step import FinishedStep, start_of
 from pellicle.contact.problem import Depth, Force
 from pellicle_plugins.solvers.active_set import ActiveSet

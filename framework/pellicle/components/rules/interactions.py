@@ -8,8 +8,7 @@ from typing import Final
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.components.checked_law import law_of
-from pellicle.components.interaction import Interaction
+from pellicle.components.interaction import Interaction, law_of
 from pellicle.contact.law import Law
 
 from .rule import Case
@@ -68,7 +67,9 @@ def energy_ends_at_the_cutoff(interaction: Interaction, case: Case) -> str:
 def traction_is_the_derivative_of_the_energy(interaction: Interaction, case: Case) -> str:
     """The traction is −dγ/dg: its integral from a closed gap is what the energy changes by."""
     _, gaps, energy, traction = _on_gaps(interaction, case)
-    work = _integral(traction, gaps)
+    # The integral from the closed gap by the trapezoidal rule.
+    means = 0.5 * (traction[1:] + traction[:-1])
+    work = np.concatenate([[0.0], np.cumsum(means) * gaps[1]])
     missed = float(np.abs(energy - energy[0] + work).max()) / (float(np.abs(energy).max()) or 1.0)
     if missed <= _ENERGY_ERROR:
         return ""
@@ -117,9 +118,3 @@ def _on_gaps(interaction: Interaction, case: Case) -> tuple[Law, Array, Array, A
     law = _law(interaction, case)
     gaps = np.linspace(0.0, law.cutoff(), _GAPS)
     return law, gaps, law.energy(gaps), law.traction(gaps)
-
-
-def _integral(values: Array, places: Array) -> Array:
-    """Return the integral from the first of evenly spaced places, by the trapezoidal rule."""
-    means = 0.5 * (values[1:] + values[:-1])
-    return np.concatenate([[0.0], np.cumsum(means) * places[1]])

@@ -1,4 +1,4 @@
-"""What a rule is, and where it is asked."""
+"""What a rule is, where it is asked, and how it tells that arrays differ."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from pellicle.checks import errors_attributed_to
 from pellicle.components.kernel import Kernel
@@ -53,3 +54,31 @@ def rules_of(module: str) -> list[Callable[..., Any]]:
         and value.__module__ == module
         and not name.startswith(("_", "check_"))
     ]
+
+
+def difference(
+    actual: ArrayLike,
+    expected: ArrayLike,
+    name: str,
+    *,
+    relative: float = 0.0,
+    absolute: float = 0.0,
+) -> str:
+    """Return the largest difference of two arrays, with its index, if they are not close."""
+    actual, expected = np.asarray(actual), np.asarray(expected)
+    if actual.shape != expected.shape:
+        return f"{name} is of shape {actual.shape}; expected {expected.shape}"
+    with np.errstate(invalid="ignore"):
+        error = np.abs(actual - expected)
+        allowed = absolute + relative * np.abs(expected)
+    # A share of an infinite value would allow any difference.
+    differs = ~((actual == expected) | (np.isfinite(error) & (error <= allowed)))
+    if not differs.any():
+        return ""
+    size = np.where(differs, np.nan_to_num(error, nan=np.inf), -1.0)
+    at = np.unravel_index(np.argmax(size), size.shape)
+    where = f" at index {tuple(map(int, at))}" if at else ""
+    return (
+        f"{name} is {float(actual[at]):.10g}{where}; expected {float(expected[at]):.10g} within "
+        f"{float(allowed[at]):.1e}; {int(differs.sum())} of {differs.size} values differ"
+    )

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from pellicle.components.calls import branches_of
+from pellicle.components.kernel import branches_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.load_step import LoadStep, Value
