@@ -36,17 +36,19 @@ def plot(
     ] = None,
 ) -> None:
     """Draw the figures of a result or of a study."""
+    from pellicle import registry
+    from pellicle.components import Output
     from pellicle.results.result import file_of_run, load
-    from pellicle.show import figures, write_charts
+    from pellicle.results.runs import StoredRuns
     from pellicle.studies.runner import is_table, read
 
     chosen = [str(format_) for format_ in formats or [Format.PNG]]
+    output = registry().make(Output, {"type": "figures", "formats": chosen})
     if is_table(results):
         table, folder = read(results)
-        drawn, name = figures(table), "study"
+        runs, name = StoredRuns.of_study(table, folder), "study"
     else:
         file = file_of_run(results)
-        drawn, folder, name = figures(load(file)), file.parent, file.stem
-    shown = ((f"-{suffix}", [figure]) for suffix, figure in drawn.items())
-    for path in write_charts(shown, (directory or folder) / name, chosen):
+        runs, folder, name = StoredRuns.of_run(load(file).dataset), file.parent, file.stem
+    for path in output.write(runs, (directory or folder) / name):
         echo(f"wrote {path}")

@@ -1,9 +1,6 @@
 __all__: list[str]
 
 from .drawing import draw as draw
-from .fields import cross_section as cross_section
-from .fields import pressure_map as pressure_map
-from .fields import profile as profile
 from .fields import without_round_off as without_round_off
 from .html import Block as Block
 from .html import Cell as Cell
@@ -20,16 +17,10 @@ from .maps import Frame as Frame
 from .maps import Maps as Maps
 from .maps import frame as frame
 from .maps import side as side
-from .presets import FIGURES as FIGURES
-from .presets import STUDY_FIGURES as STUDY_FIGURES
-from .presets import area_force as area_force
-from .presets import figures as figures
-from .presets import force_depth as force_depth
-from .presets import over_time as over_time
-from .presets import study_curves as study_curves
 from .rim import up_to_rim as up_to_rim
 from .rim import with_rim as with_rim
 from .saving import figure_of as figure_of
+from .saving import figures as figures
 from .saving import png as png
 from .saving import save_figure as save_figure
 from .saving import save_pages as save_pages

@@ -7,14 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pellicle.arrays import Mask
-from pellicle.components.charts import Axis, Chart, Fields, Look, Panel, Series
 from pellicle.contact.problem import height_scale
-from pellicle.results.path import has_interaction, has_times, label_of_step
-from pellicle.results.result import Result
+from pellicle.results.path import has_interaction, has_times
 from pellicle.results.wording import is_periodic
-from pellicle.units import readable
-
-from .rim import with_rim
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -58,94 +53,7 @@ def default_step(steps: xr.Dataset) -> int:
     return int(in_contact[-1]) if in_contact.size else -1
 
 
-def pressure_map(result: Result, step: int | None = None) -> Fields:
-    """Return the pressure of a load step over the domain, by default of `default_step`.
-
-    Where there is tension, colours are centred at 0, a line encloses the contact and a dotted line
-    the zone in which an interaction pulls.
-    """
-    step = default_step(result.dataset) if step is None else step
-    data = result.dataset.isel(step=step)
-    pressure, pulls = data["pressure"].transpose("x", "y").values, has_interaction(data)
-    outlines = contact_and_zone(data) if pulls else []
-    title = _caption(result, step)
-    panel = Panel(data["x"].values, data["y"].values, pressure, title, pressure == 0, outlines)
-    words = "pressure, negative where it pulls" if pulls else "contact pressure"
-    return Fields(Axis(words, "Pa", limits=(None if pulls else 0.0, None)), [panel], centred=pulls)
-
-
 def contact_and_zone(step: xr.Dataset) -> list[Mask]:
     """Return where a load step is in contact, and where a traction acts, each shape (nx, ny)."""
     contact = step["contact"].transpose("x", "y").values
     return [contact, contact | (step["pressure"].transpose("x", "y").values != 0)]
-
-
-def profile(result: Result, step: int | None = None) -> Chart:
-    """Return pressure and gap along a line of cells in x, by default of `default_step`.
-
-    The line goes through the centre of the domain, or, where it meets no contact there, through the
-    greatest pressure, if there is any. It ends at the rim of a round contact; with an interaction
-    the contact is shaded.
-    """
-    step = default_step(result.dataset) if step is None else step
-    data = without_round_off(result.dataset.isel(step=step))
-    row = data.sizes["y"] // 2
-    peaks = np.abs(data["pressure"].values).max(axis=0)
-    if peaks.any() and not data["contact"].isel(y=row).any():
-        row = int(peaks.argmax())
-    line = data.isel(y=row)
-    x, gap, contact = line["x"].values, line["gap"].values, line["contact"].values
-    pulls, depth = has_interaction(data), float(data["depth"])
-    height = max(depth, 0.0)
-    if pulls:
-        # The surface rises above the undeformed plane, and the indenter hangs over it.
-        height = max(abs(depth), float(np.abs(line["displacement"].values).max()))
-    near = gap <= height * 2
-    if gap.max() <= height * _OPEN or not near.any():
-        near = np.isfinite(gap)
-    shown, shaded = (line if pulls else with_rim(line)), list[tuple[float, float]]()
-    if pulls and contact.any():
-        half = (x[1] - x[0]) / 2 if x.size > 1 else 0.5
-        ends = np.flatnonzero(np.diff(np.pad(contact, 1).astype(int)))
-        shaded = [(x[a] - half, x[b - 1] + half) for a, b in ends.reshape(-1, 2).tolist()]
-    words = "pressure" if pulls else "contact pressure"
-    axes = [Axis(words, "Pa", limits=(None if pulls else 0.0, None), signed=pulls)]
-    series = [Series(shown["x"].values, shown["pressure"].values, name="pressure")]
-    if gap[near].any():
-        end = None if near.all() else float(gap[near].max())
-        axes.append(Axis("gap", "m", limits=(0.0, end)))
-        series.append(Series(x, gap, name="gap", look=Look(None), panel=1))
-    title = f"{_caption(result, step)}, y = {readable(line['y'].item(), 'm', 3)}"
-    heights = (3, 1)[: len(axes)]
-    return Chart(Axis("x", "m"), axes, series, title, shaded=shaded, heights=heights)
-
-
-def cross_section(step: xr.Dataset) -> Chart:
-    """Return the indenter over the deformed surface along x, through its deepest point, to scale.
-
-    ``step`` is one load step. Heights are above the undeformed surface.
-    """
-    sunk = np.nan_to_num(step["displacement"].transpose("x", "y").values, nan=-np.inf)
-    line = step.isel(y=int(sunk.max(axis=0).argmax()))
-    x, surface = line["x"].values, -line["displacement"].values
-    gap = np.where(np.isfinite(line["gap"].values), line["gap"].values, np.nan)
-    # Far from the contact a round body would set the scale.
-    reach = 2 * max(float(np.ptp(surface)), abs(float(step["depth"])))
-    indenter = np.where(gap <= reach, surface + gap, np.nan) if reach > 0 else surface + gap
-    return Chart(
-        Axis("x", "m"),
-        [Axis("height", "m", signed=True)],
-        [
-            Series(x, indenter, name="indenter", legend="indenter", look=Look(None, 1)),
-            Series(x, surface, name="surface", legend="surface"),
-        ],
-    )
-
-
-def _caption(result: Result, step: int) -> str:
-    """Return the title of a figure of one load step."""
-    caption = label_of_step(result.dataset, step)
-    title = result.dataset.attrs.get("title", "")
-    if not bool(result.dataset["converged"][step]):
-        caption += ", NOT CONVERGED"
-    return f"{title}\n{caption}" if title else caption

@@ -8,14 +8,19 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pellicle.components import Output
 from pellicle.components.charts import Chart, Fields, Shown, Table
 from pellicle.files import atomic_write, for_document, storage_errors
+from pellicle.plugins import registry
+from pellicle.results.result import Result
+from pellicle.results.runs import StoredRuns
 
 from .drawing import SIZE, Drawn, draw, size_of
 from .numbers import table_of, write_csv
 from .style import FigureStyle, label_log_axes, lay_out
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.figure import Figure
 
 
@@ -64,6 +69,19 @@ def figure_of(
 
     sizes = [size_of(part) for part in beside]
     return fill, (sum(width for width, _ in sizes), max(height for _, height in sizes))
+
+
+def figures(shown: Result | xr.Dataset) -> dict[str, Shown]:
+    """Return what the standard output ``figures`` shows of a result or of the table of a study.
+
+    The keys are the suffixes of its files, such as ``force_depth``.
+    """
+    if isinstance(shown, Result):
+        runs = StoredRuns.of_run(shown.dataset)
+    else:
+        runs = StoredRuns.of_study(shown, Path())
+    output = registry().make(Output, {"type": "figures"})
+    return {suffix.removeprefix("-"): part for suffix, part in output.charts(runs)}
 
 
 def save_figure(

@@ -30,6 +30,8 @@ from pellicle_plugins.validation.reference import require_solution
 if TYPE_CHECKING:
     import xarray as xr
 
+MOST_LEGS = 4
+"""Largest number of legs of a path in time that are told apart."""
 _PLACEHOLDER = re.compile(r"\{([^{}:]+)(?::(\.\d+[fg]))?\}")
 
 

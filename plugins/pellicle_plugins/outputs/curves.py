@@ -16,13 +16,13 @@ from pellicle.errors import ConfigError
 from pellicle.results.path import has_interaction, has_path, has_times
 from pellicle.schema.expression import names_in
 from pellicle.schema.model import Model
-from pellicle.show.presets import MOST_LEGS
 from pellicle.show.style import is_log_spaced
 from pellicle.units import printed
 from pellicle.variables import FIELDS, WALL_PRESSURE
 from pellicle_plugins.validation.reference import exact
 
 from .base import (
+    MOST_LEGS,
     Log,
     Reference,
     TableFigure,

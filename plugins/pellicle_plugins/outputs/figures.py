@@ -4,14 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
-from pellicle.components import Output, Runs, Shown
+import numpy as np
+
+from pellicle.analysis import legs
+from pellicle.components import Axis, Chart, Fields, Look, Output, Runs, Series
+from pellicle.results.dimensions import parts
+from pellicle.results.path import has_interaction, has_times
 from pellicle.results.result import Result
-from pellicle.show import FIGURES, STUDY_FIGURES, figures, write_charts
-from pellicle.show.style import FigureStyle
+from pellicle.results.wording import is_periodic, wording
+from pellicle.show.saving import write_charts
+from pellicle.show.style import FigureStyle, is_log_spaced, is_ordered, is_seed
+from pellicle.variables import CONTACT_AREA, CORRECTED_AREA
 
-from .base import Formats, StyleField
+from .base import MOST_LEGS, Formats, StyleField
+from .step_figures import pressure_map, profile
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_MOST_NAMED = 10
+_OVER_TIME = "force", "depth", "contact_area"
+FIGURES = "pressure", "profile", "force_depth", "area_force", "time"
+"""Figures of a run, which are the suffixes of the file names too."""
+STUDY_FIGURES = "force", "contact_area", "contact_fraction"
+"""Variables that may be drawn for a study, which are the suffixes of the file names too."""
 
 
 class Figures(Output):
@@ -29,13 +47,152 @@ class Figures(Output):
         names = dict.fromkeys((*FIGURES, *STUDY_FIGURES))
         return tuple(f"-{name}.{format_}" for name in names for format_ in self.formats)
 
-    def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
+    def charts(self, runs: Runs) -> Iterator[tuple[str, Chart | Fields]]:
         """Yield the figures of the result of a run, or of the table of a study."""
-        shown = Result(runs.open()) if runs.axes is None else runs.table
-        for name, figure in figures(shown).items():
-            # Its numbers are those of the result.
-            yield f"-{name}", [figure]
+        is_run = runs.axes is None
+        shown = figures_of(Result(runs.open())) if is_run else figures_of_study(runs.table)
+        for name, figure in shown.items():
+            yield f"-{name}", figure
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figures in each format."""
-        return write_charts(self.charts(runs), stem, self.formats, self.style)
+        # Their numbers are those of the result.
+        alone = ((suffix, [figure]) for suffix, figure in self.charts(runs))
+        return write_charts(alone, stem, self.formats, self.style)
+
+
+def figures_of(result: Result) -> dict[str, Chart | Fields]:
+    """Return the figures of a run, by suffix; with times there is one over them."""
+    drawn: dict[str, Chart | Fields] = {
+        "pressure": pressure_map(result),
+        "profile": profile(result),
+        "force_depth": force_depth(result),
+        "area_force": area_force(result),
+    }
+    if has_times(result.dataset) and result.dataset.sizes["step"] > 1:
+        drawn["time"] = over_time(result)
+    return drawn
+
+
+def figures_of_study(table: xr.Dataset) -> dict[str, Chart]:
+    """Return the figures of a study: force, and contact fraction or area, by variable.
+
+    A free domain has no nominal area of which the contact is a fraction.
+    """
+    area = "contact_fraction" if is_periodic(table) else "contact_area"
+    names = ("force", area) if "force" in table else ()
+    return {name: study_curves(table, name) for name in names}
+
+
+def force_depth(result: Result) -> Chart:
+    """Return force against depth over the load steps."""
+    return _curves(result, {"force": ""}, "depth")
+
+
+def area_force(result: Result) -> Chart:
+    """Return the contact area, counted over cells and corrected, against force."""
+    corrected = {
+        str(name): wording(variable).words.removeprefix(f"{CONTACT_AREA}, ")
+        for name, variable in result.dataset.data_vars.items()
+        if str(name).startswith(CORRECTED_AREA)
+    }
+    counted = "counted over cells" if corrected else ""
+    return _curves(result, {"contact_area": counted} | corrected, "force")
+
+
+def over_time(result: Result) -> Chart:
+    """Return force, depth and contact area against time, one above the other."""
+    data = result.dataset
+    series = [
+        _series(data, "time", name, Look(number, marker=0), panel=number)
+        for number, name in enumerate(_OVER_TIME)
+    ]
+    axes = [_axis(data[name], signed=True) for name in _OVER_TIME]
+    return Chart(_axis(data["time"]), axes, series, _title(data), hues=len(_OVER_TIME))
+
+
+def study_curves(table: xr.Dataset, variable: str) -> Chart:
+    """Return a variable of a study against the depth, one colour for each value of its first axis.
+
+    Where steps have times, it is shown against the time; where each run has one step only, against
+    the first axis of numbers instead.
+    """
+    # The horizontal axis, and the dimension along which each line goes.
+    dimensions = [str(d) for d in table["status"].dims if d != "step"]
+    numbers = [d for d in dimensions if table[d].dtype.kind in "if" and table.sizes[d] > 1]
+    over_steps = table.sizes["step"] > 1 or not numbers
+    along = "step" if over_steps else numbers[0]
+    against = ("time" if has_times(table) else "depth") if over_steps else along
+    # Values of the first of the others have colours of their own; seeds are only repetitions.
+    rest = [d for d in dimensions if d != along]
+    compared = sorted(rest, key=lambda d: is_seed(table[d]) or table.sizes[d] == 1)[:1]
+    stacked = [str(d) for d in table["status"].dims if d not in (along, *compared)]
+    named_by = wording(table[compared[0]]) if compared else None
+    many = table.sizes[compared[0]] if compared else 1
+    pulls, series = has_interaction(table), list[Series]()
+    for number, part in enumerate(parts(table, compared)):
+        # Of many values only some are named: colours change evenly between them.
+        named = named_by and number % -(-many // _MOST_NAMED) == 0
+        legend = named_by.text(part[compared[0]].item()) if named and named_by else ""
+        for line in parts(part, stacked):
+            look = Look(number, marker=number)
+            tells_legs = pulls and against == "depth"
+            finished = line.isel({along: np.isfinite(line["depth"].values)}) if tells_legs else line
+            series.append(
+                _series(finished, against, variable, look, legend=legend, tells_legs=tells_legs)
+            )
+            legend = ""
+    log = along != "step" and is_log_spaced(table[against].values)
+    ordered = bool(compared) and is_ordered(table, compared[0])
+    x, y = _axis(table[against], log=log), _axis(table[variable], signed=pulls)
+    return Chart(x, [y], series, _title(table), hues=many, ordered=ordered)
+
+
+def _curves(result: Result, labels: dict[str, str], against: str) -> Chart:
+    """Return variables, with their labels, against another over the steps of a run."""
+    data = result.dataset
+    pulls, path = has_interaction(data), legs(data["depth"].values)
+    tells_legs = pulls or (has_times(data) and len(path) <= MOST_LEGS)
+    series = [
+        _series(data, against, name, Look(n, n, n), legend=label, tells_legs=tells_legs)
+        for n, (name, label) in enumerate(labels.items())
+    ]
+    first = next(iter(labels))
+    x, y = _axis(data[against], signed=pulls), _axis(data[first], signed=pulls)
+    return Chart(x, [y], series, _title(data), hues=len(labels))
+
+
+def _series(
+    data: xr.Dataset,
+    x: str,
+    y: str,
+    look: Look,
+    *,
+    legend: str = "",
+    panel: int = 0,
+    tells_legs: bool = False,
+) -> Series:
+    """Return one variable of the steps of a run, or of runs, against another."""
+    good = data["converged"].values.astype(bool)
+    return Series(
+        data[x].values.astype(float),
+        data[y].values.astype(float),
+        name=y,
+        legend=legend,
+        look=look,
+        converged=good,
+        legs=legs(data["depth"].values) if tells_legs else (),
+        steps=np.arange(good.size, dtype=np.int64),
+        panel=panel,
+    )
+
+
+def _axis(variable: xr.DataArray, *, signed: bool = False, log: bool = False) -> Axis:
+    unit = str(variable.attrs.get("units", "1"))
+    start = None if signed or log else 0.0
+    return Axis(wording(variable).words, unit, log=log, limits=(start, None), signed=signed)
+
+
+def _title(data: xr.Dataset) -> str:
+    title: str = data.attrs.get("title", "")
+    return title

@@ -24,7 +24,7 @@ from pellicle.results.path import has_interaction, label_of_step, prescribed_var
 from pellicle.results.result import Result, first_message
 from pellicle.results.wording import wording
 from pellicle.show.drawing import DIVERGING
-from pellicle.show.fields import cross_section, default_step, draws_contact, without_round_off
+from pellicle.show.fields import default_step, draws_contact, without_round_off
 from pellicle.show.html import Code, Notice, Picture, Section, Text, page
 from pellicle.show.maps import Field as MapField
 from pellicle.show.maps import Frame, Maps, frame, side
@@ -45,6 +45,7 @@ from .html_tables import (
 )
 from .methods import methods
 from .sentences import sentence_of_step, sentence_of_study, sentences_of_path
+from .step_figures import cross_section
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -10,8 +10,11 @@ from pellicle.components import Chart, Fields, Output, Runs, Table
 from pellicle.results.path import label_of_step
 from pellicle.results.result import Result
 from pellicle.results.wording import wording
-from pellicle.show import Picture, figure_of, figures, profile, svg
+from pellicle.show import Picture, figure_of, svg
 from pellicle.show.drawing import marks_of
+
+from .figures import figures_of, figures_of_study
+from .step_figures import profile
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,7 +33,7 @@ def curves_of_run(result: Result, chosen: list[int], begin: int) -> list[Picture
     """Return the curves of a run, marked at ``chosen`` steps; the ``begin``-th is shown first."""
     pictures = [_profiles(result, chosen, begin)]
     if result.dataset.sizes["step"] > 1:
-        drawn = figures(result)
+        drawn = figures_of(result)
         pictures += [
             picture(drawn[name], caption, chosen)
             for name, caption in _CURVES.items()
@@ -60,7 +63,7 @@ def curves_of_study(table: xr.Dataset) -> list[Picture]:
     """Return a figure for each variable that is drawn over a study."""
     return [
         picture(chart, f"{wording(table[name]).words.capitalize()} over the study.")
-        for name, chart in figures(table).items()
+        for name, chart in figures_of_study(table).items()
     ]
 
 

@@ -14,7 +14,8 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli.app import app
-from pellicle.show import profile, without_round_off
+from pellicle.show import without_round_off
+from pellicle_plugins.outputs.step_figures import profile
 from tests.pictures import pixels
 from tests.plugins.outputs.shared import bead, rows
 

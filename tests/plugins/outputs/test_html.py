@@ -23,8 +23,8 @@ import xarray as xr
 
 import pellicle as pl
 from pellicle.runs import steps
-from pellicle.show import cross_section
 from pellicle.version import CITATION
+from pellicle_plugins.outputs.step_figures import cross_section
 from tests.pictures import colourfulness
 from tests.plugins.outputs.shared import bead
 

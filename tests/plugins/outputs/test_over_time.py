@@ -12,8 +12,10 @@ from matplotlib.figure import Figure
 
 import pellicle as pl
 from pellicle.results.path import label_of_step
-from pellicle.show import draw, figures, force_depth, over_time, profile, study_curves
+from pellicle.show import draw, figures
 from pellicle_plugins.outputs import html_curves
+from pellicle_plugins.outputs.figures import force_depth, over_time, study_curves
+from pellicle_plugins.outputs.step_figures import profile
 from tests.plugins.outputs.shared import bead
 
 LEGS = [

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle.show import profile, up_to_rim
+from pellicle.show import up_to_rim
 from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Paraboloid
+from pellicle_plugins.outputs.step_figures import profile
 
 RADIUS, MODULUS, DEPTH, SIZE = 1e-3, 10e3, 50e-6, 0.8e-3
 

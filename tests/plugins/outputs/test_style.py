@@ -11,8 +11,10 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 import pellicle as pl
-from pellicle.show import draw, pressure_map, save_figure, study_curves
+from pellicle.show import draw, save_figure
 from pellicle.show.style import FigureStyle, is_log_spaced
+from pellicle_plugins.outputs.figures import study_curves
+from pellicle_plugins.outputs.step_figures import pressure_map
 from tests.pictures import pixels
 from tests.plugins.outputs.shared import bead
 
