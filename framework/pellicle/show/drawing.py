@@ -25,6 +25,9 @@ DIVERGING = "RdBu_r"
 _RETRACTION = (0, (2.5, 1.2))
 _GREY, _PALE = "0.4", "0.6"
 _MOST_MARKED = 80
+"""Points of a line that all have a marker; of more, some have, at a distance."""
+_MARKER_DISTANCE = 0.04
+"""Over the diagonal of the axes."""
 _NOT_CONVERGED = "not converged"
 _MAP, _ACROSS = 2.7, 4
 _PARTS = 20
@@ -135,9 +138,11 @@ def _style(series: Series, chart: Chart) -> dict[str, Any]:
         style["drawstyle"] = "steps-post"
     if look.marker is not None and look.sparse:
         style |= sparse_marker(look.marker)
-    elif look.marker is not None and (look.line is None or series.x.size <= _MOST_MARKED):
+    elif look.marker is not None:
         marker = MARKERS[look.marker % len(MARKERS)]
         style |= {"marker": marker, "markersize": 4, "markerfacecolor": "white"}
+        if look.line is not None and series.x.size > _MOST_MARKED:
+            style["markevery"] = _MARKER_DISTANCE
     return style
 
 
