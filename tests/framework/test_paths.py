@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import pellicle as pl
-from pellicle.schema.paths import get, walk
+from pellicle.schema.model import get, walk
 
 RUN = pl.Run(
     grid={"points": [8, 16], "size": "1 mm"},

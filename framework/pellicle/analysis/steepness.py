@@ -6,7 +6,7 @@ import numpy as np
 
 from pellicle.arrays import Array, Mask
 from pellicle.grid import Grid
-from pellicle.surface.sharing import blocks
+from pellicle.surface.convolution import blocks
 
 # Cells in a block of rows, few enough for its slopes to take no memory to speak of.
 _BLOCK = 2**13

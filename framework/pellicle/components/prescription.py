@@ -159,11 +159,11 @@ def target_of(prescription: Prescription, setting: Setting, value: float) -> Dep
     """Return the depth, the force or the search for a prescribed value."""
     with errors_attributed_to(prescription):
         target = prescription.target(setting, value)
-    call, name = f"target(setting, {value:g})", component_name(prescription)
+    call = f"target(setting, {value:g})"
     if not isinstance(target, (Depth, Force, Search)):
         raise PluginError(
-            f"{name}: {call} returned {shown(target)}; it has to return a pellicle.Depth, Force "
-            "or Search"
+            f"{component_name(prescription)}: {call} returned {shown(target)}; it has to return a "
+            "pellicle.Depth, Force or Search"
         )
     for field in ("value", "compliance", "goal", "resolution", "width", "guess"):
         number = getattr(target, field, None)
@@ -175,13 +175,17 @@ def target_of(prescription: Prescription, setting: Setting, value: float) -> Dep
         )
         if not np.isfinite(number) or (number < 0 and not signed):
             allowed = "finite" if signed else "finite and ≥ 0"
-            raise PluginError(f"{name}: {call}.{field} is {number:g}; it has to be {allowed}")
+            raise PluginError(
+                f"{component_name(prescription)}: {call}.{field} is {number:g}; it has to be "
+                f"{allowed}"
+            )
     if not isinstance(target, Search):
         return target
     quantity = target.measure
     if target.control not in (Depth, Force) or not callable(quantity):
         raise PluginError(
-            f"{name}: {call} has to search by control = Depth or Force, with a function as measure"
+            f"{component_name(prescription)}: {call} has to search by control = Depth or Force, "
+            "with a function as measure"
         )
 
     def measure(step: Equilibrium) -> float:

@@ -209,22 +209,22 @@ def solution_of(
 
 def _checked_state(solver: Solver, problem: Problem, value: object) -> State:
     """Return a copy of the state of a solution; without a law its pressure is all that counts."""
-    name = component_name(solver)
     if not isinstance(value, Solution):
         raise PluginError(
-            f"{name}: solve() returned {shown(value)}; it has to return a pellicle.Solution"
+            f"{component_name(solver)}: solve() returned {shown(value)}; it has to return a "
+            "pellicle.Solution"
         )
     if not isinstance(value.state, State):
         raise PluginError(
-            f"{name}: solve() returned a Solution of {shown(value.state)}; it has to be one of a "
-            "pellicle.State: State.of_pressure(pressure), or with an interaction one that has the "
-            "wall pressure too"
+            f"{component_name(solver)}: solve() returned a Solution of {shown(value.state)}; it "
+            "has to be one of a pellicle.State: State.of_pressure(pressure), or with an "
+            "interaction one that has the wall pressure too"
         )
     pressure = real_array(solver, "solve().pressure", value.pressure, problem.grid.shape)
     if not isinstance(value.iterations, Integral) or not isinstance(value.stop, Stop):
         raise PluginError(
-            f"{name}: solve() returned iterations {shown(value.iterations)} and stop "
-            f"{shown(value.stop)}; they have to be a whole number and a pellicle.Stop"
+            f"{component_name(solver)}: solve() returned iterations {shown(value.iterations)} and "
+            f"stop {shown(value.stop)}; they have to be a whole number and a pellicle.Stop"
         )
     # The solver may reuse the memory of the arrays that it returned.
     pressure = pressure.copy()

@@ -12,8 +12,7 @@ import numpy as np
 from pellicle.components import Component
 from pellicle.components.base import role_of, words_of_type
 from pellicle.schema.from_file import PORTABLE
-from pellicle.schema.model import Model
-from pellicle.schema.paths import get, walk
+from pellicle.schema.model import Model, get, walk
 from pellicle.schema.ranges import Values
 from pellicle.units import DIGITS, quantity_of, readable, split
 from pellicle.variables import ROLE, WORDS, WORDS_OF_VALUES

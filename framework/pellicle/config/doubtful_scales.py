@@ -8,7 +8,7 @@ from contextlib import suppress
 
 import numpy as np
 
-from pellicle.schema.paths import walk
+from pellicle.schema.model import walk
 from pellicle.units import Quantity, printed, quantity_of, readable
 
 from .run import Run

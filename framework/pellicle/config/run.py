@@ -41,8 +41,8 @@ from pellicle.files import is_file
 from pellicle.grid import Grid, grid_of_run
 from pellicle.plugins import registry
 from pellicle.schema.from_file import FromFile
+from pellicle.schema.model import get, replaced, walk
 from pellicle.schema.notebook import summary
-from pellicle.schema.paths import get, replaced, walk
 from pellicle.variables import VARIABLES, Variable, corrected_area, corrected_fraction
 
 from .describe import inputs
@@ -192,7 +192,8 @@ class Run(FromFile):
                     "out",
                     f"corrections.{index}.type",
                 )
-        refuse_shared_files(self.outputs or ())
+        if self.outputs:
+            refuse_shared_files(self.outputs)
         return self
 
     @classmethod

@@ -19,8 +19,8 @@ from pellicle.errors import ConfigError, Problem, all_problems, first_of, shown
 from pellicle.results.derived import constants
 from pellicle.schema.expression import CONSTANTS, FUNCTIONS, evaluate, names_in
 from pellicle.schema.from_file import FromFile, overridden, paths_relative_to, read_toml
+from pellicle.schema.model import get, python_names, replaced
 from pellicle.schema.notebook import summary
-from pellicle.schema.paths import get, python_names, replaced
 from pellicle.schema.ranges import Axes, expand
 from pellicle.variables import BEYOND_THEORY, FIELDS, VARIABLES
 

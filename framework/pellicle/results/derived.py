@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from pellicle.errors import ConfigError
 from pellicle.schema.expression import evaluate, names_in
-from pellicle.schema.paths import walk
+from pellicle.schema.model import walk
 from pellicle.units import one, si_unit
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pellicle.schema.paths import python_names
+from pellicle.schema.model import python_names
 
 if TYPE_CHECKING:
     import xarray as xr

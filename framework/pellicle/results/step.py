@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import lru_cache
 
 import numpy as np
 import xarray as xr
@@ -67,17 +68,23 @@ def step_dataset(
         "y": ("y", y[0], {"units": "m", "long_name": "y of the cell centres"}),
     }
     data = {
-        name: (("step", "x", "y"), value[None], described[name].attributes)
+        name: (("step", "x", "y"), value[None], _attributes(described[name]))
         for name, value in fields.items()
     } | {
         name: (
             ("step",),
             np.array([value], dtype=object if isinstance(value, str) else None),
-            described[name].attributes,
+            _attributes(described[name]),
         )
         for name, value in values.items()
     }
     return xr.Dataset(data, coordinates)
+
+
+@lru_cache
+def _attributes(variable: Variable) -> dict[str, str]:
+    """Return the attributes of a variable, which xarray copies, made once for all steps."""
+    return variable.attributes
 
 
 class Steps:

@@ -18,7 +18,7 @@ from pellicle.config.run import Run
 from pellicle.contact.caveats import Status
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid
-from pellicle.schema.paths import walk
+from pellicle.schema.model import walk
 from pellicle.variables import SHORTEST_WAVE
 
 from .runner import solve

@@ -39,7 +39,7 @@ def compose(run: Run) -> Setting:
     """Return the setting of the first load step."""
     case = Case(run.grid, run.kernel)
     for component in components_in([run.kernel, run.indenter, run.interaction, run.corrections]):
-        if component.family in CHEAP and not _is_own(component):
+        if component.family in CHEAP and not _is_own(type(component)):
             # One that has no hash breaks its contract.
             with errors_attributed_to(component):
                 _ask_stranger(component, case)
@@ -68,14 +68,12 @@ def compose(run: Run) -> Setting:
     return setting
 
 
-def _is_own(component: Component) -> bool:
-    """Return whether the class is one that the distribution of pellicle registers."""
-    registered = registry().components[component.family].get(getattr(component, "type", ""))
-    return (
-        registered is not None
-        and registered.component is type(component)
-        and registered.origin.is_own
-    )
+@lru_cache
+def _is_own(kind: type[Component]) -> bool:
+    """Return whether a class is one that the distribution of pellicle registers."""
+    type_ = str(getattr(kind.model_fields.get("type"), "default", ""))
+    registered = registry().components[kind.family].get(type_)
+    return registered is not None and registered.component is kind and registered.origin.is_own
 
 
 # Whether a rule holds depends on the values of a component and on the grid.

@@ -44,7 +44,8 @@ class Physics:
             adhesion: run.interaction,
         }
         self.terms: tuple[Term, ...] = tuple(partial(t, run) for t, has in named.items() if has)
-        self.variables = (*corrected_variables(run), *run.loading.prescription.variables)
+        areas = corrected_variables(run) if run.corrections else ()
+        self.variables = (*areas, *run.loading.prescription.variables)
 
 
 def solve_steps(

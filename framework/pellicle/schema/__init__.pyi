@@ -10,7 +10,7 @@ from .from_file import read_toml as read_toml
 from .matlab import read_mat as read_mat
 from .messages import nearest as nearest
 from .model import Model as Model
+from .model import get as get
+from .model import replaced as replaced
+from .model import walk as walk
 from .notebook import summary as summary
-from .paths import get as get
-from .paths import replaced as replaced
-from .paths import walk as walk

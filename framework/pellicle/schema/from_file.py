@@ -16,8 +16,7 @@ from pydantic import AfterValidator, PlainSerializer, SerializationInfo
 
 from pellicle.errors import ConfigError, shown
 
-from .model import Model
-from .paths import replaced
+from .model import Model, replaced
 
 _OF_A_VALUE = "Invalid value", "Expected newline", "Unclosed array", "Unclosed inline table"
 """Beginnings of messages of the parser on a value, or on what follows it."""

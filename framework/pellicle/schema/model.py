@@ -1,14 +1,17 @@
-"""The base class of all configuration: a frozen pydantic model that raises `ConfigError`."""
+"""The base class of all configuration, and the values in it by their dotted path.
+
+Entries of lists count from 0, as in ``grid.size.0``; a key of a table may itself contain dots.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, Self
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
 
-from pellicle.errors import ConfigError
+from pellicle.errors import ConfigError, shown
 
 from .messages import problems
 
@@ -37,3 +40,91 @@ class Model(BaseModel):
     def entries(self) -> Mapping[str, tuple[Any, FieldInfo]]:
         """Value and description of each key of its table in a file."""
         return {name: (getattr(self, name), info) for name, info in type(self).model_fields.items()}
+
+
+def get(at: Any, path: str) -> Any:
+    """Return the value at a path, or None if the path does not exist."""
+    names = path.split(".")
+    while names and at is not None:
+        name, names = _head(at, names)
+        if isinstance(at, Mapping):
+            at = at.get(name)
+        elif isinstance(at, (list, tuple)):
+            at = at[int(name)] if name.isdecimal() and int(name) < len(at) else None
+        else:
+            at = at.entries.get(name, (None, None))[0] if isinstance(at, Model) else None
+    return at
+
+
+def walk(at: Any, path: str = "") -> list[tuple[str, Any, FieldInfo | None]]:
+    """Return path, value and field of each value below ``at``, outer ones before inner ones.
+
+    Entries of a list have the field of the list; those of a table have none.
+    """
+    values: list[tuple[str, Any, FieldInfo | None]] = []
+    waiting: list[tuple[str, Any, FieldInfo | None]] = [(path, at, None)]
+    while waiting:
+        place, value, field = waiting.pop()
+        prefix = f"{place}." if values else path
+        values.append((place, value, field))
+        if isinstance(value, Model):
+            for name, (entry, info) in reversed([*value.entries.items()]):
+                waiting.append((f"{prefix}{name}", entry, info))
+        elif isinstance(value, Mapping):
+            waiting += [(f"{prefix}{name}", value[name], None) for name in reversed([*value])]
+        elif isinstance(value, (list, tuple)):
+            indices = reversed(range(len(value)))
+            waiting += [(f"{prefix}{index}", value[index], field) for index in indices]
+    return values[1:]
+
+
+def python_names(paths: Iterable[str]) -> dict[str, str]:
+    """Return a name for each path that Python can write: ``kernel_tension``.
+
+    Where two paths would have one name, a dot becomes two underscores.
+    """
+    paths = list(paths)
+    plain = [path.replace(".", "_") for path in paths]
+    return {
+        path: name if plain.count(name) == 1 else path.replace(".", "__")
+        for path, name in zip(paths, plain, strict=True)
+    }
+
+
+def replaced(data: Any, path: str, value: object) -> Any:
+    """Return a copy of a configuration with ``value`` at a path; missing tables are created.
+
+    The copy of a model is a table of the fields that were set.
+
+    Raises
+    ------
+    ConfigError
+        The path leads into a value that is not a table, or beyond the end of a list.
+    """
+    return _replaced(data, path.split("."), value, "")
+
+
+def _replaced(at: Any, names: list[str], value: object, path: str) -> Any:
+    if not names:
+        return value
+    if isinstance(at, Model):
+        left_out = type(at).model_fields.keys() - at.model_fields_set - {"type"}
+        at = {name: value for name, (value, _) in at.entries.items() if name not in left_out}
+    name, rest = _head(at, names)
+    if isinstance(at, Mapping):
+        return {**at, name: _replaced(at.get(name, {}), rest, value, f"{path}{name}.")}
+    whole = path.removesuffix(".")
+    if not isinstance(at, (list, tuple)):
+        raise ConfigError(f"{whole} = {shown(at)} is not a table; replace it as a whole: {whole}")
+    if not name.isdecimal() or int(name) >= len(at):
+        raise ConfigError(f"{whole} has no entry {name}; give one of its {len(at)}, counted from 0")
+    index = int(name)
+    inner = _replaced(at[index], rest, value, f"{path}{index}.")
+    return [*at[:index], inner, *at[index + 1 :]]
+
+
+def _head(at: Any, names: list[str]) -> tuple[str, list[str]]:
+    """Return the first name of a path in ``at``, the longest that is a key of it, and the rest."""
+    lengths = range(len(names), 1, -1) if isinstance(at, Mapping) else ()
+    count = next((n for n in lengths if ".".join(names[:n]) in at), 1)
+    return ".".join(names[:count]), names[count:]

@@ -1,7 +1,10 @@
 __all__: list[str]
 
 from .convolution import Float as Float
+from .convolution import blocks as blocks
 from .convolution import convolve as convolve
+from .convolution import row_blocks as row_blocks
+from .convolution import shared as shared
 from .grid_transfer import highest as highest
 from .grid_transfer import prolong as prolong
 from .operators import FreeOperator as FreeOperator
@@ -14,6 +17,3 @@ from .operators import checked_call as checked_call
 from .operators import displacement as displacement
 from .operators import make_operator as make_operator
 from .operators import mean_compliance as mean_compliance
-from .sharing import blocks as blocks
-from .sharing import row_blocks as row_blocks
-from .sharing import shared as shared

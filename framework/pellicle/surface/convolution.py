@@ -1,17 +1,21 @@
-"""Multiplication of a field by a real symbol in Fourier space."""
+"""Multiplication of a field by a real symbol in Fourier space, on blocks shared by threads."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextvars import copy_context
+from functools import lru_cache
 from typing import Any, Final, TypeVar
 
 import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
-from .sharing import blocks, shared
-
 Float = TypeVar("Float", np.float32, np.float64)
+Block = TypeVar("Block")
+Result = TypeVar("Result")
 
 # Cells in a block of rows or columns that one thread transforms at once, few enough for the cache.
 _BLOCK: Final = 2**17
@@ -21,6 +25,10 @@ _LINE: Final = 16
 _SHARED: Final = 512**2
 
 
+# Cells in a block, few enough for its intermediate arrays to fit in the cache.
+_PASS: Final = 2**16
+
+
 class Workspace:
     """Memory for one transform at a time, kept between transforms.
 
@@ -28,8 +36,7 @@ class Workspace:
     hands out every page anew.
     """
 
-    def __init__(self) -> None:
-        self._buffer = np.empty(0, dtype=np.complex128)
+    _buffer = np.empty(0, dtype=np.complex128)
 
     def array(self, shape: tuple[int, int], dtype: np.dtype[Any]) -> NDArray[Any]:
         """Return an array without defined values, valid until the next call."""
@@ -84,3 +91,48 @@ def convolve(
     shared(multiplied, blocks(transform.shape[1], max(_LINE, block // px)))
     shared(backward, rows)
     return result
+
+
+def blocks(number: int, length: int = _PASS) -> list[slice]:
+    """Return slices of successive indices from 0 to ``number``, of ``length`` or fewer."""
+    return [slice(start, min(start + length, number)) for start in range(0, number, length)]
+
+
+def row_blocks(shape: tuple[int, ...]) -> list[slice]:
+    """Return slices of the rows of a field, of as many cells as `blocks` have."""
+    return blocks(shape[0], max(1, _PASS // max(1, math.prod(shape[1:]))))
+
+
+def shared(work: Callable[[Block], Result], blocks: Sequence[Block]) -> list[Result]:
+    """Return what ``work`` returns for each block, in the order of the blocks.
+
+    As many threads as `scipy.fft.get_workers` says take the blocks as they become free; numpy and
+    scipy.fft let other threads run while they compute. So ``work`` may write to its own block of an
+    array only. What a block gives does not depend on the number of threads, and neither does a sum
+    over the returned list.
+    """
+    threads = min(scipy.fft.get_workers(), len(blocks)) if len(blocks) > 1 else 1
+    if threads == 1:
+        return [work(block) for block in blocks]
+    results: dict[int, Result] = {}
+    remaining = enumerate(blocks)
+
+    def drain() -> None:
+        for index, block in remaining:
+            results[index] = work(block)
+
+    # The handling of floating-point errors is a context variable of numpy.
+    helpers = [_pool(threads - 1).submit(copy_context().run, drain) for _ in range(threads - 1)]
+    try:
+        drain()
+    finally:
+        for helper in helpers:
+            if not helper.cancel():
+                helper.result()
+    return [results[index] for index in range(len(blocks))]
+
+
+@lru_cache
+def _pool(threads: int) -> ThreadPoolExecutor:
+    """Return the threads that help the calling one; they are kept until the process ends."""
+    return ThreadPoolExecutor(threads, thread_name_prefix="pellicle")

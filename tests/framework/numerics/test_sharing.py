@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import scipy.fft
 
-from pellicle.surface.sharing import blocks, row_blocks, shared
+from pellicle.surface.convolution import blocks, row_blocks, shared
 
 
 def test_blocks_cover_every_index_once() -> None:

@@ -18,7 +18,7 @@ import pellicle as pl
 from pellicle.components import Axis
 from pellicle.config.coordinates import Coordinate, tell_apart
 from pellicle.results.wording import wording
-from pellicle.schema.paths import walk
+from pellicle.schema.model import walk
 from pellicle.variables import VARIABLES
 from pellicle_fit.curves.sources import SourceStream
 from pellicle_fit.many import fit_sources

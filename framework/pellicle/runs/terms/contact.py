@@ -49,7 +49,7 @@ def _failures(run: Run, step: LoadStep, value: float) -> Iterator[Caveat]:
     free = run.grid.boundary == "free"
     across = [axis for axis in (0, 1) if reach.shape[axis] > 1 or free]
     at_edge = any(np.take(reach, [0, -1], axis=axis).any() for axis in across)
-    if run.indenter.footprint == "unbounded" and at_edge:
+    if at_edge and run.indenter.footprint == "unbounded":
         yield Caveat(
             Status.CONTACT_AT_EDGE,
             {
