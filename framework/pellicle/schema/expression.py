@@ -26,7 +26,7 @@ FUNCTIONS: dict[str, Callable[[Any], Any]] = {
     "abs": np.abs,
 }
 """Functions of one argument."""
-CONSTANTS = {"pi": np.pi}
+CONSTANTS = {"pi": np.pi, "π": np.pi}
 """Names with a fixed value."""
 
 _OPERATORS: dict[type[ast.AST], Callable[..., Any]] = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from math import ceil
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -28,6 +29,8 @@ _MOST_MARKED = 80
 """Points of a line that all have a marker; of more, some have, at a distance."""
 _MARKER_DISTANCE = 0.04
 """Over the diagonal of the axes."""
+_LETTERS = 50
+"""Letters of a line of the label of an axis."""
 _NOT_CONVERGED = "not converged"
 _MAP, _ACROSS = 2.7, 4
 _PARTS = 20
@@ -74,13 +77,13 @@ def _draw_chart(figure: Figure | SubFigure, chart: Chart) -> list[Drawn]:
             for series in chart.series
             if series.panel == number
         ]
-        axes.set_ylabel(axis.label(scale_y))
+        axes.set_ylabel(textwrap.fill(axis.label(scale_y), _LETTERS))
         if axis.signed:
             axes.axhline(0.0, color=_PALE, linewidth=0.6)
         _set_scale(axes, "x", chart.x, scale_x.factor, signed=axis.signed)
         _set_scale(axes, "y", axis, scale_y.factor, signed=axis.signed)
         axes.grid(alpha=0.3)
-    panels[-1].set_xlabel(chart.x.label(scale_x))
+    panels[-1].set_xlabel(textwrap.fill(chart.x.label(scale_x), _LETTERS))
     panels[0].set_title(chart.title)
     _name_legs(panels[0], chart)
     if panels[0].get_legend_handles_labels()[1]:
@@ -97,12 +100,14 @@ def _draw_series(axes: Axes, series: Series, chart: Chart, scale_x: Scale, scale
     factors = (1.0, 1.0) if series.role == "published" else (scale_x.factor, scale_y.factor)
     x, y = series.x * factors[0], series.y * factors[1]
     style, label = _style(series, chart), series.legend or None
-    if series.legs:
+    if series.low is not None and not x.size:
+        axes.fill_between([], [], [], color=style["color"], alpha=0.2, linewidth=0, label=label)
+    elif series.legs:
         arrows = not (chart.x.log or chart.y[series.panel].log)
         _draw_legs(axes, series, x, y, {"label": label, **style}, arrows=arrows)
     else:
         axes.plot(x, y, label=label, **style)
-    if series.low is not None and series.high is not None:
+    if series.low is not None and series.high is not None and x.size:
         low, high = series.low * factors[1], series.high * factors[1]
         if x.size == 1:
             bar: dict[str, Any] = {"markersize": 12, "linewidth": 0.8, "capsize": 3}

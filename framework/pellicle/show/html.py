@@ -37,7 +37,8 @@ class Notice:
 
     kind: ClassVar[str] = "notice"
     text: str
-    good: bool
+    good: bool | None
+    """Whether all is well; None if it is, with reservations."""
     details: Sequence[str] = ()
     """Lines below it."""
 

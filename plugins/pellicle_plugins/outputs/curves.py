@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
@@ -38,10 +37,9 @@ from .base import (
 if TYPE_CHECKING:
     import xarray as xr
 
+_SPREADS = {"range": "range", "std": "± standard deviation", "sem": "± standard error"}
 _GRIDS = 3
 """Fewest grids from which a limit follows."""
-_LETTERS = 50
-"""Letters of a line of the label of an axis."""
 
 
 _Texts = Annotated[
@@ -105,8 +103,15 @@ class Curves(TableFigure):
     ] = ()
     over: Annotated[
         str | None,
-        Field(description="axis, such as indenter.seed, over which mean and range are drawn"),
+        Field(description="axis, such as indenter.seed, over which mean and spread are drawn"),
     ] = None
+    spread: Annotated[
+        Literal["range", "std", "sem"],
+        Field(
+            description="of the runs on `over`: lowest to highest, or the mean ± the standard "
+            "deviation or the standard error of the mean"
+        ),
+    ] = "range"
     log: Log = ()
     reference: Reference = None
     extrapolate: Annotated[
@@ -174,6 +179,10 @@ class Curves(TableFigure):
             log = ("x",) if values.dtype.kind in "if" and is_log_spaced(values) else ()
         y_axis, names = self._y_axis(ys, table)
         series = [*self._series(runs, x, ys, names), *self._published()]
+        if self.over is not None and any(one.low is not None for one in series):
+            none = np.empty(0)
+            band = Series(none, none, legend=_SPREADS[self.spread], low=none, high=none)
+            series.append(replace(band, look=Look(None)))
         return Chart(
             replace(axis_of(self.x, [x], self.x_label, table), log="x" in log, column="x"),
             [replace(y_axis, log="y" in log, column="y")],
@@ -198,7 +207,7 @@ class Curves(TableFigure):
                 names.append(f"{in_words(text, table)}{head}")
         if len(ys) == 1 or self.y_label is not None:
             return axis_of(self.y[0], ys, self.y_label, table), names
-        words = textwrap.fill(", ".join(names), _LETTERS)
+        words = ", ".join(names)
         has_unit = is_common and units[0] != "1"
         return Axis(words, units[0] if has_unit else "1", as_given=not has_unit), names
 
@@ -303,13 +312,18 @@ class Curves(TableFigure):
             finished = (x + y).notnull()
             x, y, good = (column.where(finished) for column in (x, y, good))
             middle = x.mean(self.over), y.mean(self.over)
+            count = finished.sum(self.over)
             ends = y.min(self.over), y.max(self.over)
-            columns = [*middle, *ends, good.min(self.over).fillna(0.0), finished.sum(self.over)]
+            if self.spread != "range":
+                squares = ((y - middle[1]) ** 2).sum(self.over) / (count - 1).clip(min=1)
+                half = (squares if self.spread == "std" else squares / count.clip(min=1)) ** 0.5
+                ends = middle[1] - half, middle[1] + half
+            columns = [*middle, *ends, good.min(self.over).fillna(0.0), count]
         long = [str(dim) for dim, size in columns[0].sizes.items() if size > 1]
         if len(long) > 1:
             raise ConfigError(
                 f"each curve would go over {' and '.join(long)}; give one of them to by, or to "
-                "over for mean and range",
+                "over for mean and spread",
                 "by",
             )
         values = np.array([column.values.ravel().astype(float) for column in columns])
@@ -328,7 +342,7 @@ class Curves(TableFigure):
         written: dict[str, Any] = {
             name: np.where(runs > 1, column, None) for name, column in spread.items()
         }
-        return replace(series, low=low, high=high, columns=written)
+        return replace(series, low=low, high=high, columns=written | {"spread": self.spread})
 
 
 def _at(column: xr.DataArray, point: dict[str, int]) -> xr.DataArray:

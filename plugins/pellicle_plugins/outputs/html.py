@@ -174,7 +174,7 @@ class Html(Output):
             status = Notice(f"{failed[0].upper()}{failed[1:]}.", False, details)
         else:
             converged = f"Every step of all {len(rows)} runs converged."
-            status = Notice(converged, not warnings, warnings)
+            status = Notice(converged, None if warnings else True, warnings)
         which = "The last step in contact" if draws_contact(table) else "The last step"
         of_runs = _share_in_words(len(frames), len(rows), "run")
         caption = f"{which} of {of_runs}, each in colours over its own range."
@@ -304,7 +304,8 @@ def _status(result: Result) -> Notice:
     for subject, message in result.beyond_theory().items():
         sentences.append(f"{subject[0].upper()}{subject[1:]}.")
         details.append(f"S{message[1:]}")
-    return Notice(" ".join(sentences), not details and done == total, details)
+    is_good = None if details else True
+    return Notice(" ".join(sentences), is_good if done == total and not failed else False, details)
 
 
 def _reproduce(configuration: dict[str, Any], stem: Path) -> Iterator[Code]:

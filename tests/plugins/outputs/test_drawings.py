@@ -43,6 +43,22 @@ def test_curves_are_mean_and_range_of_the_table(tmp_path: Path) -> None:
         np.testing.assert_allclose(drawn, expected.values.ravel(), rtol=1e-14)
 
 
+def test_the_spread_may_be_a_deviation(tmp_path: Path) -> None:
+    """The standard deviation of the runs, of n − 1, and over √n that of their mean."""
+    curves = {"type": "curves", "by": TENSION, "over": RADIUS}
+    table = carried(
+        tmp_path,
+        {**curves, "name": "std", "spread": "std"},
+        {**curves, "name": "sem", "spread": "sem"},
+    )
+    deviation = table["force"].std("indenter_radius", ddof=1).values.ravel()
+    for name, expected in (("std", deviation), ("sem", deviation / np.sqrt(2))):
+        drawn = rows(tmp_path / f"study-{name}.csv")
+        half = [float(row["y_highest"]) - float(row["y"]) for row in drawn]
+        np.testing.assert_allclose(half, expected, rtol=1e-9)
+        assert {row["spread"] for row in drawn} == {name}
+
+
 def test_curves_of_a_study_of_one_axis_need_no_by(tmp_path: Path) -> None:
     """Each value has its own curve over the steps; of an x that is the axis, each step has."""
     plan = study({"type": "curves"}, {"type": "curves", "name": "over", "x": TENSION})
