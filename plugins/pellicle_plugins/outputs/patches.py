@@ -50,6 +50,10 @@ class Patches(TableFigure):
         ),
     ] = 4
 
+    def check(self, runs: Runs) -> None:
+        """Refuse an axis or a label that the table does not have; four cells are no grid."""
+        list(self.picked(runs.table))
+
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
         """Yield the map of the last curve beside the numbers of patches, and all patches."""
         curves = [
