@@ -6,7 +6,7 @@ same records.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple
 
@@ -16,6 +16,16 @@ from numpy.typing import NDArray
 from pellicle.analysis import Leg
 from pellicle.arrays import Array, Cells, Mask
 from pellicle.units import Scale, axis_unit, printed
+
+
+def extent(values: Iterable[NDArray[Any]]) -> tuple[float, float]:
+    """Return the lowest and the highest of the finite values, without a copy; 0 and 0 of none."""
+    low, high = np.inf, -np.inf
+    for array in values:
+        finite = np.isfinite(array)
+        low = float(np.min(array, where=finite, initial=low))
+        high = float(np.max(array, where=finite, initial=high))
+    return (low, high) if low <= high else (0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -36,13 +46,12 @@ class Axis:
     column: str = ""
     """Head of its column in a table; words and SI unit if empty."""
 
-    def scale(self, values: Sequence[Array]) -> Scale:
+    def scale(self, values: Sequence[NDArray[Any]]) -> Scale:
         """Return the unit in which ``values`` [SI] are drawn, which suits an end that is given."""
         if self.as_given:
             return Scale(1.0, "")
         end = self.limits[1]
-        shown = [np.zeros(1), *map(np.ravel, values)] if end is None else [[end]]
-        return axis_unit(np.concatenate(shown), self.unit)
+        return axis_unit(extent(values) if end is None else [end], self.unit)
 
     def label(self, scale: Scale) -> str:
         """Return the label of the axis for numbers in a scale."""
@@ -142,8 +151,8 @@ class Panel:
     """Positions of cells [m], shape (nx,)."""
     y: Array
     """Positions of cells [m], shape (ny,)."""
-    values: Array | Mask
-    """In SI, shape (nx, ny)."""
+    values: Array | Mask | NDArray[np.uint8]
+    """In SI, or numbers of parts, shape (nx, ny)."""
     title: str = ""
     blank: Mask | None = None
     """Cells that stay empty, shape (nx, ny)."""

@@ -95,7 +95,7 @@ class Output(Component):
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
         """Yield what the output shows, each with a suffix of its file names, often ""."""
-        raise NotImplementedError(f"{type(self).__name__} has neither charts() nor write()")
+        raise PluginError(f"{component_name(self)} has neither charts(runs) nor write(runs, stem)")
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write files whose paths begin with ``stem``, such as ``f"{stem}.txt"``; return the paths.

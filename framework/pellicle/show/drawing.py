@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.components.charts import Axis, Chart, Fields, Panel, Series
+from pellicle.components.charts import Axis, Chart, Fields, Panel, Series, extent
 from pellicle.units import Scale, axis_unit
 
 from .style import LINES, MARKERS, NO_CONTACT, add_colour_bar, colour, sparse_marker
@@ -224,7 +224,8 @@ def _draw_fields(figure: Figure | SubFigure, fields: Fields) -> None:
     if not fields.panels:
         return
     is_bool = fields.panels[0].values.dtype == bool
-    scale = fields.axis.scale([panel.values.astype(float) for panel in fields.panels])
+    is_number = not is_bool and not fields.parts
+    scale = fields.axis.scale([panel.values for panel in fields.panels] if is_number else [])
     colours = _colours(fields, scale.factor)
     for axes, panel in zip(all_axes, fields.panels, strict=False):
         image = _draw_panel(axes, panel, scale.factor, colours)
@@ -245,7 +246,7 @@ def _draw_panel(axes: Axes, panel: Panel, factor: float, colours: dict[str, Any]
     """Draw a field times ``factor``, and return its image."""
     length = axis_unit(np.append(panel.x, panel.y), "m")
     x, y = panel.x * length.factor, panel.y * length.factor
-    values = panel.values.T * factor
+    values = panel.values.T * factor if factor != 1.0 else panel.values.T
     if panel.blank is not None:
         values = np.ma.masked_where(panel.blank.T, values)
         axes.set_facecolor(NO_CONTACT)
@@ -273,9 +274,7 @@ def _colours(fields: Fields, factor: float) -> dict[str, Any]:
         return {"cmap": black, "vmin": 0.0, "vmax": 1.0, "interpolation": "nearest"}
     if fields.parts:
         return {"cmap": "tab20", "vmin": 0, "vmax": _PARTS - 1, "interpolation": "nearest"}
-    values = np.concatenate([panel.values.ravel() for panel in fields.panels]) * factor
-    values = values[np.isfinite(values)]
-    low, high = (values.min(), values.max()) if values.size else (0.0, 1.0)
+    low, high = (end * factor for end in extent(panel.values for panel in fields.panels))
     low = low if fields.axis.limits[0] is None else fields.axis.limits[0] * factor
     if fields.centred and low < 0:
         highest = float(max(-low, high))

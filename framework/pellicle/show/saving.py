@@ -33,13 +33,12 @@ def write_charts(
     """Write what an output shows, each under its suffix; return the files.
 
     Charts and fields become figures in each format, tables CSV; bytes are written as they are, and
-    their suffix ends like a file name. The numbers of a chart are written beside it, unless there
-    is a table with its suffix.
+    their suffix ends like a file name. The numbers of a chart are written beside it, unless a table
+    with its suffix came before.
     """
-    parts = list(shown)
-    tables = {suffix for suffix, part in parts if isinstance(part, Table)}
     files: list[Path] = []
-    for suffix, part in parts:
+    # One after the other, so that one at a time is in memory.
+    for suffix, part in shown:
         path = stem.with_name(f"{stem.name}{suffix}")
         numbers = path.with_name(f"{path.name}.csv")
         if isinstance(part, bytes):
@@ -51,7 +50,7 @@ def write_charts(
         else:
             fill, size = figure_of(part)
             files += save_figure(fill, path, formats, size, style)
-            if isinstance(part, Chart) and suffix not in tables:
+            if isinstance(part, Chart) and numbers not in files:
                 files.append(write_csv(table_of(part), numbers))
     return tuple(files)
 

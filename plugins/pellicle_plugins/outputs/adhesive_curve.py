@@ -91,7 +91,6 @@ class AdhesiveCurve(TableFigure):
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
         """Yield the curves, and the tables of their points and of their ends."""
         drawn = [self._drawn(name, run) for name, _, run in self.opened(runs)]
-        yield "", self._chart(drawn, ordered=self.is_ordered(runs))
         rows = [
             (d.name.key, *row)
             for d in drawn
@@ -99,6 +98,7 @@ class AdhesiveCurve(TableFigure):
             for row in zip(d.curve.contact_radius, d.curve.depth, d.curve.force, strict=True)
         ]
         yield "", Table.of_rows(_HEADS, rows)
+        yield "", self._chart(drawn, ordered=self.is_ordered(runs))
         summary = []
         for d in drawn:
             pull_off, zero_load, fixed_depth = d.points.values()

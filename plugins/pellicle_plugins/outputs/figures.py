@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Literal
 
@@ -51,8 +52,8 @@ class Figures(Output):
         """Yield the figures of the result of a run, or of the table of a study."""
         is_run = runs.axes is None
         shown = figures_of(Result(runs.open())) if is_run else figures_of_study(runs.table)
-        for name, figure in shown.items():
-            yield f"-{name}", figure
+        for name, make in shown.items():
+            yield f"-{name}", make()
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figures in each format."""
@@ -61,27 +62,27 @@ class Figures(Output):
         return write_charts(alone, stem, self.formats, self.style)
 
 
-def figures_of(result: Result) -> dict[str, Chart | Fields]:
-    """Return the figures of a run, by suffix; with times there is one over them."""
-    drawn: dict[str, Chart | Fields] = {
-        "pressure": pressure_map(result),
-        "profile": profile(result),
-        "force_depth": force_depth(result),
-        "area_force": area_force(result),
+def figures_of(result: Result) -> dict[str, Callable[[], Chart | Fields]]:
+    """Return what makes each figure of a run, by suffix; with times there is one over them."""
+    figures: dict[str, Callable[[Result], Chart | Fields]] = {
+        "pressure": pressure_map,
+        "profile": profile,
+        "force_depth": force_depth,
+        "area_force": area_force,
     }
     if has_times(result.dataset) and result.dataset.sizes["step"] > 1:
-        drawn["time"] = over_time(result)
-    return drawn
+        figures["time"] = over_time
+    return {name: partial(figure, result) for name, figure in figures.items()}
 
 
-def figures_of_study(table: xr.Dataset) -> dict[str, Chart]:
-    """Return the figures of a study: force, and contact fraction or area, by variable.
+def figures_of_study(table: xr.Dataset) -> dict[str, Callable[[], Chart]]:
+    """Return what makes each figure of a study: force, and contact fraction or area, by variable.
 
     A free domain has no nominal area of which the contact is a fraction.
     """
     area = "contact_fraction" if is_periodic(table) else "contact_area"
     names = ("force", area) if "force" in table else ()
-    return {name: study_curves(table, name) for name in names}
+    return {name: partial(study_curves, table, name) for name in names}
 
 
 def force_depth(result: Result) -> Chart:

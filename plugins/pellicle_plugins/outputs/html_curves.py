@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -35,7 +36,7 @@ def curves_of_run(result: Result, chosen: list[int], begin: int) -> list[Picture
     if result.dataset.sizes["step"] > 1:
         drawn = figures_of(result)
         pictures += [
-            picture(drawn[name], caption, chosen)
+            picture(drawn[name](), caption, chosen)
             for name, caption in _CURVES.items()
             if name in drawn
         ]
@@ -62,8 +63,8 @@ def _profiles(result: Result, chosen: list[int], begin: int) -> Picture:
 def curves_of_study(table: xr.Dataset) -> list[Picture]:
     """Return a figure for each variable that is drawn over a study."""
     return [
-        picture(chart, f"{wording(table[name]).words.capitalize()} over the study.")
-        for name, chart in figures_of_study(table).items()
+        picture(make(), f"{wording(table[name]).words.capitalize()} over the study.")
+        for name, make in figures_of_study(table).items()
     ]
 
 
@@ -74,15 +75,12 @@ def curves_of_outputs(
     for output in outputs:
         if output.type_name in ("figures", "html") or type(output).charts is Output.charts:
             continue
-        try:
-            shown = [part for _, part in output.charts(runs)]
-        except Exception:
-            # The output that fails is told of as it is written.
-            continue
         name = getattr(output, "title", "") or getattr(output, "name", "") or output.type_name
-        for part in shown:
-            if not isinstance(part, (bytes, Table)):
-                yield picture(part, f"{name[0].upper()}{name[1:]}.", chosen)
+        # The output that fails is told of as it is written.
+        with suppress(Exception):
+            for _, part in output.charts(runs):
+                if not isinstance(part, (bytes, Table)):
+                    yield picture(part, f"{name[0].upper()}{name[1:]}.", chosen)
 
 
 def picture(

@@ -75,8 +75,8 @@ class Profiles(TableFigure):
             x_axis = axis_of(self.x or self.along, xs, self.x_label, lines[0][1])
             y_axis = axis_of(self.y, ys, self.y_label, lines[0][1])
         hues, ordered = len(lines), self.is_ordered(runs)
-        yield "", Chart(x_axis, [y_axis], series, self.title, hues=hues, ordered=ordered)
         yield "", Table.of_rows(("curve", "series", "x", "y"), rows)
+        yield "", Chart(x_axis, [y_axis], series, self.title, hues=hues, ordered=ordered)
 
     def _fields(self) -> set[str]:
         """Return the fields that are shown."""

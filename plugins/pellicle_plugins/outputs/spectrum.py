@@ -62,8 +62,8 @@ class Spectrum(TableFigure):
         x = Axis("wavenumber q [rad/m]", as_given=True, log=highest > 0)
         y = Axis("power spectral density [m⁴]", as_given=True, log=highest > 0)
         hues, ordered = len(curves), self.is_ordered(runs)
-        yield "", Chart(x, [y], series, self.title, hues=hues, ordered=ordered)
         yield "", Table.of_rows(_HEADS, rows)
+        yield "", Chart(x, [y], series, self.title, hues=hues, ordered=ordered)
 
 
 def _spectra(step: xr.Dataset) -> dict[str, analysis.Spectrum]:

@@ -101,7 +101,7 @@ def test_round_off_does_not_set_the_scale_of_a_spectrum(left: Left) -> None:
     """Beyond its shortest wave the indenter has round-off alone, which is not drawn."""
     _, result = left
     output = Spectrum()
-    (_, chart), (_, table) = output.charts(StoredRuns.of_run(result.dataset))
+    (_, table), (_, chart) = output.charts(StoredRuns.of_run(result.dataset))
     assert isinstance(chart, Chart)
     assert isinstance(table, Table)
     written = np.array(table.columns[3].values)
