@@ -22,6 +22,7 @@ def extent(values: Iterable[NDArray[Any]]) -> tuple[float, float]:
     """Return the lowest and the highest of the finite values, without a copy; 0 and 0 of none."""
     low, high = np.inf, -np.inf
     for array in values:
+        array = array if array.dtype.kind == "f" else array.astype(float)
         finite = np.isfinite(array)
         low = float(np.min(array, where=finite, initial=low))
         high = float(np.max(array, where=finite, initial=high))
@@ -42,7 +43,7 @@ class Axis:
     limits: tuple[float | None, float | None] = (None, None)
     """Where it begins and ends [SI]; None is where the values do."""
     signed: bool = False
-    """Whether values may have both signs, so that 0 is a line."""
+    """Whether values may have both signs, so that 0 is a line; along y only."""
     column: str = ""
     """Head of its column in a table; words and SI unit if empty."""
 
@@ -50,8 +51,8 @@ class Axis:
         """Return the unit in which ``values`` [SI] are drawn, which suits an end that is given."""
         if self.as_given:
             return Scale(1.0, "")
-        end = self.limits[1]
-        return axis_unit(extent(values) if end is None else [end], self.unit)
+        ends = [end for end in self.limits if end]
+        return axis_unit(extent(values) if self.limits[1] is None else ends, self.unit)
 
     def label(self, scale: Scale) -> str:
         """Return the label of the axis for numbers in a scale."""
@@ -151,7 +152,7 @@ class Panel:
     """Positions of cells [m], shape (nx,)."""
     y: Array
     """Positions of cells [m], shape (ny,)."""
-    values: Array | Mask | NDArray[np.uint8]
+    values: NDArray[Any]
     """In SI, or numbers of parts, shape (nx, ny)."""
     title: str = ""
     blank: Mask | None = None

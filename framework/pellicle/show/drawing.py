@@ -67,9 +67,10 @@ def _draw_chart(figure: Figure | SubFigure, chart: Chart) -> list[Drawn]:
     # What is published is in the units that follow from the rest.
     scaled = [s for s in chart.series if s.role != "published"]
     scale_x = chart.x.scale([s.x for s in scaled])
-    drawn = []
+    drawn, scales = [], []
     for number, (axes, axis) in enumerate(zip(panels, chart.y, strict=True)):
         scale_y = axis.scale([s.y for s in scaled if s.panel == number])
+        scales.append(scale_y)
         for low, high in chart.shaded:
             axes.axvspan(low * scale_x.factor, high * scale_x.factor, color="0.9", zorder=0, lw=0)
         drawn += [
@@ -80,14 +81,16 @@ def _draw_chart(figure: Figure | SubFigure, chart: Chart) -> list[Drawn]:
         axes.set_ylabel(textwrap.fill(axis.label(scale_y), _LETTERS))
         if axis.signed:
             axes.axhline(0.0, color=_PALE, linewidth=0.6)
-        _set_scale(axes, "x", chart.x, scale_x.factor, signed=axis.signed)
-        _set_scale(axes, "y", axis, scale_y.factor, signed=axis.signed)
         axes.grid(alpha=0.3)
+    _name_legs(panels[0], chart)
+    # Panels share x, and limits end the search for them.
+    for axes, axis, scale_y in zip(panels, chart.y, scales, strict=True):
+        _set_scale(axes, "x", chart.x, scale_x.factor)
+        _set_scale(axes, "y", axis, scale_y.factor)
+        if axes.get_legend_handles_labels()[1]:
+            axes.legend(frameon=False, fontsize="small")
     panels[-1].set_xlabel(textwrap.fill(chart.x.label(scale_x), _LETTERS))
     panels[0].set_title(chart.title)
-    _name_legs(panels[0], chart)
-    if panels[0].get_legend_handles_labels()[1]:
-        panels[0].legend(frameon=False, fontsize="small")
     if chart.note:
         place = {"transform": panels[0].transAxes, "fontsize": "small"}
         panels[0].text(0.02, 0.02, chart.note, color="red", **place)
@@ -192,15 +195,16 @@ def _name_legs(axes: Axes, chart: Chart) -> None:
         axes.plot([], [], label="retraction", linestyle=_RETRACTION, **style)
 
 
-def _set_scale(axes: Axes, direction: str, axis: Axis, factor: float, *, signed: bool) -> None:
+def _set_scale(axes: Axes, direction: str, axis: Axis, factor: float) -> None:
     """Make an axis logarithmic if it shows a positive value, and set its limits.
 
-    With ``signed`` values, a logarithmic axis leaves out those that are not positive, and the lines
+    Beside negative values, a logarithmic axis leaves out those that are not positive, and the lines
     to them; otherwise such lines end at the edge. A linear axis of positive values does not begin
     below 0.
     """
     low, high = (None if end is None else end * factor for end in axis.limits)
     if axis.log and np.isfinite(getattr(axes.dataLim, f"minpos{direction}")):
+        signed = getattr(axes.dataLim, f"{direction}0") < 0
         getattr(axes, f"set_{direction}scale")("log", nonpositive="mask" if signed else "clip")
     elif low is None and getattr(axes.dataLim, f"{direction}0") >= 0:
         drawn = getattr(axes, f"get_{direction}lim")()
@@ -228,7 +232,7 @@ def _draw_fields(figure: Figure | SubFigure, fields: Fields) -> None:
     scale = fields.axis.scale([panel.values for panel in fields.panels] if is_number else [])
     colours = _colours(fields, scale.factor)
     for axes, panel in zip(all_axes, fields.panels, strict=False):
-        image = _draw_panel(axes, panel, scale.factor, colours)
+        image = _draw_panel(axes, panel, scale.factor, colours, parts=fields.parts)
         axes.label_outer()
     if is_bool:
         from matplotlib.patches import Patch
@@ -242,11 +246,15 @@ def _draw_fields(figure: Figure | SubFigure, fields: Fields) -> None:
         add_colour_bar(bar, image, fields.axis.label(scale))
 
 
-def _draw_panel(axes: Axes, panel: Panel, factor: float, colours: dict[str, Any]) -> Any:
-    """Draw a field times ``factor``, and return its image."""
+def _draw_panel(
+    axes: Axes, panel: Panel, factor: float, colours: dict[str, Any], *, parts: bool
+) -> Any:
+    """Draw a field times ``factor``, or numbers of ``parts``, and return its image."""
     length = axis_unit(np.append(panel.x, panel.y), "m")
     x, y = panel.x * length.factor, panel.y * length.factor
     values = panel.values.T * factor if factor != 1.0 else panel.values.T
+    if parts:
+        values = (values % _PARTS).astype(np.uint8)
     if panel.blank is not None:
         values = np.ma.masked_where(panel.blank.T, values)
         axes.set_facecolor(NO_CONTACT)
@@ -275,7 +283,8 @@ def _colours(fields: Fields, factor: float) -> dict[str, Any]:
     if fields.parts:
         return {"cmap": "tab20", "vmin": 0, "vmax": _PARTS - 1, "interpolation": "nearest"}
     low, high = (end * factor for end in extent(panel.values for panel in fields.panels))
-    low = low if fields.axis.limits[0] is None else fields.axis.limits[0] * factor
+    if fields.axis.limits[0] is not None:
+        low = min(fields.axis.limits[0] * factor, low)
     if fields.centred and low < 0:
         highest = float(max(-low, high))
         return {"cmap": DIVERGING, "vmin": -highest, "vmax": highest}
@@ -297,6 +306,6 @@ def marks_of(
         pixels = axes.transData.transform(points)
         shares = figure.transFigure.inverted().transform(pixels)
         for found, step in zip(marks, steps, strict=True):
-            here = shares[series.steps == step]
+            here = shares[(series.steps == step) & np.isfinite(shares).all(axis=1)]
             found += [(float(left), float(1 - bottom)) for left, bottom in here]
     return marks

@@ -14,9 +14,6 @@ from pellicle.results.wording import is_periodic
 if TYPE_CHECKING:
     import xarray as xr
 
-_OPEN = 4.0
-"""Largest gap along a line, over the depth, up to which the whole line is drawn."""
-
 
 def without_round_off(step: xr.Dataset) -> xr.Dataset:
     """Return a load step for drawing, with gaps below its tolerance set to 0.

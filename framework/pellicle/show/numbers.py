@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -36,9 +37,10 @@ def _rows(chart: Chart, series: Series) -> Iterator[dict[str, object]]:
         for leg in reversed(series.legs)
         for step in range(leg.steps.start, leg.steps.stop)
     }
-    columns = {chart.x.head: series.x, chart.y[series.panel].head: series.y, **series.columns}
+    columns: dict[str, Any] = {chart.x.head: series.x, chart.y[series.panel].head: series.y}
     if series.low is not None and series.high is not None:
         columns |= {"y_lowest": series.low, "y_highest": series.high}
+    columns |= series.columns
     for index in range(series.x.size):
         row: dict[str, object] = {"curve": series.key, "series": series.name}
         row |= {h: v[index] if isinstance(v, np.ndarray) else v for h, v in columns.items()}

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from pellicle.components import Output
 from pellicle.components.charts import Chart, Fields, Shown, Table
+from pellicle.errors import PluginError
 from pellicle.files import atomic_write, for_document, storage_errors
 from pellicle.plugins import registry
 from pellicle.results.result import Result
@@ -37,6 +38,7 @@ def write_charts(
     with its suffix came before.
     """
     files: list[Path] = []
+    figures_written = set[Path]()
     # One after the other, so that one at a time is in memory.
     for suffix, part in shown:
         path = stem.with_name(f"{stem.name}{suffix}")
@@ -47,7 +49,10 @@ def write_charts(
             files.append(path)
         elif isinstance(part, Table):
             files.append(write_csv(part, numbers))
+        elif path in figures_written:
+            raise PluginError(f"two figures have the suffix {suffix!r}; give each its own")
         else:
+            figures_written.add(path)
             fill, size = figure_of(part)
             files += save_figure(fill, path, formats, size, style)
             if isinstance(part, Chart) and numbers not in files:
@@ -123,12 +128,21 @@ def save_pages(
     return path
 
 
-def svg(draw: Callable[[Figure], object], size: tuple[float, float] = SIZE) -> bytes:
-    """Let ``draw`` fill a figure of ``size`` [inch], and return it as reproducible SVG."""
+def svg(
+    draw: Callable[[Figure], object],
+    size: tuple[float, float] = SIZE,
+    laid_out: Callable[[Figure], object] | None = None,
+) -> bytes:
+    """Let ``draw`` fill a figure of ``size`` [inch], and return it as reproducible SVG.
+
+    ``laid_out`` is given the figure when all has its final place.
+    """
     import matplotlib as mpl
 
     # A page cannot count on the fonts of its reader.
     with mpl.rc_context(), _figure(draw, size, FigureStyle(svg_text=False)) as figure:
+        if laid_out:
+            laid_out(figure)
         mpl.rcParams["svg.hashsalt"] = "pellicle"
         buffer = BytesIO()
         figure.savefig(buffer, format="svg", metadata={"Date": None})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, NamedTuple
 
@@ -124,7 +124,9 @@ class TableFigure(Output):
     def steps(self, runs: Runs) -> Iterator[tuple[Label, xr.Dataset]]:
         """Yield the name of each curve or panel and the last load step of its run, if finished."""
         for name, point, run in self.opened(runs):
-            number = min(int(point["step"].item()), Result(run).planned_steps)
+            number = int(point["step"].item())
+            if self.by != "step":
+                number = min(number, Result(run).planned_steps)
             if number in run["step"]:
                 yield name, without_round_off(run.sel(step=number))
 
@@ -177,26 +179,16 @@ def label(template: str | None, data: xr.Dataset, dim: str | None, whole: xr.Dat
     return Label(", ".join(words), ", ".join(keys))
 
 
-def axis_of(text: str, values: Sequence[xr.DataArray], label: str | None, data: xr.Dataset) -> Axis:
+def axis_of(text: str, label: str | None, data: xr.Dataset) -> Axis:
     """Return the axis that shows the expression ``text`` over ``data``.
 
-    ``values`` are those of all curves along it. A bare variable has its unit, unless there is a
-    ``label``; other expressions are in SI, since their unit is not known.
+    A bare variable has its unit, unless there is a ``label``; other expressions are in SI, since
+    their unit is not known: xarray keeps that of one operand.
     """
     name = text.strip()
     if label is not None or name not in data.variables:
         return Axis(in_words(text, data) if label is None else label, as_given=True)
-    # xarray keeps the unit of one operand, so that only the bare variable has its own.
-    shown = wording(joined(name, values))
-    return Axis(shown.words, str(data[name].attrs.get("units", "1")))
-
-
-def joined(name: str, arrays: Sequence[xr.DataArray]) -> xr.DataArray:
-    """Return the values of a variable in several runs in one array, with its attributes."""
-    import xarray as xr
-
-    values = np.concatenate([array.values.ravel() for array in arrays])
-    return xr.DataArray(values, dims="value", name=name, attrs=arrays[0].attrs)
+    return Axis(wording(data[name]).words, str(data[name].attrs.get("units", "1")))
 
 
 def in_words(text: str, data: xr.Dataset) -> str:

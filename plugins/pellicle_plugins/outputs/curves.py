@@ -184,7 +184,7 @@ class Curves(TableFigure):
             band = Series(none, none, legend=_SPREADS[self.spread], low=none, high=none)
             series.append(replace(band, look=Look(None)))
         return Chart(
-            replace(axis_of(self.x, [x], self.x_label, table), log="x" in log, column="x"),
+            replace(axis_of(self.x, self.x_label, table), log="x" in log, column="x"),
             [replace(y_axis, log="y" in log, column="y")],
             series,
             self.title,
@@ -206,7 +206,7 @@ class Curves(TableFigure):
                 head = "" if is_common or unit == "1" else f" [{printed(unit)}]"
                 names.append(f"{in_words(text, table)}{head}")
         if len(ys) == 1 or self.y_label is not None:
-            return axis_of(self.y[0], ys, self.y_label, table), names
+            return axis_of(self.y[0], self.y_label, table), names
         words = ", ".join(names)
         has_unit = is_common and units[0] != "1"
         return Axis(words, units[0] if has_unit else "1", as_given=not has_unit), names

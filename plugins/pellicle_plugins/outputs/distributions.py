@@ -60,7 +60,7 @@ class Distributions(TableFigure):
             x = np.repeat(densities[field].edges, 2) * scale.factor
             y = np.repeat(densities[field].density, 2) / scale.factor
             look = Look(number, number)
-            series.append(Series(x, np.pad(y, 1) if x.size else y, legend=name.words, look=look))
+            series.append(Series(x, np.pad(y, 1), legend=name.words, look=look))
         return Chart(
             Axis(f"{field} [{scale.unit}]", as_given=True, log="x" in log),
             [Axis(f"probability density [1/{scale.unit}]", as_given=True, log="y" in log)],

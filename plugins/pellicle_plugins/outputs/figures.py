@@ -145,7 +145,8 @@ def study_curves(table: xr.Dataset, variable: str) -> Chart:
             legend = ""
     log = along != "step" and is_log_spaced(table[against].values)
     ordered = bool(compared) and is_ordered(table, compared[0])
-    x, y = _axis(table[against], log=log), _axis(table[variable], signed=pulls)
+    # The path of a contact that sticks goes below a depth of 0.
+    x, y = _axis(table[against], signed=True, log=log), _axis(table[variable], signed=pulls)
     return Chart(x, [y], series, _title(table), hues=many, ordered=ordered)
 
 

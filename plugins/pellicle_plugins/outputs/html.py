@@ -277,7 +277,7 @@ def _share_in_words(number: int, count: int, noun: str) -> str:
 
 
 def _setup(step: xr.Dataset, configuration: dict[str, Any], label: str) -> Picture:
-    """Return the indenter over the surface in a load step, to scale."""
+    """Return the indenter over the surface in a load step."""
     values = {i.name: i.value for i in inputs(configuration, Run)}
     caption = f"The {values['indenter']} on the {values['kernel']}, at {label}; heights stretched."
     return picture(cross_section(step), caption)

@@ -12,7 +12,7 @@ from pellicle.results.path import label_of_step
 from pellicle.results.result import Result
 from pellicle.results.wording import wording
 from pellicle.show import Picture, figure_of, svg
-from pellicle.show.drawing import marks_of
+from pellicle.show.drawing import Drawn, marks_of
 
 from .figures import figures_of, figures_of_study
 from .step_figures import profile
@@ -73,7 +73,8 @@ def curves_of_outputs(
 ) -> Iterator[Picture]:
     """Yield what the other outputs of a run or study show, marked at ``chosen`` steps."""
     for output in outputs:
-        if output.type_name in ("figures", "html") or type(output).charts is Output.charts:
+        beside = output.type_name in ("figures", "html") or type(output).charts is Output.charts
+        if beside or output.scope == ("study" if runs.axes is None else "run"):
             continue
         name = getattr(output, "title", "") or getattr(output, "name", "") or output.type_name
         # The output that fails is told of as it is written.
@@ -88,14 +89,14 @@ def picture(
 ) -> Picture:
     """Return a picture, with marks at the load steps ``marked``."""
     marks: list[list[tuple[float, float]]] = []
-
+    drawn: list[Drawn] = []
     beside = [shown] if isinstance(shown, (Chart, Fields)) else shown
     # The page has a title, and a title may be longer than a figure is wide.
     fill, size = figure_of([replace(part, title="") for part in beside])
 
-    def marked_fill(figure: Figure) -> None:
-        drawn = fill(figure)
+    def mark(figure: Figure) -> None:
         if marked:
             marks.extend(marks_of(figure, drawn, marked))
 
-    return Picture(svg(marked_fill, size), caption, caption, marks, wide=len(beside) > 1)
+    drawing = svg(lambda figure: drawn.extend(fill(figure)), size, mark)
+    return Picture(drawing, caption, caption, marks, wide=len(beside) > 1)

@@ -41,7 +41,7 @@ class Maps(TableFigure):
         """Yield the maps."""
         import xarray as xr
 
-        arrays, panels, pulls = list[xr.DataArray](), list[Panel](), False
+        panels, pulls = list[Panel](), False
         text = self.field.strip()
         for name, run in self.steps(runs):
             # Truth values become numbers in arithmetic; alone they are drawn black on grey.
@@ -56,9 +56,8 @@ class Maps(TableFigure):
             blank = cells == 0 if text in _ONLY_IN_CONTACT else None
             x, y = run["x"].values, run["y"].values
             panels.append(Panel(x, y, cells, name.words, blank, outlines))
-            arrays.append(values)
         axis = Axis(words_of_name(text))
-        if arrays and arrays[0].dtype != bool:
-            axis = axis_of(text, arrays, self.field_label, run)
+        if panels and panels[0].values.dtype != bool:
+            axis = axis_of(text, self.field_label, run)
         centred = pulls and "pressure" in names_in(text)
         yield "", Fields(axis, panels, self.title, centred=centred)

@@ -89,7 +89,7 @@ def _map(name: Label, step: xr.Dataset, patches: analysis.Patches) -> Panel:
     """Return the patches, numbered in turn."""
     x, y, labels = step["x"].values, step["y"].values, patches.labels
     title = f"{name.words}\n{patches.count} patches".lstrip()
-    return Panel(x, y, (labels % 20).astype(np.uint8), title, blank=labels == 0)
+    return Panel(x, y, labels, title, blank=labels == 0)
 
 
 def _rows(name: Label, step: xr.Dataset, patches: analysis.Patches) -> Iterator[tuple[object, ...]]:

@@ -47,10 +47,9 @@ class Profiles(TableFigure):
         """Yield the curves, and their numbers in the cells."""
         across = _ACROSS[self.along]
         lines = [(n, run.isel({across: run.sizes[across] // 2})) for n, run in self.steps(runs)]
-        series, rows, shown = list[Series](), list[tuple[object, ...]](), []
+        series, rows = list[Series](), list[tuple[object, ...]]()
         for number, (name, line) in enumerate(lines):
             x, y = self._columns(line)
-            shown.append((x, y))
             rows += [(name.key, "run", *point) for point in zip(x.values, y.values, strict=True)]
             look = Look(number, number)
             if self.reference:
@@ -70,10 +69,9 @@ class Profiles(TableFigure):
                 points = zip(x.values, y.values, strict=True)
                 rows += [(name.key, "semi-analytic", *point) for point in points]
         x_axis, y_axis = Axis(""), Axis("")
-        if shown:
-            xs, ys = zip(*shown, strict=True)
-            x_axis = axis_of(self.x or self.along, xs, self.x_label, lines[0][1])
-            y_axis = axis_of(self.y, ys, self.y_label, lines[0][1])
+        if lines:
+            x_axis = axis_of(self.x or self.along, self.x_label, lines[0][1])
+            y_axis = axis_of(self.y, self.y_label, lines[0][1])
         hues, ordered = len(lines), self.is_ordered(runs)
         yield "", Table.of_rows(("curve", "series", "x", "y"), rows)
         yield "", Chart(x_axis, [y_axis], series, self.title, hues=hues, ordered=ordered)

@@ -77,7 +77,7 @@ def profile(result: Result, step: int | None = None) -> Chart:
 
 
 def cross_section(step: xr.Dataset) -> Chart:
-    """Return the indenter over the deformed surface along x, through its deepest point, to scale.
+    """Return the indenter over the deformed surface along x, through its deepest point.
 
     ``step`` is one load step. Heights are above the undeformed surface.
     """
