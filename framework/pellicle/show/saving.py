@@ -8,6 +8,8 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from pellicle.components import Output
 from pellicle.components.charts import Chart, Fields, Shown, Table
 from pellicle.errors import PluginError
@@ -163,6 +165,7 @@ def _figure(
 ) -> Iterator[Figure]:
     """Yield a figure that ``draw`` has filled; it is empty afterwards."""
     from matplotlib.figure import Figure
+    from matplotlib.image import AxesImage
     from matplotlib.text import Text
 
     style = style or FigureStyle()
@@ -178,4 +181,6 @@ def _figure(
             yield figure
         finally:
             # Artists refer to each other, so the fields that they draw would outlive the figure.
+            for image in figure.findobj(AxesImage):
+                image.set_data(np.zeros((1, 1)))
             figure.clear()

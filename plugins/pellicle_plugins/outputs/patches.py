@@ -55,41 +55,39 @@ class Patches(TableFigure):
         list(self.picked(runs.table))
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
-        """Yield the map of the last curve beside the numbers of patches, and all patches."""
-        curves = [
-            (name, step, analysis.patches(step["contact"], Result(step).grid, self.connectivity))
-            for name, step in self.steps(runs)
-        ]
-        is_any = any(patches.count for *_, patches in curves)
-        series = [
-            Series(
-                patches.area,
-                np.arange(1.0, patches.count + 1),
-                legend=name.words,
-                look=Look(number, marker=number),
-                stepped=True,
-            )
-            for number, (name, _, patches) in enumerate(curves)
-        ]
+        """Yield all patches, and the map of the last curve beside the numbers of patches."""
+        rows, series, panels = self._found(runs)
+        yield "", Table.of_rows(_HEADS, rows)
+        is_any = any(one.x.size for one in series)
         sizes = Chart(
             Axis("area of a patch", "m2", log=is_any),
             [Axis("patches at least as large", log=is_any)],
             series,
-            hues=len(curves),
+            hues=len(series),
             ordered=self.is_ordered(runs),
         )
-        shown = Fields(
-            Axis("patch"), [_map(*curve) for curve in curves[-1:]], self.title, parts=True
-        )
-        yield "", [shown, sizes]
-        yield "", Table.of_rows(_HEADS, [row for curve in curves for row in _rows(*curve)])
+        yield "", [Fields(Axis("patch"), panels, self.title, parts=True), sizes]
+
+    def _found(self, runs: Runs) -> tuple[list[tuple[object, ...]], list[Series], list[Panel]]:
+        """Return the rows of all patches, their numbers over the area, and the last map.
+
+        The labels of cells are large, and none outlives this.
+        """
+        rows, series, panels = list[tuple[object, ...]](), list[Series](), list[Panel]()
+        for number, (name, step) in enumerate(self.steps(runs)):
+            patches = analysis.patches(step["contact"], Result(step).grid, self.connectivity)
+            rows += _rows(name, step, patches)
+            rank, look = np.arange(1.0, patches.count + 1), Look(number, marker=number)
+            series.append(Series(patches.area, rank, legend=name.words, look=look, stepped=True))
+            panels = [_map(name, step, patches)]
+        return rows, series, panels
 
 
 def _map(name: Label, step: xr.Dataset, patches: analysis.Patches) -> Panel:
     """Return the patches, numbered in turn."""
     x, y, labels = step["x"].values, step["y"].values, patches.labels
     title = f"{name.words}\n{patches.count} patches".lstrip()
-    return Panel(x, y, labels, title, blank=labels == 0)
+    return Panel(x, y, (labels % 20).astype(np.uint8), title, blank=labels == 0)
 
 
 def _rows(name: Label, step: xr.Dataset, patches: analysis.Patches) -> Iterator[tuple[object, ...]]:

@@ -49,7 +49,8 @@ def profile(result: Result, step: int | None = None) -> Chart:
     peaks = np.abs(data["pressure"].values).max(axis=0)
     if peaks.any() and not data["contact"].isel(y=row).any():
         row = int(peaks.argmax())
-    line = data.isel(y=row)
+    # A view would keep the whole field in memory while the chart is drawn.
+    line = data.isel(y=row).copy(deep=True)
     x, gap, contact = line["x"].values, line["gap"].values, line["contact"].values
     pulls, depth = has_interaction(data), float(data["depth"])
     height = max(depth, 0.0)

@@ -54,7 +54,8 @@ def array(
     """Write numbers, given as `base64_of` takes them."""
     kind = _TYPES[dtype.str[1:]]
     with element(xml, "DataArray", **attributes, type=kind, Name=name, format="binary"):
-        xml.characters(base64_of(blocks))
+        for text in base64_of(blocks):
+            xml.characters(text)
 
 
 def rows_of(number: int, size: int) -> list[slice]:
@@ -63,16 +64,24 @@ def rows_of(number: int, size: int) -> list[slice]:
     return [slice(start, start + many) for start in range(0, number, many)]
 
 
-def base64_of(blocks: Iterable[bytes]) -> str:
-    """Return blocks of bytes, all of one size but the last, in base64, each compressed.
+def base64_of(blocks: Iterable[bytes]) -> Iterator[str]:
+    """Yield blocks of bytes, all of one size but the last, in base64, each compressed.
 
     The header holds the number of blocks, their size, that of the last block if it is smaller, else
-    0, and the compressed size of each block.
+    0, and the compressed size of each block. The parts are yielded one by one, since all in base64
+    would take several times the memory of the field.
     """
     packed, sizes = [], []
     for block in blocks:
         packed.append(zlib.compress(block, 1))
         sizes.append(len(block))
     head = [len(packed), sizes[0], sizes[-1] % sizes[0], *map(len, packed)]
-    parts = struct.pack(f"={len(head)}Q", *head), b"".join(packed)
-    return "".join(base64.b64encode(part).decode("ascii") for part in parts)
+    yield base64.b64encode(struct.pack(f"={len(head)}Q", *head)).decode("ascii")
+    rest = b""
+    for part in packed:
+        # Three bytes are four letters, across the ends of blocks.
+        data = rest + part
+        whole = len(data) - len(data) % 3
+        yield base64.b64encode(data[:whole]).decode("ascii")
+        rest = data[whole:]
+    yield base64.b64encode(rest).decode("ascii")
