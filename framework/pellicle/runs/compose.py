@@ -71,9 +71,8 @@ def compose(run: Run) -> Setting:
 @lru_cache
 def _is_own(kind: type[Component]) -> bool:
     """Return whether a class is one that the distribution of pellicle registers."""
-    type_ = str(getattr(kind.model_fields.get("type"), "default", ""))
-    registered = registry().components[kind.family].get(type_)
-    return registered is not None and registered.component is kind and registered.origin.is_own
+    installed = registry().components[kind.family].values()
+    return any(one.component is kind and one.origin.is_own for one in installed)
 
 
 # Whether a rule holds depends on the values of a component and on the grid.

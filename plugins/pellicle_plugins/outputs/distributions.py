@@ -52,7 +52,6 @@ class Distributions(TableFigure):
 
     def _chart(self, field: str, unit: str, curves: _Curves, runs: Runs) -> Chart:
         edges = [densities[field].edges for _, densities in curves]
-        log = self.log if any(bins.size > 1 for bins in edges) else ()
         # One unit for both axes: the density is per unit of the field.
         scale = axis_unit(np.concatenate([*edges, np.zeros(1)]), unit)
         series = []
@@ -62,8 +61,8 @@ class Distributions(TableFigure):
             look = Look(number, number)
             series.append(Series(x, np.pad(y, 1), legend=name.words, look=look))
         return Chart(
-            Axis(f"{field} [{scale.unit}]", as_given=True, log="x" in log),
-            [Axis(f"probability density [1/{scale.unit}]", as_given=True, log="y" in log)],
+            Axis(f"{field} [{scale.unit}]", as_given=True, log="x" in self.log),
+            [Axis(f"probability density [1/{scale.unit}]", as_given=True, log="y" in self.log)],
             series,
             self.title,
             hues=len(curves),

@@ -58,10 +58,9 @@ class Patches(TableFigure):
         """Yield all patches, and the map of the last curve beside the numbers of patches."""
         rows, series, panels = self._found(runs)
         yield "", Table.of_rows(_HEADS, rows)
-        is_any = any(one.x.size for one in series)
         sizes = Chart(
-            Axis("area of a patch", "m2", log=is_any),
-            [Axis("patches at least as large", log=is_any)],
+            Axis("area of a patch", "m2", log=True),
+            [Axis("patches at least as large", log=True)],
             series,
             hues=len(series),
             ordered=self.is_ordered(runs),

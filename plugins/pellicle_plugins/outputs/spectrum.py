@@ -59,8 +59,8 @@ class Spectrum(TableFigure):
         for surface, line in _LINES.items():
             look = Look(None if many else 0, line)
             series.append(Series(np.empty(0), np.empty(0), legend=surface, look=look))
-        x = Axis("wavenumber q [rad/m]", as_given=True, log=highest > 0)
-        y = Axis("power spectral density [m⁴]", as_given=True, log=highest > 0)
+        x = Axis("wavenumber q [rad/m]", as_given=True, log=True)
+        y = Axis("power spectral density [m⁴]", as_given=True, log=True)
         hues, ordered = len(curves), self.is_ordered(runs)
         yield "", Table.of_rows(_HEADS, rows)
         yield "", Chart(x, [y], series, self.title, hues=hues, ordered=ordered)
