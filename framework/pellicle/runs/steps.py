@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -19,7 +19,6 @@ from pellicle.contact.equilibrium import equilibrium_of
 from pellicle.contact.load_step import FinishedStep, LoadStep, end_of
 from pellicle.results.step import Steps, step_dataset
 
-from .progress import Bar
 from .relaxation import Relaxation
 from .target_search import reach
 from .terms import Surroundings, Term
@@ -49,14 +48,14 @@ class Physics:
 
 
 def solve_steps(
-    run: Run, setting: Setting, steps: Steps, bar: Bar
+    run: Run, setting: Setting, steps: Steps, monitor_of: Callable[[int], Monitor]
 ) -> Generator[xr.Dataset, None, None]:
     """Solve the load steps missing from ``steps``; add and yield each as soon as it is solved."""
     origin, physics = provenance(run), Physics(run)
     for index in range(len(steps), len(run.loading.values)):
         # Without a name for the solved step, only its copy in ``steps`` outlives the solve.
         yield steps.append(
-            _next_step(run, setting, steps.path, physics, bar.step(index)).assign_attrs(origin)
+            _next_step(run, setting, steps.path, physics, monitor_of(index)).assign_attrs(origin)
         )
 
 

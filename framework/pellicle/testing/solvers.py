@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pellicle.components import IterativeSolver, Solver
+from pellicle.components import Solver
 from pellicle.components.solver import response_of
 from pellicle.config.run import Run
 from pellicle.contact.equilibrium import measure_stiffness
@@ -50,8 +50,8 @@ def check_solver(solver: Solver) -> None:
     Besides the rules of all components: a paraboloid, a punch and a rough surface, on free and
     periodic grids, with depth, force and mean pressure prescribed, are solved to the solver's
     ``tolerance``, with pressure ≥ 0 and arguments unchanged; the solution depends on neither the
-    step before nor the unit of stiffness; the monitor is called; ``response`` is that of a flat
-    punch; and the ``residual`` of an iterative solver has no side effect.
+    step before nor the unit of stiffness; the monitor is called; and ``response`` is that of a
+    flat punch.
     """
     check(solver, "solver", rules_of(__name__))
 
@@ -90,20 +90,6 @@ def response_is_that_of_a_flat_punch(solver: Solver) -> None:
         residual = measure_stiffness(problem, contact, pressure).residual
         what = f"response() misses the displacement 1 by {residual:.1e}"
         require(residual <= solver.tolerance, what)
-
-
-def residual_has_no_side_effect(solver: Solver) -> None:
-    """residual() of an iterative solver neither applies the operator nor changes the iterate."""
-    if not isinstance(solver, IterativeSolver):
-        return
-    for problem in _problems():
-        state = solver.begin(problem, None)
-        for _ in range(3):
-            applied = problem.operator.applications
-            first, second = solver.residual(problem, state), solver.residual(problem, state)
-            require(problem.operator.applications == applied, "residual() applies the operator")
-            require(first == second, f"residual() returns {first:g}, and then {second:g}")
-            state = solver.step(problem, state)
 
 
 def _require_same_pressure(
