@@ -172,12 +172,6 @@ def test_steps_with_gaps_are_not_resumed(path: Path, numbers: tuple[int, ...]) -
         storage.require_consecutive(storage.read(path), path)
 
 
-def test_what_cannot_be_read_is_not_said_to_be_unwritable(tmp_path: Path) -> None:
-    """If the old content cannot be read again, another folder is not the remedy."""
-    with pytest.raises(StorageError, match=r"not a readable result file \(.*directory"):
-        storage._join(tmp_path, [])
-
-
 def test_lack_of_memory_is_reported(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A file whose content does not fit in memory is refused in words."""
     storage.write(steps(1), path)

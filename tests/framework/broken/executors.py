@@ -80,7 +80,7 @@ def halting(f: Any, work: Any, tasks: Any, report: Any) -> Iterator[Any]:
     dead = False
     for task, outcome in f(work, tasks, report):
         yield task, RuntimeError("no worker is left") if dead else outcome
-        dead = dead or (getattr(task, "home", 0) and isinstance(outcome, Exception))
+        dead = dead or (isinstance(outcome, Exception) and task.home != 0)
 
 
 ITSELF = Refused("it has to yield each of the tasks that it was given once, the object itself")

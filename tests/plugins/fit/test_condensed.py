@@ -8,11 +8,9 @@ import numpy as np
 import pytest
 
 from pellicle_fit.curves.curve import Segment
-from pellicle_fit.models.effects import DragModel
 from pellicle_fit.models.force_model import ClosedFormModel
 from pellicle_fit.models.relaxing import EXPONENT, PowerLawModel
 from pellicle_fit.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates
-from pellicle_fit.statistics.condensed import Condensation
 from pellicle_fit.statistics.likelihood import Likelihood
 from pellicle_fit.statistics.pooled_likelihood import Pool
 from pellicle_plugins.indenters.of_revolution import Paraboloid
@@ -59,23 +57,6 @@ def curve(segment: Segment = "approach", noise: float = 0.005) -> Likelihood:
     )
 
 
-def test_sum_of_squares_of_piecewise_linear_values_is_exact() -> None:
-    """Values that are linear between nodes have the squares and derivatives of all rows."""
-    random = np.random.default_rng(2)
-    x, force = np.sort(random.uniform(size=300)), random.standard_normal(300)
-    rows = np.arange(300)
-    groups = [(rows[:200], x[:200], 0.3), (rows[200:], x[200:], None)]
-    condensation = Condensation.of(groups, force, 20)
-    values = random.standard_normal((condensation.nodes.size, 2))
-    whole = (1 - condensation.share)[:, None] * values[condensation.before]
-    whole += condensation.share[:, None] * values[condensation.after]
-    residuals, jacobian = condensation.residuals(values[:, 0], values)
-    expected = whole[:, 0] - force
-    assert residuals @ residuals == pytest.approx(expected @ expected, rel=1e-12)
-    assert residuals @ jacobian == pytest.approx(expected @ whole, rel=1e-10)
-    assert jacobian.T @ jacobian == pytest.approx(whole.T @ whole, rel=1e-10)
-
-
 @pytest.mark.parametrize(
     ("segment", "relaxes"), [("approach", False), ("both", False), ("approach", True)]
 )
@@ -92,11 +73,3 @@ def test_minimum_is_that_of_all_rows(segment: Segment, relaxes: bool) -> None:
     result = Pool.of([whole]).condensed(start, 0.1).minimise(start).parameters
     for parameter, bound in whole.bounds(expected, whole.free).items():
         assert abs(result[parameter] - expected[parameter]) <= 0.1 * bound
-
-
-def test_rows_stay_where_nodes_do_not_do() -> None:
-    """Nearly exact forces and drag, which begins at once, keep all rows."""
-    exact, sudden = curve(noise=1e-7), curve()
-    sudden = replace(sudden, force_model=DragModel(MODEL, sudden.history))
-    assert exact.condensed(BEST, 0.1) is exact
-    assert sudden.condensed(BEST, 0.1) is sudden
