@@ -40,10 +40,7 @@ class Runs(Protocol):
     def open(self, name: str = "") -> xr.Dataset:
         """Return all numbers and fields of a run, given its name in the table of a study.
 
-        Raises
-        ------
-        StorageError
-            The file of the run does not exist or cannot be read.
+        A file that does not exist or cannot be read is a StorageError.
         """
 
     def datasets(self) -> Iterator[tuple[tuple[int, ...], xr.Dataset | None]]:
@@ -52,10 +49,7 @@ class Runs(Protocol):
     def column(self, text: str) -> xr.DataArray:
         """Return the value of an expression for each step; fields in it have to be reduced.
 
-        Raises
-        ------
-        ConfigError
-            The text is not arithmetic, or names an unknown variable.
+        A text that is not arithmetic, or names an unknown variable, is a ConfigError.
         """
 
     def from_each(self, function: Callable[[xr.Dataset], Any]) -> xr.DataArray:

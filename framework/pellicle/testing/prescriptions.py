@@ -32,14 +32,10 @@ def check_prescription(prescription: Prescription, values: Sequence[float] = ())
     of a search grows with the force, or falls if it is not ``increasing``; and prescribing the
     value of a known step reproduces that step.
 
-    Parameters
-    ----------
-    prescription
-        The component, checked on a rough surface of 1 mm × 1 mm and 10 µm root mean square height
-        on a periodic half-space of 10 kPa, under 0.1 and 0.2 mN.
-    values
-        The prescribed quantity [its unit] under these two forces. They can be left out if a result
-        has a variable named like the prescription's type, for example from ``report``.
+    The steps are of a rough surface of 1 mm × 1 mm and 10 µm root mean square height on a periodic
+    half-space of 10 kPa, under 0.1 and 0.2 mN. ``values`` are the prescribed quantity [its unit]
+    under these two forces. They can be left out if a result has a variable named like the
+    prescription's type, for example from ``report``.
     """
     check(prescription, "prescription", rules_of(__name__), tuple(values))
 
