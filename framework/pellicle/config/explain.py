@@ -8,8 +8,7 @@ import json
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from types import NoneType
-from typing import Any, Literal, NamedTuple, get_args, get_origin
+from typing import Any, NamedTuple
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
@@ -19,9 +18,9 @@ from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import Grid
 from pellicle.plugins import Registered, registry
 from pellicle.schema.messages import similar
-from pellicle.units import quantity_of, readable
+from pellicle.units import quantity_of
 
-from .describe import model_in, parts_of
+from .describe import FieldRow, field_rows, is_list, kind_of, model_in, parts_of
 from .loading import Loading, Options, keys_of, prescriptions
 from .run import Run
 from .study import Study
@@ -38,18 +37,6 @@ _EXAMPLES: Mapping[str, str] = {
     "loading": '[loading]\ndepth = { start = "1 um", stop = "5 um", num = 5 }',
     "study": '[study.vary]\n"kernel.tension" = ["0 mN/m", "10 mN/m", "50 mN/m"]',
 }
-_KINDS: Mapping[type, str] = {bool: "true or false", int: "whole number", float: "number"}
-
-
-class FieldRow(NamedTuple):
-    """A field of a table."""
-
-    name: str
-    """Key, with those of the tables that it is in; ``[]`` stands for an entry of a list."""
-    unit: str
-    """SI unit, or the kind of value."""
-    default: str
-    meaning: str
 
 
 class Explanation(NamedTuple):
@@ -79,7 +66,7 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
         return [_of_table(name, entries[name])]
     family = name if name in families else name.removesuffix("s")
     if family in families:
-        types = [FieldRow(t, "", "", entry.summary) for t, entry in families[family].items()]
+        types = [FieldRow(t, "", t, "", entry.summary) for t, entry in families[family].items()]
         meaning = _documentation(registry().families[family])
         return [Explanation(family, "family", "", meaning, types, "")]
     given, _, type_ = name.rpartition(".")
@@ -110,13 +97,13 @@ def words_by_kind(tables: Mapping[str, type[BaseModel]]) -> dict[str, list[str]]
 
 
 def _of_table(name: str, model: type[BaseModel]) -> Explanation:
-    rows = rows_of((Options if model is Loading else model).model_fields)
+    rows = [*field_rows((Options if model is Loading else model).model_fields)]
     if model is Study:
         rows = [row for row in rows if row.name != "run"]
     if model is Loading:
         of_types = []
         for type_, component in prescriptions().items():
-            for row in rows_of(keys_of(component)):
+            for row in field_rows(keys_of(component)):
                 required = "one of these" if row.name == type_ else f"with {type_}"
                 of_types.append(row._replace(default=row.default.replace("required", required)))
         rows = [row for row in of_types if row.name not in Options.model_fields] + rows
@@ -138,65 +125,12 @@ def _of_component(entry: Registered) -> Explanation:
     if issubclass(entry.component, Prescription):
         fields = keys_of(entry.component)
     text = _documentation(entry.component)
-    return Explanation(entry.type, family, origin, text, rows_of(fields), example)
+    return Explanation(entry.type, family, origin, text, [*field_rows(fields)], example)
 
 
 def _documentation(model: type[BaseModel]) -> str:
     """Return the documentation of a class without the marks of its markup."""
     return (inspect.getdoc(model) or "").replace("``", "").replace("`", "")
-
-
-def rows_of(fields: Mapping[str, FieldInfo], prefix: str = "") -> list[FieldRow]:
-    """Return the fields of a table and of the tables in it, without those of components."""
-    rows = []
-    for name, info in fields.items():
-        if name == "type":
-            continue
-        quantity = quantity_of(info)
-        if info.is_required():
-            default = "required"
-        else:
-            value = info.get_default(call_default_factory=True, validated_data={})
-            default = _default(value, quantity.unit if quantity else "1")
-        unit = quantity.unit if quantity and quantity.unit != "1" else _kind(info.annotation)
-        rows.append(FieldRow(f"{prefix}{name}", unit, default, info.description or ""))
-        inner = model_in(info.annotation)
-        if inner is not None and not issubclass(inner, (Component, Grid, Loading)):
-            mark = "[]" if _is_list(info.annotation) else ""
-            rows += rows_of(inner.model_fields, f"{prefix}{name}{mark}.")
-    return rows
-
-
-def _default(value: Any, unit: str) -> str:
-    if value is None or value in ((), "", {}):
-        return "none"
-    if isinstance(value, Component):
-        return value.type_name
-    if isinstance(value, BaseModel):
-        return "see below"
-    if isinstance(value, bool):
-        return str(value).lower()
-    return readable(value, unit) if not isinstance(value, dict) else str(value)
-
-
-def _is_list(annotation: Any) -> bool:
-    return any(get_origin(part) in (tuple, list) for part in parts_of(annotation))
-
-
-def _kind(annotation: Any) -> str:
-    """Return the kind of value of a field without a unit, in words."""
-    if get_origin(annotation) is Literal:
-        return " or ".join(map(str, get_args(annotation)))
-    type_ = dict if get_origin(annotation) is dict else annotation
-    if isinstance(type_, type):
-        if issubclass(type_, (BaseModel, dict)):
-            return "table"
-        return "text" if issubclass(type_, (str, Path)) else _KINDS.get(type_, "")
-    inner = [a for a in get_args(annotation) if a is not NoneType and a is not ...]
-    kinds = list(dict.fromkeys(filter(None, map(_kind, inner))))
-    if get_origin(annotation) in (tuple, list):
-        return f"list of {kinds[0]}s" if kinds in (["table"], ["text"], ["number"]) else "list"
-    return " or ".join(kinds)
 
 
 def refusal_of_example(component: type[Component]) -> str:
@@ -268,5 +202,5 @@ def _example(name: str, info: FieldInfo) -> Any:
     elif inner is not None:
         value = dict(example_values(inner))
     else:
-        value = {"true or false": True, "whole number": 1}.get(_kind(info.annotation), name)
-    return [value] if _is_list(info.annotation) else value
+        value = {"true or false": True, "whole number": 1}.get(kind_of(info), name)
+    return [value] if is_list(info.annotation) else value
