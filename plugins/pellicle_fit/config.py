@@ -125,6 +125,14 @@ class FitConfig(FromFile, Calibration):
     have the names of these fields.
     """
 
+    examples = (
+        {
+            "curves": ["beads/*.csv"],
+            "indenter": {"type": "sphere", "radius": "5 um"},
+            "poissons_ratio": 0.5,
+        },
+    )
+
     curves: Annotated[
         tuple[Path, ...],
         BeforeValidator(
@@ -133,7 +141,6 @@ class FitConfig(FromFile, Calibration):
         ),
         Field(
             description="files, folders, patterns such as beads/*.csv, or tables of files",
-            examples=[["beads/*.csv"]],
         ),
     ] = ()
     indenter: Annotated[
@@ -142,13 +149,11 @@ class FitConfig(FromFile, Calibration):
         PlainSerializer(described),
         Field(
             description="the indenter: its type and fields",
-            examples=[{"type": "sphere", "radius": "5 um"}],
         ),
     ]
     poissons_ratio: PoissonsRatio | None = Field(
         None,
         description="of the solid, to get Young's modulus as well, or if the kernel needs it",
-        examples=[0.5],
     )
     kernel: Annotated[
         dict[str, Any] | None,

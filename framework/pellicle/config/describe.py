@@ -97,14 +97,15 @@ def _rows(
         meaning = (info.description if info else None) or ""
         quantity = quantity_of(info) if info else None
         unit = quantity.unit if quantity else ""
-        facts = (unit, kind_of(info), default_of(info)) if info else ()
+        facts = (unit, _kind_of(info), _default_of(info)) if info else ()
         row = FieldRow(f"{path}{key}", part or noun, _with_owner(noun, of), "", meaning, *facts)
         if table is None:
             yield row
             inner = model_in(info.annotation) if info else None
-            if inner and not issubclass(inner, (Component, Grid, Loading)):
-                entries = "[]" if info and is_list(info.annotation) else ""
-                yield from _rows(inner.model_fields, None, f"{row.name}{entries}.", row.part, "")
+            if info and inner and not issubclass(inner, (Component, Grid, Loading)):
+                several = {get_origin(part) for part in parts_of(info.annotation)} & {tuple, list}
+                start = f"{row.name}{'[]' if several else ''}."
+                yield from _rows(inner.model_fields, None, start, row.part, "")
             continue
         # Other fields that it names are named in words.
         meaning = _SNAKE.sub(lambda match: field_words(match[0], fields.get(match[0])), meaning)
@@ -182,7 +183,7 @@ _KINDS: Mapping[Any, str] = {
 _BOUNDS = (">", "gt"), ("≥", "ge"), ("<", "lt"), ("≤", "le")
 
 
-def kind_of(info: FieldInfo) -> str:
+def _kind_of(info: FieldInfo) -> str:
     """Return what a field takes: unit and bounds of a quantity, or its kind of value."""
     if quantity := quantity_of(info):
         return ", ".join(["number" if quantity.unit == "1" else quantity.unit, *quantity.bounds])
@@ -213,7 +214,7 @@ def _kind(annotation: Any) -> str:
     return f"list of {text}{plural}" if text else "list"
 
 
-def default_of(info: FieldInfo) -> str:
+def _default_of(info: FieldInfo) -> str:
     """Return the default of a field as a file would give it, "none" or "required"."""
     if info.is_required():
         return "required"
@@ -237,11 +238,6 @@ def model_in(annotation: Any) -> type[BaseModel] | None:
     """Return the model that a field holds, alone or in a list."""
     types = (part for part in parts_of(annotation) if isinstance(part, type))
     return next((type_ for type_ in types if issubclass(type_, BaseModel)), None)
-
-
-def is_list(annotation: Any) -> bool:
-    """Return whether a field holds a list."""
-    return any(get_origin(part) in (tuple, list) for part in parts_of(annotation))
 
 
 def parts_of(annotation: Any) -> Iterator[Any]:

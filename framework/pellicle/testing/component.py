@@ -9,7 +9,7 @@ import pickle
 import tomllib
 from collections.abc import Callable, Iterable
 from importlib.metadata import PackageNotFoundError, version
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 import tomli_w
@@ -20,7 +20,7 @@ from pellicle.components import FAMILIES, Component
 from pellicle.components.rules import CHEAP, Case, required
 from pellicle.components.rules.rule import difference
 from pellicle.components.rules.rule import rules_of as rules_of
-from pellicle.config.explain import refusal_of_example
+from pellicle.config.describe import parts_of
 from pellicle.errors import ConfigError, PellicleError
 from pellicle.plugins import GROUP, Registered, checked_type, family_of, registry
 from pellicle.units import quantity_of
@@ -110,7 +110,7 @@ def numbers_have_units(component: Component) -> None:
     for name, info in type(component).model_fields.items():
         quantity = quantity_of(info)
         require(
-            quantity is not None or not _holds_float(info.annotation),
+            quantity is not None or float not in parts_of(info.annotation),
             f'the field {name} is a bare float; annotate it with Quantity("SI unit") or one of '
             "pellicle.units, such as Length",
         )
@@ -119,10 +119,6 @@ def numbers_have_units(component: Component) -> None:
                 f"[{quantity.unit}]" in (info.description or ""),
                 f"the description of {name}, {info.description!r}, lacks [{quantity.unit}]",
             )
-
-
-def _holds_float(annotation: Any) -> bool:
-    return annotation is float or any(map(_holds_float, get_args(annotation)))
 
 
 def is_frozen(component: Component) -> None:
@@ -181,12 +177,6 @@ def schema_tells_the_fields(component: Component) -> None:
     require(_table(component).keys() <= fields, f"a component is written as {_table(component)}")
 
 
-def takes_its_example(component: Component) -> None:
-    """The class takes the values that `pellicle explain` prints as its example."""
-    reason = refusal_of_example(type(component))
-    require(not reason, f"{reason}; give tied fields Field(examples=[…]) that agree")
-
-
 def libraries_are_installed(component: Component) -> None:
     """Each of the class's `libraries`, whose versions results record, is installed."""
     for name in component.libraries:
@@ -236,7 +226,6 @@ RULES: list[Rule] = [
     goes_through_toml,
     unknown_field_is_refused,
     schema_tells_the_fields,
-    takes_its_example,
     libraries_are_installed,
 ]
 

@@ -21,7 +21,6 @@ class Transformed(Indenter):
         Indenter,
         FromRegistry(),
         Field(
-            examples=[{"type": "sphere", "radius": "10 um"}],
             description="the indenter to change: a table with type",
         ),
     ]
@@ -92,9 +91,7 @@ class Scaled(Transformed):
     factor: Annotated[
         float,
         Quantity("1", at_least=0),
-        Field(
-            title="height factor", examples=[0.5], description="factor of the heights; 0 is flat"
-        ),
+        Field(title="height factor", description="factor of the heights; 0 is flat"),
     ]
 
     def profile(self, x: Array, y: Array) -> Array:
@@ -132,12 +129,6 @@ class Sum(Indenter):
         tuple[Annotated[Indenter, FromRegistry()], ...],
         Field(
             min_length=1,
-            examples=[
-                [
-                    {"type": "paraboloid", "radius": "1 mm"},
-                    {"type": "cone", "half_angle": "85 degree"},
-                ]
-            ],
             description="the indenters to add: tables with type",
         ),
     ]
