@@ -26,7 +26,7 @@ from pellicle.components import (
     HasLayerForceCurve,
     Indenter,
 )
-from pellicle.errors import ConfigError, shown
+from pellicle.errors import ConfigError, problems_within, shown
 from pellicle.schema import (
     FromFile,
     InputPath,
@@ -368,10 +368,8 @@ class FitConfig(FromFile, Calibration):
         for name, value in fields.items():
             indenter = replaced(indenter, name, value)
         if not isinstance(indenter, HasForceCurve):
-            try:
+            with problems_within("indenter"):
                 indenter = registry().make(Indenter, indenter)
-            except ConfigError as error:
-                raise error.within("indenter") from None
         if self.thickness == FREE:
             return self._free_layer(indenter)
         if self._solid is None and isinstance(indenter, HasForceCurve):

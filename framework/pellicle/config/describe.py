@@ -18,7 +18,7 @@ from pellicle.components.base import words_of_type
 from pellicle.errors import ConfigError, PluginError
 from pellicle.grid import Grid
 from pellicle.plugins import Origin, registry
-from pellicle.units import quantity_of, readable
+from pellicle.units import parts_of, quantity_of, readable
 from pellicle.variables import words_of_name
 
 from .load_steps import KINDS, LoadSteps, with_quantity
@@ -69,25 +69,23 @@ def words_at(configuration: Mapping[str, Any], model: type[BaseModel], key: str)
     return words.get(key.removesuffix(".type")) or words_of_name(key)
 
 
+_SNAKE = re.compile(r"\b[a-z]+(?:_[a-z]+)+\b")
+
+
 def field_rows(
-    fields: Mapping[str, FieldInfo], table: Mapping[str, Any] | None = None
+    fields: Mapping[str, FieldInfo],
+    table: Mapping[str, Any] | None = None,
+    path: str = "",
+    part: str = "",
+    owner: str = "",
 ) -> Iterator[FieldRow]:
     """Yield the fields of a table and of the tables in it, outer ones before inner ones.
 
     With the values of a ``table``, in the form of its JSON, these are the fields of its components
     too, and values that no field describes. Without, components and the tables that have an
-    explanation of their own, grid and loading, are one field.
+    explanation of their own, grid and loading, are one field. Names begin with the ``path`` of the
+    table, words end with those of its ``owner``.
     """
-    return _rows(fields, table, "", "", "")
-
-
-_SNAKE = re.compile(r"\b[a-z]+(?:_[a-z]+)+\b")
-
-
-def _rows(
-    fields: Mapping[str, FieldInfo], table: Mapping[str, Any] | None, path: str, part: str, of: str
-) -> Iterator[FieldRow]:
-    """Yield the rows of a table at a ``path``, whose fields are named as ``of`` something."""
     given = table or {}
     for key in (*given, *(name for name in fields if name not in given)):
         if key == "type":
@@ -98,14 +96,14 @@ def _rows(
         quantity = quantity_of(info) if info else None
         unit = quantity.unit if quantity else ""
         facts = (unit, _kind_of(info), _default_of(info)) if info else ()
-        row = FieldRow(f"{path}{key}", part or noun, _with_owner(noun, of), "", meaning, *facts)
+        row = FieldRow(f"{path}{key}", part or noun, _with_owner(noun, owner), "", meaning, *facts)
         if table is None:
             yield row
             inner = model_in(info.annotation) if info else None
             if info and inner and not issubclass(inner, (Component, Grid, Loading)):
-                several = {get_origin(part) for part in parts_of(info.annotation)} & {tuple, list}
-                start = f"{row.name}{'[]' if several else ''}."
-                yield from _rows(inner.model_fields, None, start, row.part, "")
+                is_list = not {tuple, list}.isdisjoint(map(get_origin, parts_of(info.annotation)))
+                start = f"{row.name}{'[]' * is_list}."
+                yield from field_rows(inner.model_fields, None, start, row.part)
             continue
         # Other fields that it names are named in words.
         meaning = _SNAKE.sub(lambda match: field_words(match[0], fields.get(match[0])), meaning)
@@ -120,13 +118,13 @@ def _rows(
             row = row._replace(value=readable(value, unit))
         yield row
         for index, entry in enumerate(value if isinstance(value, list) else ()):
-            words = _with_owner(_entry(noun, info, tables, index), of)
+            words = _with_owner(_entry(noun, info, tables, index), owner)
             inner_row = row._replace(name=f"{row.name}.{index}", words=words, value="")
             yield from _table(inner_row, entry, info, words) if tables else [inner_row]
 
 
 def _table(
-    row: FieldRow, table: Mapping[str, Any], info: FieldInfo | None, of: str
+    row: FieldRow, table: Mapping[str, Any], info: FieldInfo | None, owner: str
 ) -> Iterator[FieldRow]:
     """Yield the row of the table of a component or of another part of the run, and those in it."""
     model = model_in(info.annotation) if info else None
@@ -145,7 +143,7 @@ def _table(
         with suppress(ConfigError, PluginError):
             fields = keys_of(prescriptions()[prescribed_in(table)])
     yield row
-    yield from _rows(fields, table, f"{row.name}.", row.part, of)
+    yield from field_rows(fields, table, f"{row.name}.", row.part, owner)
 
 
 def field_words(name: str, field: FieldInfo | None) -> str:
@@ -199,7 +197,7 @@ def _kind_of(info: FieldInfo) -> str:
 def _kind(annotation: Any) -> str:
     origin, parts = get_origin(annotation), get_args(annotation)
     if origin is Literal:
-        return " or ".join(json.dumps(value) for value in parts)
+        return " or ".join(json.dumps(value, ensure_ascii=False) for value in parts)
     if origin is Annotated:
         return _kind(parts[0])
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
@@ -238,10 +236,3 @@ def model_in(annotation: Any) -> type[BaseModel] | None:
     """Return the model that a field holds, alone or in a list."""
     types = (part for part in parts_of(annotation) if isinstance(part, type))
     return next((type_ for type_ in types if issubclass(type_, BaseModel)), None)
-
-
-def parts_of(annotation: Any) -> Iterator[Any]:
-    """Yield an annotation, and those that it is made of."""
-    yield annotation
-    for part in get_args(annotation):
-        yield from parts_of(part)

@@ -20,10 +20,9 @@ from pellicle.components import FAMILIES, Component
 from pellicle.components.rules import CHEAP, Case, required
 from pellicle.components.rules.rule import difference
 from pellicle.components.rules.rule import rules_of as rules_of
-from pellicle.config.describe import parts_of
 from pellicle.errors import ConfigError, PellicleError
 from pellicle.plugins import GROUP, Registered, checked_type, family_of, registry
-from pellicle.units import quantity_of
+from pellicle.units import parts_of, quantity_of
 
 Rule = Callable[..., str | None]
 """A function of a component that raises, or returns what is wrong, if the component breaks it."""

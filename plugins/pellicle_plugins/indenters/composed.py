@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from pellicle.arrays import Array
 from pellicle.components import Footprint, FromRegistry, Indenter
-from pellicle.errors import ConfigError
+from pellicle.errors import ConfigError, problems_within
 from pellicle.units import Quantity
 
 
@@ -103,10 +103,8 @@ class Scaled(Transformed):
 
 def profile_of_part(part: Indenter, x: Array, y: Array, field: str) -> Array:
     """Return the profile [m] of the part in ``field``; its errors name that field."""
-    try:
+    with problems_within(field):
         return part.profile(x, y)
-    except ConfigError as error:
-        raise error.within(field) from None
 
 
 class Sum(Indenter):
