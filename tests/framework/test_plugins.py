@@ -164,6 +164,7 @@ class Drift(Effect):
     """Drift of the base."""
 
     type: Literal["drift"] = "drift"
+    examples = ({"rate": "1 nm/s"},)
     rate: Annotated[float, Quantity("m/s"), Field(description="rate [m/s]")]
 
 class Fit(Model):
@@ -209,7 +210,7 @@ def test_a_plugin_may_bring_a_family(plugin: Plugin, install: Callable[..., Regi
     assert (family.text, [row.name for row in family.fields]) == ("What bends a curve.", ["drift"])
     (explanation,) = explanations("effect.drift", {})
     assert explanation.example.startswith("[[rivals]]\n")
-    assert stranger.Fit(**tomllib.loads(explanation.example)).rivals[0].rate == 1
+    assert stranger.Fit(**tomllib.loads(explanation.example)).rivals[0].rate == 1e-9
 
 
 def test_a_family_has_one_base(plugin: Plugin, install: Callable[..., Registry]) -> None:

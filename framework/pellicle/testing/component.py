@@ -9,7 +9,7 @@ import pickle
 import tomllib
 from collections.abc import Callable, Iterable
 from importlib.metadata import PackageNotFoundError, version
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 import tomli_w
@@ -19,10 +19,9 @@ from pellicle.components import FAMILIES, Component
 from pellicle.components.rules import CHEAP, Case, required
 from pellicle.components.rules.rule import difference
 from pellicle.components.rules.rule import rules_of as rules_of
-from pellicle.config.explain import refusal_of_example
 from pellicle.errors import PellicleError
 from pellicle.plugins import GROUP, Registered, checked_type, family_of, registry
-from pellicle.units import quantity_of
+from pellicle.units import parts_of, quantity_of
 
 Rule = Callable[..., str | None]
 """A function of a component that raises, or returns what is wrong, if the component breaks it."""
@@ -109,7 +108,7 @@ def numbers_have_units(component: Component) -> None:
     for name, info in type(component).model_fields.items():
         quantity = quantity_of(info)
         require(
-            quantity is not None or not _holds_float(info.annotation),
+            quantity is not None or float not in parts_of(info.annotation),
             f'the field {name} is a bare float; annotate it with Quantity("SI unit") or one of '
             "pellicle.units, such as Length",
         )
@@ -118,10 +117,6 @@ def numbers_have_units(component: Component) -> None:
                 f"[{quantity.unit}]" in (info.description or ""),
                 f"the description of {name}, {info.description!r}, lacks [{quantity.unit}]",
             )
-
-
-def _holds_float(annotation: Any) -> bool:
-    return annotation is float or any(map(_holds_float, get_args(annotation)))
 
 
 def is_frozen_and_closed(component: Component) -> None:
@@ -151,12 +146,6 @@ def _table(component: Component) -> dict[str, Any]:
     """Return the component as a table of a file."""
     table: dict[str, Any] = json.loads(component.model_dump_json(exclude_none=True))
     return table
-
-
-def takes_its_example(component: Component) -> None:
-    """The class takes the values that `pellicle explain` prints as its example."""
-    reason = refusal_of_example(type(component))
-    require(not reason, f"{reason}; give tied fields Field(examples=[…]) that agree")
 
 
 def libraries_are_installed(component: Component) -> None:
@@ -205,7 +194,6 @@ RULES: list[Rule] = [
     is_frozen_and_closed,
     pickles,
     goes_through_files,
-    takes_its_example,
     libraries_are_installed,
 ]
 

@@ -71,7 +71,7 @@ class Html(Output):
     """
 
     type: Literal["html"] = "html"
-    examples = ({"points": 8, "frames": 1},)
+    examples = ({}, {"points": 8, "frames": 1})
     shares_stem: ClassVar[bool] = True
     points: Annotated[
         int,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellicle import Run
-from pellicle.config.describe import Input, inputs
+from pellicle.config.describe import FieldRow, inputs
 from pellicle.contact.caveats import from_text, verdict_of
 from pellicle.results.result import Result
 from pellicle.results.wording import Wording, means_something, wording, wording_of
@@ -161,7 +161,7 @@ def run_table(table: xr.Dataset, runs: list[xr.Dataset], mapped: list[int]) -> T
     return Table(caption, columns, rows)
 
 
-def input_table(fields: list[Input]) -> Table:
+def input_table(fields: list[FieldRow]) -> Table:
     """Return a row for each input."""
     columns = [Column(head, words=True) for head in ("of", "input", "value", "meaning")]
     rows = [
@@ -177,14 +177,14 @@ def _shortened(text: str) -> str:
     return re.sub(r"\b([0-9a-f]{8})[0-9a-f]{24,}\b", r"\1…", text)
 
 
-def inputs_of_study(table: xr.Dataset, fields: list[Input]) -> list[Input]:
+def inputs_of_study(table: xr.Dataset, fields: list[FieldRow]) -> list[FieldRow]:
     """Return the inputs of a study: its axes, and the inputs of its first run that do not vary."""
     axes = []
     for name, axis in table.coords.items():
         if name != "step":
             shown, meaning = wording(axis), f"varied, {axis.size} values"
             values = shown.listing(axis.values.tolist())
-            axes.append(Input(str(name), "study", shown.words, values, meaning))
+            axes.append(FieldRow(str(name), "study", shown.words, values, meaning))
     names = tuple(f"{axis.name}." for axis in axes)
     fixed = [field for field in fields if not f"{field.name}.".startswith(names)]
     return [*axes, *fixed]

@@ -1,11 +1,10 @@
 """Components that break a rule of all families, here indenters."""
 
 import threading
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, SerializationInfo, model_serializer, model_validator
+from pydantic import ConfigDict, Field, SerializationInfo, model_serializer
 
-from pellicle import ConfigError
 from pellicle.units import Length
 from tests.framework.broken.catalogue import Broken, Family, Taken, base
 from tests.framework.broken.indenters import INDENTERS
@@ -17,18 +16,6 @@ class Shape(Paraboloid):
     """Paraboloid to be broken."""
 
     type: Literal["broken"] = "broken"
-
-
-class Tied(Shape):
-    """Paraboloid of two radii whose units give both the same example."""
-
-    outer: Annotated[Length, Field(description="radius beyond the flat [m]")]
-
-    @model_validator(mode="after")
-    def _check_radii(self) -> Self:
-        if self.outer <= self.radius:
-            raise ConfigError("has to exceed radius", "outer")
-        return self
 
 
 class Forgetful(Shape):
@@ -87,7 +74,6 @@ BROKEN: dict[str, Any] = {
         Broken("other JSON", KIT, good=Forgetful),
         field("no TOML", tuple[int | None, ...], (1, None), "marks"),
     ],
-    "takes_its_example": Broken("no such example", KIT, good=Tied, settings={"outer": 1e-2}),
     "libraries_are_installed": Broken("no library", KIT, libraries=("pellicle-no-library",)),
     "is_registered": Broken("type is taken", KIT, fields=PARABOLOID),
 }
