@@ -10,7 +10,7 @@ from pellicle.commands import file_models
 from pellicle.errors import PluginError
 from pellicle.origins import Broken
 
-from .printing import echo, print_columns, print_json
+from .printing import echo, print_json, print_table
 
 
 def explain(
@@ -25,6 +25,7 @@ def explain(
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Print the fields of a component or of a table, with unit, default, meaning and an example."""
+    from pellicle.components import Column, Table
     from pellicle.config.explain import explanations, words_by_kind
 
     models = file_models()
@@ -37,7 +38,7 @@ def explain(
             print_json(words)
             return
         types = [", ".join(names) for names in words.values()]
-        print_columns([("kind", [*words]), ("types", types)])
+        print_table(Table([Column("kind", [*words]), Column("types", types)]))
         echo(
             "\none in full: pellicle explain TYPE; the types of a family in a line each: "
             "pellicle explain kernel"
@@ -53,10 +54,10 @@ def explain(
         echo("\n" * (number > 0) + f"{name} ({kind}{origin})\n\n{text}")
         if rows:
             names, units, defaults, meanings = map(list, zip(*rows, strict=True))
-            columns = [("field", names), ("unit", units), ("default", defaults)]
+            columns = [Column("field", names), Column("unit", units), Column("default", defaults)]
             if kind == "family":
-                columns = [("type", names)]
+                columns = [Column("type", names)]
             echo()
-            print_columns([*columns, ("meaning", meanings)])
+            print_table(Table([*columns, Column("meaning", meanings)]))
         if example:
             echo(f"\nexample:\n\n{example}")

@@ -97,40 +97,20 @@ class _Display(NamedTuple):
 def _print_plan(configuration: Run | Study, stem: Path, overwrite: bool, json: bool) -> None:
     from pellicle.config.study import Study
     from pellicle.runs.journal import Journal
+    from pellicle.show import plan
     from pellicle.studies.runner import RunTask, tasks
-    from pellicle.units import readable
 
     if isinstance(configuration, Study):
         planned = tasks(configuration, stem.parent, overwrite=overwrite)
     else:
         journal = Journal(stem, configuration.identity, overwrite)
         planned = [RunTask(configuration.title or stem.name, configuration, journal)]
-    rows, done = [], 0
-    for task in planned:
-        _, finished, problem = task.stored()
-        done += finished >= task.steps
-        nx, ny = task.run.grid.points
-        state = f"{finished} of {task.steps} steps done" if finished < task.steps else "done"
-        rows.append(
-            {
-                "run": task.name,
-                "file": str(task.journal.path),
-                "points": f"{nx} × {ny}",
-                "size": " × ".join(readable(edge, "m", 3) for edge in task.run.grid.size),
-                "steps": str(task.steps),
-                "memory": f"{task.memory / 1e6:.3g} MB",
-                "state": problem or (state if finished else "to do"),
-            }
-        )
+    table, sentence = plan.planned(planned)
     if json:
-        print_json({"runs": rows})
+        print_json({"runs": table.records})
         return
-    print_table([*rows[0]], rows)
-    most = max(task.memory for task in planned) / 1e6
-    echo(
-        f"{len(planned)} run{'s' * (len(planned) > 1)}, {done} done, "
-        f"{len(planned) - done} to do; at most {most:.3g} MB each"
-    )
+    print_table(table)
+    echo(sentence)
 
 
 def _run_one(
@@ -141,37 +121,35 @@ def _run_one(
     from pellicle.runs.journal import Journal
     from pellicle.runs.progress import RunProgress
     from pellicle.runs.runner import execute, standard_outputs
-    from pellicle.units import DIGITS, readable
+    from pellicle.show import plan
+    from pellicle.show.tables import main_steps
 
-    from .results import exit_by_convergence, print_result_json, print_steps
+    from .results import exit_by_convergence, print_result_json
 
     steps = len(run.loading.values)
     journal, bar = Journal(stem, run.identity, overwrite), RunProgress(steps, not display.quiet)
     try:
         executed = execute(run, journal, standard_outputs(run.outputs), bar, threads=threads)
     except KeyboardInterrupt:
-        echo(f"interrupted; finished steps are in {stem.parent}", err=True)
+        echo(plan.interrupted(stem.parent, is_study=False), err=True)
         raise typer.Exit(INTERRUPTED) from None
     if display.json:
         print_result_json(executed.result, executed.files)
     elif not display.quiet:
-        print_steps(executed.result, si=display.si)
-        _print_files(executed.files, executed.resumed, f"{steps} steps")
+        print_table(main_steps(executed.result.dataset), si=display.si)
+        for sentence in plan.done(executed.files, executed.resumed, f"{steps} steps"):
+            echo(sentence)
     codes = executed.result.dataset["status_code"].values
     if Status.CONTACT_AT_EDGE.name in codes:
         with suppress(ConfigError):
-            x, y = (readable(edge, "m", DIGITS) for edge in size_for(run))
-            echo(
-                f'grid.size = ["{x}", "{y}"] holds the contact of every step; -o DIR solves it in '
-                f"another folder, --overwrite in place of the result in {stem.parent}",
-                err=True,
-            )
+            echo(plan.larger_domain(size_for(run), stem.parent), err=True)
     exit_by_convergence(executed.result)
 
 
 def _run_study(
     study: Study, folder: Path, display: _Display, *, threads: int | None, overwrite: bool
 ) -> None:
+    from pellicle.show import plan
     from pellicle.studies.runner import execute
 
     from .results import exit_by_status, print_runs, print_study_json
@@ -181,20 +159,12 @@ def _run_study(
             study, folder, progress=not display.quiet, overwrite=overwrite, threads=threads
         )
     except KeyboardInterrupt:
-        echo(
-            f"interrupted; finished runs are in {folder}, and the same command continues", err=True
-        )
+        echo(plan.interrupted(folder, is_study=True), err=True)
         raise typer.Exit(INTERRUPTED) from None
     if display.json:
         print_study_json(result.table, result.files)
     elif not display.quiet:
         print_runs(result.table, si=display.si)
-        _print_files(result.files, result.resumed, f"{len(study.points)} runs")
+        for sentence in plan.done(result.files, result.resumed, f"{len(study.points)} runs"):
+            echo(sentence)
     exit_by_status(result.table)
-
-
-def _print_files(files: tuple[Path, ...], resumed: int, whole: str) -> None:
-    if resumed:
-        echo(f"{resumed} of {whole} were done before (--overwrite starts over)")
-    for path in files:
-        echo(f"wrote {path}")

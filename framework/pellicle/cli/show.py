@@ -28,8 +28,8 @@ def show(
 ) -> None:
     """Print the steps of a result, or the runs of a study, and its origin, or another table."""
     from pellicle.results.result import load
+    from pellicle.show.sentences import caveats, unfinished
     from pellicle.studies.runner import is_table, read
-    from pellicle.studies.summary import caveats
 
     from . import results as prints
 
@@ -56,12 +56,8 @@ def show(
     if json:
         prints.print_result_json(result)
     else:
-        prints.print_origin(result.dataset)
-        prints.print_steps(result, si=si)
-        prints.print_contact(result, si=si)
-        prints.print_path(result, si=si)
-        prints.print_oscillations(result, si=si)
+        prints.print_result(result, si=si)
     prints.exit_by_convergence(result)
     if done < total:
-        echo(f"interrupted: {done} of {total} steps are finished; run it again", err=True)
+        echo(unfinished(done, total), err=True)
         raise typer.Exit(NOT_CONVERGED)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from pellicle.analysis import Leg
 from pellicle.arrays import Array, Cells, Mask
-from pellicle.units import Scale, axis_unit, printed
+from pellicle.units import DIGITS, Scale, axis_unit, printed
 
 
 def extent(values: Iterable[NDArray[Any]]) -> tuple[float, float]:
@@ -179,12 +179,32 @@ class Fields:
     _repr_png_ = _drawn
 
 
-class Column(NamedTuple):
+@dataclass(frozen=True)
+class Column:
     """A column of a table."""
 
-    head: str
-    """With the unit of its numbers."""
-    values: Sequence[object]
+    words: str
+    """Its head, to which a table for people adds the unit."""
+    values: Sequence[object] | NDArray[Any]
+    """Numbers in SI, NaN where there is none, or texts."""
+    unit: str = ""
+    """SI unit of its numbers; people read all of them with one prefix."""
+    meaning: str = ""
+    """Shown on a page while the pointer rests on the head."""
+    name: str = ""
+    """Its name in files; the words if empty."""
+    digits: int = DIGITS
+    """Significant digits that people read."""
+    bad: Sequence[bool] = ()
+    """Which cells a page marks, as what people should not rely on."""
+    frames: Sequence[int | None] = ()
+    """The frame of the first maps of a page that a click on each cell shows, if any."""
+
+    @property
+    def head(self) -> str:
+        """The head of the column in files: name and SI unit."""
+        unit = "" if self.unit in ("", "1") else f" [{self.unit}]"
+        return f"{self.name or self.words}{unit}"
 
 
 @dataclass(frozen=True)
@@ -192,12 +212,24 @@ class Table:
     """Columns of equal length."""
 
     columns: Sequence[Column]
+    caption: str = ""
+    """A sentence on a page."""
 
     @classmethod
-    def of_rows(cls, heads: Sequence[str], rows: Sequence[Sequence[object]]) -> Table:
+    def of_rows(
+        cls, heads: Sequence[str], rows: Sequence[Sequence[object]], caption: str = ""
+    ) -> Table:
         """Return a table, given its rows."""
         columns = zip(*rows, strict=True) if rows else [()] * len(heads)
-        return cls([Column(head, values) for head, values in zip(heads, columns, strict=True)])
+        named = [Column(head, values) for head, values in zip(heads, columns, strict=True)]
+        return cls(named, caption)
+
+    @property
+    def records(self) -> list[dict[str, object]]:
+        """The values of each row by the names of their columns, in SI."""
+        names = [column.name or column.words for column in self.columns]
+        rows = zip(*(column.values for column in self.columns), strict=True)
+        return [dict(zip(names, row, strict=True)) for row in rows]
 
 
 Shown = Chart | Fields | Table | Sequence[Chart | Fields] | bytes

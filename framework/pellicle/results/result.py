@@ -17,9 +17,8 @@ from pellicle.contact.caveats import Caveat, Status, by_phrase, from_text
 from pellicle.errors import ConfigError, StorageError, first_of
 from pellicle.files import for_document, is_folder
 from pellicle.grid import Grid
-from pellicle.schema.notebook import summary
 from pellicle.units import DIGITS, axis_unit, readable
-from pellicle.variables import CAVEATS, COORDINATES, REQUIRED, VARIABLES
+from pellicle.variables import CAVEATS, COORDINATES, REQUIRED
 
 from . import storage
 from .path import has_interaction, label_of_step, oscillations_of, path_variables
@@ -27,10 +26,7 @@ from .path import has_interaction, label_of_step, oscillations_of, path_variable
 if TYPE_CHECKING:
     import xarray as xr
 
-_SHOWN = "time", "depth", "force", "contact_area"
 _NO_CONTACT = "0.93"
-_MOST = 12
-"""Rows of the table in a notebook."""
 _STEEPEST = 1.0
 """Slope above which a contact without interaction is warned of; the theory is for 0.3."""
 _CELLS = 12
@@ -168,26 +164,9 @@ class Result:
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: status, numbers of the steps, all variables folded away."""
-        solved, planned, failed = len(self.dataset["step"]), self.planned_steps, self.failures()
-        outcome = f"{solved} of {planned} steps" if solved < planned else f"{planned} steps"
-        outcome += f", {len(failed)} did not converge" if failed else ", all converged"
-        columns = [
-            [readable(float(v), VARIABLES[name].unit, 4) for v in self.dataset[name].values]
-            for name in _SHOWN
-            if name in self.dataset
-        ]
-        numbers = map(str, self.dataset["step"].values.tolist())
-        statuses = map(str, self.dataset["status"].values)
-        rows = [list(row) for row in zip(numbers, *columns, statuses, strict=True)]
-        if len(rows) > _MOST:
-            rows = [*rows[: _MOST - 1], ["…"] * len(rows[0]), rows[-1]]
-        return summary(
-            str(self.dataset.attrs["title"] or "Result"),
-            outcome,
-            ["step", *(n.replace("_", " ") for n in _SHOWN if n in self.dataset), "status"],
-            rows,
-            details=self.dataset._repr_html_(),
-        )
+        from pellicle.show.notebook import of_result
+
+        return of_result(self)
 
     def plot(self, variable: str = "pressure", *, step: int = -1, **options: Any) -> Any:
         """Draw a field of a load step as a map, x to the right and y up; grey without pressure.

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from dataclasses import dataclass, field, replace
+from numbers import Real
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle.components.charts import Column
 from pellicle.units import DIGITS, NOTHING, Scale, axis_unit, printed
 from pellicle.variables import (
     CORRECTED_FRACTION,
@@ -40,6 +42,21 @@ class Wording:
     texts: Mapping[str, str] = field(default_factory=dict)
     """Words for values that are texts, such as types of components."""
 
+    @classmethod
+    def of(cls, column: Column, *, si: bool = False) -> Wording:
+        """Return how a column is shown.
+
+        Its largest number gives the prefix of its unit, which with ``si`` has none; then its
+        numbers have six digits.
+        """
+        if si:
+            unit = "" if column.unit == "1" else printed(column.unit)
+            return cls(column.words, Scale(1.0, unit), _SI_DIGITS)
+        values: Any = column.values
+        if not isinstance(values, np.ndarray):
+            values = [value for value in values if isinstance(value, Real)]
+        return cls(column.words, axis_unit(values, column.unit), column.digits)
+
     @property
     def head(self) -> str:
         """Words and unit, for an axis or a column: "contact radius [µm]"."""
@@ -61,33 +78,42 @@ class Wording:
         return self.scale.listing([self.number(value) for value in values])
 
 
-def wording(variable: xr.DataArray, *, si: bool = False) -> Wording:
-    """Return how a variable or a coordinate of a result or a table is shown.
+def column_of(variable: xr.DataArray) -> Column:
+    """Return a variable or a coordinate of a result or a table as a column.
 
-    Its attributes or, without them, its name give the words; its largest value the prefix of its
-    unit, which with ``si`` has none. The values of a coordinate have as many digits as distinguish
-    them, four at least; with ``si`` numbers have six.
+    Its attributes or, without them, its name give the words. The numbers of a coordinate have as
+    many digits as distinguish them, four at least.
     """
-    name = str(variable.name)
-    words = str(variable.attrs.get(WORDS, words_of_name(name)))
-    unit = str(variable.attrs.get("units", "1"))
+    name, attributes, values = str(variable.name), variable.attrs, variable.values.ravel()
+    words, unit = str(attributes.get(WORDS, words_of_name(name))), str(attributes.get("units", "1"))
+    meaning = str(attributes.get("long_name", ""))
     if variable.dtype.kind not in "iuf":
-        return Wording(
-            words, Scale(1.0, ""), texts=json.loads(variable.attrs.get(WORDS_OF_VALUES, "{}"))
-        )
-    if si:
-        return Wording(words, Scale(1.0, "" if unit == "1" else printed(unit)), digits=_SI_DIGITS)
-    scale = axis_unit(variable.values, unit)
+        texts = json.loads(attributes.get(WORDS_OF_VALUES, "{}"))
+        mapped = [texts.get(value, value) for value in values.tolist()] if texts else values
+        return Column(words, mapped, "", meaning, name)
     is_axis = variable.ndim == 1 and name in variable.coords
-    return Wording(words, scale, _digits(variable.values, scale) if is_axis else DIGITS)
+    digits = _digits(values, axis_unit(values, unit)) if is_axis else DIGITS
+    return Column(words, values, unit, meaning, name, digits)
 
 
-def wording_of(name: str, values: Sequence[float], *, si: bool = False) -> Wording:
-    """Return how values of a variable of `VARIABLES` are shown."""
-    import xarray as xr
+def column_of_name(name: str, values: Sequence[float]) -> Column:
+    """Return values of a variable of `VARIABLES` as a column."""
+    variable = VARIABLES[name]
+    return Column(variable.words, values, variable.unit, variable.meaning, name)
 
-    attributes = VARIABLES[name].attributes
-    return wording(xr.DataArray(list(values), dims="row", name=name, attrs=attributes), si=si)
+
+def wording(variable: xr.DataArray) -> Wording:
+    """Return how a variable or a coordinate of a result or a table is shown."""
+    texts = json.loads(variable.attrs.get(WORDS_OF_VALUES, "{}"))
+    return replace(Wording.of(column_of(variable)), texts=texts)
+
+
+def shown(column: Column, *, si: bool = False) -> tuple[str, list[str]]:
+    """Return the unit of a column and its cells, as people read them; empty for no unit."""
+    how = Wording.of(column, si=si)
+    values = column.values
+    listed = values.tolist() if isinstance(values, np.ndarray) else values
+    return how.scale.unit, [how.number(value) for value in listed]
 
 
 def _digits(values: Array, scale: Scale) -> int:

@@ -30,15 +30,15 @@ from pellicle.files import check_writable, is_file, is_folder
 from pellicle.plugins import registry
 from pellicle.results import storage
 from pellicle.results.dimensions import with_paths, with_python_names
-from pellicle.results.runs import StoredRuns
+from pellicle.results.runs import StoredRuns, progress_of
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.memory_estimate import memory_of
 from pellicle.runs.progress import ProgressReporter
+from pellicle.show.sentences import caveats, failures, run_names
 from pellicle.variables import BEYOND_THEORY
 
 from . import table
-from .summary import caveats, failures, progress_of, run_names
 
 _TABLE_SHARE = 0.05
 _LONG = 10.0

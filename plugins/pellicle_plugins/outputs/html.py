@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
@@ -14,37 +14,36 @@ import tomli_w
 from pydantic import Field
 
 from pellicle import Grid, Run, registry
-from pellicle.components import Output, Runs
-from pellicle.config.describe import inputs
+from pellicle.components import Output, Runs, Table
+from pellicle.config.describe import Input, inputs
 from pellicle.errors import StorageError
 from pellicle.files import atomic_write
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction, label_of_step, prescribed_variable
 from pellicle.results.result import Result, first_message
+from pellicle.results.runs import axes_of, progress_of, runs_of
 from pellicle.results.wording import wording
+from pellicle.show import tables
 from pellicle.show.drawing import DIVERGING
 from pellicle.show.fields import default_step, draws_contact, without_round_off
 from pellicle.show.html import Code, Notice, Picture, Section, Text, page
 from pellicle.show.maps import Field as MapField
 from pellicle.show.maps import Frame, Maps, frame, side
-from pellicle.studies.summary import caveats, failures, progress_of, reasons, run_names, runs_of
+from pellicle.show.sentences import (
+    caveats,
+    failures,
+    reasons,
+    run_names,
+    sentence_of_step,
+    sentence_of_study,
+    sentences_of_path,
+)
 from pellicle.variables import FIELDS as RESULT_FIELDS
 from pellicle.variables import WALL_PRESSURE
 
 from .html_curves import curves_of_outputs, curves_of_run, curves_of_study, picture
-from .html_tables import (
-    input_table,
-    inputs_of_study,
-    origin_tables,
-    oscillation_tables,
-    path_tables,
-    run_table,
-    step_tables,
-    study_path_tables,
-)
 from .methods import methods
-from .sentences import sentence_of_step, sentence_of_study, sentences_of_path
 from .step_figures import cross_section
 
 if TYPE_CHECKING:
@@ -106,11 +105,11 @@ class Html(Output):
             sections = self._sections_of_run(Result(runs.open()), run, runs)
         else:
             run = json.loads(table.attrs[FIRST_RUN])
-            varied = tuple(str(name) for name in table.coords if name != "step")
+            varied = tuple(axes_of(table))
             sections = self._sections_of_study(runs, run, varied, stem.parent / "runs")
         sections += [
             Section("Methods", [Text(methods(run, table.attrs, varied))]),
-            Section("Provenance", [*origin_tables(table.attrs, run)]),
+            Section("Provenance", tables.origin(table.attrs, inputs(run, Run))),
             Section("How to reproduce it", [*_reproduce(configuration, stem)]),
         ]
         date = table.attrs["date"].replace("T", " ").replace("+00:00", " UTC")
@@ -130,7 +129,7 @@ class Html(Output):
         first, label = sentence_of_step(data, step_shown), label_of_step(data, step_shown)
         rest = sentences_of_path(data, result.path_summary)
         sentences = [Text(first, lead=True), *([Text(rest)] if rest else [])]
-        numbers = [*step_tables(data), *path_tables(result), *oscillation_tables(result)]
+        numbers = [*tables.all_steps(data), *tables.path(data), *tables.oscillations(data)]
         return [
             Section(
                 "In short",
@@ -144,7 +143,7 @@ class Html(Output):
                 "Set-up",
                 [
                     _setup(data.isel(step=step_shown), configuration, label),
-                    input_table(list(inputs(configuration, Run))),
+                    _inputs(inputs(configuration, Run)),
                 ],
             ),
         ]
@@ -176,10 +175,11 @@ class Html(Output):
             converged = f"Every step of all {len(rows)} runs converged."
             status = Notice(converged, None if warnings else True, warnings)
         which = "The last step in contact" if draws_contact(table) else "The last step"
-        of_runs = _share_in_words(len(frames), len(rows), "run")
-        caption = f"{which} of {of_runs}, each in colours over its own range."
+        share = _share_in_words(len(frames), len(rows), "run")
+        caption = f"{which} of {share}, each in colours over its own range."
         maps = Maps(caption, "run", tuple(mapped.values()), list(frames.values()))
-        numbers = [run_table(table, rows, list(frames)), *study_path_tables(table, rows)]
+        of_runs = tables.runs(table, mapped=list(frames))
+        numbers = [of_runs, *tables.paths_of_runs(table)]
         return [
             Section(
                 "In short",
@@ -191,7 +191,7 @@ class Html(Output):
             Section("Numbers", numbers),
             Section(
                 "Set-up",
-                [*setups[:1], input_table(inputs_of_study(table, list(inputs(first_run, Run))))],
+                [*setups[:1], _inputs(tables.inputs_of_study(table, inputs(first_run, Run)))],
             ),
         ]
 
@@ -281,6 +281,11 @@ def _setup(step: xr.Dataset, configuration: dict[str, Any], label: str) -> Pictu
     values = {i.name: i.value for i in inputs(configuration, Run)}
     caption = f"The {values['indenter']} on the {values['kernel']}, at {label}; heights stretched."
     return picture(cross_section(step), caption)
+
+
+def _inputs(fields: Iterable[Input]) -> Table:
+    caption = "All inputs that determine the result, defaults included."
+    return tables.inputs((i for i in fields if not i.name.startswith("outputs.")), caption)
 
 
 def _outputs(configuration: dict[str, Any]) -> list[Output]:
