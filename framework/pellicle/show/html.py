@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from pellicle.components.charts import Column, Table
 from pellicle.files import for_document
-from pellicle.results.wording import shown
 
 from .maps import Maps
 from .terminal import is_number
@@ -138,15 +137,14 @@ def page(title: str, sections: Sequence[Section], subtitle: str = "") -> str:
 
 def _column(column: Column) -> dict[str, Any]:
     """Return the head and the cells of a column of a table; hashes are shortened."""
-    unit, texts = shown(column)
+    label, texts = column.read()
     cells = [
         {"text": short, "whole": text if short != text else "", "bad": bad, "frame": frame}
         for text, bad, frame in zip_longest(texts, column.bad, column.frames)
         for short in (_HASH.sub(r"\1…", text),)
     ]
-    label = f"{column.words} [{unit}]" if unit else column.words
     words = not all(map(is_number, texts))
-    return {"column": column, "unit": unit, "label": label, "words": words, "cells": cells}
+    return {"column": column, "label": label, "words": words, "cells": cells}
 
 
 def _part(name: str) -> str:

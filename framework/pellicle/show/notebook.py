@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from pellicle.components.charts import Table
 from pellicle.config.describe import inputs, words_at
 from pellicle.config.run import Run
-from pellicle.results.wording import shown
 
 from . import tables
 from .sentences import failed_steps
@@ -31,11 +30,7 @@ def summary(
 
     A ``picture``, a PNG file, stands beside the table; ``details``, HTML, are folded away.
     """
-    heads, columns = [], []
-    for column in table.columns:
-        unit, cells = shown(column)
-        heads.append(f"{column.words} [{unit}]" if unit else column.words)
-        columns.append(cells)
+    heads, columns = zip(*(column.read() for column in table.columns), strict=True)
     body = "".join(_row("td", row) for row in zip(*columns, strict=True))
     parts = [
         f"<div><strong>{escape(title)}</strong><br>{escape(sentence).replace(chr(10), '<br>')}",

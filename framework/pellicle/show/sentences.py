@@ -14,7 +14,7 @@ from pellicle.errors import first_of
 from pellicle.results.path import has_interaction, has_times, label_of_step, prescribed_variable
 from pellicle.results.result import Result
 from pellicle.results.runs import axes_of, by_run, runs_of, short_files, statuses_of
-from pellicle.results.wording import has_one_shape, is_periodic, wording
+from pellicle.results.wording import column_of, has_one_shape, is_periodic
 from pellicle.units import readable
 from pellicle.variables import BEYOND_THEORY, CAVEATS, VARIABLES
 
@@ -54,7 +54,7 @@ def sentence_of_step(data: xr.Dataset, index: int) -> str:
         names = [name for name in names if name != "depth"]
     if step["contact_area"].item() <= 0:
         names = [name for name in names if name != size]
-    parts = [replace(wording(step[n]), digits=_DIGITS).text(step[n].item()) for n in names]
+    parts = [replace(column_of(step[n]), digits=_DIGITS).text(step[n].item()) for n in names]
     parts += ["no contact"] if step["contact_area"].item() <= 0 else []
     marked = "" if step["converged"].item() else " (NOT CONVERGED)"
     return f"{heading}: {', '.join(parts)}{marked}."
@@ -109,9 +109,8 @@ def sentence_of_study(table: xr.Dataset, count: int) -> str:
     Of force, depth and contact radius, the one that all runs share there, if any, comes first.
     """
     axes = [
-        shown.words + " " + shown.listing(axis.values.tolist())
-        for axis in map(table.__getitem__, axes_of(table))
-        for shown in (wording(axis),)
+        f"{axis.words} {axis.listing}"
+        for axis in (column_of(table[name]) for name in axes_of(table))
     ]
     over = f" with {'; '.join(axes)}" if axes else ""
     end = table.isel(step=-1)
@@ -135,12 +134,12 @@ def _values(variable: xr.DataArray, count: int) -> str:
     values = variable.values.ravel()
     if count > _FEW or variable.ndim > 1 or not np.isfinite(values).all() or _is_one_value(values):
         return _range(variable)
-    shown = replace(wording(variable), digits=_DIGITS)
-    return f"{shown.words} {shown.listing(values.tolist())}"
+    shown = replace(column_of(variable), digits=_DIGITS)
+    return f"{shown.words} {shown.listing}"
 
 
 def _range(variable: xr.DataArray) -> str:
-    shown = replace(wording(variable), digits=_DIGITS)
+    shown = replace(column_of(variable), digits=_DIGITS)
     finite = variable.values[np.isfinite(variable.values)]
     if not finite.size:
         return f"no {shown.words}"
@@ -152,7 +151,7 @@ def _range(variable: xr.DataArray) -> str:
 
 def run_names(table: xr.Dataset) -> list[str]:
     """Return the values that distinguish each run, such as "surface tension 30 mN/m"."""
-    axes = {name: wording(table[name]) for name in axes_of(table)}
+    axes = {name: column_of(table[name]) for name in axes_of(table)}
     return [
         ", ".join(axis.text(run[name].item()) for name, axis in axes.items())
         for run in runs_of(table)

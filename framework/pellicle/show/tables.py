@@ -18,7 +18,7 @@ from pellicle.contact.caveats import from_text, verdict_of
 from pellicle.results.derived import DERIVED
 from pellicle.results.path import oscillations_of, path_variables, prescribed_variable
 from pellicle.results.runs import axes_of, progress_of, runs_of, short_files
-from pellicle.results.wording import column_of, column_of_name, means_something, wording
+from pellicle.results.wording import column_of, means_something
 from pellicle.units import DIGITS, Scale, printed, readable
 from pellicle.variables import CAVEATS, VARIABLES, names_of
 
@@ -133,8 +133,13 @@ def oscillations(data: xr.Dataset) -> list[Table]:
     """Return the numbers of each oscillation on the path, where a leg oscillates."""
     found = oscillations_of(data)
     columns = [
-        column_of_name(name, [getattr(oscillation, name) for oscillation in found])
-        for name in names_of("oscillation")
+        Column(
+            variable.words,
+            [getattr(oscillation, variable.name) for oscillation in found],
+            variable.unit,
+            variable.meaning,
+        )
+        for variable in map(VARIABLES.__getitem__, names_of("oscillation"))
     ]
     caption = "Response over the last whole cycle of each oscillation."
     return [Table(columns, caption)] if found else []
@@ -233,9 +238,9 @@ def inputs_of_study(table: xr.Dataset, fields: Iterable[Input]) -> list[Input]:
     """Return the inputs of a study: its axes, and the inputs of its first run that do not vary."""
     axes = []
     for name in axes_of(table):
-        axis = table[name]
-        how, meaning = wording(axis), f"varied, {axis.size} values"
-        axes.append(Input(name, "study", how.words, how.listing(axis.values.tolist()), meaning))
+        axis = column_of(table[name])
+        meaning = f"varied, {len(axis.values)} values"
+        axes.append(Input(name, "study", axis.words, axis.listing, meaning))
     names = tuple(f"{axis.name}." for axis in axes)
     return [*axes, *(field for field in fields if not f"{field.name}.".startswith(names))]
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Literal
 
 from pellicle.components.charts import Table
 from pellicle.files import for_document
-from pellicle.results.wording import shown
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -21,9 +20,8 @@ def text_of(table: Table, console: Console, *, si: bool = False) -> str:
     grid = RichTable(box=None, padding=(0, 2, 0, 0), pad_edge=False, header_style="")
     columns = []
     for column in table.columns:
-        unit, cells = shown(column, si=si)
+        head, cells = column.read(si=si)
         side: Literal["right", "left"] = "right" if all(map(is_number, cells)) else "left"
-        head = f"{column.words} [{unit}]" if unit else column.words
         grid.add_column(Text(for_document(head)), justify=side, overflow="fold")
         columns.append(cells)
     for row in zip(*columns, strict=True):

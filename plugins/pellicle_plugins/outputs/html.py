@@ -23,7 +23,7 @@ from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction, label_of_step, prescribed_variable
 from pellicle.results.result import Result, first_message
 from pellicle.results.runs import axes_of, progress_of, runs_of
-from pellicle.results.wording import wording
+from pellicle.results.wording import column_of
 from pellicle.show import tables
 from pellicle.show.drawing import DIVERGING
 from pellicle.show.fields import default_step, draws_contact, without_round_off
@@ -213,7 +213,7 @@ class Html(Output):
         begin = int(np.searchsorted(chosen, step_shown, side="right")) - 1
         *first, last = [f"{field.name}" for field in mapped.values()]
         names = f"{', '.join(first)} and {last}".capitalize()
-        words = wording(data[prescribed_variable(data)]).words
+        words = column_of(data[prescribed_variable(data)]).words
         # Over the range of the last step the first ones would have one colour.
         colours = ", each in colours over its own range" if len(chosen) > 1 else ""
         shown_steps = _share_in_words(len(chosen), steps, "load step")
