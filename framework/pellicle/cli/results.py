@@ -28,58 +28,38 @@ def print_origin(data: xr.Dataset) -> None:
         echo(f"{name + ':':10}{for_document(str(data.attrs.get(name, '')))}")
 
 
-def print_result(result: Result, *, si: bool = False) -> None:
-    """Print origin, steps, shape of the contact and path of a run."""
-    data = result.dataset
-    print_origin(data)
+def print_tables(outcome: Result | xr.Dataset, *, si: bool = False, whole: bool = True) -> None:
+    """Print the steps of a run, with the ``whole`` also its contact and path; the runs of a study.
+
+    A study is given by its table.
+    """
+    if isinstance(outcome, xr.Dataset):
+        print_table(tables.main_runs(outcome), si=si)
+        for path in tables.main_paths(outcome):
+            print_table(path, "path", si=si)
+        return
+    data = outcome.dataset
     print_table(tables.main_steps(data), si=si)
-    print_table(tables.contact(data), "contact", si=si)
-    for table in tables.path(data, si=si):
-        print_table(table)
-    for table in tables.oscillations(data):
-        print_table(table, "oscillations", si=si)
+    if whole:
+        print_table(tables.contact(data), "contact", si=si)
+        for path in tables.path(data, si=si):
+            print_table(path)
+        for table in tables.oscillations(data):
+            print_table(table, "oscillations", si=si)
 
 
-def print_runs(table: xr.Dataset, *, si: bool = False) -> None:
-    """Print parameters, last step and verdict of each run of a study, and its path."""
-    print_table(tables.main_runs(table), si=si)
-    for path in tables.main_paths(table):
-        print_table(path, "path", si=si)
-
-
-def print_result_json(result: Result, files: Sequence[Path] = ()) -> None:
-    """Print a result as JSON: its origin, and the numbers of each step in SI."""
-    data, planned = result.dataset, result.planned_steps
-    converged = result.converged and data.sizes["step"] == planned
-    steps, path = _steps(data), result.path_summary
-    _print_json(data, files, converged=converged, planned_steps=planned, steps=steps, path=path)
-
-
-def print_study_json(table: xr.Dataset, files: Sequence[Path] = ()) -> None:
-    """Print a study as JSON: its origin, and the numbers of each step of each run in SI."""
-    runs = []
-    for run in runs_of(table):
-        done, planned, verdict = progress_of(run)
-        axes = {name: run[name].item() for name in axes_of(run)}
-        per_run = {
-            str(name): variable.item()
-            for name, variable in run.data_vars.items()
-            if not variable.dims and name != "run"
-        }
-        runs.append(
-            {
-                "file": f"runs/{run['run'].item()}.h5",
-                "parameters": axes,
-                "converged": verdict == "converged" and done == planned,
-                "planned_steps": planned,
-                "steps": _steps(run.isel(step=slice(planned))),
-                "path": per_run,
-            }
-        )
-    _print_json(table, files, converged=all(run["converged"] for run in runs), runs=runs)
-
-
-def _print_json(data: xr.Dataset, files: Sequence[Path], **own: object) -> None:
+def print_outcome_json(outcome: Result | xr.Dataset, files: Sequence[Path] = ()) -> None:
+    """Print a run or a study as JSON: its origin, and the numbers of each step in SI."""
+    own: dict[str, Any]
+    if isinstance(outcome, Result):
+        data, planned = outcome.dataset, outcome.planned_steps
+        converged = outcome.converged and data.sizes["step"] == planned
+        own = {"converged": converged, "planned_steps": planned, "steps": _steps(data)}
+        own["path"] = outcome.path_summary
+    else:
+        data = outcome
+        runs = [*map(_run, runs_of(data))]
+        own = {"converged": all(run["converged"] for run in runs), "runs": runs}
     origin = {name: data.attrs.get(name, "") for name in ("title", "date", "versions")}
     units = {
         name: variable.attrs["units"]
@@ -89,26 +69,42 @@ def _print_json(data: xr.Dataset, files: Sequence[Path], **own: object) -> None:
     print_json({**origin, **own, "units": units, "files": list(map(str, files))})
 
 
+def _run(run: xr.Dataset) -> dict[str, Any]:
+    """Return a run of the table of a study."""
+    done, planned, verdict = progress_of(run)
+    per_run = {
+        str(name): variable.item()
+        for name, variable in run.data_vars.items()
+        if not variable.dims and name != "run"
+    }
+    return {
+        "file": f"runs/{run['run'].item()}.h5",
+        "parameters": {name: run[name].item() for name in axes_of(run)},
+        "converged": verdict == "converged" and done == planned,
+        "planned_steps": planned,
+        "steps": _steps(run.isel(step=slice(planned))),
+        "path": per_run,
+    }
+
+
 def _steps(data: xr.Dataset) -> list[dict[str, Any]]:
     """Return the numbers and texts of each step by name."""
     rows = tables.numbers(data).records
     return [row | {CAVEATS: json.loads(str(row[CAVEATS]) or "[]")} for row in rows]
 
 
-def exit_by_convergence(result: Result) -> None:
-    """Print which steps did not converge, or have a caveat; exit unless all converged."""
-    for sentence in sentences.failed_steps(result):
-        echo(for_document(sentence), err=True)
-    for message in result.warnings():
-        print_warning(message)
-    if not result.converged:
-        raise typer.Exit(NOT_CONVERGED)
-
-
-def exit_by_status(table: xr.Dataset) -> None:
-    """Print which runs of a study did not converge; exit unless all did."""
-    if message := sentences.failures(table):
-        for reason in sentences.reasons(table):
+def exit_by_outcome(outcome: Result | xr.Dataset) -> None:
+    """Print what did not converge, and the caveats of a run; exit unless all converged."""
+    if isinstance(outcome, Result):
+        converged, reasons = outcome.converged, [*sentences.failed_steps(outcome)]
+    else:
+        message = sentences.failures(outcome)
+        converged, reasons = not message, [*sentences.reasons(outcome), message]
+    if not converged:
+        for reason in reasons:
             echo(for_document(reason), err=True)
-        echo(message, err=True)
+    if isinstance(outcome, Result):
+        for warning in outcome.warnings():
+            print_warning(warning)
+    if not converged:
         raise typer.Exit(NOT_CONVERGED)

@@ -49,11 +49,9 @@ def done(files: Sequence[Path], resumed: int, whole: str) -> Iterator[str]:
         yield f"wrote {path}"
 
 
-def interrupted(folder: Path, *, is_study: bool) -> str:
-    """Return where an interruption left what was finished."""
-    if is_study:
-        return f"interrupted; finished runs are in {folder}, and the same command continues"
-    return f"interrupted; finished steps are in {folder}"
+def interrupted(finished: str, folder: Path) -> str:
+    """Return where an interruption left the ``finished`` steps or runs."""
+    return f"interrupted; finished {finished} are in {folder}, and the same command continues"
 
 
 def larger_domain(size: tuple[float, float], folder: Path) -> str:

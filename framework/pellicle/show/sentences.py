@@ -83,9 +83,10 @@ def failed_steps(result: Result) -> Iterator[str]:
         yield f"{steps} did not converge: {first}{group[0][1]}"
 
 
-def unfinished(done: int, planned: int) -> str:
-    """Return that a run was interrupted."""
-    return f"interrupted: {done} of {planned} steps are finished; run it again"
+def unfinished(result: Result) -> str:
+    """Return how far an interrupted run came; empty if it is whole."""
+    done, planned = result.dataset.sizes["step"], result.planned_steps
+    return f"interrupted: {done} of {planned} steps are finished; run it again" * (done < planned)
 
 
 def sentences_of_path(data: xr.Dataset, summary: Mapping[str, float]) -> str:
