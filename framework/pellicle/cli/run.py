@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -76,7 +77,7 @@ def run(
 
     from .results import exit_by_outcome, print_outcome_json, print_tables
 
-    configuration = from_toml(file, set_ or ())
+    began, configuration = monotonic(), from_toml(file, set_ or ())
     for doubt in doubtful_scales(configuration).values():
         print_warning(doubt)
     folder = directory or Path(file.stem)
@@ -120,7 +121,7 @@ def run(
         print_outcome_json(outcome, files)
     elif not quiet:
         print_tables(outcome, si=si, whole=False)
-        for sentence in plan.done(files, resumed, whole):
+        for sentence in plan.done(files, resumed, whole, monotonic() - began):
             echo(sentence)
     exit_by_outcome(outcome)
 

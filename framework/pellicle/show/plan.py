@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pellicle.components.charts import Table
-from pellicle.units import DIGITS, readable
+from pellicle.units import DIGITS, decimal, readable
 
 if TYPE_CHECKING:
     from pellicle.studies.runner import RunTask
@@ -41,12 +41,13 @@ def planned(tasks: Sequence[RunTask]) -> tuple[Table, str]:
     return Table.of_rows(heads, rows), sentence
 
 
-def done(files: Sequence[Path], resumed: int, whole: str) -> Iterator[str]:
-    """Yield how much was done before, and the files that were written."""
+def done(files: Sequence[Path], resumed: int, whole: str, seconds: float) -> Iterator[str]:
+    """Yield how much was done before, the files that were written, and how long all took."""
     if resumed:
         yield f"{resumed} of {whole} were done before (--overwrite starts over)"
     for path in files:
         yield f"wrote {path}"
+    yield f"took {decimal(seconds, 2)} s"
 
 
 def interrupted(finished: str, folder: Path) -> str:
