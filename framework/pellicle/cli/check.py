@@ -26,11 +26,11 @@ def check(
     json: Annotated[bool, typer.Option("--json", help="Print JSON, in SI.")] = False,
 ) -> None:
     """Check a run or a study, and estimate its errors and memory from coarser grids."""
-    from pellicle.config.doubtful_scales import doubtful_scales
     from pellicle.config.study import Study, from_toml
     from pellicle.runs.advice import advise
     from pellicle.runs.memory_estimate import memory_of
     from pellicle.show import advice
+    from pellicle.show.doubtful_scales import doubtful_scales
     from pellicle.studies.runner import tasks
 
     allowed = _allowed(error.strip())

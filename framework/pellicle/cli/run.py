@@ -65,7 +65,6 @@ def run(
 
     Exit code 0 only if every step converged.
     """
-    from pellicle.config.doubtful_scales import doubtful_scales
     from pellicle.config.study import Study, from_toml
     from pellicle.contact.caveats import Status
     from pellicle.runs import runner
@@ -73,6 +72,7 @@ def run(
     from pellicle.runs.journal import Journal
     from pellicle.runs.progress import RunProgress
     from pellicle.show import plan
+    from pellicle.show.doubtful_scales import doubtful_scales
     from pellicle.studies import runner as studies
 
     from .results import exit_by_outcome, print_outcome_json, print_tables

@@ -12,7 +12,7 @@ from pellicle.arrays import Array
 from pellicle.contact.caveats import Status, by_phrase, from_text
 from pellicle.errors import first_of
 from pellicle.results.path import has_interaction, has_times, label_of_step, prescribed_variable
-from pellicle.results.result import Result
+from pellicle.results.result import Result, first_message
 from pellicle.results.runs import axes_of, by_run, runs_of, short_files, statuses_of
 from pellicle.results.wording import column_of, has_one_shape, is_periodic
 from pellicle.units import readable
@@ -26,6 +26,10 @@ _FEW = 5
 """Number of runs up to which the sentence of a study lists their numbers."""
 _SAME = 1e-9
 """Relative difference up to which numbers count as equal."""
+FEW_CELLS = 12
+"""Contact radius in cells below which force and radius may be off by more than 2 %."""
+STEEP_RIM = 0.3
+"""Slope above which linear elasticity is beyond its range."""
 _FAILURES = {
     "failed": "failed",
     "NOT CONVERGED": "did not converge",
@@ -81,6 +85,36 @@ def failed_steps(result: Result) -> Iterator[str]:
         first = f"step {group[0][0]}: " if several else ""
         steps = f"step{'s' * (len(group) > 1)} {listed}"
         yield f"{steps} did not converge: {first}{group[0][1]}"
+
+
+def status_of_run(result: Result) -> tuple[str, bool | None, list[str]]:
+    """Return what became of a run, whether all is well, None with reservations, and details."""
+    total = result.planned_steps
+    done, failed = result.dataset.sizes["step"], result.failures()
+    sentences = []
+    if done < total:
+        sentences.append(f"The run ended early: {done} of {total} load steps are finished.")
+    count = "The load step" if done == 1 else f"All {done} load steps"
+    bad = f"{len(failed)} of {done} load steps did not converge: do not rely on them."
+    sentences.append(bad if failed else f"{count} converged.")
+    details = [f"Step {step}: {message}" for step, message in failed]
+    for phrase, steps in result.caveats_by_phrase().items():
+        sentences.append(f"In {len(steps)} of {done} {phrase}.")
+        details.append(f"S{first_message(steps)[1:]}")
+    for subject, message in result.beyond_theory().items():
+        sentences.append(f"{subject[0].upper()}{subject[1:]}.")
+        details.append(f"S{message[1:]}")
+    is_good = None if details else True
+    return " ".join(sentences), is_good if done == total and not failed else False, details
+
+
+def status_of_study(table: xr.Dataset) -> tuple[str, bool | None, list[str]]:
+    """Return what became of a study, whether all is well, None with reservations, and details."""
+    failed, warnings = failures(table), [*caveats(table)]
+    if failed:
+        return f"{failed[0].upper()}{failed[1:]}.", False, [*reasons(table), *warnings]
+    converged = f"Every step of all {table['run'].size} runs converged."
+    return converged, None if warnings else True, warnings
 
 
 def unfinished(result: Result) -> str:
@@ -209,3 +243,26 @@ def caveats(table: xr.Dataset) -> Iterator[str]:
                 f"of {len(names)} runs, in {len({run for run, _ in messages})} {phrase}; "
                 f"{names[run]} (file {files[run]}), {message}"
             )
+
+
+def limits_of_curve(
+    missing: list[str], coarse: dict[str, float], steep: dict[str, float], low: float, high: float
+) -> str:
+    """Return which points of an adhesive curve are not known, or not as they should be.
+
+    The path has contact radii from ``low`` to ``high`` [m]; ``coarse`` are radii in cells, and
+    ``steep`` slopes of the indenter at the rim.
+    """
+    cells, slopes = (
+        ", ".join(f"{mark} {value:.{digits}f}" for mark, value in marks.items())
+        for marks, digits in ((coarse, 1), (steep, 2))
+    )
+    range_ = f"not at a contact radius from {low:.3g} to {high:.3g} m, those of the path"
+    remedy = f"from {FEW_CELLS} on force and radius are good to 2 %, so use more points"
+    theory = f"the theory is for small slopes, below about {STEEP_RIM}"
+    problems = [
+        *([f"{', '.join(missing)}: {range_}"] if missing else []),
+        *([f"contact radius in cells: {cells}; {remedy}"] if coarse else []),
+        *([f"slope of the indenter at the rim: {slopes}; {theory}"] if steep else []),
+    ]
+    return "; ".join(problems) or "computed"

@@ -21,7 +21,7 @@ from pellicle.files import atomic_write
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction, label_of_step, prescribed_variable
-from pellicle.results.result import Result, first_message
+from pellicle.results.result import Result
 from pellicle.results.runs import axes_of, progress_of, runs_of
 from pellicle.results.wording import column_of
 from pellicle.show import tables
@@ -30,20 +30,19 @@ from pellicle.show.fields import default_step, draws_contact, without_round_off
 from pellicle.show.html import Code, Notice, Picture, Section, Text, page
 from pellicle.show.maps import Field as MapField
 from pellicle.show.maps import Frame, Maps, frame, side
+from pellicle.show.methods import methods
 from pellicle.show.sentences import (
-    caveats,
-    failures,
-    reasons,
     run_names,
     sentence_of_step,
     sentence_of_study,
     sentences_of_path,
+    status_of_run,
+    status_of_study,
 )
 from pellicle.variables import FIELDS as RESULT_FIELDS
 from pellicle.variables import WALL_PRESSURE
 
 from .html_curves import curves_of_outputs, curves_of_run, curves_of_study, picture
-from .methods import methods
 from .step_figures import cross_section
 
 if TYPE_CHECKING:
@@ -133,7 +132,7 @@ class Html(Output):
         return [
             Section(
                 "In short",
-                [*sentences, _status(result)],
+                [*sentences, Notice(*status_of_run(result))],
             ),
             Section("Maps", [maps]),
             Section("Curves", curves_of_run(result, chosen, maps.begin)),
@@ -167,13 +166,6 @@ class Html(Output):
                 setups.append(_setup(step, first_run, label))
         sentence = sentence_of_study(table, len(rows))
         lead = [Text(sentence, lead=True)] if sentence else []
-        failed, warnings = failures(table), [*caveats(table)]
-        if failed:
-            details = [*reasons(table), *warnings]
-            status = Notice(f"{failed[0].upper()}{failed[1:]}.", False, details)
-        else:
-            converged = f"Every step of all {len(rows)} runs converged."
-            status = Notice(converged, None if warnings else True, warnings)
         which = "The last step in contact" if draws_contact(table) else "The last step"
         share = _share_in_words(len(frames), len(rows), "run")
         caption = f"{which} of {share}, each in colours over its own range."
@@ -183,7 +175,7 @@ class Html(Output):
         return [
             Section(
                 "In short",
-                [*lead, status],
+                [*lead, Notice(*status_of_study(table))],
             ),
             Section("Maps", [maps] if frames else []),
             Section("Curves", curves_of_study(table)),
@@ -291,26 +283,6 @@ def _inputs(fields: Iterable[Input]) -> Table:
 def _outputs(configuration: dict[str, Any]) -> list[Output]:
     """Return the outputs that a configuration names."""
     return [registry().make(Output, output) for output in configuration.get("outputs") or ()]
-
-
-def _status(result: Result) -> Notice:
-    total = result.planned_steps
-    done, failed = result.dataset.sizes["step"], result.failures()
-    sentences = []
-    if done < total:
-        sentences.append(f"The run ended early: {done} of {total} load steps are finished.")
-    count = "The load step" if done == 1 else f"All {done} load steps"
-    bad = f"{len(failed)} of {done} load steps did not converge: do not rely on them."
-    sentences.append(bad if failed else f"{count} converged.")
-    details = [f"Step {step}: {message}" for step, message in failed]
-    for phrase, steps in result.caveats_by_phrase().items():
-        sentences.append(f"In {len(steps)} of {done} {phrase}.")
-        details.append(f"S{first_message(steps)[1:]}")
-    for subject, message in result.beyond_theory().items():
-        sentences.append(f"{subject[0].upper()}{subject[1:]}.")
-        details.append(f"S{message[1:]}")
-    is_good = None if details else True
-    return Notice(" ".join(sentences), is_good if done == total and not failed else False, details)
 
 
 def _reproduce(configuration: dict[str, Any], stem: Path) -> Iterator[Code]:
