@@ -1,4 +1,4 @@
-"""What a run or a study will do, and what it did, for the terminal."""
+"""What a run or a study will do, does and did, as the terminal says it."""
 
 from __future__ import annotations
 
@@ -48,6 +48,14 @@ def done(files: Sequence[Path], resumed: int, whole: str, seconds: float) -> Ite
     for path in files:
         yield f"wrote {path}"
     yield f"took {decimal(seconds, 2)} s"
+
+
+def shared(runs: int, seconds: float) -> str:
+    """Return that runs that would take long are shared among processes."""
+    return (
+        f"the other {runs} runs would take {seconds:.0f} s here: they go to processes, as many as "
+        "cores and memory allow (study.executor decides otherwise)"
+    )
 
 
 def interrupted(finished: str, folder: Path) -> str:

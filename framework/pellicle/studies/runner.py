@@ -35,6 +35,7 @@ from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.memory_estimate import memory_of
 from pellicle.runs.progress import ProgressReporter
+from pellicle.show.plan import shared
 from pellicle.show.sentences import caveats, failures, run_names
 from pellicle.variables import BEYOND_THEORY
 
@@ -274,10 +275,7 @@ def _solve_all(
         left = len(todo) * (time.monotonic() - start)
         if left > _LONG and _can_share(todo, threads or 1):
             executor = registry().make(Executor, {"type": "processes", "threads": threads or 1})
-            bar.say(
-                f"the other {len(todo)} runs would take {left:.0f} s here: they go to processes, "
-                "as many as cores and memory allow (study.executor decides otherwise)"
-            )
+            bar.say(shared(len(todo), left))
     if executor:
         solve_by(executor, todo)
 

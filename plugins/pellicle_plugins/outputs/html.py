@@ -20,13 +20,13 @@ from pellicle.errors import StorageError
 from pellicle.files import atomic_write
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
-from pellicle.results.path import has_interaction, label_of_step, prescribed_variable
+from pellicle.results.path import has_interaction, label_of_step
 from pellicle.results.result import Result
 from pellicle.results.runs import axes_of, progress_of, runs_of
-from pellicle.results.wording import column_of
 from pellicle.show import tables
+from pellicle.show.captions import caption_of_runs, caption_of_setup, caption_of_steps
 from pellicle.show.drawing import DIVERGING
-from pellicle.show.fields import default_step, draws_contact, without_round_off
+from pellicle.show.fields import default_step, without_round_off
 from pellicle.show.html import Code, Notice, Picture, Section, Text, page
 from pellicle.show.maps import Field as MapField
 from pellicle.show.maps import Frame, Maps, frame, side
@@ -166,9 +166,7 @@ class Html(Output):
                 setups.append(_setup(step, first_run, label))
         sentence = sentence_of_study(table, len(rows))
         lead = [Text(sentence, lead=True)] if sentence else []
-        which = "The last step in contact" if draws_contact(table) else "The last step"
-        share = _share_in_words(len(frames), len(rows), "run")
-        caption = f"{which} of {share}, each in colours over its own range."
+        caption = caption_of_runs(table, len(frames))
         maps = Maps(caption, "run", tuple(mapped.values()), list(frames.values()))
         of_runs = tables.runs(table, mapped=list(frames))
         numbers = [of_runs, *tables.paths_of_runs(table)]
@@ -203,13 +201,8 @@ class Html(Output):
             frames.append(replace(_frame(label, grid, step, mapped, points), note=note))
         step_shown = default_step(data) % steps
         begin = int(np.searchsorted(chosen, step_shown, side="right")) - 1
-        *first, last = [f"{field.name}" for field in mapped.values()]
-        names = f"{', '.join(first)} and {last}".capitalize()
-        words = column_of(data[prescribed_variable(data)]).words
-        # Over the range of the last step the first ones would have one colour.
-        colours = ", each in colours over its own range" if len(chosen) > 1 else ""
-        shown_steps = _share_in_words(len(chosen), steps, "load step")
-        caption = f"{names} at prescribed {words}, in {shown_steps}{colours}."
+        names = [field.name for field in mapped.values()]
+        caption = caption_of_steps(data, names, len(chosen))
         return Maps(caption, "load step", tuple(mapped.values()), frames, max(begin, 0)), chosen
 
     def _steps_of_runs(
@@ -263,16 +256,9 @@ def _frame(
     return frame(label, grid, [step[name].values for name in mapped], points, empty)
 
 
-def _share_in_words(number: int, count: int, noun: str) -> str:
-    """Return how many are shown in words: "each run", "3 of 8 runs"."""
-    return f"each {noun}" if number == count else f"{number} of {count} {noun}s"
-
-
 def _setup(step: xr.Dataset, configuration: dict[str, Any], label: str) -> Picture:
     """Return the indenter over the surface in a load step."""
-    values = {i.name: i.value for i in inputs(configuration, Run)}
-    caption = f"The {values['indenter']} on the {values['kernel']}, at {label}; heights stretched."
-    return picture(cross_section(step), caption)
+    return picture(cross_section(step), caption_of_setup(configuration, label))
 
 
 def _inputs(fields: Iterable[Input]) -> Table:
