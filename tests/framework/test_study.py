@@ -23,8 +23,8 @@ from pellicle.cli.app import app
 from pellicle.components import Monitor
 from pellicle.results import StoredRuns, storage
 from pellicle.results.dimensions import with_paths
+from pellicle.show.sentences import failures, reasons
 from pellicle.studies import runner as study_module
-from pellicle.studies.summary import failures, reasons
 from pellicle.studies.table import StudyTable, write
 from pellicle_plugins.executors.execution import Serial
 from pellicle_plugins.executors.processes import Processes

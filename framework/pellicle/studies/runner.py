@@ -30,15 +30,16 @@ from pellicle.files import check_writable, is_file, is_folder
 from pellicle.plugins import registry
 from pellicle.results import storage
 from pellicle.results.dimensions import with_paths, with_python_names
-from pellicle.results.runs import StoredRuns
+from pellicle.results.runs import StoredRuns, progress_of
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.memory_estimate import memory_of
 from pellicle.runs.progress import reporting
+from pellicle.show.plan import shared
+from pellicle.show.sentences import caveats, failures, run_names
 from pellicle.variables import BEYOND_THEORY
 
 from . import table
-from .summary import caveats, failures, progress_of, run_names
 
 _TABLE_SHARE = 0.05
 _LONG = 10.0
@@ -279,10 +280,7 @@ def _solve_all(
         needed = 2 * (max(task.memory for task in todo) + memory.PROCESS)
         if (available := memory.available()) is None or needed <= available:
             executor = registry().make(Executor, {"type": "processes", "threads": threads or 1})
-            bar.say(
-                f"the other {len(todo)} runs would take {left:.0f} s here: they go to processes, "
-                "as many as cores and memory allow (study.executor decides otherwise)"
-            )
+            bar.say(shared(len(todo), left))
     if executor:
         solve_by(executor, todo)
 
