@@ -19,7 +19,7 @@ from pellicle.components.prescription import Search, Setting
 from pellicle.components.solver import solution_of
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import equilibrium_of
-from pellicle.contact.load_step import LoadStep
+from pellicle.contact.load_step import LoadStep, start_of
 from pellicle.contact.problem import Depth, Force
 
 # Number of trials to bracket the goal, after which it counts as out of reach.
@@ -56,7 +56,8 @@ def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) ->
 def solved(setting: Setting, control: Depth | Force, solver: Solver, monitor: Monitor) -> LoadStep:
     """Return the load step at a depth or a force."""
     problem = setting.problem(control)
-    solution = solution_of(solver, problem, setting.start(problem), monitor)
+    start = start_of(problem, setting.state, setting.path)
+    solution = solution_of(solver, problem, start, monitor)
     equilibrium = equilibrium_of(problem, solution)
     return LoadStep(equilibrium, solution.iterations, solution.stop, solution.jumped)
 
