@@ -182,14 +182,6 @@ class Loading(Options):
         with all_problems() as within, within(self.prescribed):
             LoadSteps(self.prescription.quantity(), legs=True)(self.path)
 
-    @property
-    def variables(self) -> set[str]:
-        """The names of the result variables that this loading adds."""
-        timed = self.times is not None
-        used = {"stiffness": self.stiffness, "time": timed, "cycle": self.oscillates}
-        names = {variable.name for variable in self.prescription.variables}
-        return names | {name for name, is_used in used.items() if is_used}
-
 
 def fields_from(table: Mapping[str, Any], interaction: bool = True) -> dict[str, Any]:
     """Return the fields of a `Loading` from the table of a file.

@@ -226,16 +226,17 @@ class Run(FromFile):
         kinds = {"main", "other", "contact", "effort", "residual", "status"}
         kinds |= {"interaction", "path"} if self.interaction else set()
         kinds |= {"oscillation"} if self.loading.oscillates else set()
-        areas = [corrected_area(correction.type_name) for correction in self.corrections]
-        return [
-            *(
-                variable
-                for variable in (*VARIABLES.values(), *self.loading.prescription.variables)
-                if variable.type != "text"
-                and (variable.kind in kinds or variable.name in self.loading.variables)
-            ),
-            *(variable for area in areas for variable in (area, corrected_fraction(area))),
-        ]
+        requested = {
+            "stiffness": self.loading.stiffness,
+            "time": self.loading.times is not None,
+            "cycle": self.loading.oscillates,
+        }
+        listed = [v for v in VARIABLES.values() if v.kind in kinds or requested.get(v.name)]
+        listed += self.loading.prescription.variables
+        for correction in self.corrections:
+            area = corrected_area(correction.type_name)
+            listed += [area, corrected_fraction(area)]
+        return [variable for variable in listed if variable.type != "text"]
 
     @property
     def identity(self) -> str:
