@@ -21,7 +21,7 @@ from pellicle.plugins import Origin, registry
 from pellicle.units import parts_of, quantity_of, readable
 from pellicle.variables import words_of_name
 
-from .load_steps import KINDS, LoadSteps, with_quantity
+from .load_steps import LoadSteps, legs_with
 from .loading import Loading, keys_of, prescription_in
 
 
@@ -130,8 +130,8 @@ def _table(
     model = model_in(info.annotation) if info else None
     fields = model.model_fields if model else {}
     if steps := _load_steps(info):
-        kind = next((kind for key, kind in KINDS.items() if key in table), None)
-        fields = with_quantity(kind, steps.quantity).model_fields if kind else {}
+        kinds = legs_with(steps.quantity).items()
+        fields = next((kind.model_fields for key, kind in kinds if key in table), {})
     elif "type" in table:
         type_, family = str(table["type"]), getattr(model, "family", "")
         if entry := registry().components.get(family, {}).get(type_):
