@@ -225,19 +225,9 @@ def test_schema_rejects(change: dict[str, Any]) -> None:
     assert not validator().is_valid(STARTER | change)
 
 
-@pytest.mark.parametrize(
-    "make",
-    [
-        lambda: pl.Grid(points=-1, size=1),
-        lambda: pl.kernel("nope"),
-        lambda: pl.indenter("sphere", radius=-1),
-        lambda: pl.Run(),  # type: ignore[call-arg]
-        lambda: pl.Loading(),
-    ],
-)
-def test_library_raises_config_error(make: Any) -> None:
+def test_library_raises_config_error() -> None:
     """From the library a bad input is a ConfigError, which is a ValueError and pickles."""
     with pytest.raises(pl.ConfigError) as caught:
-        make()
+        pl.Run()  # type: ignore[call-arg]
     assert isinstance(caught.value, ValueError)
     assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)

@@ -27,6 +27,7 @@ CONFIGURATION: dict[str, Any] = {
     "indenter": {"type": "cone", "half_angle": "70 degree"},
     "loading": {"depth": {"start": "1 um", "stop": "20 um", "num": 20}},
     "corrections": [{"type": "yastrebov"}],
+    "outputs": [{"type": "curves", "published": [{"label": "a", "x": [3, 4], "y": [1, 2]}]}],
 }
 
 
@@ -52,6 +53,7 @@ def test_values_have_units(table: dict[str, FieldRow]) -> None:
         "loading.depth": "1, 2, 3, 4, 5, 6, …, 20 µm (20 values)",
         "solver.tolerance": "1e-08",
         "corrections.0": "Yastrebov",
+        "outputs.0.published.0.y": "1, 2",
     }.items():
         assert table[name].value == value
 
@@ -63,7 +65,7 @@ def test_inputs_are_explained(table: dict[str, FieldRow]) -> None:
     assert origin is not None
     assert origin.entry_point == "kernel.frictionless_layer"
     assert origin.version == pl.__version__
-    components = {"kernel", "kernel.substrate", "indenter", "solver", "corrections.0"}
+    components = {"kernel", "kernel.substrate", "indenter", "solver", "corrections.0", "outputs.0"}
     assert {name for name, entry in table.items() if entry.origin} == components
 
 

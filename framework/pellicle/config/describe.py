@@ -21,8 +21,8 @@ from pellicle.plugins import Origin, registry
 from pellicle.units import parts_of, quantity_of, readable
 from pellicle.variables import words_of_name
 
-from .load_steps import KINDS, LoadSteps, with_quantity
-from .loading import Loading, keys_of, prescribed_in, prescriptions
+from .load_steps import LoadSteps, legs_with
+from .loading import Loading, keys_of, prescription_in
 
 
 class FieldRow(NamedTuple):
@@ -45,7 +45,7 @@ class FieldRow(NamedTuple):
     kind: str = ""
     """What it takes: unit and bounds, or the kind of value."""
     default: str = ""
-    """The default as a file would give it, "none" or "required"."""
+    """The default as a file would give it, or in words, such as "none" or "required"."""
     origin: Origin | None = None
     """Distribution and entry point of a component."""
 
@@ -130,8 +130,8 @@ def _table(
     model = model_in(info.annotation) if info else None
     fields = model.model_fields if model else {}
     if steps := _load_steps(info):
-        kind = next((kind for key, kind in KINDS.items() if key in table), None)
-        fields = with_quantity(kind, steps.quantity).model_fields if kind else {}
+        kinds = legs_with(steps.quantity).items()
+        fields = next((kind.model_fields for key, kind in kinds if key in table), {})
     elif "type" in table:
         type_, family = str(table["type"]), getattr(model, "family", "")
         if entry := registry().components.get(family, {}).get(type_):
@@ -141,7 +141,7 @@ def _table(
             row, fields = row._replace(value=words_of_name(type_), meaning=""), {}
     elif model is Loading:
         with suppress(ConfigError, PluginError):
-            fields = keys_of(prescriptions()[prescribed_in(table)])
+            fields = keys_of(prescription_in(table))
     yield row
     yield from field_rows(fields, table, f"{row.name}.", row.part, owner)
 
@@ -174,7 +174,6 @@ _KINDS: Mapping[Any, str] = {
     float: "number",
     str: "text",
     Path: "file",
-    dict: "table",
     Any: "array",
     HasForceCurve: "force curve",
 }
@@ -200,23 +199,26 @@ def _kind(annotation: Any) -> str:
         return " or ".join(json.dumps(value, ensure_ascii=False) for value in parts)
     if origin is Annotated:
         return _kind(parts[0])
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+    type_ = origin or annotation
+    if isinstance(type_, type) and issubclass(type_, (BaseModel, Mapping)):
         return "table"
-    if not parts or origin is dict:
-        return _KINDS.get(origin or annotation, "")
+    if not parts:
+        return next((_KINDS[base] for base in getattr(type_, "__mro__", ()) if base in _KINDS), "")
     kinds = [_kind(part) for part in parts if part not in (NoneType, ..., Any)]
     text = " or ".join(filter(None, dict.fromkeys(kinds)))
     if origin not in (tuple, list):
         return text
-    plural = "s" * (text in _KINDS.values() and " or " not in text)
+    plural = "s" * (text in ("table", "text", "file", "number", "whole number"))
     return f"list of {text}{plural}" if text else "list"
 
 
 def _default_of(info: FieldInfo) -> str:
-    """Return the default of a field as a file would give it, "none" or "required"."""
+    """Return the default of a field as a file would give it, or in words such as "none"."""
     if info.is_required():
         return "required"
-    value = info.get_default(call_default_factory=True, validated_data={})
+    if getattr(info, "default_factory_takes_validated_data", False):
+        return "from other fields"
+    value = info.get_default(call_default_factory=True)
     if value is None or value in ((), "", {}):
         return "none"
     if isinstance(value, Component):

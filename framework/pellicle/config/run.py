@@ -218,17 +218,18 @@ class Run(FromFile):
         kinds = {"main", "other", "contact", "effort", "residual", "status"}
         kinds |= {"interaction", "path"} if self.interaction else set()
         kinds |= {"oscillation"} if self.loading.oscillates else set()
-        types = [(type(one), one.type_name) for one in self.corrections]
-        areas = [corrected_area(type_, words_of_type(one, type_)) for one, type_ in types]
-        return [
-            *(
-                variable
-                for variable in (*VARIABLES.values(), *self.loading.prescription.variables)
-                if variable.type != "text"
-                and (variable.kind in kinds or variable.name in self.loading.variables)
-            ),
-            *(variable for area in areas for variable in (area, corrected_fraction(area))),
-        ]
+        requested = {
+            "stiffness": self.loading.stiffness,
+            "time": self.loading.times is not None,
+            "cycle": self.loading.oscillates,
+        }
+        listed = [v for v in VARIABLES.values() if v.kind in kinds or requested.get(v.name)]
+        listed += self.loading.prescription.variables
+        for correction in self.corrections:
+            type_ = correction.type_name
+            area = corrected_area(type_, words_of_type(type(correction), type_))
+            listed += [area, corrected_fraction(area)]
+        return [variable for variable in listed if variable.type != "text"]
 
     @property
     def identity(self) -> str:
