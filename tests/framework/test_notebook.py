@@ -35,11 +35,11 @@ def test_a_result_shows_numbers_and_how_it_ended(result: pl.Result) -> None:
     html = result._repr_html_()
     assert TITLE not in html
     assert "http" not in html.partition("<details>")[0]
-    for part in (TITLE, "2 steps, all converged", "depth [µm]"):
+    for part in (TITLE, "All 2 load steps converged.", "depth [µm]"):
         assert part in unescape(words(html))
     marked = result.dataset.copy(deep=True).isel(step=[0])
     marked["converged"][0] = False
-    assert "1 of 2 steps, 1 did not converge" in words(pl.Result(marked)._repr_html_())
+    assert "1 of 1 load steps did not converge" in words(pl.Result(marked)._repr_html_())
 
 
 def test_a_plot_is_upright(result: pl.Result) -> None:

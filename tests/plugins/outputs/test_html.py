@@ -9,7 +9,6 @@ import re
 import shlex
 import tomllib
 import warnings
-from collections.abc import Iterable
 from html.parser import HTMLParser
 from io import BytesIO
 from pathlib import Path
@@ -17,7 +16,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
-import pint
 import pytest
 import xarray as xr
 
@@ -112,51 +110,9 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, xr.Dataset]:
 def studied(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, xr.Dataset]:
     """Return the page of a study, and its table."""
     folder = tmp_path_factory.mktemp("study")
-    study = {**RUN, "study": {"vary": VARY, "derived": {"twice": "2 * force"}}}
+    study = {**RUN, "study": {"vary": VARY}}
     table = pl.run_study(study, folder, progress=False, threads=1)
     return folder / "study.html", table
-
-
-def si(text: str, unit: str) -> float:
-    """Return a number of a column in SI."""
-    return float(pint.Quantity(float(text), unit.replace("²", "**2")).to_base_units().magnitude)
-
-
-def agree(row: dict[str, str], data: xr.Dataset, names: Iterable[str]) -> None:
-    """Check that a row has these numbers under their words, in the unit of the head, rounded."""
-    for name in names:
-        words, expected = data[name].attrs["short_name"], data[name].item()
-        (head,) = (h for h in row if h.partition("[")[0].strip() == words)
-        unit = head.partition("[")[2].rstrip("]")
-        # Four digits.
-        assert si(row[head], unit) == pytest.approx(expected, rel=5.1e-4, abs=1e-300), head
-
-
-def test_every_number_is_there_with_its_unit(ran: tuple[Path, xr.Dataset]) -> None:
-    """What a step has in the result is in the row of the step, in the unit of its column."""
-    path, data = ran
-    page = Page(path)
-    heads = ("Results of each", "Shape of the contact", "Residuals and effort")
-    measures, shape, effort = (page.table(head) for head in heads)
-    scalars = [
-        str(name)
-        for name, v in data.data_vars.items()
-        if v.dims == ("step",) and v.dtype.kind in "if"
-    ]
-    assert {"contact_area_yastrebov", "wall_time", "residual_load"} <= set(scalars)
-    for index in range(2):
-        row = {**measures[index], **shape[index], **effort[index]}
-        assert row["step"] == str(index + 1)
-        assert row["status"] == "converged"
-        # A round contact has no axes, a free domain no area of its own.
-        left_out = "residual", "semi_", "major_axis_angle", "contact_fraction", "mean_pressure"
-        exact = [name for name in scalars if not name.startswith(left_out)]
-        assert not any(w in head for head in row for w in ("axis", "fraction", "mean pressure"))
-        agree(row, data.isel(step=index), exact)
-        residual = float(row["residual of the contact"])
-        assert residual == pytest.approx(data["residual_contact"].values[index], rel=0.06)
-    assert any("µm" in head for head in measures[0])
-    assert "All 2 load steps converged." in page.words
 
 
 def test_title_is_shown_as_it_is(ran: tuple[Path, xr.Dataset]) -> None:
@@ -325,11 +281,6 @@ def test_study(studied: tuple[Path, xr.Dataset]) -> None:
     for row, run in zip(rows, flat, strict=True):
         assert run["run"].item().startswith(row["file"].removesuffix("…"))
         assert (row["steps"], row["status"]) == ("2/2", "converged")
-        agree(row, run, ("indenter.radius", "depth", "force", "contact_area"))
-        # Its unit is that of the force.
-        (head,) = (head for head in row if head.startswith("twice"))
-        twice = si(row[head], head.partition("[")[2].rstrip("]"))
-        assert twice == pytest.approx(2 * run["force"].item(), rel=5.1e-4)
     links = [attrs["data-frame"] for tag, attrs in page.tags if "data-frame" in attrs]
     assert links == ["0", "1"]
     assert page.frames[1]["label"] == "radius 1 mm"
@@ -354,7 +305,7 @@ def test_steps_that_did_not_converge_are_marked(tmp_path: Path) -> None:
     hasty = {"type": "conjugate_gradient", "max_iterations": 2, "tolerance": 1e-12}
     page = page_of(tmp_path, solver=hasty)
     assert "2 of 2 load steps did not converge" in page.words
-    assert "Step 2: the surface" in page.words
+    assert "Steps 1 and 2 did not converge: step 1: the surface" in page.words
     assert [row["status"] for row in page.table("Results of each")] == ["NOT CONVERGED"] * 2
     assert [frame["label"] for frame in page.frames][1].endswith("NOT CONVERGED")
 
