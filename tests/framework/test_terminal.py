@@ -26,8 +26,8 @@ from pellicle.cli.printing import BAD_INPUT, CRASHED, print_table
 from pellicle.components import FAMILIES, Case, Column, Table
 from pellicle.config.explain import explanations
 from pellicle.results.wording import means_something
-from pellicle.runs import validation
 from pellicle.runs.validation import CheckedCase
+from pellicle.show.verdicts import outcome, verdicts
 from pellicle_fit.config import FitConfig
 
 RUN: dict[str, Any] = {
@@ -126,8 +126,6 @@ def test_run_prints_json(cli: Cli, folder: Path) -> None:
     shown = json.loads(done.stdout)
     assert shown["files"] == [str(Path("b/b.h5"))]
     assert shown["steps"][0]["mean_contact_pressure"] is None
-    planned = json.loads(cli("run", "b.toml", "--dry-run", "--json", "-o", "c").stdout)
-    assert [run["state"] for run in planned["runs"]] == ["to do"]
 
 
 @pytest.mark.slow
@@ -155,13 +153,6 @@ def test_a_path_that_no_system_takes_is_told(command: list[str], folder: Path, c
     (folder / "plain.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
     words = [word.replace("{long}", "a" * 5000).replace("{run}", "plain.toml") for word in command]
     assert "aaa: no such file; give " in cli(*words, code=2).stderr
-
-
-def test_a_dry_run_into_a_path_that_no_system_takes(folder: Path, cli: Cli) -> None:
-    """The list of runs says that the file cannot be written."""
-    (folder / "plain.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
-    shown = cli("run", "plain.toml", "-o", "a" * 300, "--dry-run").stdout
-    assert "cannot be written (File name too long); choose another folder" in shown
 
 
 class Refusing(io.StringIO):
@@ -211,26 +202,15 @@ def test_equal_statuses_are_one_line(cli: Cli) -> None:
     assert "steps 1 to 3 did not converge: step 1: the surface misses" in done.stderr
 
 
-@pytest.mark.parametrize("wrong", [0, 1])
-def test_validate_ends_with_what_it_covers(
-    cli: Cli, monkeypatch: pytest.MonkeyPatch, wrong: int
-) -> None:
-    """Its last line counts the cases and names the kernels that none is about."""
-
-    def verdicts() -> Iterator[CheckedCase]:
-        for number in range(2):
-            kernel = {"kernel": {"type": "half_space"}}
-            case = Case(f"case {number}", kernel, lambda _: 0.0, 2e-7, "m²", 1e-3, "Hertz 1882")
-            yield CheckedCase(case, 3e-7 if number < wrong else 2e-7, True)
-
-    monkeypatch.setattr(validation, "validate", verdicts)
-    shown = cli("validate", code=int(wrong > 0), COLUMNS="120").stdout
-    assert "0.2 mm²" in shown
-    last = shown.splitlines()[-1]
-    assert last.startswith("1 of 2 cases failed" if wrong else "all 2 cases passed")
-    kernels = set(last.partition("no case is about the kernels ")[2].split(", "))
-    assert kernels >= {"tensed_membrane", "winkler"}
-    assert "half_space" not in kernels
+def test_validate_ends_with_what_it_covers() -> None:
+    """A sentence counts the cases and names the kernels that none is about; powers are units."""
+    case = Case("a", {"kernel": {"type": "winkler"}}, lambda _: 0.0, 2e-7, "m²", 1e-3, "Hertz 1882")
+    good, wrong = CheckedCase(case, 2e-7, True), CheckedCase(case, 3e-7, True)
+    assert verdicts([good, wrong]).records[1]["computed"] == "0.3 mm²"
+    others = "; no case is about the kernels coated, layered"
+    kernels = "layered", "winkler", "coated"
+    assert outcome([good, wrong], kernels) == f"1 of 2 cases failed{others}"
+    assert outcome([good], kernels) == f"all 1 cases passed{others}"
 
 
 def test_a_fault_of_pellicle_has_an_exit_code_of_its_own(

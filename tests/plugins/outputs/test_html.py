@@ -128,10 +128,7 @@ def test_inputs_and_provenance(ran: tuple[Path, xr.Dataset]) -> None:
     path, data = ran
     page = Page(path)
     inputs = {(row["of"], row["input"]): row["value"] for row in page.table("All inputs")}
-    assert inputs["kernel", "surface tension"] == "100 mN/m"
-    assert inputs["indenter", "radius"] == "1 mm"
     assert inputs["loading", "depth"] == "5, 10 µm"
-    assert inputs["solver", "type"] == "active set"
     facts = {row["what"]: row["value"] for row in page.table("Versions, date")}
     shortened = {"identity": f"{data.attrs['identity'][:8]}…"}
     assert facts == {name: data.attrs[name] for name in ("versions", "date")} | shortened
@@ -212,34 +209,6 @@ def test_the_profile_is_that_of_each_mapped_step(ran: tuple[Path, xr.Dataset]) -
     assert len({picture["source"] for picture in profiles["pictures"]}) == 2
 
 
-def test_what_was_prescribed_is_named(tmp_path: Path) -> None:
-    """The list of steps, the caption of the maps and the answer name a prescribed force."""
-    page = page_of(tmp_path, loading={"force": ["1 uN", "2 uN"]})
-    assert [frame["label"] for frame in page.frames] == ["1: force 1 µN", "2: force 2 µN"]
-    caption = "Contact pressure and gap at prescribed force, in each load step, "
-    assert caption + "each in colours over its own range." in page.words
-    assert "along x, at force 2 µN." in page.words
-    assert re.match(r"At force 2 µN: depth \S+ µm, contact radius", page.frames[1]["note"])
-
-
-def test_a_rough_contact_has_no_ellipse(tmp_path: Path) -> None:
-    """Contact in several parts is told by its fraction of a periodic domain, not by a radius."""
-    rough = {
-        "type": "self_affine",
-        "rms_height": "2 um",
-        "hurst": 0.8,
-        "cutoff_wavelength": "60 um",
-        "roll_off_wavelength": "200 um",
-    }
-    grid = {**RUN["grid"], "boundary": "periodic"}
-    page = page_of(tmp_path, grid=grid, indenter=rough, loading={"mean_pressure": "5 Pa"})
-    (shape,) = page.table("Shape of the contact")
-    assert int(shape["patches"]) > 1
-    assert not [head for head in shape if "axis" in head or "radius" in head]
-    assert "At mean pressure 5 Pa: force" in page.words
-    assert re.search(r"contact fraction 0\.\d+\.", page.frames[0]["note"])
-
-
 def test_the_cross_section_is_to_scale() -> None:
     """The indenter lies on the surface in contact, and has its own shape above it."""
     run = {name: value for name, value in RUN.items() if name != "outputs"}
@@ -284,9 +253,6 @@ def test_study(studied: tuple[Path, xr.Dataset]) -> None:
     links = [attrs["data-frame"] for tag, attrs in page.tags if "data-frame" in attrs]
     assert links == ["0", "1"]
     assert page.frames[1]["label"] == "radius 1 mm"
-    inputs = {row["input"]: row["value"] for row in page.table("All inputs")}
-    assert inputs["radius"] == "0.5, 1 mm"
-    assert inputs["surface tension"] == "100 mN/m"
     assert "runs converged" in page.words
     again = pl.Study.from_mapping(tomllib.loads(page.texts["code"][0]))
     assert [f"{p.run.identity[:8]}…" for p in again.points] == [row["file"] for row in rows]
@@ -318,13 +284,6 @@ class Lost(pl.Solver):
     def solve(self, problem: pl.Problem, start: Any, monitor: Any) -> pl.Solution:
         """Return NaN."""
         return pl.Solution(pl.State.of_pressure(np.full(problem.grid.shape, np.nan)), 1)
-
-
-def test_steps_that_are_too_coarse_are_marked(tmp_path: Path) -> None:
-    """They converged, and the page is not content with that."""
-    page = page_of(tmp_path, loading={"depth": ["1 pm", "10 um"]})
-    assert "All 2 load steps converged. In 1 of 2 the cells are too coarse" in page.words
-    assert "Step 1: converged, but the cells are too coarse" in page.words
 
 
 def test_values_that_are_not_numbers(tmp_path: Path) -> None:
@@ -366,19 +325,6 @@ def test_what_is_left_out_or_coarser_is_said(tmp_path: Path) -> None:
     assert "in 2 of 5 load steps, each in colours over its own range." in page.words
     assert "Each pixel is the mean over 3 × 3 cells." in page.words
     assert len(page.table("Results of each")) == 5
-
-
-def test_study_with_failures(tmp_path: Path) -> None:
-    """A run that does not converge is named with its reason, and keeps its row and map."""
-    hasty = {"type": "conjugate_gradient", "max_iterations": 2, "tolerance": 1e-12}
-    study = {**RUN, "solver": hasty, "study": {"vary": {"solver.max_iterations": [2, 1000]}}}
-    with pytest.warns(pl.ConvergenceWarning):
-        pl.run_study(study, tmp_path, progress=False, threads=1)
-    page = Page(tmp_path / "study.html")
-    assert "Of 2 runs 1 did not converge" in page.words
-    assert re.search(r"iteration limit 2 \(file \w{8}…\): the surface", page.words)
-    statuses = [row["status"] for row in page.table("The last load step")]
-    assert statuses == ["NOT CONVERGED", "converged"]
 
 
 def show(browser: Chrome, path: Path) -> None:
