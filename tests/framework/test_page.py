@@ -77,6 +77,20 @@ def test_text_stays_text() -> None:
     assert EVIL in evil.values("download")
 
 
+def test_tables_show_what_columns_say() -> None:
+    """Cells are as people read them; those that are bad, linked or shortened are marked."""
+    numbers = Column("depth", [1e-6, np.nan], "m", bad=[False, True], frames=[None, 1])
+    table = Table([numbers, Column("hash", ["0123456789abcdef" * 4, "none"])], "Both.")
+    text = page("", [Section("", [table])])
+    cells = re.findall(r"<td data-label=\"(.*?)\" class=\"(.*?)\"(.*?)>(.*?)</td>", text)
+    assert cells == [
+        ("depth [µm]", "", "", "1"),
+        ("hash", "words", f' title="{"0123456789abcdef" * 4}"', "01234567…"),
+        ("depth [µm]", " bad", "", '<a href="#maps" data-frame="1">–</a>'),
+        ("hash", "words", "", "none"),
+    ]
+
+
 def test_nothing_is_loaded() -> None:
     """Addresses lead into the page or hold what they name; everything else is forbidden."""
     parsed = full("plain")

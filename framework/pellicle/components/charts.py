@@ -236,11 +236,15 @@ class Column:
         """The values as people read them in a row, with the unit; of many, some are left out."""
         return self.scale.listing([self.number(value) for value in self._listed])
 
-    def read(self, *, si: bool = False) -> tuple[str, list[str]]:
-        """Return the head and the cells as people read them; with ``si`` without a prefix."""
-        scale, digits = self.scale, self.digits
+    def unit_and_digits(self, *, si: bool = False) -> tuple[Scale, int]:
+        """Return how people read the numbers; with ``si`` without a prefix and with six digits."""
         if si:
-            scale, digits = Scale(1.0, "" if self.unit == "1" else printed(self.unit)), _SI_DIGITS
+            return Scale(1.0, "" if self.unit == "1" else printed(self.unit)), _SI_DIGITS
+        return self.scale, self.digits
+
+    def read(self, *, si: bool = False) -> tuple[str, list[str]]:
+        """Return the head and the cells as people read them."""
+        scale, digits = self.unit_and_digits(si=si)
         head = f"{self.words} [{scale.unit}]" if scale.unit else self.words
         return head, [
             self.texts.get(value, value) if isinstance(value, str) else scale.number(value, digits)

@@ -13,7 +13,7 @@ from pellicle.config.describe import inputs, words_at
 from pellicle.config.run import Run
 
 from . import tables
-from .sentences import failed_steps
+from .sentences import status_of_run
 
 if TYPE_CHECKING:
     from pellicle.config.study import Study
@@ -74,11 +74,9 @@ def of_study(study: Study) -> str:
 
 def of_result(result: Result) -> str:
     """Return how a run ended, the main numbers of its steps, and all variables, folded away."""
-    data, planned, failed = result.dataset, result.planned_steps, result.failures()
-    solved = data.sizes["step"]
-    outcome = f"{solved} of {planned} steps" if solved < planned else f"{planned} steps"
-    outcome += f", {len(failed)} did not converge" if failed else ", all converged"
-    shortened = data if solved <= _MOST else data.isel(step=[*range(_MOST - 1), -1])
-    text = "\n".join((outcome, *failed_steps(result)))
+    data, (sentence, _, details) = result.dataset, status_of_run(result)
+    many = data.sizes["step"] > _MOST
+    shortened = data.isel(step=[*range(_MOST - 1), -1]) if many else data
+    text = "\n".join((sentence, *details))
     title = str(data.attrs["title"] or "Result")
     return summary(title, text, tables.main_steps(shortened), details=data._repr_html_())

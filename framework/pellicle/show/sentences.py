@@ -12,7 +12,7 @@ from pellicle.arrays import Array
 from pellicle.contact.caveats import Status, by_phrase, from_text
 from pellicle.errors import first_of
 from pellicle.results.path import has_interaction, has_times, label_of_step, prescribed_variable
-from pellicle.results.result import Result, first_message
+from pellicle.results.result import Result
 from pellicle.results.runs import axes_of, by_run, runs_of, short_files, statuses_of
 from pellicle.results.wording import column_of, has_one_shape, is_periodic
 from pellicle.units import readable
@@ -97,13 +97,11 @@ def status_of_run(result: Result) -> tuple[str, bool | None, list[str]]:
     count = "The load step" if done == 1 else f"All {done} load steps"
     bad = f"{len(failed)} of {done} load steps did not converge: do not rely on them."
     sentences.append(bad if failed else f"{count} converged.")
-    details = [f"Step {step}: {message}" for step, message in failed]
     for phrase, steps in result.caveats_by_phrase().items():
         sentences.append(f"In {len(steps)} of {done} {phrase}.")
-        details.append(f"S{first_message(steps)[1:]}")
-    for subject, message in result.beyond_theory().items():
-        sentences.append(f"{subject[0].upper()}{subject[1:]}.")
-        details.append(f"S{message[1:]}")
+    sentences += [f"{subject[0].upper()}{subject[1:]}." for subject in result.beyond_theory()]
+    lines = *failed_steps(result), *result.warnings()
+    details = [f"{line[0].upper()}{line[1:]}" for line in lines]
     is_good = None if details else True
     return " ".join(sentences), is_good if done == total and not failed else False, details
 

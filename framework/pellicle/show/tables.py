@@ -19,7 +19,6 @@ from pellicle.results.derived import DERIVED
 from pellicle.results.path import oscillations_of, path_variables, prescribed_variable
 from pellicle.results.runs import axes_of, progress_of, runs_of, short_files
 from pellicle.results.wording import column_of, means_something
-from pellicle.units import DIGITS, Scale, printed, readable
 from pellicle.variables import CAVEATS, VARIABLES, names_of
 
 if TYPE_CHECKING:
@@ -122,9 +121,9 @@ def path(data: xr.Dataset, *, si: bool = False) -> list[Table]:
     for name, number in path_variables(data).items():
         variable = VARIABLES[name]
         if variable.kind == "path":
-            in_si = Scale(1.0, printed(variable.unit)).text(number, 6)
-            text = in_si if si else readable(number, variable.unit, DIGITS)
-            rows.append((variable.words, "none" if number != number else text, variable.meaning))
+            scale, digits = Column("", [number], variable.unit).unit_and_digits(si=si)
+            text = "none" if number != number else scale.text(number, digits)
+            rows.append((variable.words, text, variable.meaning))
     caption = "Events on the path, to a step, and its work."
     return [Table.of_rows(("path", "value", "meaning"), rows, caption)] if rows else []
 
@@ -191,30 +190,24 @@ def main_runs(table: xr.Dataset) -> Table:
     return runs(table, [*main, *derived])
 
 
-def paths_of_runs(table: xr.Dataset) -> list[Table]:
-    """Return the parameters and the numbers of the path of each run, where it sticks or oscillates.
+def paths_of_runs(table: xr.Dataset, names: Sequence[str] | None = None) -> list[Table]:
+    """Return numbers of the path of each run, where it sticks or oscillates.
 
-    Numbers that are derived from those belong to them.
+    Without ``names`` these are all of them, and the parameters of the runs.
     """
-    names = [
-        str(name)
-        for name, variable in table.data_vars.items()
-        if "step" not in variable.dims and variable.dtype.kind == "f"
-    ]
+    if names is None:
+        variables = table.data_vars.items()
+        per_run = [n for n, v in variables if "step" not in v.dims and v.dtype.kind == "f"]
+        names = [*axes_of(table), *map(str, per_run)] if per_run else []
     caption = "The path of each run: events, to a step, and work; the last oscillation."
-    return [_paths(table, [*axes_of(table), *names], caption)] if names else []
+    number = Column("run", range(1, table["run"].size + 1))
+    return [Table([number, *_of_runs(table, names)], caption)] if names else []
 
 
 def main_paths(table: xr.Dataset) -> list[Table]:
-    """Return the main numbers of the path of each run, where it sticks or oscillates."""
+    """Return the main numbers of the path of each run, and those that are derived from them."""
     derived = [n for n in json.loads(table.attrs[DERIVED]) if "step" not in table[n].dims]
-    names = [name for name in (*_OF_PATHS, *derived) if name in table]
-    return [_paths(table, names)] if names else []
-
-
-def _paths(table: xr.Dataset, names: Sequence[str], caption: str = "") -> Table:
-    number = Column("run", range(1, table["run"].size + 1))
-    return Table([number, *_of_runs(table, names)], caption)
+    return paths_of_runs(table, [name for name in (*_OF_PATHS, *derived) if name in table])
 
 
 def _of_runs(table: xr.Dataset, names: Iterable[str]) -> Iterator[Column]:

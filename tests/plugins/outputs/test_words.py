@@ -81,25 +81,10 @@ STICKING = bead(
     loading={"depth": {"start": "0.2 um", "stop": "0.6 um", "num": 3, "back": True}},
     outputs=PAGES,
 )
-RELAXING = bead(
-    kernel={
-        "type": "viscoelastic",
-        "solid": {"type": "half_space", "reduced_modulus": "10 kPa"},
-        "relaxation": [{"fraction": 0.5, "time": "1 s"}],
-    },
-    loading={
-        "depth": [
-            {"to": "10 um", "time": "1 s", "num": 2},
-            {"amplitude": "1 um", "frequency": "1 Hz", "cycles": 1, "num": 8},
-        ]
-    },
-    outputs=PAGES,
-)
 WORDS = {
     "layer": "step 2;gap [µm];contact area, Yastrebov correction;contact area [mm²]",
     "study": "surface tension 1.1 N/m;thickness of the substrate 50 µm;indenter cone;[mm²]",
     "sticking": "work of adhesion",
-    "relaxing": "storage stiffness K′",
 }
 """Words of figures or pages, with their units."""
 
@@ -151,7 +136,7 @@ def keys(texts: list[str], configuration: dict[str, Any]) -> set[str]:
 @pytest.mark.filterwarnings("ignore::pellicle.ConvergenceWarning")
 @pytest.mark.parametrize(
     ("name", "run"),
-    [("layer", LAYER), ("study", STUDY), ("sticking", STICKING), ("relaxing", RELAXING)],
+    [("layer", LAYER), ("study", STUDY), ("sticking", STICKING)],
 )
 def test_no_figure_or_page_has_a_key(
     name: str, run: dict[str, Any], drawn: list[str], tmp_path: Path
@@ -192,12 +177,6 @@ def test_fits_and_populations_are_in_words(
     assert "2 of 2 curves were fitted. Median: Young's modulus" in text
     assert "Fit of 2 curves" in text
     assert keys(drawn, {}) == set()
-
-
-def test_the_walk_finds_keys() -> None:
-    """A key among the texts is found, so that the tests above can fail."""
-    texts = ["kernel.tension = 1 N/m", "mean_pressure [Pa]", "surface tension 30 mN/m", "force [N]"]
-    assert keys(texts, LAYER) == {"kernel.tension", "mean_pressure"}
 
 
 def coordinate(values: list[float], unit: str, name: str = "odd.thing") -> xr.DataArray:
