@@ -34,8 +34,6 @@ ROLE: Final = "role"
 roles below."""
 SEED: Final = "seed"
 """The values only repeat a random run: they are not compared, nor have they an order."""
-SHORTEST_WAVE: Final = "shortest wave"
-"""The shortest wavelength of a rough surface, which the cells have to resolve."""
 
 
 def words_of_name(name: str) -> str:

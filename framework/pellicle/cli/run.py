@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from pellicle.errors import ConfigError
 from pellicle.hookspecs import RegisterCommand, hookimpl
 
 from .printing import INTERRUPTED, echo, print_json, print_table, print_warning
@@ -68,26 +66,21 @@ def run(
     from pellicle.config.study import Study, from_toml
     from pellicle.contact.caveats import Status
     from pellicle.runs import runner
-    from pellicle.runs.advice import size_for
     from pellicle.runs.journal import Journal
     from pellicle.runs.progress import RunProgress
     from pellicle.show import plan
-    from pellicle.show.doubtful_scales import doubtful_scales
+    from pellicle.show.doubtful_scales import doubts_of_scale
     from pellicle.studies import runner as studies
 
     from .results import exit_by_outcome, print_outcome_json, print_tables
 
     began, configuration = monotonic(), from_toml(file, set_ or ())
-    for doubt in doubtful_scales(configuration).values():
+    for doubt in doubts_of_scale(configuration).values():
         print_warning(doubt)
     folder = directory or Path(file.stem)
     stem = folder / file.stem
     if dry_run:
-        if isinstance(configuration, Study):
-            tasks = studies.tasks(configuration, folder, overwrite=overwrite)
-        else:
-            journal = Journal(stem, configuration.identity, overwrite)
-            tasks = [studies.RunTask(configuration.title or stem.name, configuration, journal)]
+        tasks = studies.planned(configuration, stem, overwrite=overwrite)
         table, sentence = plan.planned(tasks)
         if json:
             print_json({"runs": table.records})
@@ -111,8 +104,7 @@ def run(
                 configuration, journal, outputs, bar, threads=threads
             )
             if Status.CONTACT_AT_EDGE.name in outcome.dataset["status_code"].values:
-                with suppress(ConfigError):
-                    echo(plan.larger_domain(size_for(configuration), folder), err=True)
+                echo(plan.larger_domain(file, folder), err=True)
     except KeyboardInterrupt:
         finished = "runs" if isinstance(configuration, Study) else "steps"
         echo(plan.interrupted(finished, folder), err=True)

@@ -1,5 +1,6 @@
 __all__: list[str]
 
+from .doubtful_scales import doubts_of_scale as doubts_of_scale
 from .drawing import draw as draw
 from .fields import without_round_off as without_round_off
 from .html import Block as Block

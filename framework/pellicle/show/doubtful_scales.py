@@ -25,7 +25,7 @@ _STICKY = 10.0
 """Largest plausible displacement by adhesion over the domain."""
 
 
-def doubtful_scales(configuration: Run | Study) -> dict[str, str]:
+def doubts_of_scale(configuration: Run | Study) -> dict[str, str]:
     """Return, by path, a message on each value out of scale with the others of its run.
 
     Of the runs of a study the first that has such a value is quoted.

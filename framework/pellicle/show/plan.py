@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pellicle.components.charts import Table
-from pellicle.units import DIGITS, decimal, readable
+from pellicle.units import decimal, readable
 
 if TYPE_CHECKING:
     from pellicle.studies.runner import RunTask
@@ -63,10 +63,9 @@ def interrupted(finished: str, folder: Path) -> str:
     return f"interrupted; finished {finished} are in {folder}, and the same command continues"
 
 
-def larger_domain(size: tuple[float, float], folder: Path) -> str:
+def larger_domain(file: Path, folder: Path) -> str:
     """Return how to solve a run on a domain that holds its contacts."""
-    x, y = (readable(edge, "m", DIGITS) for edge in size)
     return (
-        f'grid.size = ["{x}", "{y}"] holds the contact of every step; -o DIR solves it in '
-        f"another folder, --overwrite in place of the result in {folder}"
+        f"`pellicle check {file}` finds a grid.size that holds the contact of every step; -o DIR "
+        f"solves it in another folder, --overwrite in place of the result in {folder}"
     )

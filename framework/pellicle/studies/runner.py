@@ -166,6 +166,17 @@ def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[Run
     ]
 
 
+def planned(configuration: Run | Study, stem: Path, *, overwrite: bool = False) -> list[RunTask]:
+    """Return the run of a configuration, or those of a study, finished or not.
+
+    ``stem`` is the path of the files of a run without their suffixes; a study is in its folder.
+    """
+    if isinstance(configuration, Study):
+        return tasks(configuration, stem.parent, overwrite=overwrite)
+    journal = Journal(stem, configuration.identity, overwrite)
+    return [RunTask(configuration.title or stem.name, configuration, journal)]
+
+
 def execute(
     study: Study,
     directory: Path,

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
-from pellicle.components.charts import Table
+from pellicle import Run
+from pellicle.components import Table
 from pellicle.units import readable
 
-if TYPE_CHECKING:
-    from pellicle.config.run import Run
-    from pellicle.runs.advice import Advice
+from .advice import Advice
 
 _IN_WAVE = 8
 """Cells in the shortest wave of an indenter below which its areas are warned of: with four, the

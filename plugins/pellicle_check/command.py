@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+import warnings
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from pellicle.cli import NOT_CONVERGED, echo, print_json, print_table
 from pellicle.errors import ConfigError
-
-from .printing import NOT_CONVERGED, echo, print_json, print_table, print_warning
 
 
 def check(
@@ -26,28 +26,26 @@ def check(
     json: Annotated[bool, typer.Option("--json", help="Print JSON, in SI.")] = False,
 ) -> None:
     """Check a run or a study, and estimate its errors and memory from coarser grids."""
-    from pellicle.config.study import Study, from_toml
-    from pellicle.runs.advice import advise
-    from pellicle.runs.memory_estimate import memory_of
-    from pellicle.show import advice
-    from pellicle.show.doubtful_scales import doubtful_scales
-    from pellicle.studies.runner import tasks
+    import pellicle as pl
+    from pellicle.schema import overridden, read_toml
+    from pellicle.show import doubts_of_scale
+    from pellicle.studies import planned
+    from pellicle_check import words
+    from pellicle_check.advice import advise
 
     allowed = _allowed(error.strip())
-    configuration = from_toml(file, set_ or ())
-    for doubt in doubtful_scales(configuration).values():
-        print_warning(doubt)
-    if isinstance(configuration, Study):
-        runs = [(task.name, task.run) for task in tasks(configuration, Path())]
-    else:
-        runs = [("", configuration)]
+    is_study = "study" in overridden(read_toml(file), set_ or ())
+    configuration = (pl.Study if is_study else pl.Run).from_toml(file, set_ or ())
+    for doubt in doubts_of_scale(configuration).values():
+        warnings.warn(doubt, stacklevel=2)
     checked = []
-    for name, run in runs:
+    for task in planned(configuration, Path(file.stem)):
+        name = task.name if is_study else ""
         try:
-            checked.append(advice.Advised(name, run, advise(run, allowed), memory_of(run)))
+            advice = advise(task.run, allowed)
         except ConfigError as problem:
             raise ConfigError(f"{problem} (run with {name})") if name else problem from None
-    is_study = isinstance(configuration, Study)
+        checked.append(words.Advised(name, task.run, advice, task.memory))
     if json:
         data = [
             of_run._asdict()
@@ -58,12 +56,12 @@ def check(
         print_json({"runs": of_runs} if is_study else data[0])
     else:
         table, sentences = (
-            (advice.errors_of_runs(checked, allowed), advice.advice_on_runs(checked, allowed))
+            (words.errors_of_runs(checked, allowed), words.advice_on_runs(checked, allowed))
             if is_study
-            else (advice.errors_of_run(checked[0]), advice.advice_on_run(checked[0], allowed))
+            else (words.errors_of_run(checked[0]), words.advice_on_run(checked[0], allowed))
         )
         print_table(table)
-        for sentence in (*sentences, *advice.contacts_at_edge(checked)):
+        for sentence in (*sentences, *words.contacts_at_edge(checked)):
             echo(sentence)
     raise typer.Exit(NOT_CONVERGED if any(one.advice.at_edge for one in checked) else 0)
 
