@@ -23,8 +23,8 @@ from typer.testing import CliRunner, Result
 import pellicle as pl
 from pellicle.cli import new
 from pellicle.cli.app import app
-from pellicle.cli.printing import BAD_INPUT, CRASHED, print_columns
-from pellicle.components import Case
+from pellicle.cli.printing import BAD_INPUT, CRASHED, print_table
+from pellicle.components import Case, Column, Table
 from pellicle.config.explain import explanations
 from pellicle.runs import validation
 from pellicle.runs.validation import CheckedCase
@@ -76,8 +76,8 @@ def cli(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Cli:
 
 def test_a_table_in_a_pipe_has_a_line_for_each_row(capsys: pytest.CaptureFixture[str]) -> None:
     """It is neither folded nor cut, however long its cells are; heads and numbers are aligned."""
-    columns = [("step", ["1", "12"]), ("depth [µm]", ["10", "–"]), ("why", ["so " * 200, "no"])]
-    print_columns(columns)
+    numbers = Column("depth", [1e-5, np.nan], "m")
+    print_table(Table([Column("step", [1, 12]), numbers, Column("why", ["so " * 200, "no"])]))
     first, second, third = capsys.readouterr().out.splitlines()
     assert first == "step  depth [µm]  why"
     assert second == f"   1          10  {('so ' * 200).strip()}"

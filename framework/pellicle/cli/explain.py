@@ -10,7 +10,7 @@ from pellicle.commands import file_models
 from pellicle.errors import PluginError
 from pellicle.origins import Broken
 
-from .printing import echo, print_columns, print_json
+from .printing import echo, print_json, print_table
 
 
 def explain(
@@ -25,6 +25,7 @@ def explain(
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Print the fields of a component or of a table, with unit, default, meaning and an example."""
+    from pellicle.components import Column, Table
     from pellicle.config.explain import explanations, words_by_kind
 
     models = file_models()
@@ -37,7 +38,7 @@ def explain(
             print_json(words)
             return
         types = [", ".join(names) for names in words.values()]
-        print_columns([("kind", [*words]), ("types", types)])
+        print_table(Table([Column("kind", [*words]), Column("types", types)]))
         echo(
             "\none in full: pellicle explain TYPE; the types of a family in a line each: "
             "pellicle explain kernel"
@@ -58,6 +59,7 @@ def explain(
             if kind == "family":
                 heads = {"type": "name", "meaning": "meaning"}
             echo()
-            print_columns([(h, [getattr(row, key) for row in rows]) for h, key in heads.items()])
+            columns = [Column(h, [getattr(row, key) for row in rows]) for h, key in heads.items()]
+            print_table(Table(columns))
         if example:
             echo(f"\nexample:\n\n{example}")

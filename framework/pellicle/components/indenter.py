@@ -45,12 +45,8 @@ class Indenter(Component):
 
         ``x`` of shape (nx, 1) and ``y`` of shape (1, ny) are coordinates of the cell centres [m]
         from the centre of the domain; the result has shape (nx, ny). For an unbounded indenter that
-        is rotated, ``x`` and ``y`` both have shape (nx, ny).
-
-        Raises
-        ------
-        ConfigError
-            The indenter has no profile on these points.
+        is rotated, ``x`` and ``y`` both have shape (nx, ny). An indenter that has no profile on
+        these points raises a ConfigError.
         """
 
 

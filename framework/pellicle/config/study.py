@@ -20,12 +20,10 @@ from pellicle.results.derived import constants
 from pellicle.schema.expression import CONSTANTS, FUNCTIONS, evaluate, names_in
 from pellicle.schema.from_file import FromFile, overridden, paths_relative_to, read_toml
 from pellicle.schema.model import get, python_names, replaced
-from pellicle.schema.notebook import summary
 from pellicle.schema.ranges import Axes, expand
 from pellicle.variables import BEYOND_THEORY, FIELDS, VARIABLES
 
 from .coordinates import Coordinate, as_json, coordinate, short, tell_apart
-from .describe import words_at
 from .run import Run
 
 DEFAULT_EXECUTOR = "serial"
@@ -106,15 +104,9 @@ class Study(FromFile):
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: the varied parameters and the number of runs."""
-        run = self.points[0].run
-        configuration = json.loads(run.to_json())
-        rows = [
-            (words_at(configuration, Run, name), ", ".join(map(str, values)), name)
-            for axes in self.dimensions.values()
-            for name, values in axes.items()
-        ]
-        heads = ("varied", "values", "field")
-        return summary(run.title or "Study", f"{len(self.points)} runs", heads, rows)
+        from pellicle.show.notebook import of_study
+
+        return of_study(self)
 
     @model_validator(mode="after")
     def _create_runs(self) -> Self:

@@ -85,11 +85,8 @@ class Quantity:
     def __call__(self, value: object) -> float:
         """Return ``value`` in SI.
 
-        Raises
-        ------
-        ValueError
-            The value is not a number, lacks a unit, has another dimension, is not finite, is beyond
-            `LARGEST` or out of bounds.
+        One that is no number, lacks a unit, has another dimension, is not finite, is beyond
+        `LARGEST` or out of bounds is a ValueError.
         """
         number = self._in_si(value)
         if not math.isfinite(number):

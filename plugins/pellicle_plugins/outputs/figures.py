@@ -14,7 +14,7 @@ from pellicle.components import Axis, Chart, Fields, Look, Output, Runs, Series
 from pellicle.results.dimensions import parts
 from pellicle.results.path import has_interaction, has_times
 from pellicle.results.result import Result
-from pellicle.results.wording import is_periodic, wording
+from pellicle.results.wording import column_of, is_periodic
 from pellicle.show.saving import write_charts
 from pellicle.show.style import FigureStyle, is_log_spaced, is_ordered, is_seed
 from pellicle.variables import CONTACT_AREA, CORRECTED_AREA
@@ -93,7 +93,7 @@ def force_depth(result: Result) -> Chart:
 def area_force(result: Result) -> Chart:
     """Return the contact area, counted over cells and corrected, against force."""
     corrected = {
-        str(name): wording(variable).words.removeprefix(f"{CONTACT_AREA}, ")
+        str(name): column_of(variable).words.removeprefix(f"{CONTACT_AREA}, ")
         for name, variable in result.dataset.data_vars.items()
         if str(name).startswith(CORRECTED_AREA)
     }
@@ -128,7 +128,7 @@ def study_curves(table: xr.Dataset, variable: str) -> Chart:
     rest = [d for d in dimensions if d != along]
     compared = sorted(rest, key=lambda d: is_seed(table[d]) or table.sizes[d] == 1)[:1]
     stacked = [str(d) for d in table["status"].dims if d not in (along, *compared)]
-    named_by = wording(table[compared[0]]) if compared else None
+    named_by = column_of(table[compared[0]]) if compared else None
     many = table.sizes[compared[0]] if compared else 1
     pulls, series = has_interaction(table), list[Series]()
     for number, part in enumerate(parts(table, compared)):
@@ -192,7 +192,7 @@ def _series(
 def _axis(variable: xr.DataArray, *, signed: bool = False, log: bool = False) -> Axis:
     unit = str(variable.attrs.get("units", "1"))
     start = None if signed or log else 0.0
-    return Axis(wording(variable).words, unit, log=log, limits=(start, None), signed=signed)
+    return Axis(column_of(variable).words, unit, log=log, limits=(start, None), signed=signed)
 
 
 def _title(data: xr.Dataset) -> str:

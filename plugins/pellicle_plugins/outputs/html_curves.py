@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from pellicle.components import Chart, Fields, Output, Runs, Table
 from pellicle.results.path import label_of_step
 from pellicle.results.result import Result
-from pellicle.results.wording import wording
+from pellicle.results.wording import column_of
 from pellicle.show import Picture, figure_of, svg
 from pellicle.show.drawing import Drawn, marks_of
 
@@ -63,7 +63,7 @@ def _profiles(result: Result, chosen: list[int], begin: int) -> Picture:
 def curves_of_study(table: xr.Dataset) -> list[Picture]:
     """Return a figure for each variable that is drawn over a study."""
     return [
-        picture(make(), f"{wording(table[name]).words.capitalize()} over the study.")
+        picture(make(), f"{column_of(table[name]).words.capitalize()} over the study.")
         for name, make in figures_of_study(table).items()
     ]
 
