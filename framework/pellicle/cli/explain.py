@@ -46,18 +46,20 @@ def explain(
         return
     listed = explanations(type_, tables)
     if json:
-        print_json([e._asdict() | {"fields": [row._asdict() for row in e.fields]} for e in listed])
+        keys = "name", "kind", "unit", "default", "meaning"
+        fields = [[{key: getattr(row, key) for key in keys} for row in e.fields] for e in listed]
+        print_json([e._asdict() | {"fields": f} for e, f in zip(listed, fields, strict=True)])
         return
     for number, explanation in enumerate(listed):
         name, kind, origin, text, rows, example = explanation
         origin = f", from {origin}" if origin else ""
         echo("\n" * (number > 0) + f"{name} ({kind}{origin})\n\n{text}")
         if rows:
-            names, units, defaults, meanings = map(list, zip(*rows, strict=True))
-            columns = [Column("field", names), Column("unit", units), Column("default", defaults)]
+            heads = {"field": "name", "takes": "kind", "default": "default", "meaning": "meaning"}
             if kind == "family":
-                columns = [Column("type", names)]
+                heads = {"type": "name", "meaning": "meaning"}
             echo()
-            print_table(Table([*columns, Column("meaning", meanings)]))
+            columns = [Column(h, [getattr(row, key) for row in rows]) for h, key in heads.items()]
+            print_table(Table(columns))
         if example:
             echo(f"\nexample:\n\n{example}")

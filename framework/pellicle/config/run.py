@@ -34,6 +34,7 @@ from pellicle.components import (
     Output,
     Solver,
 )
+from pellicle.components.base import words_of_type
 from pellicle.components.kernel import branches_of
 from pellicle.components.output import ResultFile, refuse_shared_files
 from pellicle.errors import ConfigError
@@ -217,7 +218,8 @@ class Run(FromFile):
         kinds = {"main", "other", "contact", "effort", "residual", "status"}
         kinds |= {"interaction", "path"} if self.interaction else set()
         kinds |= {"oscillation"} if self.loading.oscillates else set()
-        areas = [corrected_area(correction.type_name) for correction in self.corrections]
+        types = [(type(one), one.type_name) for one in self.corrections]
+        areas = [corrected_area(type_, words_of_type(one, type_)) for one, type_ in types]
         return [
             *(
                 variable

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellicle.components.charts import Column, Table
-from pellicle.config.describe import Input
+from pellicle.config.describe import FieldRow
 from pellicle.contact.caveats import from_text, verdict_of
 from pellicle.results.derived import DERIVED
 from pellicle.results.path import oscillations_of, path_variables, prescribed_variable
@@ -217,7 +217,7 @@ def _of_runs(table: xr.Dataset, names: Iterable[str]) -> Iterator[Column]:
         yield replace(column_of(table[name]), values=column_of(values).values)
 
 
-def inputs(fields: Iterable[Input], caption: str = "") -> Table:
+def inputs(fields: Iterable[FieldRow], caption: str = "") -> Table:
     """Return each value of a configuration with its meaning, without the title."""
     rows = [
         (i.part, "type" if i.words == i.part else i.words, i.value, i.meaning)
@@ -227,18 +227,18 @@ def inputs(fields: Iterable[Input], caption: str = "") -> Table:
     return Table.of_rows(("of", "input", "value", "meaning"), rows, caption)
 
 
-def inputs_of_study(table: xr.Dataset, fields: Iterable[Input]) -> list[Input]:
+def inputs_of_study(table: xr.Dataset, fields: Iterable[FieldRow]) -> list[FieldRow]:
     """Return the inputs of a study: its axes, and the inputs of its first run that do not vary."""
     axes = []
     for name in axes_of(table):
         axis = column_of(table[name])
         meaning = f"varied, {len(axis.values)} values"
-        axes.append(Input(name, "study", axis.words, axis.listing, meaning))
+        axes.append(FieldRow(name, "study", axis.words, axis.listing, meaning))
     names = tuple(f"{axis.name}." for axis in axes)
     return [*axes, *(field for field in fields if not f"{field.name}.".startswith(names))]
 
 
-def origin(attributes: Mapping[str, Any], fields: Iterable[Input]) -> list[Table]:
+def origin(attributes: Mapping[str, Any], fields: Iterable[FieldRow]) -> list[Table]:
     """Return the versions, date and identity of a result, and the packages of its components."""
     names = "versions", "date", "identity"
     facts = [(name, attributes[name]) for name in names if attributes.get(name)]

@@ -15,7 +15,7 @@ from pellicle.config.coordinates import units_of
 from pellicle.config.provenance import facts_of, now_with
 from pellicle.config.study import Study
 from pellicle.contact.caveats import Caveat, Status
-from pellicle.errors import ConfigError
+from pellicle.errors import problems_within
 from pellicle.files import for_document
 from pellicle.results import storage
 from pellicle.results.derived import CELLS, DERIVED, FIRST_RUN, VARYING, derive
@@ -137,11 +137,9 @@ def check_outputs(study: Study) -> None:
     for number, output in enumerate(study.points[0].run.outputs or ()):
         if output.scope == "run":
             continue
-        try:
-            with errors_attributed_to(output), np.errstate(all="ignore"):
-                output.check(runs)
-        except ConfigError as error:
-            raise error.within(f"outputs.{number}") from None
+        field = f"outputs.{number}"
+        with problems_within(field), errors_attributed_to(output), np.errstate(all="ignore"):
+            output.check(runs)
 
 
 def _planned(study: Study) -> Runs:

@@ -15,7 +15,7 @@ from pydantic import Field
 
 from pellicle import Grid, Run, registry
 from pellicle.components import Output, Runs, Table
-from pellicle.config.describe import Input, inputs
+from pellicle.config.describe import FieldRow, inputs
 from pellicle.errors import StorageError
 from pellicle.files import atomic_write
 from pellicle.results import storage
@@ -69,7 +69,7 @@ class Html(Output):
     """
 
     type: Literal["html"] = "html"
-    examples = ({"points": 8, "frames": 1},)
+    examples = ({}, {"points": 8, "frames": 1})
     shares_stem: ClassVar[bool] = True
     points: Annotated[
         int,
@@ -261,7 +261,7 @@ def _setup(step: xr.Dataset, configuration: dict[str, Any], label: str) -> Pictu
     return picture(cross_section(step), caption_of_setup(configuration, label))
 
 
-def _inputs(fields: Iterable[Input]) -> Table:
+def _inputs(fields: Iterable[FieldRow]) -> Table:
     caption = "All inputs that determine the result, defaults included."
     return tables.inputs((i for i in fields if not i.name.startswith("outputs.")), caption)
 
