@@ -140,6 +140,8 @@ class Chart:
     """Ranges of x over which the ground is shaded."""
     heights: Sequence[float] = ()
     """Heights of the panels, relative to each other; all alike if empty."""
+    titles: Sequence[str] = ()
+    """Titles of the panels, if they are in a grid and share y, too."""
 
     _repr_png_ = _drawn
 

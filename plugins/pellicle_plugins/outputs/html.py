@@ -186,7 +186,7 @@ class Html(Output):
                 [*lead, status],
             ),
             Section("Maps", [maps] if frames else []),
-            Section("Curves", curves_of_study(table)),
+            Section("Curves", [*curves_of_study(runs)]),
             Section("Outputs", [*curves_of_outputs(runs, _outputs(first_run))]),
             Section("Numbers", numbers),
             Section(

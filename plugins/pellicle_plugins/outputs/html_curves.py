@@ -12,13 +12,12 @@ from pellicle.results.path import label_of_step
 from pellicle.results.result import Result
 from pellicle.results.wording import wording
 from pellicle.show import Picture, figure_of, svg
-from pellicle.show.drawing import Drawn, marks_of
+from pellicle.show.drawing import SIZE, Drawn, marks_of
 
 from .figures import figures_of, figures_of_study
 from .step_figures import profile
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.figure import Figure
 
 _PROFILES = 16
@@ -60,12 +59,12 @@ def _profiles(result: Result, chosen: list[int], begin: int) -> Picture:
     return replace(drawn[chosen[begin]], by_frame=frames if len(drawn) > 1 else ())
 
 
-def curves_of_study(table: xr.Dataset) -> list[Picture]:
-    """Return a figure for each variable that is drawn over a study."""
-    return [
-        picture(make(), f"{wording(table[name]).words.capitalize()} over the study.")
-        for name, make in figures_of_study(table).items()
-    ]
+def curves_of_study(runs: Runs) -> Iterator[Picture]:
+    """Yield a figure for each variable that is drawn over a study."""
+    for name, make in figures_of_study(runs).items():
+        chart, words = make(), wording(runs.table[name]).words.capitalize()
+        _, *remarks = chart.title.splitlines()
+        yield picture(chart, f"{', '.join([f'{words} over the study', *remarks])}.")
 
 
 def curves_of_outputs(
@@ -99,4 +98,4 @@ def picture(
             marks.extend(marks_of(figure, drawn, marked))
 
     drawing = svg(lambda figure: drawn.extend(fill(figure)), size, mark)
-    return Picture(drawing, caption, caption, marks, wide=len(beside) > 1)
+    return Picture(drawing, caption, caption, marks, wide=size[0] > SIZE[0])

@@ -52,7 +52,7 @@ class Patches(TableFigure):
 
     def check(self, runs: Runs) -> None:
         """Refuse an axis or a label that the table does not have; four cells are no grid."""
-        list(self.picked(runs.table))
+        list(self.picked(runs))
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
         """Yield all patches, and the map of the last curve beside the numbers of patches."""
