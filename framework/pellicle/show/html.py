@@ -75,6 +75,8 @@ class Table:
     caption: str
     columns: Sequence[Column]
     rows: Sequence[Sequence[str | Cell]]
+    folded: bool = False
+    """Whether only the caption is shown until a click on it."""
 
     @property
     def cells(self) -> list[list[Cell]]:

@@ -24,7 +24,7 @@ from pellicle.results.path import has_interaction, label_of_step, prescribed_var
 from pellicle.results.result import Result, first_message
 from pellicle.results.wording import wording
 from pellicle.show.drawing import DIVERGING
-from pellicle.show.fields import default_step, draws_contact, without_round_off
+from pellicle.show.fields import default_step, without_round_off
 from pellicle.show.html import Code, Notice, Picture, Section, Text, page
 from pellicle.show.maps import Field as MapField
 from pellicle.show.maps import Frame, Maps, frame, side
@@ -44,7 +44,7 @@ from .html_tables import (
     study_path_tables,
 )
 from .methods import methods
-from .sentences import sentence_of_step, sentence_of_study, sentences_of_path
+from .sentences import aim_of_path, range_of_path, sentence_of_step, sentence_of_study
 from .step_figures import cross_section
 
 if TYPE_CHECKING:
@@ -128,9 +128,15 @@ class Html(Output):
         maps, chosen = self._maps_of_steps(result)
         step_shown = default_step(data) % data.sizes["step"]
         first, label = sentence_of_step(data, step_shown), label_of_step(data, step_shown)
-        rest = sentences_of_path(data, result.path_summary)
-        sentences = [Text(first, lead=True), *([Text(rest)] if rest else [])]
-        numbers = [*step_tables(data), *path_tables(result), *oscillation_tables(result)]
+        aim = aim_of_path(data, result.path_summary)
+        lead, rest = (aim, first) if aim else (first, range_of_path(data))
+        sentences = [Text(lead, lead=True), *([Text(rest)] if rest else [])]
+        tables, off = step_tables(data), data["contact_area"].values == 0
+        if off.any() and not off.all():
+            (apart, *_), (*of_contact, _) = (step_tables(data.isel(step=s)) for s in (off, ~off))
+            apart = replace(apart, caption="Results of the steps out of contact.", folded=True)
+            tables = [*of_contact, apart, tables[-1]]
+        numbers = [*tables, *path_tables(result), *oscillation_tables(result)]
         return [
             Section(
                 "In short",
@@ -175,9 +181,8 @@ class Html(Output):
         else:
             converged = f"Every step of all {len(rows)} runs converged."
             status = Notice(converged, None if warnings else True, warnings)
-        which = "The last step in contact" if draws_contact(table) else "The last step"
         of_runs = _share_in_words(len(frames), len(rows), "run")
-        caption = f"{which} of {of_runs}, each in colours over its own range."
+        caption = f"The last step in contact of {of_runs}, each in colours over its own range."
         maps = Maps(caption, "run", tuple(mapped.values()), list(frames.values()))
         numbers = [run_table(table, rows, list(frames)), *study_path_tables(table, rows)]
         return [

@@ -57,11 +57,11 @@ class Page(HTMLParser):
         """Begin a table, a row or a cell where one begins."""
         self.tags.append((tag, dict(attrs)))
         self._open.append(tag)
-        if tag == "table":
+        if tag == "summary":
             self._rows.append([])
-        elif tag in ("caption", "tr"):
+        if tag in ("summary", "tr"):
             self._rows[-1].append([])
-        if tag in ("caption", "th", "td"):
+        if tag in ("summary", "th", "td"):
             self._rows[-1][-1].append("")
         self.texts.setdefault(tag, []).append("")
 
@@ -72,7 +72,7 @@ class Page(HTMLParser):
 
     def handle_data(self, data: str) -> None:
         """Put a text where it belongs."""
-        if {"caption", "th", "td"} & set(self._open):
+        if {"summary", "th", "td"} & set(self._open):
             self._rows[-1][-1][-1] += data
         if self._open:
             self.texts[self._open[-1]][-1] += data

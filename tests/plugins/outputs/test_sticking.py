@@ -135,7 +135,6 @@ def test_the_last_step_in_contact_is_drawn(bead: tuple[Path, pl.Result]) -> None
     assert retraction["contact_area"].values[-1] == 0
     assert retraction["contact_area"].values[default_step(retraction)] > 0
     assert default_step(data.isel(step=[4])) == -1
-    assert default_step(data.drop_vars("zone_area").isel(step=slice(0, 5))) == -1
 
 
 def test_tension_is_blue_and_pressure_red(bead: tuple[Path, pl.Result]) -> None:
