@@ -108,8 +108,8 @@ class Series:
     steps: Cells | None = None
     """Index of the load step of each point, which a page marks."""
     panel: int = 0
-    stepped: bool = False
-    """Whether y is constant up to the next x."""
+    stepped: Literal["post", "mid"] | None = None
+    """Whether y is constant up to the next x, or about each x, as in a cell."""
     written: bool = True
     """Whether its numbers are written; those of a line that guides the eye are not."""
 
@@ -148,12 +148,10 @@ class Chart:
 
 @dataclass(frozen=True)
 class Panel:
-    """A field over the domain."""
+    """A field over the domain, whose centre is the origin."""
 
-    x: Array
-    """Positions of cells [m], shape (nx,)."""
-    y: Array
-    """Positions of cells [m], shape (ny,)."""
+    size: tuple[float, float]
+    """Edge lengths of the domain along x and y [m]."""
     values: NDArray[Any]
     """In SI, or numbers of parts, shape (nx, ny)."""
     title: str = ""

@@ -165,7 +165,7 @@ def _style(series: Series, chart: Chart) -> dict[str, Any]:
     if is_reference:
         style["zorder"] = 1
     if series.stepped:
-        style["drawstyle"] = "steps-post"
+        style["drawstyle"] = f"steps-{series.stepped}"
     if look.marker is not None and look.sparse:
         style |= sparse_marker(look.marker)
     elif look.marker is not None:
@@ -275,16 +275,15 @@ def _draw_panel(
     axes: Axes, panel: Panel, factor: float, colours: dict[str, Any], *, parts: bool
 ) -> Any:
     """Draw a field times ``factor``, or numbers of ``parts``, and return its image."""
-    length = axis_unit(np.append(panel.x, panel.y), "m")
-    x, y = panel.x * length.factor, panel.y * length.factor
+    length = axis_unit(np.array(panel.size) / 2, "m")
+    x, y = (edge / 2 * length.factor for edge in panel.size)
     values = panel.values.T * factor if factor != 1.0 else panel.values.T
     if parts:
         values = (values % _PARTS).astype(np.uint8)
     if panel.blank is not None:
         values = np.ma.masked_where(panel.blank.T, values)
         axes.set_facecolor(NO_CONTACT)
-    halves = [(c[1] - c[0] if c.size > 1 else 1.0) / 2 for c in (x, y)]
-    edges: Any = x[0] - halves[0], x[-1] + halves[0], y[0] - halves[1], y[-1] + halves[1]
+    edges: Any = -x, x, -y, y
     # The stage "rgba" converts every cell to four colour values first.
     shared: dict[str, Any] = {"origin": "lower", "interpolation_stage": "data"}
     image = axes.imshow(values, extent=edges, **shared, **colours)
@@ -292,7 +291,7 @@ def _draw_panel(
         # matplotlib warns of a contour that does not exist.
         if mask.any() and not mask.all() and min(mask.shape) > 1:
             line: dict[str, Any] = {"colors": "black", "linewidths": 0.8, "linestyles": style}
-            axes.contour(x, y, mask.T.astype(float), levels=[0.5], **line)
+            axes.contour(mask.T.astype(float), levels=[0.5], extent=edges, origin="lower", **line)
     axes.set(xlabel=f"x [{length.unit}]", ylabel=f"y [{length.unit}]")
     axes.set_title(panel.title, fontsize="medium")
     return image

@@ -89,9 +89,8 @@ def picture(
     """Return a picture, with marks at the load steps ``marked``."""
     marks: list[list[tuple[float, float]]] = []
     drawn: list[Drawn] = []
-    beside = [shown] if isinstance(shown, (Chart, Fields)) else shown
     # The page has a title, and a title may be longer than a figure is wide.
-    fill, size = figure_of([replace(part, title="") for part in beside])
+    fill, size = figure_of(shown, titled=False)
 
     def mark(figure: Figure) -> None:
         if marked:
