@@ -234,6 +234,10 @@ def _set_scale(panels: Sequence[Axes], direction: str, axis: Axis, factor: float
     elif low is None and lowest >= 0:
         drawn = getattr(panels[0], f"get_{direction}lim")()
         low = 0.0 if drawn[0] < 0 else None
+    elif low is not None and high is None and np.isfinite(lowest):
+        # Values that hardly differ would lie on the edge, which is 5 % of their range above them.
+        highest = max(getattr(axes.dataLim, f"{direction}1") for axes in panels)
+        high = max(getattr(panels[0], f"get_{direction}lim")()[1], low + 1.03 * (highest - low))
     getattr(panels[0], f"set_{direction}lim")(low, high)
 
 

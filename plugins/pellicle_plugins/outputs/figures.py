@@ -119,29 +119,31 @@ def study_curves(runs: Runs, variable: str) -> Chart:
     """Return a variable of a study against the depth, one colour for each value of its first axis.
 
     Where steps have times, it is shown against the time; where each run has one step only, against
-    the first axis of numbers instead. Seeds only repeat runs, of which the mean is drawn, and
+    its longest axis of numbers instead. Seeds only repeat runs, of which the mean is drawn, and
     further axes have panels. The title says which values are left out.
     """
     table = runs.table
-    axes = [str(d) for d in table["status"].dims if d != "step" and table.sizes[d] > 1]
+    varied = [str(d) for d in table["status"].dims if d != "step" and table.sizes[d] > 1]
+    axes = sorted(varied, key=lambda axis: is_seed(table[axis]))
     numbers = [axis for axis in axes if table[axis].dtype.kind in "if"]
     x = "time" if has_times(table) else "depth"
     if table.sizes["step"] == 1 and numbers:
-        x = numbers[0]
-    rest = sorted((axis for axis in axes if axis != x), key=lambda axis: is_seed(table[axis]))
+        x = max(numbers, key=lambda axis: (not is_seed(table[axis]), table.sizes[axis]))
+    rest = [axis for axis in axes if axis != x]
     seeds = [axis for axis in rest[1:] if is_seed(table[axis])][:1]
     remarks = [_title(table)]
     for axis in rest[:1]:
         if (count := table.sizes[axis]) > _MOST_NAMED:
-            chosen = np.linspace(0, count - 1, _MOST_NAMED).round().astype(int)
-            table = table.isel({axis: chosen})
-            remarks.append(f"{_MOST_NAMED} of {count} values of {wording(table[axis]).words}")
+            table = table.isel({axis: slice(None, None, -(-count // _MOST_NAMED))})
+            chosen = f"{table.sizes[axis]} of {count} values"
+            remarks.append(f"{chosen} of {wording(table[axis]).words}")
     panels = [axis for axis in rest[1:] if axis not in seeds]
     while prod(table.sizes[axis] for axis in panels) > MOST_PANELS:
         axis = panels.pop()
         remarks.append(wording(table[axis]).text(table[axis].values[0].item()))
         table = table.isel({axis: 0})
-    curves = Curves(x=x, y=variable, by=rest[:1], over=(*seeds, None)[0], title="\n".join(remarks))
+    title = "\n".join(filter(None, remarks))
+    curves = Curves(x=x, y=variable, by=rest[:1], over=(*seeds, None)[0], title=title)
     ((_, chart),) = curves.charts(StoredRuns(table, runs.open, runs.configuration))
     assert isinstance(chart, Chart)
     start = None if has_interaction(table) else 0.0

@@ -63,7 +63,8 @@ def curves_of_study(runs: Runs) -> Iterator[Picture]:
     """Yield a figure for each variable that is drawn over a study."""
     for name, make in figures_of_study(runs).items():
         chart, words = make(), wording(runs.table[name]).words.capitalize()
-        _, *remarks = chart.title.splitlines()
+        title = runs.table.attrs.get("title", "")
+        remarks = [line for line in chart.title.splitlines() if line != title]
         yield picture(chart, f"{', '.join([f'{words} over the study', *remarks])}.")
 
 
