@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _MOST_NAMED = 10
+_ALIKE = 10.0
+"""Ratio of the times that runs take up to which one axis shows all."""
 _OVER_TIME = "force", "depth", "contact_area"
 FIGURES = "pressure", "profile", "force_depth", "area_force", "time"
 """Figures of a run, which are the suffixes of the file names too."""
@@ -118,15 +120,18 @@ def over_time(result: Result) -> Chart:
 def study_curves(runs: Runs, variable: str) -> Chart:
     """Return a variable of a study against the depth, one colour for each value of its first axis.
 
-    Where steps have times, it is shown against the time; where each run has one step only, against
-    its longest axis of numbers instead. Seeds only repeat runs, of which the mean is drawn, and
-    further axes have panels. The title says which values are left out.
+    Where steps have times of one magnitude, it is shown against the time; where each run has one
+    step only, against its longest axis of numbers. Seeds only repeat runs, of which the mean is
+    drawn, and further axes have panels. The title says which values are left out.
     """
     table = runs.table
     varied = [str(d) for d in table["status"].dims if d != "step" and table.sizes[d] > 1]
     axes = sorted(varied, key=lambda axis: is_seed(table[axis]))
     numbers = [axis for axis in axes if table[axis].dtype.kind in "if"]
-    x = "time" if has_times(table) else "depth"
+    x = "depth"
+    if has_times(table):
+        ends = table["time"].max("step")
+        x = "time" if ends.max() <= _ALIKE * ends.min() else "depth"
     if table.sizes["step"] == 1 and numbers:
         x = max(numbers, key=lambda axis: (not is_seed(table[axis]), table.sizes[axis]))
     rest = [axis for axis in axes if axis != x]
