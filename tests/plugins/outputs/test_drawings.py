@@ -172,6 +172,13 @@ def test_a_reference_that_does_not_exist_is_refused_at_once(type_: str, tmp_path
     assert not list(tmp_path.rglob("*.h5"))
 
 
+def test_a_number_that_the_reference_lacks_is_refused_at_once(tmp_path: Path) -> None:
+    """The semi-analytic solution knows no iterations."""
+    curves = {"type": "curves", "y": "iterations", "by": TENSION, "reference": "axisymmetric"}
+    with pytest.raises(pl.ConfigError, match=r"^outputs\.0\.y: 'iterations' has no value in"):
+        pl.run_study(study(curves), tmp_path, progress=False)
+
+
 def test_fields_are_reduced_for_each_run(tmp_path: Path) -> None:
     """An expression over fields gives the number of each step."""
     curves = {"type": "curves", "x": "depth", "y": "sum(pressure)", "by": TENSION, "over": RADIUS}

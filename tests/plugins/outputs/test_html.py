@@ -23,7 +23,6 @@ import xarray as xr
 
 import pellicle as pl
 from pellicle.runs import steps
-from pellicle.version import CITATION
 from pellicle_plugins.outputs.step_figures import cross_section
 from tests.pictures import colourfulness
 from tests.plugins.outputs.shared import bead
@@ -245,27 +244,6 @@ def test_marks_are_on_the_curves(ran: tuple[Path, xr.Dataset]) -> None:
     assert marked == 2
 
 
-def test_the_profile_is_that_of_each_mapped_step(ran: tuple[Path, xr.Dataset]) -> None:
-    """Each frame of the maps has the profile of its step; that of the last is shown first."""
-    profiles = Page(ran[0]).script("pictures")
-    captions = [profiles["pictures"][number]["caption"] for number in profiles["frames"]]
-    assert [caption.partition(", at ")[2] for caption in captions] == [
-        "depth 5 µm.",
-        "depth 10 µm.",
-    ]
-    assert len({picture["source"] for picture in profiles["pictures"]}) == 2
-
-
-def test_what_was_prescribed_is_named(tmp_path: Path) -> None:
-    """The list of steps, the caption of the maps and the answer name a prescribed force."""
-    page = page_of(tmp_path, loading={"force": ["1 uN", "2 uN"]})
-    assert [frame["label"] for frame in page.frames] == ["1: force 1 µN", "2: force 2 µN"]
-    caption = "Contact pressure and gap at prescribed force, in each load step, "
-    assert caption + "each in colours over its own range." in page.words
-    assert "along x, at force 2 µN." in page.words
-    assert re.match(r"At force 2 µN: depth \S+ µm, contact radius", page.frames[1]["note"])
-
-
 def test_a_rough_contact_has_no_ellipse(tmp_path: Path) -> None:
     """Contact in several parts is told by its fraction of a periodic domain, not by a radius."""
     rough = {
@@ -295,24 +273,6 @@ def test_the_cross_section_is_to_scale() -> None:
     y = float(step["y"][int(step["displacement"].max("x").argmax("y"))])
     shape = (indenter.x[shown] ** 2 + y**2) / (2 * 1e-3) - float(step["depth"])
     np.testing.assert_allclose(indenter.y[shown], shape, atol=1e-12)
-
-
-def test_methods(ran: tuple[Path, xr.Dataset], studied: tuple[Path, xr.Dataset]) -> None:
-    """A paragraph has kernel, solver, tolerance, versions and how to cite; a study's no axis."""
-    path, data = ran
-    (text,) = (text for text in Page(path).texts["p"] if text.startswith("Normal contact"))
-    for part in (
-        "24 × 18 cells of 400 µm × 300 µm with free boundaries",
-        "Kernel: tensed membrane (reduced modulus 10 kPa, surface tension 100 mN/m)",
-        "indenter: paraboloid (radius 1 mm)",
-        "Prescribed: depth 5, 10 µm. Solver: active set, to a relative tolerance of "
-        f"{pl.Run(**RUN).solver.tolerance:g}.",
-        f"Computed with {data.attrs['versions']}.",
-        CITATION,
-    ):
-        assert part in text
-    (text,) = (text for text in Page(studied[0]).texts["p"] if text.startswith("Normal contact"))
-    assert "indenter: paraboloid. Prescribed: depth 5, 10 µm. Varied: radius. Solver" in text
 
 
 def test_study(studied: tuple[Path, xr.Dataset]) -> None:
@@ -369,13 +329,6 @@ class Lost(pl.Solver):
         return pl.Solution(pl.State.of_pressure(np.full(problem.grid.shape, np.nan)), 1)
 
 
-def test_steps_that_are_too_coarse_are_marked(tmp_path: Path) -> None:
-    """They converged, and the page is not content with that."""
-    page = page_of(tmp_path, loading={"depth": ["1 pm", "10 um"]})
-    assert "All 2 load steps converged. In 1 of 2 the cells are too coarse" in page.words
-    assert "Step 1: converged, but the cells are too coarse" in page.words
-
-
 def test_values_that_are_not_numbers(tmp_path: Path) -> None:
     """NaN is said, and leaves the map empty; a component that nobody knows is listed too."""
     with np.errstate(all="ignore"):
@@ -404,17 +357,6 @@ def test_interrupted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     page = Page(tmp_path / "odd.html")
     assert "The run ended early: 1 of 2 load steps are finished." in page.words
     assert len(page.table("Results of each")) == 1
-
-
-def test_what_is_left_out_or_coarser_is_said(tmp_path: Path) -> None:
-    """Fewer maps than steps, and pixels that are not the cells."""
-    loading = {"depth": {"start": "2 um", "stop": "10 um", "num": 5}}
-    outputs = [{"type": "html", "points": 8, "frames": 2}]
-    page = page_of(tmp_path, loading=loading, outputs=outputs)
-    assert [frame["label"][0] for frame in page.frames] == ["3", "5"]
-    assert "in 2 of 5 load steps, each in colours over its own range." in page.words
-    assert "Each pixel is the mean over 3 × 3 cells." in page.words
-    assert len(page.table("Results of each")) == 5
 
 
 def test_study_with_failures(tmp_path: Path) -> None:
