@@ -177,13 +177,12 @@ class Curves(TableFigure):
             raise StorageError(name)
 
         reference = exact(StoredRuns(runs.table, unsolved))
-        for field, texts in {"x": (self.x,), "y": self.y}.items():
-            for text in texts:
-                try:
-                    reference.column(text)
-                except ConfigError as error:
-                    message = f"{text!r} has no value in the semi-analytic solution: {error}"
-                    raise ConfigError(message, field) from None
+        for field, text in [("x", self.x), *(("y", text) for text in self.y)]:
+            try:
+                reference.column(text)
+            except ConfigError as error:
+                message = f"{text!r} has no value in the semi-analytic solution: {error}"
+                raise ConfigError(message, field) from None
 
     def compared(self, runs: Runs) -> Iterator[xr.Dataset]:
         """Yield all runs."""

@@ -110,7 +110,7 @@ def over_time(result: Result) -> Chart:
     """Return force, depth and contact area against time, one above the other."""
     data = result.dataset
     series = [
-        _series(data, "time", name, Look(number, marker=0), panel=number)
+        replace(_series(data, "time", name, Look(number, marker=0)), panel=number)
         for number, name in enumerate(_OVER_TIME)
     ]
     axes = [_axis(data[name], signed=True) for name in _OVER_TIME]
@@ -159,9 +159,9 @@ def _curves(result: Result, labels: dict[str, str], against: str) -> Chart:
     """Return variables, with their labels, against another over the steps of a run."""
     data = result.dataset
     pulls, path = has_interaction(data), legs(data["depth"].values)
-    tells_legs = pulls or (has_times(data) and len(path) <= MOST_LEGS)
+    told = path if pulls or (has_times(data) and len(path) <= MOST_LEGS) else ()
     series = [
-        _series(data, against, name, Look(n, n, n), legend=label, tells_legs=tells_legs)
+        replace(_series(data, against, name, Look(n, n, n)), legend=label, legs=told)
         for n, (name, label) in enumerate(labels.items())
     ]
     first = next(iter(labels))
@@ -169,29 +169,12 @@ def _curves(result: Result, labels: dict[str, str], against: str) -> Chart:
     return Chart(x, [y], series, _title(data), hues=len(labels))
 
 
-def _series(
-    data: xr.Dataset,
-    x: str,
-    y: str,
-    look: Look,
-    *,
-    legend: str = "",
-    panel: int = 0,
-    tells_legs: bool = False,
-) -> Series:
-    """Return one variable of the steps of a run, or of runs, against another."""
+def _series(data: xr.Dataset, x: str, y: str, look: Look) -> Series:
+    """Return one variable of the steps of a run against another."""
     good = data["converged"].values.astype(bool)
-    return Series(
-        data[x].values.astype(float),
-        data[y].values.astype(float),
-        name=y,
-        legend=legend,
-        look=look,
-        converged=good,
-        legs=legs(data["depth"].values) if tells_legs else (),
-        steps=np.arange(good.size, dtype=np.int64),
-        panel=panel,
-    )
+    points = data[x].values.astype(float), data[y].values.astype(float)
+    steps = np.arange(good.size, dtype=np.int64)
+    return Series(*points, name=y, look=look, converged=good, steps=steps)
 
 
 def _axis(variable: xr.DataArray, *, signed: bool = False) -> Axis:
