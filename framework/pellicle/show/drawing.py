@@ -97,28 +97,30 @@ def _draw_chart(figure: Figure | SubFigure, chart: Chart) -> list[Drawn]:
     _set_scale(panels, "x", chart.x, scale_x.factor)
     for group, axis, scale_y in groups:
         _set_scale(group, "y", axis, scale_y.factor)
-    if in_grid:
-        for axes, title in zip(panels, chart.titles, strict=True):
-            axes.set_title(title, fontsize="small")
-        named = dict[str, Any]()
-        for axes in panels:
-            handles, names = axes.get_legend_handles_labels()
-            named |= dict(zip(names, handles, strict=True))
-        if named:
-            beside: dict[str, Any] = {"loc": "outside right upper", "fontsize": "small"}
-            figure.legend(named.values(), named.keys(), **beside)
-        figure.suptitle(chart.title)
-    else:
-        for axes in panels:
-            if axes.get_legend_handles_labels()[1]:
-                axes.legend(frameon=False, fontsize="small")
-        panels[0].set_title(chart.title)
+    _name(figure, panels, chart)
     if chart.note:
         place = {"transform": panels[0].transAxes, "fontsize": "small"}
         panels[0].text(0.02, 0.02, chart.note, color="red", **place)
     if len(panels) > 1:
         figure.align_ylabels(panels)
     return drawn
+
+
+def _name(figure: Figure | SubFigure, panels: Sequence[Axes], chart: Chart) -> None:
+    """Give panels titles and legends; those of a grid have one legend beside them."""
+    named = [dict(zip(*axes.get_legend_handles_labels()[::-1], strict=True)) for axes in panels]
+    if not chart.titles:
+        panels[0].set_title(chart.title)
+        for axes, entries in zip(panels, named, strict=True):
+            if entries:
+                axes.legend(frameon=False, fontsize="small")
+        return
+    figure.suptitle(chart.title)
+    for axes, title in zip(panels, chart.titles, strict=True):
+        axes.set_title(title, fontsize="small")
+    if distinct := {name: handle for entries in named for name, handle in entries.items()}:
+        beside: dict[str, Any] = {"loc": "outside right upper", "fontsize": "small"}
+        figure.legend(distinct.values(), distinct.keys(), **beside)
 
 
 def _draw_series(axes: Axes, series: Series, chart: Chart, scale_x: Scale, scale_y: Scale) -> Drawn:

@@ -128,6 +128,7 @@ class Html(Output):
         maps, chosen = self._maps_of_steps(result)
         step_shown = default_step(data) % data.sizes["step"]
         first, label = sentence_of_step(data, step_shown), label_of_step(data, step_shown)
+        setup = _setup(data.isel(step=step_shown), configuration, label)
         aim = aim_of_path(data, result.path_summary)
         lead, rest = (aim, first) if aim else (first, range_of_path(data))
         sentences = [Text(lead, lead=True), *([Text(rest)] if rest else [])]
@@ -138,21 +139,12 @@ class Html(Output):
             tables = [*of_contact, apart, tables[-1]]
         numbers = [*tables, *path_tables(result), *oscillation_tables(result)]
         return [
-            Section(
-                "In short",
-                [*sentences, _status(result)],
-            ),
+            Section("In short", [*sentences, _status(result)]),
             Section("Maps", [maps]),
             Section("Curves", curves_of_run(result, chosen, maps.begin)),
             Section("Outputs", [*curves_of_outputs(runs, _outputs(configuration), chosen)]),
             Section("Numbers", numbers),
-            Section(
-                "Set-up",
-                [
-                    _setup(data.isel(step=step_shown), configuration, label),
-                    input_table(list(inputs(configuration, Run))),
-                ],
-            ),
+            Section("Set-up", [setup, input_table(list(inputs(configuration, Run)))]),
         ]
 
     def _sections_of_study(
@@ -184,20 +176,15 @@ class Html(Output):
         of_runs = _share_in_words(len(frames), len(rows), "run")
         caption = f"The last step in contact of {of_runs}, each in colours over its own range."
         maps = Maps(caption, "run", tuple(mapped.values()), list(frames.values()))
+        of_study = inputs_of_study(table, list(inputs(first_run, Run)))
         numbers = [run_table(table, rows, list(frames)), *study_path_tables(table, rows)]
         return [
-            Section(
-                "In short",
-                [*lead, status],
-            ),
+            Section("In short", [*lead, status]),
             Section("Maps", [maps] if frames else []),
             Section("Curves", [*curves_of_study(runs)]),
             Section("Outputs", [*curves_of_outputs(runs, _outputs(first_run))]),
             Section("Numbers", numbers),
-            Section(
-                "Set-up",
-                [*setups[:1], input_table(inputs_of_study(table, list(inputs(first_run, Run))))],
-            ),
+            Section("Set-up", [*setups[:1], input_table(of_study)]),
         ]
 
     def _maps_of_steps(self, result: Result) -> tuple[Maps, list[int]]:
