@@ -153,10 +153,7 @@ def _factory(family: type[AnyComponent], example: str) -> Callable[..., AnyCompo
     make.__name__ = make.__qualname__ = name
     make.__doc__ = f"""Return the {name} of a type with its fields, such as ``{name}({example})``.
 
-    Raises
-    ------
-    ConfigError
-        No such type, or fields that it does not allow.
+    A type that does not exist, or fields that it does not allow, are a ConfigError.
     """
     return make
 

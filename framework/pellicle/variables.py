@@ -241,17 +241,14 @@ CORRECTED_AREA: Final = "contact_area_"
 CORRECTED_FRACTION: Final = "contact_fraction_"
 
 
-def corrected_area(type_: str, words: str = "") -> Variable:
-    """Return the variable for the contact area with the correction ``type_``.
-
-    ``words`` name the correction in figures and tables, by default those of the type.
-    """
+def corrected_area(type_: str, words: str) -> Variable:
+    """Return the variable for the contact area with a correction, which figures name by words."""
     return Variable(
         f"{CORRECTED_AREA}{type_}",
         "m2",
         f"contact area, {type_} correction",
         "other",
-        title=f"{CONTACT_AREA}, {words or words_of_name(type_)} correction",
+        title=f"{CONTACT_AREA}, {words} correction",
     )
 
 

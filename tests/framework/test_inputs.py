@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import pellicle as pl
-from pellicle.config.describe import Input, inputs
+from pellicle.config.describe import FieldRow, inputs
 from pellicle.units import readable
 
 CONFIGURATION: dict[str, Any] = {
@@ -31,13 +31,13 @@ CONFIGURATION: dict[str, Any] = {
 
 
 @pytest.fixture(scope="module")
-def table() -> dict[str, Input]:
+def table() -> dict[str, FieldRow]:
     """Return the inputs of a run by their names."""
     data = json.loads(pl.Run(**CONFIGURATION).to_json())
     return {entry.name: entry for entry in inputs(data, pl.Run)}
 
 
-def test_values_have_units(table: dict[str, Input]) -> None:
+def test_values_have_units(table: dict[str, FieldRow]) -> None:
     """Of components within components and of lists too; a long list is shortened, and says so."""
     for name, value in {
         "grid.points": "16, 12",
@@ -56,7 +56,7 @@ def test_values_have_units(table: dict[str, Input]) -> None:
         assert table[name].value == value
 
 
-def test_inputs_are_explained(table: dict[str, Input]) -> None:
+def test_inputs_are_explained(table: dict[str, FieldRow]) -> None:
     """Every one of them says what it means, and components where they come from."""
     assert all(entry.meaning for entry in table.values())
     origin = table["kernel.substrate"].origin

@@ -35,7 +35,7 @@ def test_a_result_shows_numbers_and_how_it_ended(result: pl.Result) -> None:
     html = result._repr_html_()
     assert TITLE not in html
     assert "http" not in html.partition("<details>")[0]
-    for part in (TITLE, "2 steps, all converged", "10 µm"):
+    for part in (TITLE, "2 steps, all converged", "depth [µm]"):
         assert part in unescape(words(html))
     marked = result.dataset.copy(deep=True).isel(step=[0])
     marked["converged"][0] = False

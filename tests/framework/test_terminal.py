@@ -16,14 +16,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from jsonschema import Draft202012Validator
 from rich.cells import cell_len
 from typer.testing import CliRunner, Result
 
 import pellicle as pl
 from pellicle.cli import new
 from pellicle.cli.app import app
-from pellicle.cli.printing import BAD_INPUT, CRASHED, print_columns
-from pellicle.components import FAMILIES, Case
+from pellicle.cli.printing import BAD_INPUT, CRASHED, print_table
+from pellicle.components import Case, Column, Table
 from pellicle.config.explain import explanations
 from pellicle.runs import validation
 from pellicle.runs.validation import CheckedCase
@@ -75,8 +76,8 @@ def cli(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Cli:
 
 def test_a_table_in_a_pipe_has_a_line_for_each_row(capsys: pytest.CaptureFixture[str]) -> None:
     """It is neither folded nor cut, however long its cells are; heads and numbers are aligned."""
-    columns = [("step", ["1", "12"]), ("depth [µm]", ["10", "–"]), ("why", ["so " * 200, "no"])]
-    print_columns(columns)
+    numbers = Column("depth", [1e-5, np.nan], "m")
+    print_table(Table([Column("step", [1, 12]), numbers, Column("why", ["so " * 200, "no"])]))
     first, second, third = capsys.readouterr().out.splitlines()
     assert first == "step  depth [µm]  why"
     assert second == f"   1          10  {('so ' * 200).strip()}"
@@ -354,81 +355,22 @@ def test_a_process_prints_in_the_code_page_of_its_environment(
     assert not [line for line in wide if "  " in line]
 
 
-def examples() -> Iterator[Any]:
-    """Yield every registered type."""
-    for family, members in pl.registry().components.items():
-        for type_ in members:
-            yield pytest.param(family, type_, id=f"{family}.{type_}")
-
-
-@pytest.mark.parametrize(("family", "type_"), list(examples()))
-def test_the_example_of_a_type_is_valid(
-    family: str, type_: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """`explain` shows every field with its meaning, and an example that makes the component."""
-    monkeypatch.chdir(tmp_path)
-    np.savetxt("heights.txt", np.zeros((4, 4)))
-    (explanation,) = explanations(f"{family}.{type_}", {})
-    component = pl.registry().components[family][type_].component
-    assert {row.name for row in explanation.fields} >= {*component.model_fields} - {"type"}
-    assert all(row.meaning and row.default for row in explanation.fields)
-    data = tomllib.loads(explanation.example)
-    if family == "prescription":
-        assert pl.Loading(**data["loading"]).prescription.type_name == type_
-        return
-    table = data["study"][family] if "study" in data else data.get(family) or data[f"{family}s"][0]
-    if type_ == "topography":
-        # There is no scan.x3p here.
-        assert table["path"] == "scan.x3p"
-        return
-    assert pl.registry().make(FAMILIES[family], table).type_name == type_
-
-
-@pytest.mark.parametrize(
-    ("word", "name"),
-    [
-        ("grid", "size"),
-        ("loading", "depth"),
-        ("study", "vary"),
-        ("run", "kernel"),
-        ("fit", "curves"),
-    ],
-)
-def test_tables_are_explained(cli: Cli, word: str, name: str) -> None:
-    """The tables of a run file have their fields and an example of TOML."""
-    (explanation,) = json.loads(cli("explain", word, "--json").stdout)
-    assert name in [row["name"] for row in explanation["fields"]]
-    data = tomllib.loads(explanation["example"])
-    if word == "grid":
-        assert pl.Grid(**data["grid"]).points == (256, 256)
-    elif word == "fit":
-        assert FitConfig(**data).indenter
-
-
-def test_one_prescription_is_required_with_its_own_fields() -> None:
-    """No key of ``[loading]`` is required by itself: one of the prescriptions is."""
-    (explanation,) = explanations("loading", {})
-    default_by_name = {row.name: row.default for row in explanation.fields}
-    prescriptions = {name for name, default in default_by_name.items() if default == "one of these"}
-    assert prescriptions == {*pl.registry().components["prescription"]}
-    assert default_by_name["spring_constant"] == "with base_displacement"
-    assert "required" not in default_by_name.values()
-
-
-def test_explain_lists_what_it_explains(cli: Cli) -> None:
-    """Without a word it lists tables and families with their types, all of which it explains."""
+def test_explain_has_an_example_for_a_file(cli: Cli) -> None:
+    """It lists tables and families with their types; of each the example fits into a file."""
+    schema = Draft202012Validator(pl.json_schema())
     words = json.loads(cli("explain", "--json").stdout)
-    assert list(words) == ["table", *pl.registry().components]
-    assert words["table"] == ["run", "grid", "loading", "study", "fit"]
-    assert "tensed_membrane" in words["kernel"]
-    shown = cli("explain", FORCE_COLOR="1", NO_COLOR="1", COLUMNS="80").stdout
-    assert all(type_ in shown for types in words.values() for type_ in types)
+    assert [*words] == ["table", *pl.registry().components]
+    assert words["table"].pop() == "fit"
+    for family, types in words.items():
+        for type_ in types:
+            (explained,) = explanations(type_ if family == "table" else f"{family}.{type_}", {})
+            schema.validate({"study": {}} | tomllib.loads(explained.example))
+    (fit,) = json.loads(cli("explain", "fit", "--json").stdout)
+    assert FitConfig(**tomllib.loads(fit["example"])).indenter
 
 
 def test_the_unit_of_heights_is_a_unit() -> None:
-    """The example of a unit is a unit, not ten of them; a number before it still counts."""
-    (explanation,) = explanations("heights", {})
-    assert tomllib.loads(explanation.example)["indenter"]["unit"] == "um"
+    """A unit is one of it; a number before it still counts."""
     for unit, metres in (("um", 1e-6), ("nm", 1e-9), ("2 um", 2e-6), (1e-3, 1e-3)):
         assert pl.indenter("heights", values=np.eye(4), unit=unit).model_dump()["unit"] == metres
     with pytest.raises(pl.ConfigError, match="is a force; give"):

@@ -129,13 +129,7 @@ class Prescription(Component):
         """Return the depth, the force or the search that a prescribed ``value`` stands for."""
 
     def check(self, setting: Setting, value: float) -> None:
-        """Refuse a value that cannot be reached, before any step is solved.
-
-        Raises
-        ------
-        ConfigError
-            The value is not allowed in this setting.
-        """
+        """Refuse a value that cannot be reached, by a ConfigError; nothing is solved yet."""
 
     def report(self, setting: Setting, step: Equilibrium) -> dict[str, float]:
         """Return the `variables` of a solved step, except that of kind ``residual``."""

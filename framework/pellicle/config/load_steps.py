@@ -85,8 +85,6 @@ Leg = Move | Hold | Oscillation
 """A part of a path that goes on from the end of the one before, in ``num`` load steps."""
 KINDS: Mapping[str, type[Leg]] = {"to": Move, "hold": Hold, "amplitude": Oscillation}
 """The kinds of leg by the field that only this kind has."""
-VALUES = "to", "amplitude"
-"""Fields in the unit of the prescription."""
 _FORMS = (
     "{ to, time, num }, { hold, num } or { amplitude, frequency, cycles, num }, with num steps "
     "for each leg, for each cycle of an oscillation"

@@ -34,6 +34,7 @@ from pellicle.components import (
     Output,
     Solver,
 )
+from pellicle.components.base import words_of_type
 from pellicle.components.kernel import branches_of
 from pellicle.components.output import ResultFile, refuse_shared_files
 from pellicle.errors import ConfigError
@@ -42,10 +43,8 @@ from pellicle.grid import Grid, grid_of_run
 from pellicle.plugins import registry
 from pellicle.schema.from_file import FromFile
 from pellicle.schema.model import get, replaced, walk
-from pellicle.schema.notebook import summary
 from pellicle.variables import VARIABLES, Variable, corrected_area, corrected_fraction
 
-from .describe import inputs
 from .loading import Loading, fields_from
 
 DEFAULT_SOLVER = "active_set"
@@ -209,16 +208,9 @@ class Run(FromFile):
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: every value with its unit and meaning."""
-        values = list(inputs(json.loads(self.to_json()), Run))
-        types = {i.name: i.value for i in values}
-        rows = [
-            (i.part, "type" if i.words == i.part else i.words, i.value, i.meaning)
-            for i in values
-            if i.name != "title"
-        ]
-        sentence = f"{types['indenter']} on {types['kernel']}"
-        heads = "of", "input", "value", "meaning"
-        return summary(self.title or "Run", sentence, heads, rows)
+        from pellicle.show.notebook import of_run
+
+        return of_run(self)
 
     @property
     def variables(self) -> list[Variable]:
@@ -226,7 +218,8 @@ class Run(FromFile):
         kinds = {"main", "other", "contact", "effort", "residual", "status"}
         kinds |= {"interaction", "path"} if self.interaction else set()
         kinds |= {"oscillation"} if self.loading.oscillates else set()
-        areas = [corrected_area(correction.type_name) for correction in self.corrections]
+        types = [(type(one), one.type_name) for one in self.corrections]
+        areas = [corrected_area(type_, words_of_type(one, type_)) for one, type_ in types]
         return [
             *(
                 variable

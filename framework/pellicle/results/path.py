@@ -13,7 +13,7 @@ from pellicle.units import DIGITS, readable
 from pellicle.variables import VARIABLES
 
 from .dimensions import parts
-from .wording import wording
+from .wording import column_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -38,7 +38,7 @@ def prescribed_variable(data: xr.Dataset) -> str:
 def label_of_step(data: xr.Dataset, index: int) -> str:
     """Return what a load step prescribes: "depth 3 µm", "1 s, force 5 nN"."""
     name = prescribed_variable(data)
-    label = wording(data[name]).text(data[name].values[index].item())
+    label = column_of(data[name]).text(data[name].values[index].item())
     if has_times(data):
         label = f"{readable(data['time'].values[index].item(), 's', DIGITS)}, {label}"
     return label

@@ -110,7 +110,14 @@ def advise(run: Run, allowed: float) -> Advice:
     less than 5 of 100 true errors of force and depth exceed: order 2 for smooth contacts without
     interaction and history, 1 for others.
     """
-    grids = _resolving(run)
+    grids = _coarser(run.grid)
+    # Each of the coarser grids resolves the indenter if possible.
+    for shares in _LARGEST_SHARES:
+        try:
+            profile_of(run.indenter, grids[0])
+            break
+        except ConfigError:
+            grids = _coarser(run.grid, shares, math.inf)
     results = [_solved(run, grid) for grid in grids]
     at_edge = _at_edge(results[-1])
     if at_edge:
@@ -248,18 +255,6 @@ def _coarser(grid: Grid, shares: Sequence[float] = _SHARES, most: float = 2 * _M
             "grid.points",
         )
     return [grid.model_copy(update={"points": tuple(points)}) for points in sizes]
-
-
-def _resolving(run: Run) -> list[Grid]:
-    """Return three coarser grids, each of which resolves the indenter if possible."""
-    grids = _coarser(run.grid)
-    for shares in _LARGEST_SHARES:
-        try:
-            profile_of(run.indenter, grids[0])
-            break
-        except ConfigError:
-            grids = _coarser(run.grid, shares, math.inf)
-    return grids
 
 
 def _points(grid: Grid, size: tuple[float, float], factor: float) -> tuple[int, int]:

@@ -141,9 +141,10 @@ def execute(
     def runs() -> Runs:
         return StoredRuns.of_run(read_only_dataset(result.dataset), run.to_json(portable=True))
 
-    with scipy.fft.set_workers(threads or default_threads(run.grid)), bar, ExitStack() as stack:
+    workers = scipy.fft.set_workers(threads or default_threads(run.grid))
+    with workers, bar as monitor_of, ExitStack() as stack:
         try:
-            solved = solve_steps(run, compose(run), steps, bar)
+            solved = solve_steps(run, compose(run), steps, monitor_of)
             if journal:
                 if lock:
                     stack.enter_context(locked(journal.stem.parent, journal.stem.name))

@@ -4,20 +4,27 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterator
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from pellicle.components.charts import Chart, Column, Series, Table
-from pellicle.files import storage_errors
+from pellicle.files import atomic_write, storage_errors
 
 
-def write_csv(table: Table, path: Path) -> Path:
-    """Write a table, and return the file."""
-    with storage_errors(path), path.open("w", newline="", encoding="utf-8") as file:
+def write_csv(table: Table, path: Path, *, append: bool = False) -> Path:
+    """Write a table in SI, or append its rows to those of a file, and return the file."""
+    mode = "a" if append else "w"
+    with (
+        nullcontext(path) if append else atomic_write(path) as part,
+        storage_errors(path),
+        part.open(mode, newline="", encoding="utf-8") as file,
+    ):
         writer = csv.writer(file)
-        writer.writerow([column.head for column in table.columns])
+        if not append:
+            writer.writerow([column.head for column in table.columns])
         writer.writerows(zip(*(column.values for column in table.columns), strict=True))
     return path
 

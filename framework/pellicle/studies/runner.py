@@ -8,7 +8,7 @@ import threading
 import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from functools import partial
 from itertools import chain
@@ -30,15 +30,16 @@ from pellicle.files import check_writable, is_file, is_folder
 from pellicle.plugins import registry
 from pellicle.results import storage
 from pellicle.results.dimensions import with_paths, with_python_names
-from pellicle.results.runs import StoredRuns
+from pellicle.results.runs import StoredRuns, progress_of
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.memory_estimate import memory_of
-from pellicle.runs.progress import ProgressReporter
+from pellicle.runs.progress import reporting
+from pellicle.show.plan import shared
+from pellicle.show.sentences import caveats, failures, run_names
 from pellicle.variables import BEYOND_THEORY
 
 from . import table
-from .summary import caveats, failures, progress_of, run_names
 
 _TABLE_SHARE = 0.05
 _LONG = 10.0
@@ -272,24 +273,16 @@ def _solve_all(
         start = time.monotonic()
         solve_by(registry().make(Executor, {"type": DEFAULT_EXECUTOR}), [task])
         left = len(todo) * (time.monotonic() - start)
-        if left > _LONG and _can_share(todo, threads or 1):
+        # A process that another one started leaves the cores to its siblings.
+        crowded = parent_process() or min(len(todo), runner.available_cores() // (threads or 1)) < 2
+        if left <= _LONG or crowded:
+            continue
+        needed = 2 * (max(task.memory for task in todo) + memory.PROCESS)
+        if (available := memory.available()) is None or needed <= available:
             executor = registry().make(Executor, {"type": "processes", "threads": threads or 1})
-            bar.say(
-                f"the other {len(todo)} runs would take {left:.0f} s here: they go to processes, "
-                "as many as cores and memory allow (study.executor decides otherwise)"
-            )
+            bar.say(shared(len(todo), left))
     if executor:
         solve_by(executor, todo)
-
-
-def _can_share(todo: Sequence[RunTask], threads: int) -> bool:
-    """Return whether two of the tasks can be executed at once, each in a process of its own."""
-    # A process that another one started leaves the cores to its siblings.
-    if min(len(todo), runner.available_cores() // threads) < 2 or parent_process():
-        return False
-    available = memory.available()
-    needed = 2 * (max(task.memory for task in todo) + memory.PROCESS)
-    return available is None or needed <= available
 
 
 def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
@@ -297,7 +290,7 @@ def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
 
     Warnings are stored in the attributes, so that a warning is shown once for all runs.
     """
-    bar = ProgressReporter(task.steps, say)
+    bar = nullcontext(partial(reporting, steps=task.steps, show=say))
     with _recorded_warnings() as caught:
         executed = runner.execute(
             task.run, task.journal, task.outputs, bar, threads=threads, lock=False

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from pathlib import Path
 from typing import Any
@@ -11,18 +10,19 @@ import numpy as np
 import xarray as xr
 
 from pellicle.checks import errors_attributed_to
-from pellicle.components import Runs
+from pellicle.components import Column, Runs, Table
 from pellicle.config.coordinates import units_of
 from pellicle.config.provenance import facts_of, now_with
 from pellicle.config.study import Study
 from pellicle.contact.caveats import Caveat, Status
-from pellicle.errors import ConfigError
-from pellicle.files import atomic_write, for_document
+from pellicle.errors import problems_within
+from pellicle.files import for_document
 from pellicle.results import storage
-from pellicle.results.derived import CELLS, DERIVED, FIRST_RUN, VARYING, derive, header
+from pellicle.results.derived import CELLS, DERIVED, FIRST_RUN, VARYING, derive
 from pellicle.results.dimensions import with_python_names
 from pellicle.results.path import with_path
 from pellicle.results.runs import StoredRuns
+from pellicle.show.numbers import write_csv
 from pellicle.variables import BEYOND_THEORY, CAVEATS, FIELDS, VARIABLES, WALL_PRESSURE
 
 _TEXTS = "status_code", "status", CAVEATS
@@ -120,18 +120,14 @@ def write(table: xr.Dataset, directory: Path) -> tuple[Path, Path]:
     """Write ``study.h5`` and ``study.csv`` and return their paths."""
     whole, text = directory / "study.h5", directory / "study.csv"
     storage.write(with_python_names(table), whole)
-    with atomic_write(text) as part, part.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        columns = ["run", *table.coords, *(n for n in table.data_vars if n not in ("run", CAVEATS))]
-        writer.writerow(header(str(name), table[name]) for name in columns)
-        status = table["status"]
-        cells = [
-            table[name].broadcast_like(status).transpose(*status.dims).values.ravel()
-            for name in columns
-        ]
-        # A run may have fewer steps than the table.
-        exists = cells[columns.index("status")] != ""
-        writer.writerows(zip(*(column[exists].tolist() for column in cells), strict=True))
+    status = table["status"]
+    # A run may have fewer steps than the table.
+    exists = status.values.ravel() != ""
+    columns = []
+    for name in ("run", *table.coords, *(n for n in table.data_vars if n not in ("run", CAVEATS))):
+        values = table[name].broadcast_like(status).transpose(*status.dims).values.ravel()[exists]
+        columns.append(Column(str(name), values.tolist(), table[name].attrs.get("units", "")))
+    write_csv(Table(columns), text)
     return whole, text
 
 
@@ -141,11 +137,9 @@ def check_outputs(study: Study) -> None:
     for number, output in enumerate(study.points[0].run.outputs or ()):
         if output.scope == "run":
             continue
-        try:
-            with errors_attributed_to(output), np.errstate(all="ignore"):
-                output.check(runs)
-        except ConfigError as error:
-            raise error.within(f"outputs.{number}") from None
+        field = f"outputs.{number}"
+        with problems_within(field), errors_attributed_to(output), np.errstate(all="ignore"):
+            output.check(runs)
 
 
 def _planned(study: Study) -> Runs:

@@ -19,7 +19,7 @@ from pellicle.errors import ConfigError, StorageError
 from pellicle.results.derived import configuration_of, names
 from pellicle.results.result import Result
 from pellicle.results.runs import StoredRuns
-from pellicle.results.wording import wording
+from pellicle.results.wording import column_of
 from pellicle.schema.expression import evaluate, formula
 from pellicle.schema.messages import nearest
 from pellicle.show.fields import without_round_off
@@ -130,7 +130,7 @@ class TableFigure(Output):
                     raise ConfigError(f"{name}: {error}", "where") from None
                 same = np.isclose(axis.values, value, rtol=1e-9, atol=0.0)
             if not np.any(same):
-                values = wording(axis).listing(axis.values.tolist())
+                values = column_of(axis).listing
                 raise ConfigError(f"{wanted!r} is no value of {name}, which has {values}", "where")
             table = table.isel({axis.dims[0]: int(np.argmax(same))})
         return StoredRuns(table, runs.open, runs.configuration)
@@ -216,7 +216,7 @@ def label(template: str | None, data: xr.Dataset, dims: Sequence[str], whole: xr
     for axis in dims or json.loads(data.attrs.get("axes", "[]")):
         if data[axis].ndim == 0:
             value, unit = data[axis].item(), data[axis].attrs.get("units", "1")
-            words.append(wording(whole[axis]).text(value))
+            words.append(column_of(whole[axis]).text(value))
             keys.append(f"{axis} = {readable(value, unit, DIGITS) if unit != '1' else value}")
     return Label(", ".join(words), ", ".join(keys))
 
@@ -230,7 +230,7 @@ def axis_of(text: str, label: str | None, data: xr.Dataset) -> Axis:
     name = text.strip()
     if label is not None or name not in data.variables:
         return Axis(in_words(text, data) if label is None else label, as_given=True)
-    return Axis(wording(data[name]).words, str(data[name].attrs.get("units", "1")))
+    return Axis(column_of(data[name]).words, str(data[name].attrs.get("units", "1")))
 
 
 def in_words(text: str, data: xr.Dataset) -> str:
@@ -239,7 +239,7 @@ def in_words(text: str, data: xr.Dataset) -> str:
 
     def words(name: str) -> str:
         if name in data.variables:
-            return wording(data[name]).words
+            return column_of(data[name]).words
         return words_at(configuration, Run, name) if "." in name else words_of_name(name)
 
     return formula(text, words)

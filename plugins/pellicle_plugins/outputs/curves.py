@@ -83,6 +83,7 @@ class Curves(TableFigure):
 
     type: Literal["curves"] = "curves"
     examples = (
+        {"x": "depth / indenter.radius", "y": "contact_area", "reference": "axisymmetric"},
         {
             "x": "depth / indenter.radius",
             "y": ["contact_area", "contact_area_yastrebov"],

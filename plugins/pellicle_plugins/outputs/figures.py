@@ -16,7 +16,7 @@ from pellicle.components import Axis, Chart, Fields, Look, Output, Runs, Series
 from pellicle.results.path import has_interaction, has_times
 from pellicle.results.result import Result
 from pellicle.results.runs import StoredRuns
-from pellicle.results.wording import is_periodic, wording
+from pellicle.results.wording import column_of, is_periodic
 from pellicle.show.saving import write_charts
 from pellicle.show.style import FigureStyle, is_seed
 from pellicle.variables import CONTACT_AREA, CORRECTED_AREA
@@ -98,7 +98,7 @@ def force_depth(result: Result) -> Chart:
 def area_force(result: Result) -> Chart:
     """Return the contact area, counted over cells and corrected, against force."""
     corrected = {
-        str(name): wording(variable).words.removeprefix(f"{CONTACT_AREA}, ")
+        str(name): column_of(variable).words.removeprefix(f"{CONTACT_AREA}, ")
         for name, variable in result.dataset.data_vars.items()
         if str(name).startswith(CORRECTED_AREA)
     }
@@ -141,11 +141,11 @@ def study_curves(runs: Runs, variable: str) -> Chart:
         if (count := table.sizes[axis]) > _MOST_NAMED:
             table = table.isel({axis: slice(None, None, -(-count // _MOST_NAMED))})
             chosen = f"{table.sizes[axis]} of {count} values"
-            remarks.append(f"{chosen} of {wording(table[axis]).words}")
+            remarks.append(f"{chosen} of {column_of(table[axis]).words}")
     panels = [axis for axis in rest[1:] if axis not in seeds]
     while prod(table.sizes[axis] for axis in panels) > MOST_PANELS:
         axis = panels.pop()
-        remarks.append(wording(table[axis]).text(table[axis].values[0].item()))
+        remarks.append(column_of(table[axis]).text(table[axis].values[0].item()))
         table = table.isel({axis: 0})
     title = "\n".join(filter(None, remarks))
     curves = Curves(x=x, y=variable, by=rest[:1], over=(*seeds, None)[0], title=title)
@@ -180,7 +180,7 @@ def _series(data: xr.Dataset, x: str, y: str, look: Look) -> Series:
 def _axis(variable: xr.DataArray, *, signed: bool = False) -> Axis:
     unit = str(variable.attrs.get("units", "1"))
     start = None if signed else 0.0
-    return Axis(wording(variable).words, unit, limits=(start, None), signed=signed)
+    return Axis(column_of(variable).words, unit, limits=(start, None), signed=signed)
 
 
 def _title(data: xr.Dataset) -> str:

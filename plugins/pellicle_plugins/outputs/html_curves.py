@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from pellicle.components import Chart, Fields, Output, Runs, Table
 from pellicle.results.path import label_of_step
 from pellicle.results.result import Result
-from pellicle.results.wording import wording
+from pellicle.results.wording import column_of
 from pellicle.show import Picture, figure_of, svg
 from pellicle.show.drawing import SIZE, Drawn, marks_of
 
@@ -62,7 +62,7 @@ def _profiles(result: Result, chosen: list[int], begin: int) -> Picture:
 def curves_of_study(runs: Runs) -> Iterator[Picture]:
     """Yield a figure for each variable that is drawn over a study."""
     for name, make in figures_of_study(runs).items():
-        chart, words = make(), wording(runs.table[name]).words.capitalize()
+        chart, words = make(), column_of(runs.table[name]).words.capitalize()
         title = runs.table.attrs.get("title", "")
         remarks = [line for line in chart.title.splitlines() if line != title]
         yield picture(chart, f"{', '.join([f'{words} over the study', *remarks])}.")

@@ -9,7 +9,7 @@ import pytest
 
 import pellicle as pl
 from pellicle import memory
-from pellicle.config.doubtful_scales import doubtful_scales
+from pellicle.show.doubtful_scales import doubtful_scales
 from tests.framework.bad_input.command_line import says
 
 

@@ -8,7 +8,7 @@ import xarray as xr
 
 from pellicle.components import Axis
 from pellicle.config.coordinates import Coordinate, tell_apart
-from pellicle.results.wording import wording
+from pellicle.results.wording import column_of
 from pellicle_plugins.outputs.base import axis_of
 
 
@@ -35,18 +35,17 @@ def coordinate(values: list[float], unit: str, name: str = "odd.thing") -> xr.Da
 def test_values_of_an_axis(values: list[float], unit: str, texts: list[str]) -> None:
     """All values of an axis are in one unit, with digits that tell them apart."""
     axis = coordinate(values, unit)
-    shown = wording(axis)
-    assert [shown.text(value) for value in values] == texts
+    how = column_of(axis)
+    assert [how.text(value) for value in values] == texts
 
 
 def test_a_stranger_s_words() -> None:
     """A variable without words is named by its own name; with words, by those, also from a file."""
     plain = xr.DataArray([1e-6], dims="step", name="my_own_length", attrs={"units": "m"})
-    assert wording(plain).head == "my own length [µm]"
+    assert column_of(plain).read()[0] == "my own length [µm]"
     titled = plain.assign_attrs(short_name="length of mine")
-    assert wording(titled).head == "length of mine [µm]"
-    assert wording(titled, si=True).head == "length of mine [m]"
-    assert wording(titled, si=True).number(1.23456789e-6) == "1.23457e-06"
+    assert column_of(titled).read()[0] == "length of mine [µm]"
+    assert column_of(titled * 1.23456789).read(si=True) == ("length of mine [m]", ["1.23457e-06"])
 
 
 def test_axes_of_equal_words_are_told_apart() -> None:

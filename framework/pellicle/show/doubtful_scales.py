@@ -8,11 +8,10 @@ from contextlib import suppress
 
 import numpy as np
 
+from pellicle.config.run import Run
+from pellicle.config.study import Study
 from pellicle.schema.model import walk
 from pellicle.units import Quantity, printed, quantity_of, readable
-
-from .run import Run
-from .study import Study
 
 _LARGE = 1.0
 """Edge of a domain [m] beyond which a solid of a modulus above `_STIFF` is doubted."""
