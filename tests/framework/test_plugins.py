@@ -27,7 +27,7 @@ SOFT = '''
 from collections.abc import Callable
 from typing import Annotated, Literal
 from pydantic import Field
-from pellicle import Kernel, hookimpl
+from pellicle import Kernel, Output, hookimpl
 from pellicle.components import Component
 from pellicle.units import Quantity
 
@@ -66,6 +66,11 @@ BROKEN = {
     "type without default": (TYPE, 'type: Literal["soft"]', 'Soft.type needs the default "soft"'),
     "other default": (TYPE, 'type: Literal["soft"] = "s"', 'Soft.type needs the default "soft"'),
     "no method": ("compliance", "stiffness", "Soft lacks the method compliance"),
+    "shows nothing": (
+        "Soft(Kernel)",
+        "Soft(Output)",
+        "Soft lacks the method charts, or write",
+    ),
     "no docstring": (DOCSTRING, "", "Soft lacks a docstring"),
     "bare field": (FIELD, "float = 1.0", "Soft.scale lacks Field(description=…)"),
     "unknown unit": ("float,", "float, Quantity('ell'),", "Soft.scale: Quantity('ell') has an unk"),

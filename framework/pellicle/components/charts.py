@@ -112,8 +112,8 @@ class Series:
     steps: Cells | None = None
     """Index of the load step of each point, which a page marks."""
     panel: int = 0
-    stepped: bool = False
-    """Whether y is constant up to the next x."""
+    stepped: Literal["post", "mid"] | None = None
+    """Whether y is constant up to the next x, or about each x, as in a cell."""
     written: bool = True
     """Whether its numbers are written; those of a line that guides the eye are not."""
 
@@ -144,18 +144,18 @@ class Chart:
     """Ranges of x over which the ground is shaded."""
     heights: Sequence[float] = ()
     """Heights of the panels, relative to each other; all alike if empty."""
+    titles: Sequence[str] = ()
+    """Titles of the panels, if they are in a grid and share y, too."""
 
     _repr_png_ = _drawn
 
 
 @dataclass(frozen=True)
 class Panel:
-    """A field over the domain."""
+    """A field over the domain, whose centre is the origin."""
 
-    x: Array
-    """Positions of cells [m], shape (nx,)."""
-    y: Array
-    """Positions of cells [m], shape (ny,)."""
+    size: tuple[float, float]
+    """Edge lengths of the domain along x and y [m]."""
     values: NDArray[Any]
     """In SI, or numbers of parts, shape (nx, ny)."""
     title: str = ""
@@ -264,6 +264,8 @@ class Table:
     columns: Sequence[Column]
     caption: str = ""
     """A sentence on a page."""
+    folded: bool = False
+    """Whether a page shows only the caption until a click on it."""
 
     @classmethod
     def of_rows(

@@ -10,8 +10,6 @@ from pellicle.config.run import Run
 from pellicle.results.path import prescribed_variable
 from pellicle.results.wording import column_of
 
-from .fields import draws_contact
-
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -29,9 +27,8 @@ def caption_of_steps(data: xr.Dataset, fields: Sequence[str], shown: int) -> str
 
 def caption_of_runs(table: xr.Dataset, shown: int) -> str:
     """Return the caption of maps of as many runs as are ``shown``."""
-    which = "The last step in contact" if draws_contact(table) else "The last step"
     runs = _share(shown, table["run"].size, "run")
-    return f"{which} of {runs}, each in colours over its own range."
+    return f"The last step in contact of {runs}, each in colours over its own range."
 
 
 def caption_of_setup(configuration: Mapping[str, Any], label: str) -> str:

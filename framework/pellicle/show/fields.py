@@ -8,7 +8,6 @@ import numpy as np
 
 from pellicle.arrays import Mask
 from pellicle.contact.problem import height_scale
-from pellicle.results.path import has_interaction, has_times
 from pellicle.results.wording import is_periodic
 
 if TYPE_CHECKING:
@@ -34,18 +33,8 @@ def without_round_off(step: xr.Dataset) -> xr.Dataset:
     return step.assign(gap=(step["gap"].dims, np.where(closed, 0.0, gap), step["gap"].attrs))
 
 
-def draws_contact(data: xr.Dataset) -> bool:
-    """Return whether the last step in contact is drawn: paths with adhesion or times end off it."""
-    return has_interaction(data) or has_times(data)
-
-
 def default_step(steps: xr.Dataset) -> int:
-    """Return the index of the load step of a run that is drawn: -1, which is the last.
-
-    It is the last step in contact where `draws_contact`.
-    """
-    if not draws_contact(steps):
-        return -1
+    """Return the index of the load step of a run that is drawn: the last in contact, else -1."""
     in_contact = np.flatnonzero(steps["contact_area"].values > 0)
     return int(in_contact[-1]) if in_contact.size else -1
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle.components.charts import Column
 from pellicle.contact.caveats import Status, by_phrase, from_text
 from pellicle.errors import first_of
 from pellicle.results.path import has_interaction, has_times, label_of_step, prescribed_variable
@@ -24,6 +25,13 @@ if TYPE_CHECKING:
 _DIGITS = 3
 _FEW = 5
 """Number of runs up to which the sentence of a study lists their numbers."""
+_AIMS = (
+    ("storage_stiffness", "loss_stiffness", "phase", "oscillation_frequency"),
+    ("pull_off", "pull_off_depth"),
+)
+"""Variables of a whole path that a run is made for, each group in a sentence."""
+_COLUMNS = {"pull_off": "force", "pull_off_depth": "depth"}
+"""The numbers of steps whose unit they share."""
 _SAME = 1e-9
 """Relative difference up to which numbers count as equal."""
 FEW_CELLS = 12
@@ -58,7 +66,8 @@ def sentence_of_step(data: xr.Dataset, index: int) -> str:
         names = [name for name in names if name != "depth"]
     if step["contact_area"].item() <= 0:
         names = [name for name in names if name != size]
-    parts = [replace(column_of(step[n]), digits=_DIGITS).text(step[n].item()) for n in names]
+    # In the unit of all steps, as the tables and curves.
+    parts = [replace(column_of(data[n]), digits=_DIGITS).text(step[n].item()) for n in names]
     parts += ["no contact"] if step["contact_area"].item() <= 0 else []
     marked = "" if step["converged"].item() else " (NOT CONVERGED)"
     return f"{heading}: {', '.join(parts)}{marked}."
@@ -121,19 +130,41 @@ def unfinished(result: Result) -> str:
     return f"interrupted: {done} of {planned} steps are finished; run it again" * (done < planned)
 
 
-def sentences_of_path(data: xr.Dataset, summary: Mapping[str, float]) -> str:
-    """Return the range of the force over the load steps, and the pull-off force; may be empty."""
+def aim_of_path(data: xr.Dataset, summary: Mapping[str, float]) -> str:
+    """Return what a path is made for: complex stiffness, pull-off, the force of a hold; or ""."""
     sentences = []
-    if data.sizes["step"] > 1 and not has_interaction(data):
-        sentences.append(f"Over {data.sizes['step']} load steps: {_range(data['force'])}.")
-    names = [n for n in ("pull_off", "pull_off_depth") if np.isfinite(summary.get(n, np.nan))]
-    if names:
-        texts = [
-            f"{VARIABLES[n].words} {readable(summary[n], VARIABLES[n].unit, _DIGITS)}"
-            for n in names
-        ]
-        sentences.append(f"On the path: {', '.join(texts)}.")
+    for names in _AIMS:
+        if all(np.isfinite(summary.get(name, np.nan)) for name in names):
+            texts = [_text_of(name, summary[name], data) for name in names]
+            sentences.append(f"{texts[0][0].upper()}{', '.join(texts)[1:]}.")
+    force, prescribed = data["force"], data[prescribed_variable(data)]
+    is_held = has_times(data) and prescribed.size > 1 and prescribed[-1] == prescribed[-2]
+    if is_held and prescribed.name != "force" and not sentences and not has_interaction(data):
+        peak = int(np.nanargmax(np.append(force.values, -np.inf)))
+        (first, held), shown = force.values[[peak % force.size, -1]], column_of(force)
+        after = [readable(data["time"].values[n].item(), "s", _DIGITS) for n in (peak, -1)]
+        texts = [replace(shown, digits=_DIGITS).text(value) for value in (first, held)]
+        sentences.append(
+            f"F{texts[0][1:]} at its peak, after {after[0]}; "
+            f"{texts[1]} at the end of the hold, after {after[1]}."
+        )
     return " ".join(sentences)
+
+
+def range_of_path(data: xr.Dataset) -> str:
+    """Return the range of the force over the load steps; empty for one, and with adhesion."""
+    steps = data.sizes["step"]
+    is_one = steps == 1 or has_interaction(data)
+    return "" if is_one else f"Over {steps} load steps: {_range(data['force'])}."
+
+
+def _text_of(name: str, value: float, data: xr.Dataset) -> str:
+    """Return a number of a path in words, in the unit of the column of the steps that has it."""
+    variable = VARIABLES[name]
+    shown = Column(variable.words, [value], variable.unit)
+    if name in _COLUMNS:
+        shown = replace(column_of(data[_COLUMNS[name]]), words=variable.words)
+    return replace(shown, digits=_DIGITS).text(value)
 
 
 def sentence_of_study(table: xr.Dataset, count: int) -> str:

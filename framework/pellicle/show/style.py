@@ -167,6 +167,9 @@ def lay_out(figure: Figure) -> None:
     if engine is None:
         return
     engine.execute(figure)
+    if sum(axes.get_aspect() != "auto" for axes in figure.axes) > 1:
+        # Axes of a fixed aspect move, with their titles, as they get their places.
+        engine.execute(figure)
     covering = []
     for axes in figure.axes:
         legend = axes.get_legend()

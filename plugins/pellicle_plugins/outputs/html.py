@@ -32,10 +32,11 @@ from pellicle.show.maps import Field as MapField
 from pellicle.show.maps import Frame, Maps, frame, side
 from pellicle.show.methods import methods
 from pellicle.show.sentences import (
+    aim_of_path,
+    range_of_path,
     run_names,
     sentence_of_step,
     sentence_of_study,
-    sentences_of_path,
     status_of_run,
     status_of_study,
 )
@@ -126,25 +127,23 @@ class Html(Output):
         maps, chosen = self._maps_of_steps(result)
         step_shown = default_step(data) % data.sizes["step"]
         first, label = sentence_of_step(data, step_shown), label_of_step(data, step_shown)
-        rest = sentences_of_path(data, result.path_summary)
-        sentences = [Text(first, lead=True), *([Text(rest)] if rest else [])]
-        numbers = [*tables.all_steps(data), *tables.path(data), *tables.oscillations(data)]
+        setup = _setup(data.isel(step=step_shown), configuration, label)
+        aim = aim_of_path(data, result.path_summary)
+        lead, rest = (aim, first) if aim else (first, range_of_path(data))
+        sentences = [Text(lead, lead=True), *([Text(rest)] if rest else [])]
+        of_steps, off = tables.all_steps(data), data["contact_area"].values == 0
+        if off.any() and not off.all():
+            apart, *_ = tables.all_steps(data.isel(step=off))
+            apart = replace(apart, caption="Results of the steps out of contact.", folded=True)
+            of_steps = [*tables.all_steps(data.isel(step=~off))[:-1], apart, of_steps[-1]]
+        numbers = [*of_steps, *tables.path(data), *tables.oscillations(data)]
         return [
-            Section(
-                "In short",
-                [*sentences, Notice(*status_of_run(result))],
-            ),
+            Section("In short", [*sentences, Notice(*status_of_run(result))]),
             Section("Maps", [maps]),
             Section("Curves", curves_of_run(result, chosen, maps.begin)),
             Section("Outputs", [*curves_of_outputs(runs, _outputs(configuration), chosen)]),
             Section("Numbers", numbers),
-            Section(
-                "Set-up",
-                [
-                    _setup(data.isel(step=step_shown), configuration, label),
-                    _inputs(inputs(configuration, Run)),
-                ],
-            ),
+            Section("Set-up", [setup, _inputs(inputs(configuration, Run))]),
         ]
 
     def _sections_of_study(
@@ -171,12 +170,9 @@ class Html(Output):
         of_runs = tables.runs(table, mapped=list(frames))
         numbers = [of_runs, *tables.paths_of_runs(table)]
         return [
-            Section(
-                "In short",
-                [*lead, Notice(*status_of_study(table))],
-            ),
+            Section("In short", [*lead, Notice(*status_of_study(table))]),
             Section("Maps", [maps] if frames else []),
-            Section("Curves", curves_of_study(table)),
+            Section("Curves", [*curves_of_study(runs)]),
             Section("Outputs", [*curves_of_outputs(runs, _outputs(first_run))]),
             Section("Numbers", numbers),
             Section(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
@@ -58,7 +59,10 @@ class Profiles(TableFigure):
                 look = Look(number, None, number)
             elif self._fields() == {"pressure"} and not has_interaction(line):
                 x, y = self._columns(with_rim(line))
-            series.append(Series(x.values, y.values, legend=name.words, look=look))
+            # At a rim that sticks the pressure has a peak in single cells.
+            in_cells = has_interaction(line) and self._fields() & {"pressure", WALL_PRESSURE}
+            one = Series(x.values, y.values, legend=name.words, look=look)
+            series.append(replace(one, stepped="mid") if in_cells else one)
             if self.reference:
                 x, y = self._columns(exact_line(line))
                 is_last = number == len(lines) - 1
