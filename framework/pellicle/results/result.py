@@ -143,19 +143,11 @@ class Result:
                 limits[SLOPES] = {**of_step, "slope": slope}
         return {limit.phrase: limit.sentence(values) for limit, values in limits.items()}
 
-    def caveats_by_phrase(self) -> dict[str, list[tuple[int, str]]]:
-        """Return number and sentence of the steps with each kind of caveat, failures left out.
-
-        The keys say what is limited: "the cells are too coarse for this contact". Of small domains
-        the step that needs the largest comes first.
-        """
-        groups = by_phrase(self.caveats())
-        return {p: [(number, c.sentence) for number, c in group] for p, group in groups.items()}
-
     def warnings(self) -> list[str]:
         """Return a message for each kind of caveat, with the first step that has it."""
-        groups = self.caveats_by_phrase().values()
-        return [*map(first_message, groups), *self.beyond_theory().values()]
+        groups = by_phrase(self.caveats()).values()
+        messages = [first_message([(n, c.sentence) for n, c in group]) for group in groups]
+        return [*messages, *self.beyond_theory().values()]
 
     def _of(self, *statuses: Status) -> list[tuple[int, str]]:
         return [(number, c.sentence) for number, c in self.caveats() if c.status in statuses]

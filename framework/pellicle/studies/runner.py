@@ -35,8 +35,7 @@ from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.memory_estimate import memory_of
 from pellicle.runs.progress import reporting
-from pellicle.show.plan import shared
-from pellicle.show.sentences import caveats, failures, run_names
+from pellicle.show.sentences import caveats, failures, run_names, shared
 from pellicle.variables import BEYOND_THEORY
 
 from . import table
