@@ -85,16 +85,10 @@ def failed_steps(result: Result) -> Iterator[str]:
         if not caveat.status.converged:
             failed.setdefault(caveat.status, []).append((number, caveat.sentence))
     for group in failed.values():
-        spans: list[list[int]] = []
-        for number, _ in group:
-            if spans and number == spans[-1][-1] + 1:
-                spans[-1].append(number)
-            else:
-                spans.append([number])
-        texts = [str(s[0]) if len(s) == 1 else f"{s[0]} to {s[-1]}" for s in spans]
-        listed = ", ".join(texts)
-        if len(group) == 2:
-            listed = f"{group[0][0]} and {group[1][0]}"
+        numbers = [number for number, _ in group]
+        ends = ([n for n in numbers if n + by not in numbers] for by in (-1, 1))
+        spans = [str(a) if a == b else f"{a} to {b}" for a, b in zip(*ends, strict=True)]
+        listed = " and ".join(map(str, numbers)) if len(group) == 2 else ", ".join(spans)
         several = len({message for _, message in group}) > 1
         first = f"step {group[0][0]}: " if several else ""
         steps = f"step{'s' * (len(group) > 1)} {listed}"
