@@ -54,14 +54,13 @@ def names(data: xr.Dataset) -> dict[str, Any]:
         for key, value in constants(configuration_of(data)).items()
         if not key.startswith(varied) and key not in varying
     }
-    numeric = {str(name): data[name] for name in data.variables if data[name].dtype.kind in "iuf"}
     # numpy refuses to subtract bools.
-    truths = {
-        str(name): data[name].astype(float)
+    columns = {
+        str(name): data[name].astype(float) if data[name].dtype == bool else data[name]
         for name in data.variables
-        if data[name].dtype.kind == "b"
+        if data[name].dtype.kind in "iufb"
     }
-    return {**fixed, **numeric, **truths}
+    return {**fixed, **columns}
 
 
 def derive(
