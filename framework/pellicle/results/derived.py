@@ -22,8 +22,6 @@ REDUCTIONS: dict[str, Callable[[Any], Any]] = {
     name: methodcaller(name, CELLS) for name in ("mean", "sum", "min", "max")
 }
 """Functions that reduce a field to one number for each step."""
-
-
 FIRST_RUN = "first_run"
 """Attribute of a study's table: the configuration of the first run as JSON in SI."""
 VARYING = "varying"
@@ -35,9 +33,8 @@ DERIVED = "derived"
 
 def configuration_of(data: xr.Dataset) -> dict[str, Any]:
     """Return the configuration of a result, or of the first run of a study, in SI."""
-    configuration: dict[str, Any] = json.loads(
-        data.attrs.get(FIRST_RUN, data.attrs["configuration"])
-    )
+    text = data.attrs.get(FIRST_RUN, data.attrs["configuration"])
+    configuration: dict[str, Any] = json.loads(text)
     return configuration
 
 

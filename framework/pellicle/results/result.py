@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import isfinite, nan, sqrt
@@ -30,6 +29,7 @@ from pellicle.units import axis_unit
 from pellicle.variables import CAVEATS, COORDINATES, REQUIRED
 
 from . import storage
+from .derived import configuration_of
 from .path import has_interaction, label_of_step, oscillations_of, path_variables
 
 if TYPE_CHECKING:
@@ -52,8 +52,7 @@ class Result:
     @property
     def configuration(self) -> dict[str, Any]:
         """The full configuration of the run, in SI floats."""
-        configuration: dict[str, Any] = json.loads(self.dataset.attrs["configuration"])
-        return configuration
+        return configuration_of(self.dataset)
 
     @property
     def grid(self) -> Grid:

@@ -24,7 +24,6 @@ from .numbers import is_number
 if TYPE_CHECKING:
     from jinja2 import Template
 
-
 _HASH = re.compile(r"\b([0-9a-f]{8})[0-9a-f]{24,}\b")
 
 

@@ -200,8 +200,8 @@ def execute(
             return verdict, verdict != "converged"
 
         def runs() -> StoredRuns:
-            whole_study = study.to_json(portable=True)
-            return StoredRuns.of_study(read_only_dataset(whole), directory, whole_study)
+            configuration = study.to_json(portable=True)
+            return StoredRuns.of_study(read_only_dataset(whole), directory, configuration)
 
         def written(write: Callable[[], tuple[Path, ...]]) -> tuple[Path, ...]:
             try:
