@@ -247,8 +247,7 @@ def inputs_of_study(table: xr.Dataset, fields: Iterable[FieldRow]) -> list[Field
 
 def origin(attributes: Mapping[str, Any], fields: Iterable[FieldRow]) -> list[Table]:
     """Return the versions, date and identity of a result, and the packages of its components."""
-    names = "versions", "date", "identity"
-    facts = [(name, attributes[name]) for name in names if attributes.get(name)]
+    facts = [(n, attributes[n]) for n in ("versions", "date", "identity") if attributes.get(n)]
     rows = [
         (i.words, i.value, i.origin.distribution, i.origin.version, i.origin.entry_point)
         for i in fields

@@ -108,11 +108,8 @@ class StudyTable:
             key: (dimension, *coordinate)
             for key, (dimension, coordinate) in self._study.coordinates().items()
         }
-        coordinates["step"] = (
-            "step",
-            np.arange(1, self._values["status"].shape[-1] + 1),
-            {"long_name": "load step, counted from 1"},
-        )
+        counted = {"long_name": "load step, counted from 1"}
+        coordinates["step"] = "step", np.arange(1, self._values["status"].shape[-1] + 1), counted
         table = with_path(xr.Dataset(variables, coordinates, self._attributes))
         if not numbers:
             return table
