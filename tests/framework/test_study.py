@@ -277,7 +277,7 @@ def test_table_that_a_kill_left_behind(tmp_path: Path) -> None:
     vary = {TENSION: [0.0, 0.5], RADIUS: [1e-3, 2e-3]}
     plan = pl.Study(run=RUN, vary=vary, derived={"twice": "2 * force"})
     whole = pl.run_study(plan, tmp_path, progress=False)
-    *finished, last = study_module.tasks(plan, tmp_path)
+    *finished, last = study_module.planned(plan, tmp_path / "study")
     last.journal.path.unlink()
     rows = StudyTable(plan)
     for task in finished[:2]:

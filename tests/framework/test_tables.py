@@ -15,7 +15,7 @@ from rich.console import Console
 import pellicle as pl
 from pellicle.results.dimensions import with_paths
 from pellicle.show import tables
-from pellicle.show.terminal import text_of
+from pellicle.show.numbers import text_of
 
 FILE = Path(__file__).with_suffix(".txt")
 RUN: dict[str, Any] = {

@@ -28,7 +28,8 @@ from pellicle.components import Case, Column, Table
 from pellicle.config.explain import explanations
 from pellicle.results.wording import means_something
 from pellicle.runs.validation import CheckedCase
-from pellicle.show.verdicts import outcome, verdicts
+from pellicle.show.sentences import outcome_of_cases
+from pellicle.show.tables import verdicts
 from pellicle_fit.config import FitConfig
 
 RUN: dict[str, Any] = {
@@ -210,8 +211,8 @@ def test_validate_ends_with_what_it_covers() -> None:
     assert verdicts([good, wrong]).records[1]["computed"] == "0.3 mm²"
     others = "; no case is about the kernels coated, layered"
     kernels = "layered", "winkler", "coated"
-    assert outcome([good, wrong], kernels) == f"1 of 2 cases failed{others}"
-    assert outcome([good], kernels) == f"all 1 cases passed{others}"
+    assert outcome_of_cases([good, wrong], kernels) == f"1 of 2 cases failed{others}"
+    assert outcome_of_cases([good], kernels) == f"all 1 cases passed{others}"
 
 
 def test_a_fault_of_pellicle_has_an_exit_code_of_its_own(

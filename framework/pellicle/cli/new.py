@@ -121,11 +121,10 @@ def write_plugin(family: str, name: str, parent: Path) -> Path:
         f"test_{names['module']}.py": template / "test",
         f"{names['type']}.toml": template / "example",
     }
+    if folder.exists():
+        raise StorageError(f"{folder} exists already; give another name")
     with storage_errors(folder):
-        try:
-            folder.mkdir()
-        except FileExistsError:
-            raise StorageError(f"{folder} exists already; give another name") from None
+        folder.mkdir()
         for file, source in sources.items():
             text = Template(source.read_text(encoding="utf-8")).substitute(names)
             (folder / file).write_text(text, encoding="utf-8")

@@ -49,6 +49,9 @@ def plugins(
         for name, command in made.items()
         if not isinstance(command, Broken)
     ]
+    rows = [
+        (family, type_, of.distribution, of.version, text) for family, type_, of, text in installed
+    ]
     clashes: dict[tuple[str, str], Sequence[Origin]] = {
         **contents.clashes,
         **{("command", name): origins for name, origins in owners.items() if len(origins) > 1},
@@ -62,18 +65,9 @@ def plugins(
         (broken.origin.entry_point, [broken.origin], broken.error)
         for broken in (*contents.broken, *failed.values())
     ] + [(".".join(name), origins, claimed_by(origins)) for name, origins in clashes.items()]
-    rows = [
-        (family, type_, of.distribution, of.version, summary)
-        for family, type_, of, summary in installed
-    ]
     lost = [
-        (
-            name,
-            ", ".join(origin.distribution for origin in origins),
-            ", ".join(origin.version for origin in origins),
-            error,
-        )
-        for name, origins, error in unusable
+        (name, ", ".join(o.distribution for o in of), ", ".join(o.version for o in of), error)
+        for name, of, error in unusable
     ]
     components = Table.of_rows(("family", "type", "origin", "version", "description"), rows)
     broken = Table.of_rows(("entry_point", "origin", "version", "error"), lost)

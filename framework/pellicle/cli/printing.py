@@ -41,7 +41,7 @@ def print_table(table: Table, title: str = "", *, si: bool = False) -> None:
 
     On a terminal long heads and cells are folded; elsewhere a row is a line.
     """
-    from pellicle.show.terminal import text_of
+    from pellicle.show.numbers import text_of
 
     if table.columns:
         if title:

@@ -96,15 +96,13 @@ def _steps(data: xr.Dataset) -> list[dict[str, Any]]:
 def exit_by_outcome(outcome: Result | xr.Dataset) -> None:
     """Print what did not converge, and the caveats of a run; exit unless all converged."""
     if isinstance(outcome, Result):
-        converged, reasons = outcome.converged, [*sentences.failed_steps(outcome)]
+        reasons, messages = [*sentences.failed_steps(outcome)], outcome.warnings()
     else:
         message = sentences.failures(outcome)
-        converged, reasons = not message, [*sentences.reasons(outcome), message]
-    if not converged:
-        for reason in reasons:
-            echo(for_document(reason), err=True)
-    if isinstance(outcome, Result):
-        for warning in outcome.warnings():
-            print_warning(warning)
-    if not converged:
+        reasons, messages = [*sentences.reasons(outcome), message] if message else [], []
+    for reason in reasons:
+        echo(for_document(reason), err=True)
+    for warning in messages:
+        print_warning(warning)
+    if reasons:
         raise typer.Exit(NOT_CONVERGED)

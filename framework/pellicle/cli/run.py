@@ -68,7 +68,7 @@ def run(
     from pellicle.runs import runner
     from pellicle.runs.journal import Journal
     from pellicle.runs.progress import RunProgress
-    from pellicle.show import plan
+    from pellicle.show import sentences, tables
     from pellicle.show.doubtful_scales import doubts_of_scale
     from pellicle.studies import runner as studies
 
@@ -81,7 +81,7 @@ def run(
     stem = folder / file.stem
     if dry_run:
         tasks = studies.planned(configuration, stem, overwrite=overwrite)
-        table, sentence = plan.planned(tasks)
+        table, sentence = tables.planned(tasks)
         if json:
             print_json({"runs": table.records})
         else:
@@ -104,16 +104,16 @@ def run(
                 configuration, journal, outputs, bar, threads=threads
             )
             if Status.CONTACT_AT_EDGE.name in outcome.dataset["status_code"].values:
-                echo(plan.larger_domain(file, folder), err=True)
+                echo(sentences.larger_domain(file, folder), err=True)
     except KeyboardInterrupt:
         finished = "runs" if isinstance(configuration, Study) else "steps"
-        echo(plan.interrupted(finished, folder), err=True)
+        echo(sentences.interrupted(finished, folder), err=True)
         raise typer.Exit(INTERRUPTED) from None
     if json:
         print_outcome_json(outcome, files)
     elif not quiet:
         print_tables(outcome, si=si, whole=False)
-        for sentence in plan.done(files, resumed, whole, monotonic() - began):
+        for sentence in sentences.done(files, resumed, whole, monotonic() - began):
             echo(sentence)
     exit_by_outcome(outcome)
 

@@ -11,13 +11,11 @@ from pellicle.errors import PluginError
 from .printing import echo, print_json, print_table
 
 
-def validate(
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
-) -> None:
+def validate(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False) -> None:
     """Solve the shipped problems of known solution; exit code 0 only if all agree."""
     from pellicle.plugins import registry
     from pellicle.runs import validation
-    from pellicle.show.verdicts import outcome, verdicts
+    from pellicle.show import sentences, tables
 
     done = list(validation.validate())
     if not done:
@@ -39,6 +37,6 @@ def validate(
         ]
         print_json({"passed": passed, "cases": cases})
     else:
-        print_table(verdicts(done))
-        echo(outcome(done, registry().components["kernel"]))
+        print_table(tables.verdicts(done))
+        echo(sentences.outcome_of_cases(done, registry().components["kernel"]))
     raise typer.Exit(0 if passed else 1)

@@ -220,11 +220,12 @@ class Column:
             values = [value for value in values if isinstance(value, Real)]
         return axis_unit(values, self.unit)
 
-    def number(self, value: object) -> str:
+    def number(self, value: object, *, si: bool = False) -> str:
         """Return a value in SI as people read it, without the unit."""
         if isinstance(value, str):
             return self.texts.get(value, value)
-        return self.scale.number(value, self.digits)
+        scale, digits = self.unit_and_digits(si=si)
+        return scale.number(value, digits)
 
     def text(self, value: object) -> str:
         """Return words, value and unit: "surface tension 30 mN/m"."""
@@ -244,12 +245,9 @@ class Column:
 
     def read(self, *, si: bool = False) -> tuple[str, list[str]]:
         """Return the head and the cells as people read them."""
-        scale, digits = self.unit_and_digits(si=si)
-        head = f"{self.words} [{scale.unit}]" if scale.unit else self.words
-        return head, [
-            self.texts.get(value, value) if isinstance(value, str) else scale.number(value, digits)
-            for value in self._listed
-        ]
+        unit = self.unit_and_digits(si=si)[0].unit
+        head = f"{self.words} [{unit}]" if unit else self.words
+        return head, [self.number(value, si=si) for value in self._listed]
 
     @property
     def _listed(self) -> Sequence[object]:

@@ -22,8 +22,7 @@ _MOST = 1_000_000
 _FEWEST_OF_CYCLE = 4
 
 Number = Annotated[
-    int,
-    Field(title="number of steps", ge=1, description="number of load steps of the leg"),
+    int, Field(title="number of steps", ge=1, description="number of load steps of the leg")
 ]
 
 

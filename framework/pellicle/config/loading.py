@@ -132,8 +132,7 @@ class Loading(Options):
         for index, (before, after) in enumerate(itertools.pairwise(self.time), start=1):
             if after < before:
                 raise ConfigError(
-                    f"falls from {before:g} to {after:g} s; times must not fall",
-                    f"time.{index}",
+                    f"falls from {before:g} to {after:g} s; times must not fall", f"time.{index}"
                 )
         return self
 

@@ -46,17 +46,12 @@ def label_of_step(data: xr.Dataset, index: int) -> str:
 
 def has_path(data: xr.Dataset) -> bool:
     """Return whether a result, or any run of a study, has variables of its whole path."""
-    return has_interaction(data) or has_oscillation(data)
-
-
-def has_oscillation(data: xr.Dataset) -> bool:
-    """Return whether a leg of a result, or of any run of a study, oscillates."""
-    return "cycle" in data
+    return has_interaction(data) or "cycle" in data
 
 
 def oscillations_of(steps: xr.Dataset) -> list[Oscillation]:
     """Return the response of each oscillation on the path of a run."""
-    if not has_oscillation(steps):
+    if "cycle" not in steps:
         return []
     done = steps.isel(step=np.isfinite(steps["time"].values))
     names = "time", "cycle", "depth", "force", "converged"

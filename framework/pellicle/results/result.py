@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import isfinite, nan, sqrt
@@ -30,6 +29,7 @@ from pellicle.units import axis_unit
 from pellicle.variables import CAVEATS, COORDINATES, REQUIRED
 
 from . import storage
+from .derived import configuration_of
 from .path import has_interaction, label_of_step, oscillations_of, path_variables
 
 if TYPE_CHECKING:
@@ -52,8 +52,7 @@ class Result:
     @property
     def configuration(self) -> dict[str, Any]:
         """The full configuration of the run, in SI floats."""
-        configuration: dict[str, Any] = json.loads(self.dataset.attrs["configuration"])
-        return configuration
+        return configuration_of(self.dataset)
 
     @property
     def grid(self) -> Grid:
@@ -143,19 +142,11 @@ class Result:
                 limits[SLOPES] = {**of_step, "slope": slope}
         return {limit.phrase: limit.sentence(values) for limit, values in limits.items()}
 
-    def caveats_by_phrase(self) -> dict[str, list[tuple[int, str]]]:
-        """Return number and sentence of the steps with each kind of caveat, failures left out.
-
-        The keys say what is limited: "the cells are too coarse for this contact". Of small domains
-        the step that needs the largest comes first.
-        """
-        groups = by_phrase(self.caveats())
-        return {p: [(number, c.sentence) for number, c in group] for p, group in groups.items()}
-
     def warnings(self) -> list[str]:
         """Return a message for each kind of caveat, with the first step that has it."""
-        groups = self.caveats_by_phrase().values()
-        return [*map(first_message, groups), *self.beyond_theory().values()]
+        groups = by_phrase(self.caveats()).values()
+        messages = [first_message([(n, c.sentence) for n, c in group]) for group in groups]
+        return [*messages, *self.beyond_theory().values()]
 
     def _of(self, *statuses: Status) -> list[tuple[int, str]]:
         return [(number, c.sentence) for number, c in self.caveats() if c.status in statuses]

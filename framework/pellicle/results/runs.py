@@ -69,9 +69,19 @@ class StoredRuns:
 
     def column(self, text: str) -> xr.DataArray:
         """Return the value of an expression for each step."""
-        if names_in(text) & {*FIELDS, WALL_PRESSURE, *CELLS}:
-            return self.from_each(lambda run: _by_step(text, run))
-        return as_array(text, self.table)
+        if not names_in(text) & {*FIELDS, WALL_PRESSURE, *CELLS}:
+            return as_array(text, self.table)
+
+        def by_step(run: xr.Dataset) -> Any:
+            value = evaluate(text, names(run), REDUCTIONS)
+            if set(getattr(value, "dims", ())) & set(CELLS):
+                raise ConfigError(
+                    f"{shown(text)} has a value for each cell instead of each step; put fields, "
+                    f"x and y inside {', '.join(REDUCTIONS)}, such as mean(pressure)"
+                )
+            return value
+
+        return self.from_each(by_step)
 
     def from_each(self, function: Callable[[xr.Dataset], Any]) -> xr.DataArray:
         """Return the values of ``function`` for all steps of all runs; NaN for missing runs."""
@@ -126,14 +136,3 @@ def by_run(table: xr.Dataset, name: str) -> NDArray[Any]:
     """Return a variable of the steps, of shape (runs, steps)."""
     values = table[name].values
     return values.reshape(-1, values.shape[-1])
-
-
-def _by_step(text: str, run: xr.Dataset) -> Any:
-    """Return the value of an expression over a run for each step."""
-    value = evaluate(text, names(run), REDUCTIONS)
-    if set(getattr(value, "dims", ())) & set(CELLS):
-        raise ConfigError(
-            f"{shown(text)} has a value for each cell instead of each step; put fields, "
-            f"x and y inside {', '.join(REDUCTIONS)}, such as mean(pressure)"
-        )
-    return value

@@ -10,12 +10,7 @@ import numpy as np
 
 from pellicle.components.charts import Column
 from pellicle.units import DIGITS
-from pellicle.variables import (
-    CORRECTED_FRACTION,
-    WORDS,
-    WORDS_OF_VALUES,
-    words_of_name,
-)
+from pellicle.variables import CORRECTED_FRACTION, WORDS, WORDS_OF_VALUES, words_of_name
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -2,6 +2,8 @@ __all__: list[str]
 
 from .doubtful_scales import doubts_of_scale as doubts_of_scale
 from .drawing import draw as draw
+from .fields import up_to_rim as up_to_rim
+from .fields import with_rim as with_rim
 from .fields import without_round_off as without_round_off
 from .html import Block as Block
 from .html import Code as Code
@@ -16,8 +18,6 @@ from .maps import Maps as Maps
 from .maps import frame as frame
 from .maps import side as side
 from .notebook import summary as summary
-from .rim import up_to_rim as up_to_rim
-from .rim import with_rim as with_rim
 from .saving import figure_of as figure_of
 from .saving import figures as figures
 from .saving import png as png

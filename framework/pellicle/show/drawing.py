@@ -13,7 +13,7 @@ from pellicle.arrays import Array
 from pellicle.components.charts import Axis, Chart, Fields, Panel, Series, extent
 from pellicle.units import Scale, axis_unit
 
-from .style import LINES, MARKERS, NO_CONTACT, add_colour_bar, colour, sparse_marker
+from .style import LINES, MARKERS, NO_CONTACT, colour
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,8 +27,8 @@ _RETRACTION = (0, (2.5, 1.2))
 _GREY, _PALE = "0.4", "0.6"
 _MOST_MARKED = 80
 """Points of a line that all have a marker; of more, some have, at a distance."""
-_MARKER_DISTANCE = 0.04
-"""Over the diagonal of the axes."""
+_MARKER_DISTANCE, _SPARSE_DISTANCE = 0.04, 0.12
+"""Over the diagonal of the axes; the latter on a smooth curve."""
 _LETTERS = 50
 """Letters of a line of the label of an axis."""
 _NOT_CONVERGED = "not converged"
@@ -168,13 +168,16 @@ def _style(series: Series, chart: Chart) -> dict[str, Any]:
         style["zorder"] = 1
     if series.stepped:
         style["drawstyle"] = f"steps-{series.stepped}"
-    if look.marker is not None and look.sparse:
-        style |= sparse_marker(look.marker)
-    elif look.marker is not None:
-        marker = MARKERS[look.marker % len(MARKERS)]
-        style |= {"marker": marker, "markersize": 4, "markerfacecolor": "white"}
-        if look.line is not None and series.x.size > _MOST_MARKED:
-            style["markevery"] = _MARKER_DISTANCE
+    if look.marker is None:
+        return style
+    style["marker"] = MARKERS[look.marker % len(MARKERS)]
+    if look.sparse:
+        # Smooth curves that coincide show their markers beside each other.
+        first = _SPARSE_DISTANCE * (0.2 + 0.25 * (look.marker % 4))
+        return style | {"markersize": 3.5, "markevery": (first, _SPARSE_DISTANCE)}
+    style |= {"markersize": 4, "markerfacecolor": "white"}
+    if look.line is not None and series.x.size > _MOST_MARKED:
+        style["markevery"] = _MARKER_DISTANCE
     return style
 
 
@@ -273,8 +276,10 @@ def _draw_fields(figure: Figure | SubFigure, fields: Fields) -> None:
         below: dict[str, Any] = {"loc": "outside lower center", "ncols": 2, "fontsize": "small"}
         figure.legend(patches, [words, f"no {words}"], **below)
     elif not fields.parts:
-        bar = all_axes[min(across, len(fields.panels)) - 1]
-        add_colour_bar(bar, image, fields.axis.label(scale))
+        # A bar beside the map, as high as it.
+        last = all_axes[min(across, len(fields.panels)) - 1]
+        beside = last.inset_axes((1.04, 0.0, 0.05, 1.0))
+        image.figure.colorbar(image, cax=beside, label=fields.axis.label(scale))
 
 
 def _draw_panel(

@@ -19,11 +19,10 @@ from pellicle.components.charts import Column, Table
 from pellicle.files import for_document
 
 from .maps import Maps
-from .terminal import is_number
+from .numbers import is_number
 
 if TYPE_CHECKING:
     from jinja2 import Template
-
 
 _HASH = re.compile(r"\b([0-9a-f]{8})[0-9a-f]{24,}\b")
 

@@ -1,26 +1,31 @@
-"""What became of a run or a study, in sentences."""
+"""Sentences: what a run or a study will do, what became of it, and what its maps show."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.components.charts import Column
+from pellicle.config.describe import inputs
+from pellicle.config.run import Run
 from pellicle.contact.caveats import Status, by_phrase, from_text
 from pellicle.errors import first_of
 from pellicle.results.path import has_interaction, has_times, label_of_step, prescribed_variable
 from pellicle.results.result import Result
 from pellicle.results.runs import axes_of, by_run, runs_of, short_files, statuses_of
 from pellicle.results.wording import column_of, has_one_shape, is_periodic
-from pellicle.units import readable
+from pellicle.units import decimal, readable
 from pellicle.variables import BEYOND_THEORY, CAVEATS, VARIABLES
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from pellicle.runs.validation import CheckedCase
 
 _DIGITS = 3
 _FEW = 5
@@ -80,16 +85,10 @@ def failed_steps(result: Result) -> Iterator[str]:
         if not caveat.status.converged:
             failed.setdefault(caveat.status, []).append((number, caveat.sentence))
     for group in failed.values():
-        spans: list[list[int]] = []
-        for number, _ in group:
-            if spans and number == spans[-1][-1] + 1:
-                spans[-1].append(number)
-            else:
-                spans.append([number])
-        texts = [str(s[0]) if len(s) == 1 else f"{s[0]} to {s[-1]}" for s in spans]
-        listed = ", ".join(texts)
-        if len(group) == 2:
-            listed = f"{group[0][0]} and {group[1][0]}"
+        numbers = [number for number, _ in group]
+        ends = ([n for n in numbers if n + by not in numbers] for by in (-1, 1))
+        spans = [str(a) if a == b else f"{a} to {b}" for a, b in zip(*ends, strict=True)]
+        listed = " and ".join(map(str, numbers)) if len(group) == 2 else ", ".join(spans)
         several = len({message for _, message in group}) > 1
         first = f"step {group[0][0]}: " if several else ""
         steps = f"step{'s' * (len(group) > 1)} {listed}"
@@ -106,7 +105,7 @@ def status_of_run(result: Result) -> tuple[str, bool | None, list[str]]:
     count = "The load step" if done == 1 else f"All {done} load steps"
     bad = f"{len(failed)} of {done} load steps did not converge: do not rely on them."
     sentences.append(bad if failed else f"{count} converged.")
-    for phrase, steps in result.caveats_by_phrase().items():
+    for phrase, steps in by_phrase(result.caveats()).items():
         sentences.append(f"In {len(steps)} of {done} {phrase}.")
     sentences += [f"{subject[0].upper()}{subject[1:]}." for subject in result.beyond_theory()]
     lines = *failed_steps(result), *result.warnings()
@@ -295,3 +294,70 @@ def limits_of_curve(
         *([f"slope of the indenter at the rim: {slopes}; {theory}"] if steep else []),
     ]
     return "; ".join(problems) or "computed"
+
+
+def caption_of_steps(data: xr.Dataset, fields: Sequence[str], shown: int) -> str:
+    """Return the caption of maps of some fields in as many load steps as are ``shown``."""
+    *first, last = fields
+    names = f"{', '.join(first)} and {last}".capitalize()
+    # Over the range of the last step the first ones would have one colour.
+    colours = ", each in colours over its own range" if shown > 1 else ""
+    words = column_of(data[prescribed_variable(data)]).words
+    steps = _share(shown, data.sizes["step"], "load step")
+    return f"{names} at prescribed {words}, in {steps}{colours}."
+
+
+def caption_of_runs(table: xr.Dataset, shown: int) -> str:
+    """Return the caption of maps of as many runs as are ``shown``."""
+    runs = _share(shown, table["run"].size, "run")
+    return f"The last step in contact of {runs}, each in colours over its own range."
+
+
+def caption_of_setup(configuration: Mapping[str, Any], label: str) -> str:
+    """Return the caption of the indenter over the surface in a load step."""
+    values = {i.name: i.value for i in inputs(configuration, Run)}
+    return f"The {values['indenter']} on the {values['kernel']}, at {label}; heights stretched."
+
+
+def _share(number: int, count: int, noun: str) -> str:
+    """Return how many are shown in words: "each run", "3 of 8 runs"."""
+    return f"each {noun}" if number == count else f"{number} of {count} {noun}s"
+
+
+def outcome_of_cases(cases: Sequence[CheckedCase], kernels: Iterable[str]) -> str:
+    """Return how many cases failed, and the kernels among ``kernels`` that none is about."""
+    failed, count = sum(not checked.passed for checked in cases), len(cases)
+    passed = f"{failed} of {count} cases failed" if failed else f"all {count} cases passed"
+    solved = {checked.case.configuration["kernel"]["type"] for checked in cases}
+    others = ", ".join(sorted({*kernels} - solved))
+    return f"{passed}; no case is about the kernels {others}" if others else passed
+
+
+def done(files: Sequence[Path], resumed: int, whole: str, seconds: float) -> Iterator[str]:
+    """Yield how much was done before, the files that were written, and how long all took."""
+    if resumed:
+        yield f"{resumed} of {whole} were done before (--overwrite starts over)"
+    for path in files:
+        yield f"wrote {path}"
+    yield f"took {decimal(seconds, 2)} s"
+
+
+def shared(runs: int, seconds: float) -> str:
+    """Return that runs that would take long are shared among processes."""
+    return (
+        f"the other {runs} runs would take {seconds:.0f} s here: they go to processes, as many as "
+        "cores and memory allow (study.executor decides otherwise)"
+    )
+
+
+def interrupted(finished: str, folder: Path) -> str:
+    """Return where an interruption left the ``finished`` steps or runs."""
+    return f"interrupted; finished {finished} are in {folder}, and the same command continues"
+
+
+def larger_domain(file: Path, folder: Path) -> str:
+    """Return how to solve a run on a domain that holds its contacts."""
+    return (
+        f"`pellicle check {file}` finds a grid.size that holds the contact of every step; -o DIR "
+        f"solves it in another folder, --overwrite in place of the result in {folder}"
+    )

@@ -19,16 +19,23 @@ from pellicle.results.derived import DERIVED
 from pellicle.results.path import oscillations_of, path_variables, prescribed_variable
 from pellicle.results.runs import axes_of, progress_of, runs_of, short_files
 from pellicle.results.wording import column_of, means_something
+from pellicle.units import axis_unit, readable
 from pellicle.variables import CAVEATS, VARIABLES, names_of
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from pellicle.runs.validation import CheckedCase
+    from pellicle.studies.runner import RunTask
 
 _OF_PATHS = [
     *("pull_off", "pull_off_accuracy", "detach", "jump_in", "dissipated_energy"),
     *("storage_stiffness", "loss_stiffness", "phase", "cycle_dissipation"),
 ]
 """What the terminal shows of the path of each run of a study."""
+_COMPARED = 8
+"""Digits of values that are compared."""
+_POWERS = str.maketrans("²³", "23")
 
 
 def numbers(data: xr.Dataset) -> Table:
@@ -240,8 +247,7 @@ def inputs_of_study(table: xr.Dataset, fields: Iterable[FieldRow]) -> list[Field
 
 def origin(attributes: Mapping[str, Any], fields: Iterable[FieldRow]) -> list[Table]:
     """Return the versions, date and identity of a result, and the packages of its components."""
-    names = "versions", "date", "identity"
-    facts = [(name, attributes[name]) for name in names if attributes.get(name)]
+    facts = [(n, attributes[n]) for n in ("versions", "date", "identity") if attributes.get(n)]
     rows = [
         (i.words, i.value, i.origin.distribution, i.origin.version, i.origin.entry_point)
         for i in fields
@@ -252,3 +258,45 @@ def origin(attributes: Mapping[str, Any], fields: Iterable[FieldRow]) -> list[Ta
         Table.of_rows(("what", "value"), facts, "Versions, date and identity."),
         Table.of_rows(heads, rows, "Origin of the components."),
     ]
+
+
+def planned(tasks: Sequence[RunTask]) -> tuple[Table, str]:
+    """Return a row for each run, finished or not, and a sentence on all."""
+    rows, done = [], 0
+    for task in tasks:
+        _, finished, problem = task.stored()
+        done += finished >= task.steps
+        nx, ny = task.run.grid.points
+        state = f"{finished} of {task.steps} steps done" if finished < task.steps else "done"
+        rows.append(
+            (
+                task.name,
+                str(task.journal.path),
+                f"{nx} × {ny}",
+                " × ".join(readable(edge, "m", 3) for edge in task.run.grid.size),
+                str(task.steps),
+                f"{task.memory / 1e6:.3g} MB",
+                problem or (state if finished else "to do"),
+            )
+        )
+    most = max(task.memory for task in tasks) / 1e6
+    sentence = (
+        f"{len(tasks)} run{'s' * (len(tasks) > 1)}, {done} done, "
+        f"{len(tasks) - done} to do; at most {most:.3g} MB each"
+    )
+    heads = "run", "file", "points", "size", "steps", "memory", "state"
+    return Table.of_rows(heads, rows), sentence
+
+
+def verdicts(cases: Iterable[CheckedCase]) -> Table:
+    """Return expected and computed values, with digits to compare, in the unit of the expected."""
+    rows = []
+    for checked in cases:
+        case = checked.case
+        scale = axis_unit(case.expected, case.unit.translate(_POWERS))
+        values = (scale.text(value, _COMPARED) for value in (case.expected, checked.computed))
+        verdict = "ok" if checked.passed else f"FAILED {checked.problem}".strip()
+        errors = f"{checked.error:.1e}", f"{case.tolerance:.0e}"
+        rows.append((case.name, *values, *errors, verdict, case.source))
+    heads = "case", "expected", "computed", "error", "allowed", "verdict", "source"
+    return Table.of_rows(heads, rows)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,7 @@ from pellicle.results.runs import StoredRuns
 from pellicle.show.numbers import write_csv
 from pellicle.variables import BEYOND_THEORY, CAVEATS, FIELDS, VARIABLES, WALL_PRESSURE
 
+_SHARE_OF_WRITING = 0.05
 _TEXTS = "status_code", "status", CAVEATS
 
 
@@ -57,6 +59,9 @@ class StudyTable:
         self.beyond_theory = np.full(study.shape, "", dtype=object)
         """What is far beyond the theory in each run."""
         self._descriptions: dict[str, dict[str, str]] = {}
+        self._next_write = 0.0
+        self.files: tuple[Path, ...] = ()
+        """The files of the table that `write` wrote."""
 
     def put(self, index: tuple[int, ...], scalars: xr.Dataset) -> None:
         """Store the steps of a run."""
@@ -75,21 +80,25 @@ class StudyTable:
             for index, name in np.ndenumerate(self._runs):
                 self.beyond_theory[index] = texts.get(name, "")
 
-    def fail(self, index: tuple[int, ...], reason: str) -> None:
-        """Record why the remaining steps of a run are missing."""
+    def fail(self, index: tuple[int, ...], reason: str) -> str:
+        """Record why the remaining steps of a run are missing, and return it as a sentence."""
         codes = self._values["status_code"][index]
         missing = codes == Status.NOT_RUN.name
         codes[missing] = Status.FAILED.name
-        self._values["status"][index][missing] = Caveat(Status.FAILED, {"reason": reason}).sentence
+        sentence = Caveat(Status.FAILED, {"reason": reason}).sentence
+        self._values["status"][index][missing] = sentence
+        return sentence
 
     def dataset(self) -> xr.Dataset:
         """Return the table, with NaN for missing numbers."""
         dimensions = *self._study.dimensions, "step"
         numbers = [name for name in self._values if name not in _TEXTS]
-        variables: dict[str, Any] = {
-            name: (dimensions, _whole(self._values[name], name), self._descriptions.get(name, {}))
-            for name in (*numbers, *_TEXTS)
-        }
+        variables: dict[str, Any] = {}
+        for name in (*numbers, *_TEXTS):
+            values = self._values[name]
+            counts = name in VARIABLES and VARIABLES[name].type == "count"
+            whole = values.astype(int) if counts and np.isfinite(values).all() else values.copy()
+            variables[name] = dimensions, whole, self._descriptions.get(name, {})
         description = {"long_name": "name of the run's file"}
         variables["run"] = dimensions[:-1], self._runs.copy(), description
         if self.beyond_theory.astype(bool).any():
@@ -99,21 +108,20 @@ class StudyTable:
             key: (dimension, *coordinate)
             for key, (dimension, coordinate) in self._study.coordinates().items()
         }
-        coordinates["step"] = (
-            "step",
-            np.arange(1, self._values["status"].shape[-1] + 1),
-            {"long_name": "load step, counted from 1"},
-        )
+        counted = {"long_name": "load step, counted from 1"}
+        coordinates["step"] = "step", np.arange(1, self._values["status"].shape[-1] + 1), counted
         table = with_path(xr.Dataset(variables, coordinates, self._attributes))
         if not numbers:
             return table
         return derive(table, self._study.derived, units_of(self._study.points[0].run))
 
-
-def _whole(values: np.ndarray[Any, np.dtype[Any]], name: str) -> np.ndarray[Any, np.dtype[Any]]:
-    """Return a copy of values, as integers if they are counts and none is missing."""
-    counts = name in VARIABLES and VARIABLES[name].type == "count"
-    return values.astype(int) if counts and np.isfinite(values).all() else values.copy()
+    def write(self, directory: Path, *, at_once: bool = False) -> None:
+        """Write the files of the table; if not ``at_once``, in a small share of the time only."""
+        start = time.monotonic()
+        if at_once or start >= self._next_write:
+            self.files = write(self.dataset(), directory)
+            end = time.monotonic()
+            self._next_write = end + (end - start) / _SHARE_OF_WRITING
 
 
 def write(table: xr.Dataset, directory: Path) -> tuple[Path, Path]:

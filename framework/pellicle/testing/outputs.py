@@ -151,7 +151,7 @@ def works_in_a_study(output: Output) -> None:
         run = json.loads(_run().to_json()) | {"outputs": [output]}
         study = Study.from_mapping(run | {"study": {"vary": {_VARIED: [0.1, 0.2]}}})
         result = studies.execute(study, Path(folder))
-        statuses = {*result.table["status"].values.ravel()}
+        statuses = {*result.result["status"].values.ravel()}
         for path in result.files:
             require(path.is_file(), f"{path} is missing")
-        require(bool(result.table["converged"].all()), f"the runs end as {statuses}")
+        require(bool(result.result["converged"].all()), f"the runs end as {statuses}")

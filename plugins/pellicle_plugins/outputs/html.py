@@ -24,7 +24,6 @@ from pellicle.results.path import has_interaction, label_of_step
 from pellicle.results.result import Result
 from pellicle.results.runs import axes_of, progress_of, runs_of
 from pellicle.show import tables
-from pellicle.show.captions import caption_of_runs, caption_of_setup, caption_of_steps
 from pellicle.show.drawing import DIVERGING
 from pellicle.show.fields import default_step, without_round_off
 from pellicle.show.html import Code, Notice, Picture, Section, Text, page
@@ -33,6 +32,9 @@ from pellicle.show.maps import Frame, Maps, frame, side
 from pellicle.show.methods import methods
 from pellicle.show.sentences import (
     aim_of_path,
+    caption_of_runs,
+    caption_of_setup,
+    caption_of_steps,
     range_of_path,
     run_names,
     sentence_of_step,

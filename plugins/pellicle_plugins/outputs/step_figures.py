@@ -9,8 +9,7 @@ import numpy as np
 from pellicle.components import Axis, Chart, Fields, Look, Panel, Series
 from pellicle.results.path import has_interaction, label_of_step
 from pellicle.results.result import Result
-from pellicle.show.fields import contact_and_zone, default_step, without_round_off
-from pellicle.show.rim import with_rim
+from pellicle.show.fields import contact_and_zone, default_step, with_rim, without_round_off
 from pellicle.units import readable
 
 if TYPE_CHECKING:
