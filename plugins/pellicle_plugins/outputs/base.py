@@ -7,10 +7,10 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
-from pydantic import BeforeValidator, Field
+from pydantic import AfterValidator, BeforeValidator, Field
 
 from pellicle.components import Axis, Output, Runs
 from pellicle.config.describe import words_at
@@ -61,6 +61,13 @@ Reference = Annotated[
 ]
 
 
+class Chosen(dict[str, Any]):
+    """Values of axes by name; of equal ones, as of equal outputs, the hashes are equal."""
+
+    def __hash__(self) -> int:  # type: ignore[override]
+        return hash(frozenset(self.items()))
+
+
 class TableFigure(Output):
     """A figure of the runs of a study, or of the steps of one run."""
 
@@ -81,12 +88,13 @@ class TableFigure(Output):
         ),
     ] = ()
     where: Annotated[
-        dict[str, str | float | bool],
+        dict[str, Any],
+        AfterValidator(Chosen),
         Field(
             description="values of other axes of the study for which it is drawn, such as "
             '{ "kernel.tension" = "10 mN/m" }'
         ),
-    ] = Field(default_factory=dict)
+    ] = Field(default_factory=Chosen)
     label: Annotated[
         str | None,
         Field(
