@@ -101,5 +101,15 @@ def test_tables() -> None:
     assert text() == FILE.read_text(encoding="utf-8"), f"if that is right: python {__file__}"
 
 
+def test_the_path_has_the_prefix_of_the_steps() -> None:
+    """Forces of nN are read in µN beside a step that has some."""
+    with pytest.warns(pl.ConvergenceWarning):
+        data = pl.run(STICKING, progress=False, threads=1).dataset.copy(deep=True)
+    data["force"][0] = 5e-6
+    (events,) = tables.path(data)
+    rows = dict(zip(events.columns[0].values, events.columns[1].values, strict=True))
+    assert rows["pull-off force"] == "-0.05322 µN"
+
+
 if __name__ == "__main__":
     FILE.write_text(text(), encoding="utf-8")

@@ -176,7 +176,8 @@ def _style(series: Series, chart: Chart) -> dict[str, Any]:
         first = _SPARSE_DISTANCE * (0.2 + 0.25 * (look.marker % 4))
         return style | {"markersize": 3.5, "markevery": (first, _SPARSE_DISTANCE)}
     style |= {"markersize": 4, "markerfacecolor": "white"}
-    if look.line is not None and series.x.size > _MOST_MARKED:
+    of_legs = (series.x[leg.steps].size for leg in series.legs)
+    if look.line is not None and max(of_legs, default=series.x.size) > _MOST_MARKED:
         style["markevery"] = _MARKER_DISTANCE
     return style
 

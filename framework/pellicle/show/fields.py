@@ -119,7 +119,8 @@ def up_to_rim(x: Array, pressure: Array, contact: Mask, rim: float) -> tuple[Arr
         angle = np.linspace(np.arcsin(nearest / rim), np.pi / 2, _POINTS)[1:]
         tails.append((rim * np.sin(angle), jump + slope * rim * np.cos(angle)))
     (left, before), (right, after) = tails
-    low, high = x < -rim, x > rim
+    # The centre of an outermost cell may lie beyond the rim.
+    low, high = ~contact & (x < -rim), ~contact & (x > rim)
     return (
         np.concatenate([x[low], [-rim], -left[::-1], x[within], right, [rim], x[high]]),
         np.concatenate(

@@ -156,8 +156,8 @@ def lay_out(figure: Figure) -> None:
     if engine is None:
         return
     engine.execute(figure)
-    if sum(axes.get_aspect() != "auto" for axes in figure.axes) > 1:
-        # Axes of a fixed aspect move, with their titles, as they get their places.
+    if any(axes.get_aspect() != "auto" for axes in figure.axes):
+        # Axes of a fixed aspect move, with their titles and labels, as they get their places.
         engine.execute(figure)
     covering = []
     for axes in figure.axes:

@@ -123,12 +123,18 @@ def contact(data: xr.Dataset) -> Table:
 
 
 def path(data: xr.Dataset, *, si: bool = False) -> list[Table]:
-    """Return the events on the path and its work, where there is an interaction."""
+    """Return the events on the path and its work, where there is an interaction.
+
+    Depths, forces and stiffnesses have the prefix of those of the load steps.
+    """
+    of_steps = [data[name] for name in ("depth", "force", "stiffness") if name in data]
+    beside = {variable.attrs.get("units"): variable.values.tolist() for variable in of_steps}
     rows = []
     for name, number in path_variables(data).items():
         variable = VARIABLES[name]
         if variable.kind == "path":
-            scale, digits = Column("", [number], variable.unit).unit_and_digits(si=si)
+            values = [number, *beside.get(variable.unit, ())]
+            scale, digits = Column("", values, variable.unit).unit_and_digits(si=si)
             text = "none" if number != number else scale.text(number, digits)
             rows.append((variable.words, text, variable.meaning))
     caption = "Events on the path, to a step, and its work."

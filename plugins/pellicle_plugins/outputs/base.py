@@ -122,7 +122,9 @@ class TableFigure(Output):
         yield from (run for _, run in self.steps(runs))
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
-        """Write the figure in each format, and its numbers."""
+        """Write the figure in each format, and its numbers; nothing if no step has numbers."""
+        if "converged" not in runs.table:
+            return ()
         return write_charts(self.charts(runs), stem, self.formats, self.style)
 
     def shown(self, runs: Runs) -> Runs:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import product
 from math import prod
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
@@ -11,10 +12,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from pellicle.analysis import Leg, extrapolate, legs
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown
 from pellicle.errors import ConfigError, StorageError
-from pellicle.results.path import has_interaction, has_path, has_times
+from pellicle.results.path import has_path
 from pellicle.results.runs import StoredRuns
 from pellicle.schema.expression import names_in
 from pellicle.schema.model import Model
@@ -24,7 +24,6 @@ from pellicle.variables import FIELDS, WALL_PRESSURE
 from pellicle_plugins.validation.reference import exact
 
 from .base import (
-    MOST_LEGS,
     Label,
     Log,
     Reference,
@@ -38,13 +37,12 @@ from .base import (
     label,
     require_axes,
 )
+from .curve_points import limit_of, points_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _SPREADS = {"range": "range", "std": "± standard deviation", "sem": "± standard error"}
-_GRIDS = 3
-"""Fewest grids from which a limit follows."""
 MOST_PANELS = 12
 _NONE = np.empty(0)
 
@@ -270,6 +268,8 @@ class Curves(TableFigure):
     ) -> Iterator[Series]:
         """Yield the curves of x and each y, each with its limit and its reference."""
         table, (x, *ys) = runs.table, columns
+        over_time = "time" in names_in(self.x)
+        points_at = partial(points_of, over=self.over, spread=self.spread, over_time=over_time)
         reference = exact(runs) if self.reference else None
         of_reference = [reference.column(text) for text in (self.x, *self.y)] if reference else []
         for (number, y), (panel, cell), place in product(
@@ -283,17 +283,17 @@ class Curves(TableFigure):
             legend = "" if number or panel or any([*place.values()][1:]) else curve.words
             if not by and (len(ys) > 1 or self.series):
                 legend = names[number]
-            points = self._points(part, _at(x, point), _at(y, point))
+            points = points_at(part, _at(x, point), _at(y, point))
             if number:
                 # Several bands could not be told apart.
                 points = replace(points, low=None, high=None)
             yield replace(points, **shown, name=name, legend=legend, look=look)
             if self.extrapolate:
-                for one in self._limit(_at(x, point), points, name, look.hue):
+                for one in limit_of(_at(x, point), points, name, look.hue):
                     yield replace(one, **shown)
             if reference:
                 at_point = (_at(of_reference[index], point) for index in (0, number + 1))
-                points = self._points(part, *at_point)
+                points = points_at(part, *at_point)
                 order = np.argsort(points.x)
                 points = Series(points.x[order], points.y[order], look=Look(None), role="reference")
                 yield replace(points, **shown, name=f"{name}, semi-analytic")
@@ -356,73 +356,6 @@ class Curves(TableFigure):
                 panel=panel,
                 written=not panel,
             )
-
-    def _limit(
-        self, grids: xr.DataArray, points: Series, name: str, hue: int | None
-    ) -> Iterator[Series]:
-        """Yield a curve continued to x = 0, and its limit there with the error."""
-        if (count := np.unique(grids).size) < _GRIDS:
-            raise ConfigError(
-                f"{count} values of x on a curve do not fix a limit, a coefficient and an "
-                f"exponent; vary the grid over at least {_GRIDS}",
-                "extrapolate",
-            )
-        # An interrupted study may lack some of the grids.
-        if np.unique(points.x).size < _GRIDS:
-            return
-        fit = extrapolate(points.x, points.y)
-        x = np.linspace(0, float(points.x.max()), 200)
-        y = np.append(fit.limit, fit(x[1:]))
-        yield Series(x, y, look=Look(hue), role="reference", written=False)
-        assert points.converged is not None
-        yield Series(
-            np.zeros(1),
-            np.array([fit.limit]),
-            name=f"{name}, extrapolated",
-            look=Look(hue, None),
-            low=np.array([fit.lowest]),
-            high=np.array([fit.highest]),
-            columns={"converged": bool(points.converged.all()), "exponent": fit.exponent},
-        )
-
-    def _points(self, table: xr.Dataset, x: xr.DataArray, y: xr.DataArray) -> Series:
-        """Return the points of one curve, in the order of the table, with the legs of its path."""
-        import xarray as xr
-
-        converged = table["converged"]
-        if has_path(table) and "step" not in (*x.dims, *y.dims):
-            # Runs may have fewer steps than the table.
-            converged = (converged | (table["status"] == "")).all("step")
-        x, y, good = xr.broadcast(x, y, converged.astype(float))
-        columns = [x, y, y, y, good.fillna(0.0), xr.ones_like(x)]
-        if self.over is not None:
-            finished = (x + y).notnull()
-            x, y, good = (column.where(finished) for column in (x, y, good))
-            middle = x.mean(self.over), y.mean(self.over)
-            count = finished.sum(self.over)
-            ends = y.min(self.over), y.max(self.over)
-            if self.spread != "range":
-                squares = ((y - middle[1]) ** 2).sum(self.over) / (count - 1).clip(min=1)
-                half = (squares if self.spread == "std" else squares / count.clip(min=1)) ** 0.5
-                ends = middle[1] - half, middle[1] + half
-            columns = [*middle, *ends, good.min(self.over).fillna(0.0), count]
-        values = np.array([column.values.ravel().astype(float) for column in columns])
-        values = values[:, finite := np.isfinite(values).all(axis=0)]
-        path: list[Leg] = []
-        loops = has_interaction(table) or (has_times(table) and "time" not in names_in(self.x))
-        if loops and columns[0].sizes.get("step", 1) > 1 and self.over is None:
-            path = legs(xr.broadcast(table["depth"], x)[0].values.ravel()[finite])
-            # The many legs of an oscillation are not told apart by their style.
-            path = path if has_interaction(table) or len(path) <= MOST_LEGS else []
-        middle_x, middle_y, low, high, good, runs = values
-        series = Series(middle_x, middle_y, converged=good == 1, legs=path)
-        if not (runs > 1).any():
-            return series
-        spread = {"y_lowest": low, "y_highest": high, "runs": runs.astype(int)}
-        written: dict[str, Any] = {
-            name: np.where(runs > 1, column, None) for name, column in spread.items()
-        }
-        return replace(series, low=low, high=high, columns=written | {"spread": self.spread})
 
 
 def _at(column: xr.DataArray, point: dict[str, int]) -> xr.DataArray:

@@ -339,6 +339,24 @@ def test_study_with_failures(tmp_path: Path) -> None:
     assert statuses == ["NOT CONVERGED", "converged"]
 
 
+def test_study_without_a_finished_step(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, recwarn: pytest.WarningsRecorder
+) -> None:
+    """The page has the reason, and no output draws anything or complains."""
+
+    def fails(*_: Any) -> Any:
+        raise ValueError("the disk is on fire")
+
+    monkeypatch.setattr(steps, "solve_step", fails)
+    outputs = [{"type": name} for name in ("html", "figures", "curves", "profiles", "maps")]
+    study = {**RUN, "outputs": outputs, "study": {"vary": {"indenter.radius": ["1 mm", "2 mm"]}}}
+    pl.run_study(study, tmp_path, progress=False, threads=1)
+    assert [str(warning.message) for warning in recwarn] == ["of 2 runs 2 failed; see status"]
+    written = sorted(path.name for path in tmp_path.glob("study*"))
+    assert written == ["study.csv", "study.h5", "study.html"]
+    assert "the disk is on fire" in Page(tmp_path / "study.html").words
+
+
 def show(browser: Chrome, path: Path) -> None:
     """Open a page and wait for its maps."""
     browser.get("about:blank")
