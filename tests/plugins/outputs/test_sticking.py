@@ -19,7 +19,7 @@ from typer.testing import CliRunner
 import pellicle as pl
 from pellicle.cli.app import app
 from pellicle.show.fields import default_step
-from pellicle.units import readable
+from pellicle.units import Quantity
 from pellicle.variables import VARIABLES, names_of
 from tests.plugins.outputs.shared import rows
 
@@ -120,8 +120,13 @@ def test_the_path_is_summarised_where_the_result_is(bead: tuple[Path, pl.Result]
     shown = CliRunner().invoke(app, ["show", str(folder / "run.h5")]).output
     page = unescape((folder / "run.html").read_text(encoding="utf-8"))
     for name, value in summary.items():
-        text, words = readable(value, VARIABLES[name].unit, 4), VARIABLES[name].words
-        assert re.search(rf"^{words} +{re.escape(text)} ", shown, re.MULTILINE), name
+        unit, words = VARIABLES[name].unit, VARIABLES[name].words
+        row = re.search(rf"^{words} {{2,}}(.+?) {{2,}}", shown, re.MULTILINE)
+        assert row, name
+        text = row[1]
+        assert Quantity(unit)(float(text) if unit == "1" else text) == pytest.approx(
+            value, rel=1e-3
+        )
         assert f">{words}</td>" in page
         assert f">{text}</td>" in page
 
