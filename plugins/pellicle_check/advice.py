@@ -14,6 +14,7 @@ from scipy.ndimage import binary_dilation
 import pellicle as pl
 from pellicle import Grid, Run, Status
 from pellicle.arrays import Array, Mask
+from pellicle.components import profile_of, role_of
 from pellicle.errors import ConfigError
 from pellicle.schema import walk
 
@@ -32,8 +33,8 @@ _AREA_ERROR = 0.1
 """Relative error of the counted area up to which fewer cells are advised."""
 _ROUND_OFF = 1e-9
 """Relative difference between grids up to which a quantity counts as prescribed."""
-_SHORTEST_WAVE = {"role": "shortest wave"}
-"""What marks the field of an indenter that holds its shortest wave."""
+_SHORTEST_WAVE = "shortest wave"
+"""Role of the field of an indenter that holds its shortest wave."""
 _WIDE = 0.5
 """Share of the domain below which the contact leaves cells unused."""
 
@@ -110,7 +111,7 @@ def advise(run: Run, allowed: float) -> Advice:
     # Each of the coarser grids resolves the indenter if possible.
     for shares in _LARGEST_SHARES:
         try:
-            run.indenter.profile(*grids[0].coordinates())
+            profile_of(run.indenter, grids[0])
             break
         except ConfigError:
             grids = _coarser(run.grid, shares, math.inf)
@@ -133,8 +134,8 @@ def advise(run: Run, allowed: float) -> Advice:
     extent = np.max([_extent(contact, grids[-1]) for contact in contacts], axis=0)
     fitting = run.grid.size if at_edge else _fitting_size(run, extent)
     points = _points(run.grid, fitting or run.grid.size, factor)
-    fields = ((value, field.json_schema_extra) for _, value, field in walk(run.indenter) if field)
-    waves = [value for value, role in fields if role == _SHORTEST_WAVE]
+    fields = ((value, field) for _, value, field in walk(run.indenter) if field)
+    waves = [value for value, field in fields if role_of(field) == _SHORTEST_WAVE]
     in_wave = min(waves) / run.grid.cell_size if waves else None
     return Advice(steps, points, fitting, at_edge, in_wave)
 
@@ -237,7 +238,7 @@ def _is_smooth(run: Run, grid: Grid, contact: Mask) -> bool:
     """Return whether all contacts are of a smooth body, away from its edges, and elastic."""
     if run.interaction or run.loading.times is not None or run.indenter.footprint == "domain":
         return False
-    beside = ~np.isfinite(np.broadcast_to(run.indenter.profile(*grid.coordinates()), grid.points))
+    beside = ~np.isfinite(profile_of(run.indenter, grid))
     return not (contact.any(axis=0) & binary_dilation(beside, np.ones((3, 3)))).any()
 
 

@@ -26,16 +26,15 @@ def check(
     json: Annotated[bool, typer.Option("--json", help="Print JSON, in SI.")] = False,
 ) -> None:
     """Check a run or a study, and estimate its errors and memory from coarser grids."""
-    import pellicle as pl
-    from pellicle.schema import overridden, read_toml
+    from pellicle import Study
     from pellicle.show import doubts_of_scale
-    from pellicle.studies import planned
+    from pellicle.studies import from_toml, planned
     from pellicle_check import words
     from pellicle_check.advice import advise
 
     allowed = _allowed(error.strip())
-    is_study = "study" in overridden(read_toml(file), set_ or ())
-    configuration = (pl.Study if is_study else pl.Run).from_toml(file, set_ or ())
+    configuration = from_toml(file, set_ or ())
+    is_study = isinstance(configuration, Study)
     for doubt in doubts_of_scale(configuration).values():
         warnings.warn(doubt, stacklevel=2)
     checked = []

@@ -15,6 +15,7 @@ from pellicle.variables import Variable as Variable
 
 from .base import Component as Component
 from .base import FromRegistry as FromRegistry
+from .base import role_of as role_of
 from .charts import Axis as Axis
 from .charts import Chart as Chart
 from .charts import Column as Column
@@ -44,6 +45,7 @@ from .indenter import HasLayerForceCurve as HasLayerForceCurve
 from .indenter import Indenter as Indenter
 from .indenter import IsShallowLimit as IsShallowLimit
 from .indenter import LayerForceCurve as LayerForceCurve
+from .indenter import profile_of as profile_of
 from .interaction import Interaction as Interaction
 from .kernel import Kernel as Kernel
 from .kernel import KernelOf as KernelOf

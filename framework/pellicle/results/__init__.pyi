@@ -2,7 +2,6 @@ __all__: list[str]
 
 from .derived import header as header
 from .result import Result as Result
-from .result import first_message as first_message
 from .result import load as load
 from .runs import StoredRuns as StoredRuns
 from .storage import read as read

@@ -1,4 +1,5 @@
 __all__: list[str]
 
 from .runner import RunTask as RunTask
+from .runner import from_toml as from_toml
 from .runner import planned as planned

@@ -24,6 +24,7 @@ from pellicle.checks import checked_threads, read_only_dataset
 from pellicle.components import Executor, Output, Say
 from pellicle.config.run import Run
 from pellicle.config.study import DEFAULT_EXECUTOR, Study
+from pellicle.config.study import from_toml as from_toml
 from pellicle.contact.caveats import Status
 from pellicle.errors import ConfigError, ConvergenceWarning, PluginError, StorageError
 from pellicle.files import check_writable, is_file, is_folder
