@@ -14,8 +14,6 @@ import pellicle as pl
 from pellicle.cli import INTERRUPTED, NOT_CONVERGED, echo, print_json
 from pellicle.errors import ConfigError
 
-from .print_fits import print_fit, print_fits, print_notes, show_fits
-
 if TYPE_CHECKING:
     from pellicle_fit.config import FitConfig
     from pellicle_fit.many import ManyFits
@@ -131,6 +129,7 @@ def fit(
     """
     from pellicle_fit.config import FitConfig
     from pellicle_fit.many import ManyFits
+    from pellicle_fit.print_fits import print_fit, print_fits, print_notes
     from pellicle_fit.record import repetition
 
     files = files or []
@@ -185,7 +184,14 @@ def fit(
 @pl.hookimpl
 def register_commands(register: pl.RegisterCommand) -> None:
     """Register the command."""
-    register(fit, file="pellicle_fit.config:FitConfig", show=show_fits)
+    register(fit, file="pellicle_fit.config:FitConfig", show=_show)
+
+
+def _show(directory: Path, si: bool, json: bool) -> bool:
+    """Print what the command left in a folder; return False if it left nothing."""
+    from pellicle_fit.print_fits import show_fits
+
+    return show_fits(directory, si, json)
 
 
 def _fit(

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from pellicle.cli import NOT_CONVERGED, echo, print_json, print_table
+from pellicle.components import Column, Table
 from pellicle.errors import first_of
 from pellicle.files import is_file
 
 if TYPE_CHECKING:
-    from pellicle.components import Table
     from pellicle.units import Scale
     from pellicle_fit.many import ManyFits
     from pellicle_fit.result import FitResult
@@ -32,7 +32,6 @@ _LINES = 50
 
 def print_fit(fit: FitResult, *, si: bool = False) -> None:
     """Print the estimates of a fit, a line for each curve of a pool, and the fit in words."""
-    from pellicle.components import Table
     from pellicle_fit.report.sentences import sentence_of_fit
     from pellicle_fit.wording import interval_text, scale
 
@@ -109,7 +108,6 @@ def show_fits(directory: Path, si: bool, json: bool) -> bool:
 
 def _curves(rows: list[dict[str, Any]], si: bool) -> Table:
     """Return a row for each curve; the table in the folder has their sentences."""
-    from pellicle.components import Column, Table
     from pellicle_fit.wording import column_scale
 
     columns = [Column("curve", [str(row["curve"]) for row in rows])]
@@ -142,7 +140,6 @@ def _verdict(row: Mapping[str, Any]) -> str:
 
 def _groups(fits: ManyFits, si: bool) -> Table:
     """Return a row for each parameter of each group of curves; no columns without any."""
-    from pellicle.components import Column, Table
     from pellicle_fit.wording import group_scales
 
     parts, quartiles = fits.summary(), []

@@ -85,7 +85,7 @@ def failed_steps(result: Result) -> Iterator[str]:
         if not caveat.status.converged:
             failed.setdefault(caveat.status, []).append((number, caveat.sentence))
     for group in failed.values():
-        numbers = [number for number, _ in group]
+        numbers = dict.fromkeys(number for number, _ in group)
         ends = ([n for n in numbers if n + by not in numbers] for by in (-1, 1))
         spans = [str(a) if a == b else f"{a} to {b}" for a, b in zip(*ends, strict=True)]
         listed = " and ".join(map(str, numbers)) if len(group) == 2 else ", ".join(spans)
