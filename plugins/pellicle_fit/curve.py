@@ -161,7 +161,7 @@ class Curve:
         starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
 
         def mean(values: Array) -> Array:
-            return np.add.reduceat(values[order], starts) / counts
+            return np.asarray(np.add.reduceat(values[order], starts) / counts)
 
         return replace(
             self,

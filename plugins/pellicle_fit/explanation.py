@@ -9,7 +9,6 @@ from typing import Annotated, ClassVar, Literal, TypeVar
 
 import numpy as np
 
-
 from pellicle.arrays import Array
 from pellicle.components.base import words_of_type
 from pellicle.errors import ConvergenceError
@@ -32,8 +31,8 @@ from .effect import (
 _Kind = TypeVar("_Kind", bound=Effect)
 _BALANCE = 1e-10
 """Error of a depth in balance over the largest way."""
-_STEPS, _MIDDLE = 100, 6
-"""Largest number of steps to it, and every how many of them one halves the bracket."""
+_STEPS, _DIFFERENCE = 100, 1e-7
+"""Largest number of steps to it, and the step of their slopes over that way."""
 _WIDER = 12
 """How often the bracket of a balance doubles."""
 
@@ -168,8 +167,7 @@ def balanced(
     """Return the depth δ [m] at which δ + u(P(δ)) is that of the base, shape (n,).
 
     The sum grows with δ, so that there is one root: between the base and the base less the give of
-    the force there, or beyond that where the give is negative. Newton's iteration, with a middle of
-    the bracket now and then for where the sum is neither convex nor concave.
+    the force there, or beyond that where the give is negative.
 
     Raises
     ------
@@ -189,17 +187,19 @@ def balanced(
         width = high - low
         high, low = np.where(short, high + width, high), np.where(long, low - width, low)
     scale = max(float(np.ptp(base)), 1e-300)
-    depth = np.clip(start, low, high)
-    for number in range(1, _STEPS + 1):
+    depth, last = np.clip(start, low, high), high - low
+    for _ in range(_STEPS):
         above = excess(depth)
         low, high = np.where(above < 0, depth, low), np.where(above > 0, depth, high)
-        step = 1e-7 * scale
-        slope = np.maximum((excess(depth + step) - above) / step, 0.1)
-        new = np.clip(depth - above / slope, low, high)
-        unsettled = np.abs(new - depth) > _BALANCE * scale
-        if not np.any(unsettled):
+        slope = (excess(depth + _DIFFERENCE * scale) - above) / (_DIFFERENCE * scale)
+        new = depth - above / np.maximum(slope, 1e-300)
+        # Where Newton's step leaves the bracket or does not halve the last one, its middle.
+        slow = ~((new >= low) & (new <= high)) | (np.abs(new - depth) > last / 2)
+        new = np.where(slow & (above != 0), (low + high) / 2, np.clip(new, low, high))
+        last = np.abs(new - depth)
+        if np.all(last <= _BALANCE * scale):
             return new
-        depth = np.where(unsettled & (number % _MIDDLE == 0), (low + high) / 2, new)
+        depth = new
     raise ConvergenceError(
         "the forces of the cantilever and the solid do not balance; is the spring constant right?"
     )

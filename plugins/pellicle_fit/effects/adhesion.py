@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
 from pellicle.arrays import Array, Mask
 from pellicle_fit.contact import Contact
 from pellicle_fit.curve import Curve

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import ConfigDict
 
 from pellicle.arrays import Array
 from pellicle_fit.effect import Fitted, Sizes, Values, Yields, fitted
@@ -14,7 +15,7 @@ from pellicle_fit.effect import Fitted, Sizes, Values, Yields, fitted
 class Brush(Yields):
     """Polymer brush on the solid: F = F₁ (exp(2πu/L) − 1), compressed by u (Alexander 1977)."""
 
-    model_config = {"title": "a brush"}
+    model_config = ConfigDict(title="a brush")
     type: Literal["brush"] = "brush"
     brush_length: Annotated[float, Fitted("m", above=0, log=True)] = fitted("length L of the brush")
     brush_force: Annotated[float, Fitted("N", above=0, log=True)] = fitted(

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Annotated, Literal
 
+from pydantic import ConfigDict
+
 from pellicle.arrays import Array
 from pellicle_fit.effect import Fitted, Sizes, Values, Yields, fitted
 
@@ -18,7 +20,7 @@ class Compliance(Yields):
     A deflection sensitivity that is off by a share ε puts the tip wrong by ε F/k: c = ε/k.
     """
 
-    model_config = {"title": "a compliance in series, such as a sensitivity that is off"}
+    model_config = ConfigDict(title="a compliance in series, such as a sensitivity that is off")
     type: Literal["compliance"] = "compliance"
     compliance: Annotated[float, Fitted("m/N")] = fitted("compliance c")
 

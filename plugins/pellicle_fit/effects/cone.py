@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import ClassVar, Literal
 
 import numpy as np
+from pydantic import ConfigDict
 
 from pellicle_fit.contact import Contact
 from pellicle_fit.curve import Curve
@@ -15,7 +16,7 @@ from .shape import Shape, in_place
 class Cone(Shape):
     """A cone in place of a bead, of 45°: its angle cannot be told from the modulus."""
 
-    model_config = {"title": "a cone instead"}
+    model_config = ConfigDict(title="a cone instead")
     type: Literal["cone"] = "cone"
     holds_modulus: ClassVar[bool] = False
 

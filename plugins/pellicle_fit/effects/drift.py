@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Literal
 
+import numpy as np
+from pydantic import ConfigDict
+
 from pellicle.arrays import Array
 from pellicle_fit.contact import Contact
 from pellicle_fit.curve import Curve
@@ -13,7 +16,7 @@ from pellicle_fit.effect import Fitted, Records, fitted
 class Drift(Records):
     """A force that grows with time."""
 
-    model_config = {"title": "drift in time"}
+    model_config = ConfigDict(title="drift in time")
     type: Literal["drift"] = "drift"
     rank: ClassVar[int] = 1
     drift: Annotated[float, Fitted("N/s", shared=False)] = fitted(
@@ -28,4 +31,4 @@ class Drift(Records):
 
     def recorded(self, force: Array, curve: Curve) -> Array:
         """Return F + rate × time since the first row [N]."""
-        return force + self.drift * (curve.clock - curve.clock[0])
+        return np.asarray(force + self.drift * (curve.clock - curve.clock[0]))

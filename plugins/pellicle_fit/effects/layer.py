@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from pellicle.arrays import Array
 from pellicle.components import HasLayerForceCurve
@@ -23,7 +23,7 @@ _ERROR = 1e-4
 class Layer(Bends):
     """A layer bonded to a rigid base in place of the half-space."""
 
-    model_config = {"title": "a thin layer"}
+    model_config = ConfigDict(title="a thin layer")
     type: Literal["layer"] = "layer"
     rank: ClassVar[int] = 2
     thickness: Annotated[float, Fitted("m", above=0, log=True)] = fitted("thickness h")

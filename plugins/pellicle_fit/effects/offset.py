@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Literal
 
+from pydantic import ConfigDict
+
 from pellicle.arrays import Array
 from pellicle_fit.curve import Curve
 from pellicle_fit.effect import Fitted, Records, fitted
@@ -12,7 +14,7 @@ from pellicle_fit.effect import Fitted, Records, fitted
 class Offset(Records):
     """A constant force."""
 
-    model_config = {"title": "an offset"}
+    model_config = ConfigDict(title="an offset")
     type: Literal["offset"] = "offset"
     rank: ClassVar[int] = 1
     offset: Annotated[float, Fitted("N", shared=False)] = fitted("force without a load")

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Annotated, Literal
 
+from pydantic import ConfigDict
+
 from pellicle.arrays import Array
 from pellicle_fit.effect import Fitted, Sizes, Values, fitted
 
@@ -14,7 +16,7 @@ from .relaxing import Relaxing
 class PowerLaw(Relaxing):
     """E(t) = E* (t / 1 s)^−α."""
 
-    model_config = {"title": "power-law relaxation"}
+    model_config = ConfigDict(title="power-law relaxation")
     type: Literal["power_law"] = "power_law"
     relaxation_exponent: Annotated[float, Fitted("1", at_least=0, at_most=0.95)] = fitted(
         "exponent α"

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import ConfigDict
 
 from pellicle.arrays import Array
 from pellicle_fit.contact import Contact
@@ -21,7 +22,7 @@ class RoughToe(Yields):
     as F^⅓ (Hertz).
     """
 
-    model_config = {"title": "a rough surface"}
+    model_config = ConfigDict(title="a rough surface")
     type: Literal["rough_toe"] = "rough_toe"
     height: Annotated[float, Fitted("m", above=0, log=True)] = fitted("scale λ of the heights")
     toe_force: Annotated[float, Fitted("N", above=0, log=True)] = fitted(

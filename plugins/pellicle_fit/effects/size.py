@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 
+from pydantic import ConfigDict
+
 from pellicle.arrays import Array
 from pellicle_fit.contact import Contact
 from pellicle_fit.curve import Curve
@@ -14,7 +16,7 @@ from pellicle_fit.effect import Bends, Fitted, Weighed, fitted
 class Size(Bends):
     """All lengths of the indenter times 1 + ε: a radius that is known to a few per cent."""
 
-    model_config = {"title": "another size of the indenter"}
+    model_config = ConfigDict(title="another size of the indenter")
     type: Literal["size"] = "size"
     examples = ({"size_error": {"value": 0, "deviation": 0.03}},)
     rank: ClassVar[int] = 0

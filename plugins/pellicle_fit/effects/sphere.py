@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Literal
 
+from pydantic import ConfigDict
+
 from pellicle_fit.contact import Contact
 from pellicle_fit.curve import Curve
 
@@ -16,7 +18,7 @@ SHALLOW = 0.1
 class Sphere(Shape):
     """A sphere in place of a paraboloid, or a paraboloid in place of a sphere."""
 
-    model_config = {"title": "a sphere, or a paraboloid, instead"}
+    model_config = ConfigDict(title="a sphere, or a paraboloid, instead")
     type: Literal["sphere"] = "sphere"
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:

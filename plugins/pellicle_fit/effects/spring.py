@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
+from pydantic import ConfigDict
+
 from pellicle.arrays import Array
 from pellicle_fit.contact import Contact
 from pellicle_fit.curve import Curve
@@ -13,7 +15,7 @@ from pellicle_fit.effect import Fitted, Records, Weighed, fitted
 class Spring(Records):
     """The spring constant is 1 + ε times the one that the recorded force assumes."""
 
-    model_config = {"title": "a wrong spring constant"}
+    model_config = ConfigDict(title="a wrong spring constant")
     type: Literal["spring"] = "spring"
     examples = ({"spring_error": {"value": 0, "deviation": 0.1}},)
     spring_error: Annotated[float, Fitted("1", above=-0.9)] = fitted("ε of the spring constant")

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import ConfigDict
 
 from pellicle.arrays import Array
 from pellicle_fit.effect import Fitted, Sizes, Values, fitted
@@ -16,7 +17,7 @@ from .relaxing import Relaxing
 class StandardLinear(Relaxing):
     """E(t) = E* (1 − g + g e^(−t/T)), with E* that of fast loading."""
 
-    model_config = {"title": "standard linear relaxation"}
+    model_config = ConfigDict(title="standard linear relaxation")
     type: Literal["standard_linear"] = "standard_linear"
     relaxed_share: Annotated[float, Fitted("1", at_least=0, at_most=0.99)] = fitted(
         "share g that relaxes"

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
+from pydantic import ConfigDict
 
 from pellicle.arrays import Array
 from pellicle_fit.contact import Contact
@@ -26,7 +27,7 @@ class StiffSurface(Bends):
     over the contact radius.
     """
 
-    model_config = {"title": "a surface stiffer or softer than the bulk"}
+    model_config = ConfigDict(title="a surface stiffer or softer than the bulk")
     type: Literal["stiff_surface"] = "stiff_surface"
     rank: ClassVar[int] = 2
     gain: Annotated[float, Fitted("1", at_least=-0.5, at_most=0.5)] = fitted(
@@ -50,7 +51,7 @@ class StiffSurface(Bends):
             force = bare(grid, 0.0)
             radius = np.diff(force) / np.diff(grid) / 2
             total = np.cumsum(np.diff(force) * (1 + gain * np.exp(-radius / reach)))
-            return np.interp(np.maximum(depth, 0.0), grid, np.append(0.0, total))
+            return np.asarray(np.interp(np.maximum(depth, 0.0), grid, np.append(0.0, total)))
 
         return replace(contact, area=area, half_space=False)
 

@@ -8,6 +8,7 @@ from math import inf
 from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import ConfigDict
 
 from pellicle.arrays import Array
 from pellicle_fit.contact import Contact
@@ -22,7 +23,7 @@ class WornTip(Shape):
     δ = (a/R) √(a² − b²), F = (2 E*/3R) (2a² + b²) √(a² − b²) (Popov, Heß & Willert 2019).
     """
 
-    model_config = {"title": "a worn tip"}
+    model_config = ConfigDict(title="a worn tip")
     type: Literal["worn_tip"] = "worn_tip"
     flat_radius: Annotated[float, Fitted("m", at_least=0)] = fitted("radius b of the flat")
 
