@@ -1,14 +1,9 @@
 from __future__ import annotations
 
 import re
-import sys
 from importlib.metadata import version as installed_version
-from pathlib import Path
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parent))
-
-import generated
 from numpy.typing import ArrayLike
 from sphinx.util.typing import stringify_annotation
 
@@ -67,10 +62,11 @@ def _signature(
     """Show the fields of a model instead of ``(**data)``, and array types by their short names."""
     fields = getattr(obj, "model_fields", None) if what == "class" else None
     if fields is not None:
-        shown = [
-            field if info.is_required() else f"{field}={generated.default(info)}"
-            for field, info in fields.items()
-        ]
+        shown = []
+        for field, info in fields.items():
+            value = info.get_default(call_default_factory=True)
+            default = getattr(value, "type", None) or repr(value)
+            shown.append(field if info.is_required() else f"{field}={default}")
         return f"(*, {', '.join(shown)})" if shown else "()", ""
     return _short(signature), _short(returned)
 

@@ -5,17 +5,15 @@
 
 from __future__ import annotations
 
+import inspect
 import re
-import types
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Any, Literal, Union, get_args, get_origin
-
-from pydantic.fields import FieldInfo
 
 import pellicle as pl
-from pellicle.schema import Model
-from pellicle.units import Quantity, quantity_of, readable
+from pellicle.config.describe import FieldRow, field_rows
+from pellicle.config.explain import explanations
+from pellicle.units import readable
 from pellicle.variables import VARIABLES, Variable
 
 _HEADINGS = {
@@ -40,61 +38,44 @@ def fill_in(text: str) -> str:
 
 def components() -> str:
     """Return a section for each registered component, with a table of its fields."""
-    return "\n".join(_components())
-
-
-def _components() -> Iterator[str]:
+    parts = []
     for family, members in pl.registry().components.items():
-        if not members:
-            continue
-        yield f"## {_HEADINGS[family]}\n"
-        for registered in members.values():
-            yield f"### `{registered.type}`\n"
-            yield f"{_paragraphs(registered.component.__doc__)}\n"
-            if issubclass(registered.component, pl.Prescription):
-                prescription = registered.component
-                values = ", ".join([prescription.unit, *prescription.quantity().bounds])
-                pulls = "; with an `[interaction]` any" * prescription.may_pull
-                yield f"Key of `[loading]`. Load steps: {values}{pulls}.\n"
-            yield fields(registered.component)
+        parts += [f"## {_HEADINGS[family]}\n"] if members else []
+        for type_, component in ((type_, entry.component) for type_, entry in members.items()):
+            parts += [f"### `{type_}`\n", f"{inspect.getdoc(component)}\n"]
+            if issubclass(component, pl.Prescription):
+                values = ", ".join([component.unit, *component.quantity().bounds])
+                pulls = "; with an `[interaction]` any" * component.may_pull
+                parts.append(f"Key of `[loading]`. Load steps: {values}{pulls}.\n")
+            rows = [*field_rows(component.model_fields)]
+            parts.append(_fields(rows) if rows else "No fields.\n")
+    return "\n".join(parts)
 
 
 def tables() -> str:
     """Return the fields of a run or study file's tables that are no components."""
-    parts = [
-        f"### `{name}`\n\n{_paragraphs(model.__doc__)}\n\n{fields(model)}"
-        for name, model in (
-            ("top level", pl.Run),
-            ("[grid]", pl.Grid),
-            ("[loading]", pl.Loading),
-            ("[study]", pl.Study),
-        )
-    ]
+    parts = []
+    models = {"run": pl.Run, "grid": pl.Grid, "loading": pl.Loading, "study": pl.Study}
+    for name, model in models.items():
+        (explanation,) = explanations(name, {})
+        head = "top level" if name == "run" else f"[{name}]"
+        parts.append(f"### `{head}`\n\n{inspect.getdoc(model)}\n\n{_fields(explanation.fields)}")
     return "\n".join(parts)
 
 
 def options_of_fits() -> str:
     """Return the fields of the configuration of a fit."""
-    return fields(pl.FitConfig)
+    return _fields(field_rows(pl.FitConfig.model_fields))
 
 
-_READ_OTHERWISE = (pl.Study, "run"), (pl.Loading, "prescription"), (pl.Loading, "path")
-"""Fields that no key of a table has."""
-
-
-def fields(model: Any) -> str:
-    """Return a table of the fields of a model: unit and range, default, meaning."""
-    rows = [
-        (
-            f"`{name}`",
-            _accepts(info),
-            "required" if info.is_required() else default(info, "`"),
-            _cell(info.description or ""),
-        )
-        for name, info in model.model_fields.items()
-        if name != "type" and (model, name) not in _READ_OTHERWISE
-    ]
-    return _table(("field", "takes", "default", "meaning"), rows) if rows else "No fields.\n"
+def _fields(rows: Iterable[FieldRow]) -> str:
+    """Return a table of fields: unit and range, default, meaning."""
+    cells = []
+    for row in rows:
+        in_words = re.fullmatch("none|required|see below|one of these|with .*", row.default)
+        default = row.default if in_words else f"`{row.default}`"
+        cells.append((f"`{row.name}`", row.kind, default, _cell(row.meaning)))
+    return _table(("field", "takes", "default", "meaning"), cells)
 
 
 _DIMENSIONS = {"field": "step, x, y", "path": "none", "oscillation": "none"}
@@ -165,72 +146,6 @@ PARTS = {
         starter,
     )
 }
-
-
-def default(info: FieldInfo, quote: str = "") -> str:
-    """Return the default of a field as a TOML file would say it."""
-    value = info.get_default(call_default_factory=True)
-    if hasattr(value, "type"):
-        return f"{quote}{value.type}{quote}"
-    if isinstance(value, bool):
-        return f"{quote}{str(value).lower() if quote else value}{quote}"
-    if value is None or value in ((), ""):
-        return "none" if quote else repr(value)
-    if quote and isinstance(value, str):
-        return f'{quote}"{value}"{quote}'
-    return f"{quote}{list(value) if quote and isinstance(value, tuple) else value!r}{quote}"
-
-
-def _accepts(info: FieldInfo) -> str:
-    """Return what a field takes: unit and bounds of a quantity, or its kind of value."""
-    if quantity := quantity_of(info):
-        return _range(quantity)
-    kind = _kind(info.annotation)
-    bounds = [f"{sign} {bound}" for sign, bound in _bounds(info)]
-    return ", ".join([kind, *bounds])
-
-
-def _bounds(info: FieldInfo) -> Iterator[tuple[str, Any]]:
-    for entry in info.metadata:
-        for sign, name in ((">", "gt"), ("≥", "ge"), ("<", "lt"), ("≤", "le")):
-            if (bound := getattr(entry, name, None)) is not None:
-                yield sign, bound
-
-
-def _range(quantity: Quantity) -> str:
-    unit = "number" if quantity.unit == "1" else quantity.unit
-    return ", ".join([unit, *quantity.bounds])
-
-
-def _kind(annotation: Any) -> str:
-    """Return a word for a type that is no quantity."""
-    origin, inner = get_origin(annotation), get_args(annotation)
-    if origin is Annotated:
-        return _kind(inner[0])
-    if origin is Literal:
-        return " or ".join(f'"{value}"' for value in inner)
-    if origin in (Union, types.UnionType):
-        return " or ".join(dict.fromkeys(_kind(kind) for kind in inner if kind is not type(None)))
-    if origin is tuple:
-        kinds = {_kind(kind) for kind in inner if kind is not Ellipsis}
-        return f"list of {' and '.join(sorted(kinds))}"
-    if origin is dict or (isinstance(annotation, type) and issubclass(annotation, Model)):
-        return "table"
-    names = {
-        bool: "true or false",
-        int: "whole number",
-        float: "number",
-        str: "text",
-        Path: "file",
-        Any: "array",
-        pl.HasForceCurve: "force curve",
-    }
-    return names[annotation]
-
-
-def _paragraphs(documentation: str | None) -> str:
-    lines = (documentation or "").strip().splitlines()
-    return "\n".join(line.strip() for line in lines)
 
 
 def _message(text: str) -> str:

@@ -43,7 +43,7 @@ def main() -> None:
             "no-sandbox",
             "disable-gpu",
             "hide-scrollbars",
-            "window-size=1180,1560",
+            "window-size=1180,1750",
         ):
             options.add_argument(f"--{switch}")
         options.add_argument(f"--user-data-dir={folder}/chromium")

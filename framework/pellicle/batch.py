@@ -25,18 +25,9 @@ def mapped(
     """Execute tasks, and keep the outcome of each as soon as it is there.
 
     An error of one task does not end the others. Ctrl-C does, at the next report or outcome.
-
-    Parameters
-    ----------
-    executor, work, tasks
-        As for `Executor.map`.
-    kind
-        Type of the values that ``work`` returns.
-    keep
-        Function of a task and its outcome, which is a value of type ``kind`` or the exception that
-        was raised. It returns a verdict in words, and whether the task failed.
-    progress
-        The bar, inside its context.
+    ``executor``, ``work`` and ``tasks`` are as for `Executor.map`. ``keep`` is called with a task
+    and its outcome, a value of type ``kind`` or the exception that was raised, and returns a
+    verdict in words, and whether the task failed. ``progress`` is the bar, inside its context.
 
     Raises
     ------

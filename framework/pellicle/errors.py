@@ -63,6 +63,15 @@ class ConfigError(PellicleError, ValueError):
 
 
 @contextmanager
+def problems_within(field: str) -> Iterator[None]:
+    """Put ``field`` before the paths of the problems of a `ConfigError` that the block raises."""
+    try:
+        yield
+    except ConfigError as error:
+        raise error.within(field) from None
+
+
+@contextmanager
 def all_problems() -> Iterator[Callable[[str], AbstractContextManager[None]]]:
     """Raise the problems of all blocks ``with within(field):`` in one error at the end."""
     problems: list[Problem] = []

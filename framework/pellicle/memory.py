@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path, PurePosixPath
 
 from .errors import ConfigError
@@ -23,46 +23,32 @@ def available(root: Path = Path("/")) -> float | None:
     This is the memory available on the machine or, if less, in the control groups of this process
     (containers, batch systems). ``root`` is the root of the file system.
     """
-    limits = _of_machine(root), *_of_groups(root)
-    return min((limit for limit in limits if limit is not None), default=None)
-
-
-def _of_machine(root: Path) -> float | None:
-    for line in _lines(root / "proc/meminfo"):
-        if line.startswith("MemAvailable:"):
-            return float(line.split()[1]) * 1024
-    try:
-        return float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE")
-    except (AttributeError, ValueError, OSError):
-        return None
-
-
-def _of_groups(root: Path) -> Iterator[float | None]:
-    """Yield the memory [bytes] left by each control group, of version 1 or 2, of this process."""
+    limits = [
+        float(line.split()[1]) * 1024
+        for line in _lines(root / "proc/meminfo")
+        if line.startswith("MemAvailable:")
+    ]
+    if not limits:
+        with suppress(AttributeError, ValueError, OSError):
+            limits.append(float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE"))
     for line in _lines(root / "proc/self/cgroup"):
         _, controllers, group = line.split(":", 2)
         if controllers == "":
-            mount, names = root / "sys/fs/cgroup", _VERSION_2
+            mount, (limit, usage, cache) = root / "sys/fs/cgroup", _VERSION_2
         elif "memory" in controllers.split(","):
-            mount, names = root / "sys/fs/cgroup/memory", _VERSION_1
+            mount, (limit, usage, cache) = root / "sys/fs/cgroup/memory", _VERSION_1
         else:
             continue
         # A container may see its own group as the root, although the file gives its outer name.
         inner = PurePosixPath(group.strip("/"))
-        for folder in (inner, *inner.parents):
-            yield _left(mount / folder, *names)
-
-
-def _left(folder: Path, limit: str, usage: str, cache: str) -> float | None:
-    """Return the limit of a group minus its usage, which excludes reclaimable cache [bytes]."""
-    try:
-        most, used = float((folder / limit).read_text()), float((folder / usage).read_text())
-    except (OSError, ValueError):  # missing, not readable, or "max"
-        return None
-    for line in _lines(folder / "memory.stat"):
-        if line.startswith(f"{cache} "):
-            used -= float(line.split()[1])
-    return max(0.0, most - used)
+        for folder in (mount / path for path in (inner, *inner.parents)):
+            # A limit may be missing, not readable, or "max". The cache can be reclaimed.
+            with suppress(OSError, ValueError):
+                most, used = (float((folder / name).read_text()) for name in (limit, usage))
+                for line in _lines(folder / "memory.stat"):
+                    used -= float(line.split()[1]) if line.startswith(f"{cache} ") else 0.0
+                limits.append(max(0.0, most - used))
+    return min(limits, default=None)
 
 
 def _lines(path: Path) -> list[str]:

@@ -22,6 +22,7 @@ from .components import (
     Indenter,
     Interaction,
     Kernel,
+    Output,
     Prescription,
     Solver,
     Suite,
@@ -37,6 +38,7 @@ from .schema.messages import nearest
 from .units import quantity_of
 from .variables import COORDINATES, VARIABLES
 
+_INHERITED = Output.charts, Output.write
 AnyComponent = TypeVar("AnyComponent", bound=Component)
 
 
@@ -151,10 +153,7 @@ def _factory(family: type[AnyComponent], example: str) -> Callable[..., AnyCompo
     make.__name__ = make.__qualname__ = name
     make.__doc__ = f"""Return the {name} of a type with its fields, such as ``{name}({example})``.
 
-    Raises
-    ------
-    ConfigError
-        No such type, or fields that it does not allow.
+    A type that does not exist, or fields that it does not allow, are a ConfigError.
     """
     return make
 
@@ -295,6 +294,8 @@ def checked_type(component: Any) -> str:
             raise PluginError(f"{name}.{field_} lacks Field(description=…) with its unit")
         if (quantity := quantity_of(its)) and not quantity.has_known_unit:
             raise PluginError(f"{name}.{field_}: Quantity({quantity.unit!r}) has an unknown unit")
+    if issubclass(component, Output) and (component.charts, component.write) == _INHERITED:
+        raise PluginError(f"{name} lacks the method charts, or write")
     if issubclass(component, Prescription):
         _check_prescription(component, str(names[0]))
     # Raises if JSON cannot represent the type of a field, which would break the whole schema.

@@ -34,8 +34,6 @@ ROLE: Final = "role"
 roles below."""
 SEED: Final = "seed"
 """The values only repeat a random run: they are not compared, nor have they an order."""
-SHORTEST_WAVE: Final = "shortest wave"
-"""The shortest wavelength of a rough surface, which the cells have to resolve."""
 
 
 def words_of_name(name: str) -> str:
@@ -233,25 +231,20 @@ BEYOND_THEORY: Final = "beyond_theory"
 """Text in the table of a study: what `Result.beyond_theory` says of a run, if it says so of any."""
 REQUIRED = (*names_of("field", "status"), "depth", "force", "contact_area", "iterations")
 """Variables in the result files of every version."""
-
-
 CONTACT_AREA: Final = "contact area"
 CORRECTED_AREA: Final = "contact_area_"
 """Beginning of the name of an area with a correction, which its type ends."""
 CORRECTED_FRACTION: Final = "contact_fraction_"
 
 
-def corrected_area(type_: str, words: str = "") -> Variable:
-    """Return the variable for the contact area with the correction ``type_``.
-
-    ``words`` name the correction in figures and tables, by default those of the type.
-    """
+def corrected_area(type_: str, words: str) -> Variable:
+    """Return the variable for the contact area with a correction, which figures name by words."""
     return Variable(
         f"{CORRECTED_AREA}{type_}",
         "m2",
         f"contact area, {type_} correction",
         "other",
-        title=f"{CONTACT_AREA}, {words or words_of_name(type_)} correction",
+        title=f"{CONTACT_AREA}, {words} correction",
     )
 
 

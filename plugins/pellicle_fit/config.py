@@ -26,7 +26,7 @@ from pellicle.components import (
     HasLayerForceCurve,
     Indenter,
 )
-from pellicle.errors import ConfigError, shown
+from pellicle.errors import ConfigError, problems_within, shown
 from pellicle.schema import (
     FromFile,
     InputPath,
@@ -125,6 +125,14 @@ class FitConfig(FromFile, Calibration):
     have the names of these fields.
     """
 
+    examples = (
+        {
+            "curves": ["beads/*.csv"],
+            "indenter": {"type": "sphere", "radius": "5 um"},
+            "poissons_ratio": 0.5,
+        },
+    )
+
     curves: Annotated[
         tuple[Path, ...],
         BeforeValidator(
@@ -133,7 +141,6 @@ class FitConfig(FromFile, Calibration):
         ),
         Field(
             description="files, folders, patterns such as beads/*.csv, or tables of files",
-            examples=[["beads/*.csv"]],
         ),
     ] = ()
     indenter: Annotated[
@@ -142,13 +149,11 @@ class FitConfig(FromFile, Calibration):
         PlainSerializer(described),
         Field(
             description="the indenter: its type and fields",
-            examples=[{"type": "sphere", "radius": "5 um"}],
         ),
     ]
     poissons_ratio: PoissonsRatio | None = Field(
         None,
         description="of the solid, to get Young's modulus as well, or if the kernel needs it",
-        examples=[0.5],
     )
     kernel: Annotated[
         dict[str, Any] | None,
@@ -363,10 +368,8 @@ class FitConfig(FromFile, Calibration):
         for name, value in fields.items():
             indenter = replaced(indenter, name, value)
         if not isinstance(indenter, HasForceCurve):
-            try:
+            with problems_within("indenter"):
                 indenter = registry().make(Indenter, indenter)
-            except ConfigError as error:
-                raise error.within("indenter") from None
         if self.thickness == FREE:
             return self._free_layer(indenter)
         if self._solid is None and isinstance(indenter, HasForceCurve):

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from pellicle.cli import NOT_CONVERGED, echo, print_columns, print_json
+from pellicle.cli import NOT_CONVERGED, echo, print_json, print_table
 from pellicle.errors import first_of
 from pellicle.files import is_file
 
 if TYPE_CHECKING:
+    from pellicle.components import Table
     from pellicle.units import Scale
     from pellicle_fit.many import ManyFits
     from pellicle_fit.result import FitResult
@@ -31,6 +32,7 @@ _LINES = 50
 
 def print_fit(fit: FitResult, *, si: bool = False) -> None:
     """Print the estimates of a fit, a line for each curve of a pool, and the fit in words."""
+    from pellicle.components import Table
     from pellicle_fit.report.sentences import sentence_of_fit
     from pellicle_fit.wording import interval_text, scale
 
@@ -44,12 +46,12 @@ def print_fit(fit: FitResult, *, si: bool = False) -> None:
         ends = "fixed" if estimate.held else interval_text(estimate.low, estimate.high, unit)
         rows.append((_words(name), unit.number(estimate.value), ends, unit.unit))
     heads = ("parameter", "value", "95 % interval", "unit")
-    print_columns(list(zip(heads, zip(*rows, strict=True), strict=True)))
+    print_table(Table.of_rows(heads, rows))
     if curves := fit.curve_rows(si=si):
-        print_columns([(name, [row[name] for row in curves]) for name in curves[0]])
+        print_table(Table.of_rows([*curves[0]], [[*row.values()] for row in curves]))
     if fit.rivals is not None and fit.config is not None and fit.config.compare:
         models = fit.rivals.rows(si=si)
-        print_columns([(name, [row[name] for row in models]) for name in models[0]])
+        print_table(Table.of_rows([*models[0]], [[*row.values()] for row in models]))
     for sentence in fit.sentences:
         echo(sentence)
     print_notes(fit)
@@ -74,11 +76,11 @@ def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None, si: bool 
     if quiet:
         return
     if directory is None or len(fits.rows) <= _LINES:
-        print_columns(_curves(fits.rows, si))
+        print_table(_curves(fits.rows, si))
     else:
         echo(f"{len(fits.rows)} curves: see {directory / 'fits.csv'}")
     if len(fits.rows) > 1:
-        print_columns(_groups(fits, si))
+        print_table(_groups(fits, si))
 
 
 def show_fits(directory: Path, si: bool, json: bool) -> bool:
@@ -105,29 +107,32 @@ def show_fits(directory: Path, si: bool, json: bool) -> bool:
     return True
 
 
-def _curves(rows: list[dict[str, Any]], si: bool) -> list[tuple[str, list[str]]]:
+def _curves(rows: list[dict[str, Any]], si: bool) -> Table:
     """Return a row for each curve; the table in the folder has their sentences."""
+    from pellicle.components import Column, Table
     from pellicle_fit.wording import column_scale
 
-    columns = [("curve", [str(row["curve"]) for row in rows])]
+    columns = [Column("curve", [str(row["curve"]) for row in rows])]
     if any(row.get("elastic") for row in rows):
-        columns.append(("model", [row.get("chosen", {}).get("model", "") for row in rows]))
+        columns.append(Column("model", [row.get("chosen", {}).get("model", "") for row in rows]))
     for name, unit in _UNITS.items():
         estimates = [row.get(name) for row in rows]
         if not any(name in row for row in rows):
             continue
         scale = column_scale([e["value"] for e in estimates if e], unit, si=si)
         values = [scale.number(e["value"]) if e else "" for e in estimates]
-        columns.append((f"{_words(name)} [{scale.unit}]", values))
+        columns.append(Column(f"{_words(name)} [{scale.unit}]", values))
         if name != "contact_point":
             ends = [_interval_of(estimate, scale) for estimate in estimates]
-            columns.append((f"95 % of {_words(name)}", ends))
-    return [
-        *columns,
-        ("failed checks", [_failed_checks(row) for row in rows]),
-        ("notes", [str(len(row.get("messages", ()))) for row in rows]),
-        ("status", list(map(_verdict, rows))),
-    ]
+            columns.append(Column(f"95 % of {_words(name)}", ends))
+    return Table(
+        [
+            *columns,
+            Column("failed checks", [_failed_checks(row) for row in rows]),
+            Column("notes", [str(len(row.get("messages", ()))) for row in rows]),
+            Column("status", list(map(_verdict, rows))),
+        ]
+    )
 
 
 def _verdict(row: Mapping[str, Any]) -> str:
@@ -135,8 +140,9 @@ def _verdict(row: Mapping[str, Any]) -> str:
     return "rejected" if verdict == "fitted" and not row["accepted"] else verdict
 
 
-def _groups(fits: ManyFits, si: bool) -> list[tuple[str, list[str]]]:
+def _groups(fits: ManyFits, si: bool) -> Table:
     """Return a row for each parameter of each group of curves; no columns without any."""
+    from pellicle.components import Column, Table
     from pellicle_fit.wording import group_scales
 
     parts, quartiles = fits.summary(), []
@@ -146,19 +152,17 @@ def _groups(fits: ManyFits, si: bool) -> list[tuple[str, list[str]]]:
         numbers = part.lower_quartile, part.median, part.upper_quartile
         low, middle, high = map(scale.number, numbers)
         quartiles.append((middle, f"{low} to {high}"))
+    names = [f"{_words(part.parameter)} [{scales[part.parameter].unit}]" for part in parts]
     columns = [
-        ("group", [part.group for part in parts]),
-        (
-            "parameter",
-            [f"{_words(part.parameter)} [{scales[part.parameter].unit}]" for part in parts],
-        ),
-        ("accepted", [f"{part.n} of {part.curves}" for part in parts]),
-        ("open", [str(part.open) for part in parts]),
-        ("outliers", [str(part.outliers) for part in parts]),
-        ("median", [median for median, _ in quartiles]),
-        ("quartiles", [ends for _, ends in quartiles]),
+        Column("group", [part.group for part in parts]),
+        Column("parameter", names),
+        Column("accepted", [f"{part.n} of {part.curves}" for part in parts]),
+        Column("open", [str(part.open) for part in parts]),
+        Column("outliers", [str(part.outliers) for part in parts]),
+        Column("median", [median for median, _ in quartiles]),
+        Column("quartiles", [ends for _, ends in quartiles]),
     ]
-    return columns if parts else []
+    return Table(columns if parts else [])
 
 
 def _print_failures(rows: list[dict[str, Any]]) -> None:

@@ -20,8 +20,8 @@ import numpy as np
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
-from pellicle.runs.advice import advise
 from pellicle.runs.runner import solve
+from pellicle_check.advice import advise
 
 POINTS = 40, 64, 100, 144, 192, 256
 NAMES = {"force": "force_error", "depth": "depth_error", "contact_area": "area_error"}

@@ -15,7 +15,7 @@ from pellicle.schema.from_file import paths_relative_to
 
 EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
     family: {
-        registered.type: dict(registered.examples[0])
+        registered.type: dict(registered.examples[-1])
         for registered in members.values()
         if registered.origin.is_own
     }

@@ -111,13 +111,6 @@ def test_patches_across_the_edge(boundary: str, connectivity: Any, count: int) -
     assert patches(contact, square(6, boundary), connectivity).count == count
 
 
-def test_corner_cells_join_only_if_asked() -> None:
-    """Two cells that share a corner are two patches of four neighbours, and one of eight."""
-    contact = np.eye(4, dtype=bool)
-    assert patches(contact, square(4)).count == 4
-    assert patches(contact, square(4), connectivity=8).count == 1
-
-
 @pytest.mark.parametrize("boundary", ["free", "periodic"])
 def test_empty_and_full_contact(boundary: str) -> None:
     """No contact has nothing of anything; full contact is one patch, with a border if it ends."""
@@ -196,18 +189,6 @@ def test_ellipse_of_hertz(elliptic: pl.Result) -> None:
     area = np.pi * truth.semi_x * truth.semi_y
     assert last["mean_contact_pressure"].item() == pytest.approx(truth.force / area, rel=0.02)
     assert last["patches"].item() == 1
-
-
-def test_ellipse_of_a_turned_indenter(elliptic: pl.Result) -> None:
-    """A contact turned by 30° has the same ellipse, its major axis turned from y by 30°."""
-    given = elliptic.configuration
-    indenter = {"type": "rotated", "angle": "30 degree", "part": given["indenter"]}
-    turned = pl.run({**given, "indenter": indenter, "loading": {"depth": 50e-6}}, progress=False)
-    original, here = elliptic.dataset.isel(step=-1), turned.dataset.isel(step=-1)
-    for name in ("semi_major_axis", "semi_minor_axis"):
-        cell = elliptic.grid.spacing[0]
-        assert here[name].item() == pytest.approx(original[name].item(), abs=cell / 4)
-    assert np.degrees(here["major_axis_angle"].item()) == pytest.approx(-60, abs=1)
 
 
 def test_a_step_without_contact(elliptic: pl.Result) -> None:

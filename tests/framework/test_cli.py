@@ -94,24 +94,6 @@ def test_new_does_not_overwrite(cli: Cli) -> None:
     assert "no/mine.toml: cannot be written" in cli("new", "no/mine.toml", code=2).stderr
 
 
-def test_quiet(cli: Cli) -> None:
-    """`--quiet` prints nothing at all when all is well."""
-    cli("new", "a.toml")
-    result = cli("run", "a.toml", *SMALL, "--quiet", "--set", "outputs=[{type='csv'}]")
-    assert result.output == ""
-    assert len(Path("a/a.csv").read_text(encoding="utf-8").splitlines()) == 3
-
-
-def test_threads(cli: Cli) -> None:
-    """The number of threads does not change the result."""
-    cli("new", "a.toml")
-    only = ["--set", "outputs=[]"]
-    cli("run", "a.toml", *SMALL, *only, "-o", "one", "--threads", "1")
-    cli("run", "a.toml", *SMALL, *only, "-o", "two", "--threads", "2")
-    one, two = (pl.load(f"{name}/a.h5").dataset for name in ("one", "two"))
-    assert two["force"].values == pytest.approx(one["force"].values, rel=1e-12)
-
-
 @pytest.mark.slow
 def test_not_converged(cli: Cli) -> None:
     """A run that does not converge is kept and marked, says what to try, and exits with 1."""

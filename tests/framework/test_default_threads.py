@@ -6,7 +6,6 @@ import os
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 import pellicle as pl
@@ -51,10 +50,3 @@ def test_threads_are_a_whole_number(threads: Any, tmp_path: Path) -> None:
         with pytest.raises(pl.ConfigError, match=r"threads: .* whole number of threads, 1 to"):
             use()
     assert not list(tmp_path.iterdir())
-
-
-def test_threads_of_numpy_are_taken() -> None:
-    """A whole number of numpy is as good as one of Python."""
-    threads: Any = np.int64(2)
-    assert pl.run(RUN, progress=False, threads=threads).converged
-    assert registry().make(pl.Executor, {"type": "serial", "threads": threads}).threads == 2

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from scipy.integrate import quad
 
 from pellicle import ConfigError, Grid, displacement
-from pellicle.contact import Depth, Problem
 from pellicle.surface import make_operator
 from pellicle.surface.hankel import ACCURACY, Tabulated
 from pellicle.surface.influence import cell_coefficients
@@ -199,17 +198,6 @@ def test_green_function_is_the_derivative_of_its_primitive(symbol: Symbol) -> No
     assert (np.abs(np.diff(primitive) - integral) < 1e-9 * largest).all()
 
 
-@pytest.mark.parametrize("first", SYMBOLS)
-@pytest.mark.parametrize("second", ["half-space", "membrane", "layer", "graded"])
-def test_compliances_add(first: str, second: str) -> None:
-    """Cells of a sum of symbols are the sums of cells, whatever power law each has to lose."""
-    a, b = SYMBOLS[first], SYMBOLS[second]
-    shape, spacing = (60, 30), (0.5, 1.0)
-    both = coefficients(lambda q: a(q) + b(q), shape, spacing)
-    apart = coefficients(a, shape, spacing) + coefficients(b, shape, spacing)
-    np.testing.assert_allclose(both, apart, rtol=1e-8, atol=1e-10 * both[0, 0])
-
-
 @pytest.mark.parametrize("length", [1e-9, 3e4])
 @pytest.mark.parametrize("modulus", [1e-3, 1e11])
 @pytest.mark.parametrize("name", ["membrane", "graded", "layer", "incompressible layer"])
@@ -278,27 +266,6 @@ def test_what_cannot_be_transformed_is_refused(
     assert where == field
     for word in words:
         assert word in message
-
-
-def test_one_table_serves_all_grids_of_a_solve() -> None:
-    """Coarser grids down to a single cell use the table of the finest one."""
-    calls = []
-
-    def symbol(q: Array) -> Array:
-        calls.append(q.size)
-        return np.asarray(membrane(3.0).compliance(q))
-
-    grid = Grid(points=[37, 64], size=[37.0, 70.0])
-    kernel = SymbolOnly(symbol)
-    problem = Problem(grid, make_operator(kernel, grid), np.zeros(grid.shape), Depth(1.0))
-    after_set_up = len(calls)
-    while problem.grid.shape != (1, 1):
-        problem = problem.coarsened()
-        pressure = np.random.default_rng(1).random(problem.grid.shape)
-        closed = displacement(pressure, kernel=membrane(3.0), grid=problem.grid)
-        np.testing.assert_allclose(problem.operator(pressure), closed, rtol=1e-9)
-    # Each grid only looks at its own finest wave.
-    assert set(calls[after_set_up:]) == {1}
 
 
 def test_a_finer_grid_gets_a_table_of_its_own() -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import pellicle as pl
-from pellicle.config.describe import Input, inputs
+from pellicle.config.describe import FieldRow, inputs
 from pellicle.units import readable
 
 CONFIGURATION: dict[str, Any] = {
@@ -27,17 +27,18 @@ CONFIGURATION: dict[str, Any] = {
     "indenter": {"type": "cone", "half_angle": "70 degree"},
     "loading": {"depth": {"start": "1 um", "stop": "20 um", "num": 20}},
     "corrections": [{"type": "yastrebov"}],
+    "outputs": [{"type": "curves", "published": [{"label": "a", "x": [3, 4], "y": [1, 2]}]}],
 }
 
 
 @pytest.fixture(scope="module")
-def table() -> dict[str, Input]:
+def table() -> dict[str, FieldRow]:
     """Return the inputs of a run by their names."""
     data = json.loads(pl.Run(**CONFIGURATION).to_json())
     return {entry.name: entry for entry in inputs(data, pl.Run)}
 
 
-def test_values_have_units(table: dict[str, Input]) -> None:
+def test_values_have_units(table: dict[str, FieldRow]) -> None:
     """Of components within components and of lists too; a long list is shortened, and says so."""
     for name, value in {
         "grid.points": "16, 12",
@@ -52,18 +53,19 @@ def test_values_have_units(table: dict[str, Input]) -> None:
         "loading.depth": "1, 2, 3, 4, 5, 6, …, 20 µm (20 values)",
         "solver.tolerance": "1e-08",
         "corrections.0": "Yastrebov",
+        "outputs.0.published.0.y": "1, 2",
     }.items():
         assert table[name].value == value
 
 
-def test_inputs_are_explained(table: dict[str, Input]) -> None:
+def test_inputs_are_explained(table: dict[str, FieldRow]) -> None:
     """Every one of them says what it means, and components where they come from."""
     assert all(entry.meaning for entry in table.values())
     origin = table["kernel.substrate"].origin
     assert origin is not None
     assert origin.entry_point == "kernel.frictionless_layer"
     assert origin.version == pl.__version__
-    components = {"kernel", "kernel.substrate", "indenter", "solver", "corrections.0"}
+    components = {"kernel", "kernel.substrate", "indenter", "solver", "corrections.0", "outputs.0"}
     assert {name for name, entry in table.items() if entry.origin} == components
 
 

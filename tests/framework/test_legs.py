@@ -14,7 +14,6 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli.app import app
-from pellicle.config.describe import inputs
 
 LEGS: list[dict[str, Any]] = [
     {"to": "1 um", "time": "1 s", "num": 4},
@@ -92,16 +91,6 @@ def test_a_run_with_legs_is_one_in_every_form() -> None:
     configuration["loading"]["depth"][1]["frequency"] = 1.0
     assert not validator.is_valid(configuration)
     assert run.identity != pl.Run(**{**RUN, "loading": {"depth": LEGS[:2]}}).identity
-
-
-def test_inputs_are_listed_leg_by_leg() -> None:
-    """Each value has its unit."""
-    rows = {row.name: row.value for row in inputs(json.loads(pl.Run(**RUN).to_json()), pl.Run)}
-    assert rows["loading.depth.0.to"] == "1 µm"
-    assert rows["loading.depth.1.hold"] == "5 s"
-    assert rows["loading.depth.2.amplitude"] == "10 nm"
-    assert rows["loading.depth.2.frequency"] == "500 mHz"
-    assert rows["loading.depth.2.cycles"] == "2"
 
 
 def test_the_first_leg_is_no_jump() -> None:

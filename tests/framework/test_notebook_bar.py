@@ -62,8 +62,8 @@ def cell(monkeypatch: pytest.MonkeyPatch) -> Cell:
 def test_a_run_has_one_live_bar(cell: Cell) -> None:
     """It shows the step, the iteration and the residual, and is empty at the end."""
     with RunProgress(2, True) as bar:
-        bar.step(0)(3, 1e6)
-        bar.step(1)(4, 1e3)
+        bar(0)(3, 1e6)
+        bar(1)(4, 1e3)
     first, second, last = cell
     assert first.startswith("step 1/2 ")
     assert second.startswith("step 2/2 ")
@@ -86,15 +86,6 @@ def test_a_study_has_one_live_bar(cell: Cell, capfd: pytest.CaptureFixture[str])
     assert capfd.readouterr() == ("", "")
 
 
-def test_a_fit_shows_its_stage(cell: Cell) -> None:
-    """How long a fit takes is not known: there is no time left."""
-    with status_line("fitting", enabled=True) as report:
-        report("noise")
-        assert cell[-1].startswith("fitting ")
-        assert cell[-1].endswith("noise")
-    assert cell[-1] == ""
-
-
 @pytest.mark.parametrize("enabled", [True, False])
 def test_short_or_quiet_work_shows_nothing(
     cell: Cell, enabled: bool, monkeypatch: pytest.MonkeyPatch
@@ -103,7 +94,7 @@ def test_short_or_quiet_work_shows_nothing(
     if enabled:
         monkeypatch.setattr(bars, "_BEFORE_SHOWN", 3600.0)
     with RunProgress(2, enabled) as bar:
-        bar.step(0)(3, 1e6)
+        bar(0)(3, 1e6)
     with BatchProgress(2, 0, enabled=enabled) as study:
         study.finished(Job("a"), "converged", failed=False)
     with status_line("fitting", enabled=enabled) as report:

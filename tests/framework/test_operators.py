@@ -7,6 +7,7 @@ import pytest
 import scipy.fft
 from numpy.typing import NDArray
 
+import pellicle as pl
 from pellicle import Grid
 from pellicle.surface import make_operator
 from pellicle_plugins.kernels.half_spaces import TensedMembrane
@@ -64,3 +65,18 @@ def test_every_row_is_visited_once(boundary: Literal["free", "periodic"], thread
     assert (visits == 1).all()
     np.testing.assert_array_equal(copied, expected)
     np.testing.assert_array_equal(pressure, expected)
+
+
+def test_a_periodic_wave_is_displaced_by_the_compliance() -> None:
+    """Each wave of pressure displaces by G(q) times the wave, a uniform one by G(0)."""
+    kernel = pl.kernel("bonded_layer", reduced_modulus=1.0, poissons_ratio=0.3, thickness=0.1)
+    grid = Grid(points=[32, 18], size=[1.0, 0.7], boundary="periodic")
+    operator = make_operator(kernel, grid)
+    x, y = grid.coordinates()
+    for m, n in ((1, 0), (0, 3), (5, 2), (8, 4)):
+        qx, qy = 2 * np.pi * m / grid.size[0], 2 * np.pi * n / grid.size[1]
+        wave = np.cos(qx * x + qy * y + 0.3)
+        expected = kernel.compliance(np.array([np.hypot(qx, qy)])) * wave
+        np.testing.assert_allclose(operator(wave), expected, atol=1e-9 * np.abs(expected).max())
+    uniform = operator(np.full(grid.shape, 3.0))
+    np.testing.assert_allclose(uniform, 3.0 * kernel.mean_compliance(), rtol=1e-12)

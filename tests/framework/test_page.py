@@ -12,18 +12,8 @@ import numpy as np
 import pytest
 
 from pellicle import Grid
-from pellicle.show.html import (
-    Block,
-    Cell,
-    Code,
-    Column,
-    Notice,
-    Picture,
-    Section,
-    Table,
-    Text,
-    page,
-)
+from pellicle.components import Column, Table
+from pellicle.show.html import Block, Code, Notice, Picture, Section, Text, page
 from pellicle.show.maps import Field, Maps, frame, side
 
 EVIL = "</script><script>alert(1)</script> \"quoted\" 'so' <!-- & µ 接触 {{ 7 * 7 }}"
@@ -64,7 +54,7 @@ def full(text: str) -> Parsed:
     blocks: list[Block] = [
         Text(text),
         Notice(text, False, [text]),
-        Table(text, [Column(text, text, text), Column("n")], [[Cell(text, frame=0), text]]),
+        Table([Column(text, [text], "", text, frames=[0]), Column("n", [1.0], text)], text),
         Picture(b"<svg xmlns='http://www.w3.org/2000/svg'/>", text, text),
         Code(text, text, text),
         maps(text),
@@ -81,10 +71,24 @@ def test_text_stays_text() -> None:
         sorted(attributes) for _, attributes in plain.tags
     ]
     # The label of a frame is in the data of the script too, where JSON escapes it.
-    assert sum(EVIL in text for text in evil.text) == 18
-    assert sum("plain" in text for text in plain.text) == 19
+    assert sum(EVIL in text for text in evil.text) == 16
+    assert sum("plain" in text for text in plain.text) == 18
     assert EVIL in evil.values("alt")
     assert EVIL in evil.values("download")
+
+
+def test_tables_show_what_columns_say() -> None:
+    """Cells are as people read them; those that are bad, linked or shortened are marked."""
+    numbers = Column("depth", [1e-6, np.nan], "m", bad=[False, True], frames=[None, 1])
+    table = Table([numbers, Column("hash", ["0123456789abcdef" * 4, "none"])], "Both.")
+    text = page("", [Section("", [table])])
+    cells = re.findall(r"<td data-label=\"(.*?)\" class=\"(.*?)\"(.*?)>(.*?)</td>", text)
+    assert cells == [
+        ("depth [µm]", "", "", "1"),
+        ("hash", "words", f' title="{"0123456789abcdef" * 4}"', "01234567…"),
+        ("depth [µm]", " bad", "", '<a href="#maps" data-frame="1">–</a>'),
+        ("hash", "words", "", "none"),
+    ]
 
 
 def test_nothing_is_loaded() -> None:

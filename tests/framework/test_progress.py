@@ -52,16 +52,9 @@ def lines(progress: BatchProgress, width: int = 200) -> list[str]:
 def _iterate(progress: RunProgress) -> None:
     with progress:
         for index in range(2):
-            monitor = progress.step(index)
+            monitor = progress(index)
             for iteration, excess in enumerate([1e6, 1e3, 0.5]):
                 monitor(iteration, excess)
-
-
-@pytest.mark.parametrize("enabled", [True, False])
-def test_silent_without_a_terminal(enabled: bool, capfd: pytest.CaptureFixture[str]) -> None:
-    """Where there is no terminal nothing at all is written."""
-    _iterate(RunProgress(2, enabled))
-    assert capfd.readouterr() == ("", "")
 
 
 def test_bar_on_a_terminal(screen: io.StringIO) -> None:
@@ -93,20 +86,6 @@ def test_a_study_has_a_line_for_each_run_at_work() -> None:
         assert "2 N/m" in two
 
 
-@pytest.mark.usefixtures("screen")
-def test_narrow_terminal() -> None:
-    """Where there is no room for all it is the names that are cut, and nothing in them is lost."""
-    job = Job("loading.depth = [1e-6, 2e-6], kernel.tension = 1 N/m, indenter.radius = 1 mm")
-    with BatchProgress(1000, 100, enabled=True) as progress:
-        progress.report(job, ProgressMessage(0, 4, 3, 2e5, 0.25))
-        study, run = lines(progress, width=80)
-    assert "100 done, 0 failed, 900 left time left -:--:--" in " ".join(study.split())
-    assert run.startswith("  loading.depth = [")
-    assert "…" in run
-    assert "step 1/4 iteration 3" in run
-    assert max(len(study), len(run)) <= 80
-
-
 def test_a_log_has_a_line_for_each_run(capfd: pytest.CaptureFixture[str]) -> None:
     """Without a terminal there are no control codes, and nothing before a run is done."""
     long = Job(f"kernel.tension = {'1' * 200} [N/m]")
@@ -129,7 +108,7 @@ def test_odd_residuals(excess: float) -> None:
     """A residual of zero, NaN or infinity does not end the run."""
     progress = RunProgress(1, True)
     with progress:
-        monitor = progress.step(0)
+        monitor = progress(0)
         monitor(0, excess)
         monitor(1, 1.0)
         monitor(2, excess)
@@ -139,7 +118,7 @@ def test_odd_residuals(excess: float) -> None:
 def test_interrupt_waits_for_the_next_iteration() -> None:
     """Ctrl-C takes effect at the next iteration, where nothing can swallow it."""
     with RunProgress(1, False) as progress:
-        monitor = progress.step(0)
+        monitor = progress(0)
         signal.raise_signal(signal.SIGINT)
         with pytest.raises(KeyboardInterrupt):
             monitor(1, 1.0)
@@ -155,7 +134,7 @@ def test_second_interrupt_acts_at_once() -> None:
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
         with pytest.raises(KeyboardInterrupt):
-            progress.step(0)(0, 1.0)
+            progress(0)(0, 1.0)
 
 
 @pytest.mark.usefixtures("default_handler")

@@ -124,12 +124,6 @@ def test_the_result_of_a_run_is_not_replaced(end: str) -> None:
         pl.Run(**RUN, outputs=[make_output("figures"), Plain(ends=(end,))])
 
 
-def test_standard_outputs_in_a_study() -> None:
-    """The table of a study is another file than the results and tables of its runs."""
-    run = RUN | {"outputs": [make_output(type_) for type_ in ("csv", "figures", "html", "vtk")]}
-    pl.Study(run=run, vary={"indenter.radius": [1e-3, 2e-3]})
-
-
 @pytest.mark.parametrize(
     ("one", "other", "same"),
     [

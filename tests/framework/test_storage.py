@@ -164,20 +164,6 @@ def test_only_steps_of_the_same_run_are_appended(path: Path) -> None:
     assert storage.read(path).sizes["step"] == 1
 
 
-@pytest.mark.parametrize("numbers", [(0, 1), (2, 3), (1, 3, 4), (1, 2, 2)])
-def test_steps_with_gaps_are_not_resumed(path: Path, numbers: tuple[int, ...]) -> None:
-    """What two processes wrote into one file is refused, with the way out."""
-    storage.write(steps(*numbers), path)
-    with pytest.raises(StorageError, match=r"not 1, 2, …, so it cannot be resumed.*--overwrite"):
-        storage.require_consecutive(storage.read(path), path)
-
-
-def test_what_cannot_be_read_is_not_said_to_be_unwritable(tmp_path: Path) -> None:
-    """If the old content cannot be read again, another folder is not the remedy."""
-    with pytest.raises(StorageError, match=r"not a readable result file \(.*directory"):
-        storage._join(tmp_path, [])
-
-
 def test_lack_of_memory_is_reported(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A file whose content does not fit in memory is refused in words."""
     storage.write(steps(1), path)

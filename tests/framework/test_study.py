@@ -23,8 +23,8 @@ from pellicle.cli.app import app
 from pellicle.components import Monitor
 from pellicle.results import StoredRuns, storage
 from pellicle.results.dimensions import with_paths
+from pellicle.show.sentences import failures, reasons
 from pellicle.studies import runner as study_module
-from pellicle.studies.summary import failures, reasons
 from pellicle.studies.table import StudyTable, write
 from pellicle_plugins.executors.execution import Serial
 from pellicle_plugins.executors.processes import Processes
@@ -135,13 +135,6 @@ def test_a_parameter_is_selected_by_a_name_or_its_path(tmp_path: Path) -> None:
     assert StoredRuns.of_study(table, tmp_path).table["force"].dims == (TENSION, RADIUS, "step")
 
 
-def test_nothing_stays_without_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A study without a directory leaves no file."""
-    monkeypatch.chdir(tmp_path)
-    carry_out(study({TENSION: [0.5, 1.0]}))
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_files(tmp_path: Path) -> None:
     """The folder holds a result for each run, the table, and no trace of the work."""
     table = carry_out(study(), tmp_path)
@@ -178,15 +171,6 @@ def test_changed_axis_runs_only_the_new_points(tmp_path: Path) -> None:
     assert table[TENSION].values.tolist() == [1.0, 0.5, 0.0]
 
 
-@pytest.mark.slow
-def test_overwrite_begins_anew(tmp_path: Path) -> None:
-    """Everything is solved again where it is asked for."""
-    table = carry_out(study(), tmp_path)
-    Counting.solved.clear()
-    same_numbers(carry_out(study(), tmp_path, overwrite=True), table)
-    assert len(Counting.solved) == table["force"].size
-
-
 def test_failing_run_stops_no_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A run that fails has its reason in the table, and is all that is tried again."""
     break_at(monkeypatch, 0.5, 1e-5)
@@ -209,19 +193,6 @@ def test_failing_run_stops_no_other(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     # Its first step was there.
     assert Counting.solved == [(0.5, 1e-5), (0.5, 1.5e-5)]
     same_numbers(again, carry_out(study({TENSION: [0.0, 0.5, 1.0]})))
-
-
-def test_unconverged_run(tmp_path: Path) -> None:
-    """A step that did not converge is in the table with its status, and is not solved in vain."""
-    deep = {"depth": ["5 um", "60 um", "70 um"]}
-    with pytest.warns(pl.ConvergenceWarning, match="of 2 runs 2 did not converge"):
-        table = carry_out(study({TENSION: [0.0, 1.0]}, loading=deep), tmp_path)
-    assert "reaches the edge" in table["status"].values[0, 1]
-    Counting.solved.clear()
-    with pytest.warns(pl.ConvergenceWarning, match="of 2 runs 2 did not converge"):
-        again = carry_out(study({TENSION: [0.0, 1.0]}, loading=deep), tmp_path)
-    same_numbers(again, table)
-    assert Counting.solved == []
 
 
 def test_a_failure_after_an_unconverged_step_has_its_reason(
@@ -306,7 +277,7 @@ def test_table_that_a_kill_left_behind(tmp_path: Path) -> None:
     vary = {TENSION: [0.0, 0.5], RADIUS: [1e-3, 2e-3]}
     plan = pl.Study(run=RUN, vary=vary, derived={"twice": "2 * force"})
     whole = pl.run_study(plan, tmp_path, progress=False)
-    *finished, last = study_module.tasks(plan, tmp_path)
+    *finished, last = study_module.planned(plan, tmp_path / "study")
     last.journal.path.unlink()
     rows = StudyTable(plan)
     for task in finished[:2]:
@@ -437,20 +408,6 @@ def test_left_overs_of_the_dead_are_swept(tmp_path: Path) -> None:
     dead.wait()
     assert not gone.exists()
     assert all(path.exists() for path in kept)
-
-
-def test_left_overs_of_others_may_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A half-written file that may not be removed, as in a shared folder, is no error."""
-    other = tmp_path / f".a.h5.{files._host()}.1.part"
-    other.touch()
-
-    def refuse(path: Path, missing_ok: bool = False) -> None:
-        raise PermissionError(1, "Operation not permitted")
-
-    monkeypatch.setattr(files, "_alive", lambda pid: False)
-    monkeypatch.setattr(Path, "unlink", refuse)
-    files.check_writable(tmp_path / "b.h5")
-    assert other.exists()
 
 
 class Listing(pl.Output):

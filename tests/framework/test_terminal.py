@@ -9,24 +9,27 @@ import os
 import subprocess
 import sys
 import tomllib
-import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
+from jsonschema import Draft202012Validator
 from rich.cells import cell_len
 from typer.testing import CliRunner, Result
 
 import pellicle as pl
 from pellicle.cli import new
 from pellicle.cli.app import app
-from pellicle.cli.printing import BAD_INPUT, CRASHED, print_columns
-from pellicle.components import FAMILIES, Case
+from pellicle.cli.printing import BAD_INPUT, CRASHED, print_table
+from pellicle.components import Case, Column, Table
 from pellicle.config.explain import explanations
-from pellicle.runs import validation
+from pellicle.results.wording import means_something
 from pellicle.runs.validation import CheckedCase
+from pellicle.show.sentences import outcome_of_cases
+from pellicle.show.tables import verdicts
 from pellicle_fit.config import FitConfig
 
 RUN: dict[str, Any] = {
@@ -75,8 +78,8 @@ def cli(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Cli:
 
 def test_a_table_in_a_pipe_has_a_line_for_each_row(capsys: pytest.CaptureFixture[str]) -> None:
     """It is neither folded nor cut, however long its cells are; heads and numbers are aligned."""
-    columns = [("step", ["1", "12"]), ("depth [µm]", ["10", "–"]), ("why", ["so " * 200, "no"])]
-    print_columns(columns)
+    numbers = Column("depth", [1e-5, np.nan], "m")
+    print_table(Table([Column("step", [1, 12]), numbers, Column("why", ["so " * 200, "no"])]))
     first, second, third = capsys.readouterr().out.splitlines()
     assert first == "step  depth [µm]  why"
     assert second == f"   1          10  {('so ' * 200).strip()}"
@@ -104,17 +107,6 @@ def test_commands_fit_the_terminal(cli: Cli, words: list[str], width: int) -> No
     assert "\x1b" not in shown
 
 
-def test_numbers_have_four_digits_and_one_unit_in_a_column(cli: Cli) -> None:
-    """30 and 300 mN/m are in one unit; a run has a number before the name of its file."""
-    head, *rows = cli("show", "study").stdout.splitlines()[3:6]
-    assert head.split()[:4] == ["run", "surface", "tension", "[mN/m]"]
-    assert [row.split()[:2] for row in rows] == [["1", "30"], ["2", "300"]]
-    assert all(len(row.split()[-1]) == len("9cfd51c0…") for row in rows)
-    in_si = cli("show", "study", "--si").stdout
-    assert "surface tension [N/m]" in in_si
-    assert "depth [m]" in in_si
-
-
 def test_json_has_the_numbers_of_the_file(cli: Cli, folder: Path) -> None:
     """`show --json` prints every number of a step in SI, and what is not a number as null."""
     shown = json.loads(cli("show", "a.h5", "--json").stdout)
@@ -136,8 +128,6 @@ def test_run_prints_json(cli: Cli, folder: Path) -> None:
     shown = json.loads(done.stdout)
     assert shown["files"] == [str(Path("b/b.h5"))]
     assert shown["steps"][0]["mean_contact_pressure"] is None
-    planned = json.loads(cli("run", "b.toml", "--dry-run", "--json", "-o", "c").stdout)
-    assert [run["state"] for run in planned["runs"]] == ["to do"]
 
 
 @pytest.mark.slow
@@ -165,13 +155,6 @@ def test_a_path_that_no_system_takes_is_told(command: list[str], folder: Path, c
     (folder / "plain.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
     words = [word.replace("{long}", "a" * 5000).replace("{run}", "plain.toml") for word in command]
     assert "aaa: no such file; give " in cli(*words, code=2).stderr
-
-
-def test_a_dry_run_into_a_path_that_no_system_takes(folder: Path, cli: Cli) -> None:
-    """The list of runs says that the file cannot be written."""
-    (folder / "plain.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
-    shown = cli("run", "plain.toml", "-o", "a" * 300, "--dry-run").stdout
-    assert "cannot be written (File name too long); choose another folder" in shown
 
 
 class Refusing(io.StringIO):
@@ -221,42 +204,15 @@ def test_equal_statuses_are_one_line(cli: Cli) -> None:
     assert "steps 1 to 3 did not converge: step 1: the surface misses" in done.stderr
 
 
-def test_version_tells_how_to_cite(cli: Cli) -> None:
-    """`--version` prints the version of the package and a reference."""
-    first, second = cli("--version").stdout.splitlines()
-    assert first == f"pellicle {pl.__version__}"
-    assert second.startswith(f"to cite it: pellicle {pl.__version__}")
-    assert "Yuan" in second
-
-
-@pytest.mark.parametrize("wrong", [0, 1])
-def test_validate_ends_with_what_it_covers(
-    cli: Cli, monkeypatch: pytest.MonkeyPatch, wrong: int
-) -> None:
-    """Its last line counts the cases and names the kernels that none is about."""
-
-    def verdicts() -> Iterator[CheckedCase]:
-        for number in range(2):
-            kernel = {"kernel": {"type": "half_space"}}
-            case = Case(f"case {number}", kernel, lambda _: 0.0, 2e-7, "m²", 1e-3, "Hertz 1882")
-            yield CheckedCase(case, 3e-7 if number < wrong else 2e-7, True)
-
-    monkeypatch.setattr(validation, "validate", verdicts)
-    shown = cli("validate", code=int(wrong > 0), COLUMNS="120").stdout
-    assert "0.2 mm²" in shown
-    last = shown.splitlines()[-1]
-    assert last.startswith("1 of 2 cases failed" if wrong else "all 2 cases passed")
-    kernels = set(last.partition("no case is about the kernels ")[2].split(", "))
-    assert kernels >= {"tensed_membrane", "winkler"}
-    assert "half_space" not in kernels
-
-
-@pytest.mark.parametrize("command", ["run", "fit", "show", "plot", "new", "validate", "explain"])
-def test_help_has_no_types_of_python(cli: Cli, command: str) -> None:
-    """Help names values by what they are, not ``<list[str]>``."""
-    shown = cli(command, "--help", COLUMNS="100").stdout
-    for jargon in ("list[", "<str>", "<bool>", "<path>", "<int", "<float", "BOOLEAN", "TEXT"):
-        assert jargon not in shown
+def test_validate_ends_with_what_it_covers() -> None:
+    """A sentence counts the cases and names the kernels that none is about; powers are units."""
+    case = Case("a", {"kernel": {"type": "winkler"}}, lambda _: 0.0, 2e-7, "m²", 1e-3, "Hertz 1882")
+    good, wrong = CheckedCase(case, 2e-7, True), CheckedCase(case, 3e-7, True)
+    assert verdicts([good, wrong]).records[1]["computed"] == "0.3 mm²"
+    others = "; no case is about the kernels coated, layered"
+    kernels = "layered", "winkler", "coated"
+    assert outcome_of_cases([good, wrong], kernels) == f"1 of 2 cases failed{others}"
+    assert outcome_of_cases([good], kernels) == f"all 1 cases passed{others}"
 
 
 def test_a_fault_of_pellicle_has_an_exit_code_of_its_own(
@@ -354,81 +310,22 @@ def test_a_process_prints_in_the_code_page_of_its_environment(
     assert not [line for line in wide if "  " in line]
 
 
-def examples() -> Iterator[Any]:
-    """Yield every registered type."""
-    for family, members in pl.registry().components.items():
-        for type_ in members:
-            yield pytest.param(family, type_, id=f"{family}.{type_}")
-
-
-@pytest.mark.parametrize(("family", "type_"), list(examples()))
-def test_the_example_of_a_type_is_valid(
-    family: str, type_: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """`explain` shows every field with its meaning, and an example that makes the component."""
-    monkeypatch.chdir(tmp_path)
-    np.savetxt("heights.txt", np.zeros((4, 4)))
-    (explanation,) = explanations(f"{family}.{type_}", {})
-    component = pl.registry().components[family][type_].component
-    assert {row.name for row in explanation.fields} >= {*component.model_fields} - {"type"}
-    assert all(row.meaning and row.default for row in explanation.fields)
-    data = tomllib.loads(explanation.example)
-    if family == "prescription":
-        assert pl.Loading(**data["loading"]).prescription.type_name == type_
-        return
-    table = data["study"][family] if "study" in data else data.get(family) or data[f"{family}s"][0]
-    if type_ == "topography":
-        # There is no scan.x3p here.
-        assert table["path"] == "scan.x3p"
-        return
-    assert pl.registry().make(FAMILIES[family], table).type_name == type_
-
-
-@pytest.mark.parametrize(
-    ("word", "name"),
-    [
-        ("grid", "size"),
-        ("loading", "depth"),
-        ("study", "vary"),
-        ("run", "kernel"),
-        ("fit", "curves"),
-    ],
-)
-def test_tables_are_explained(cli: Cli, word: str, name: str) -> None:
-    """The tables of a run file have their fields and an example of TOML."""
-    (explanation,) = json.loads(cli("explain", word, "--json").stdout)
-    assert name in [row["name"] for row in explanation["fields"]]
-    data = tomllib.loads(explanation["example"])
-    if word == "grid":
-        assert pl.Grid(**data["grid"]).points == (256, 256)
-    elif word == "fit":
-        assert FitConfig(**data).indenter
-
-
-def test_one_prescription_is_required_with_its_own_fields() -> None:
-    """No key of ``[loading]`` is required by itself: one of the prescriptions is."""
-    (explanation,) = explanations("loading", {})
-    default_by_name = {row.name: row.default for row in explanation.fields}
-    prescriptions = {name for name, default in default_by_name.items() if default == "one of these"}
-    assert prescriptions == {*pl.registry().components["prescription"]}
-    assert default_by_name["spring_constant"] == "with base_displacement"
-    assert "required" not in default_by_name.values()
-
-
-def test_explain_lists_what_it_explains(cli: Cli) -> None:
-    """Without a word it lists tables and families with their types, all of which it explains."""
+def test_explain_has_an_example_for_a_file(cli: Cli) -> None:
+    """It lists tables and families with their types; of each the example fits into a file."""
+    schema = Draft202012Validator(pl.json_schema())
     words = json.loads(cli("explain", "--json").stdout)
-    assert list(words) == ["table", *pl.registry().components]
-    assert words["table"] == ["run", "grid", "loading", "study", "fit"]
-    assert "tensed_membrane" in words["kernel"]
-    shown = cli("explain", FORCE_COLOR="1", NO_COLOR="1", COLUMNS="80").stdout
-    assert all(type_ in shown for types in words.values() for type_ in types)
+    assert [*words] == ["table", *pl.registry().components]
+    assert words["table"].pop() == "fit"
+    for family, types in words.items():
+        for type_ in types:
+            (explained,) = explanations(type_ if family == "table" else f"{family}.{type_}", {})
+            schema.validate({"study": {}} | tomllib.loads(explained.example))
+    (fit,) = json.loads(cli("explain", "fit", "--json").stdout)
+    assert FitConfig(**tomllib.loads(fit["example"])).indenter
 
 
 def test_the_unit_of_heights_is_a_unit() -> None:
-    """The example of a unit is a unit, not ten of them; a number before it still counts."""
-    (explanation,) = explanations("heights", {})
-    assert tomllib.loads(explanation.example)["indenter"]["unit"] == "um"
+    """A unit is one of it; a number before it still counts."""
     for unit, metres in (("um", 1e-6), ("nm", 1e-9), ("2 um", 2e-6), (1e-3, 1e-3)):
         assert pl.indenter("heights", values=np.eye(4), unit=unit).model_dump()["unit"] == metres
     with pytest.raises(pl.ConfigError, match="is a force; give"):
@@ -442,32 +339,12 @@ def test_explain_knows_what_was_meant(cli: Cli) -> None:
     assert "tensed_membrane" in cli("explain", "kernels").stdout
 
 
-def test_cells_wider_than_the_indenter_are_said_so(cli: Cli) -> None:
-    """A size in the wrong unit is not a profile that is positive or NaN."""
-    run = {**RUN, "indenter": {"type": "sphere", "radius": "1 mm"}}
-    Path("f.toml").write_text(pl.Run(**run).to_toml(), encoding="utf-8")
-    refused = cli("run", "f.toml", "--set", "grid.size=0.1", code=2).stderr
-    assert "indenter: cells of 6.25 mm × 6.25 mm are wider than indenter 'sphere'" in refused
-    assert "use a smaller grid.size, which is 100 mm × 100 mm, or more points" in refused
-    Path("g.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
-    coarse = cli("run", "g.toml", "--set", "grid.size=0.1", "--threads", "1").stderr
-    assert "which covers none of them, 6.25 mm wide" in coarse
-
-
-def test_show_leaves_out_what_means_nothing(cli: Cli) -> None:
+def test_show_leaves_out_what_means_nothing() -> None:
     """A round contact has a radius and no axes, one in several parts neither radius nor ellipse."""
-    rough = {"type": "self_affine", "rms_height": "5 um", "hurst": 0.8, "seed": 1}
-    turned = {"type": "quadric", "radius_x": "1 mm", "radius_y": "3 mm"}
-    words = "contact radius", "major semi-axis", "major-axis angle"
-    for name, indenter, shown in (
-        ("round", RUN["indenter"], (True, False, False)),
-        ("long", turned, (True, True, True)),
-        ("rough", rough | {"cutoff_wavelength": "60 um"}, (False, False, False)),
-    ):
-        run = {**RUN, "indenter": indenter, "grid": {**RUN["grid"], "boundary": "periodic"}}
-        run["loading"] = {"mean_pressure": "30 Pa"}
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            pl.run(run, progress=False, threads=1).save(f"{name}.h5")
-        table = cli("show", f"{name}.h5").stdout
-        assert tuple(word in table for word in words) == shown, name
+    patches, minor = {"round": 1, "long": 1, "rough": 3}, {"round": 2.0, "long": 1.0, "rough": 1.0}
+    names = "contact_radius", "semi_major_axis", "major_axis_angle"
+    shown = {"round": names[:1], "long": names, "rough": ()}
+    for shape, expected in shown.items():
+        axes = {"semi_major_axis": 2.0, "semi_minor_axis": minor[shape], "patches": patches[shape]}
+        data = xr.Dataset(axes, attrs={"boundary": "periodic"})
+        assert tuple(name for name in names if means_something(data, name)) == expected

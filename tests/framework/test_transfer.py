@@ -55,14 +55,6 @@ def test_prolong_then_restrict_changes_nothing(
     np.testing.assert_allclose(restrict(finer, coarse), pressure, rtol=1e-14)
 
 
-def test_same_shape_is_the_same_field() -> None:
-    """On a grid of as many cells nothing changes, −inf included."""
-    heights = field((5, 4))
-    heights[1, 2] = -np.inf
-    np.testing.assert_array_equal(restrict(heights, (5, 4)), heights)
-    np.testing.assert_array_equal(prolong(heights, (5, 4)), heights)
-
-
 @pytest.mark.parametrize(("fine", "coarse"), PAIRS)
 def test_highest_is_that_of_the_cells_within(
     fine: tuple[int, int], coarse: tuple[int, int]
@@ -119,15 +111,3 @@ def test_coarsened_problem(control: Depth | Force) -> None:
         coarse.operator(pressure), make_operator(kernel, coarse.grid)(pressure)
     )
     assert (fine.operator.applications, coarse.operator.applications) == (0, 1)
-
-
-def test_coarsened_uniform_pressure_makes_the_same_displacement() -> None:
-    """Where both grids have a cell centre, a uniform pressure displaces it alike."""
-    grid = Grid(points=27, size=1.0)
-    problem = Problem(
-        grid, make_operator(HalfSpace(reduced_modulus=1.0), grid), field(grid.shape), Depth(1.0)
-    )
-    coarse = problem.coarsened().coarsened()
-    assert coarse.grid.shape == (7, 7)
-    fine = problem.operator(np.ones(grid.shape))[13, 13]
-    assert coarse.operator(np.ones(coarse.grid.shape))[3, 3] == pytest.approx(fine, rel=1e-12)

@@ -18,11 +18,13 @@ PACKAGES = (
     "framework/pellicle",
     "plugins/pellicle_plugins",
     "plugins/pellicle_fit",
+    "plugins/pellicle_check",
     "plugins/pellicle_explore",
 )
 DATA = {
     "pellicle/py.typed",
     "pellicle/applications.pyi",
+    "pellicle_check/py.typed",
     "pellicle_explore/py.typed",
     "pellicle_explore/start.toml",
     "pellicle_fit/__init__.pyi",

@@ -39,18 +39,11 @@ class AdhesiveCurve(AdhesiveContact):
     """Adhesive equilibria, stable or not, by growing contact radius; arrays of shape (n,)."""
 
     def instability(self, spring_constant: float = 0.0) -> AdhesiveContact:
-        """Return the last stable equilibrium of a retraction.
+        """Return the last stable equilibrium of a retraction, where dF/dδ = −k_c.
 
-        Parameters
-        ----------
-        spring_constant
-            k_c [N/m] of what holds the indenter; dF/dδ = −k_c there.  0, the default, is a dead
-            load: pull-off, the lowest force.  ``math.inf`` is a fixed depth: the lowest depth.
-
-        Returns
-        -------
-        AdhesiveContact
-            All NaN if the curve does not contain it.
+        k_c = ``spring_constant`` [N/m] is that of what holds the indenter.  0, the default, is a
+        dead load: pull-off, the lowest force.  ``math.inf`` is a fixed depth: the lowest depth.
+        All is NaN if the curve does not contain it.
         """
         if not spring_constant >= 0:
             raise ConfigError(f"must not be negative, got {spring_constant!r}", "spring_constant")
@@ -106,14 +99,9 @@ def adhesive_curve(
     stiffness of a step change in steps of whole cells, but together: the radius as a function of
     the stiffness has a tenth of the scatter that it has as a function of the depth.
 
-    Parameters
-    ----------
-    depth, force, contact_radius, stiffness
-        δ₁ [m], F₁ [N], a [m] and k [N/m] of each step, positive, in any order, of shape (n,). On a
-        grid the area of cells overestimates a by 0.115 cells on a half-space, by 0.24 under
-        tension.
-    work_of_adhesion
-        w [J/m²].
+    The steps have δ₁ [m], F₁ [N], a [m] and k [N/m], positive, in any order, each of shape (n,); w
+    is in J/m². On a grid the area of cells overestimates a by 0.115 cells on a half-space, by 0.24
+    under tension.
 
     Raises
     ------

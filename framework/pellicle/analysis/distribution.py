@@ -28,20 +28,11 @@ class Distribution:
 
 
 def distribution(values: ArrayLike, bins: int = 50) -> Distribution:
-    """Return the distribution of samples over equal bins from 0 to the highest value.
+    """Return the distribution of samples over a number of equal bins from 0 to the highest value.
 
-    Parameters
-    ----------
-    values
-        Samples of any shape, such as the pressure of the cells in contact. Infinite ones, such as
-        the gap where there is no indenter, are left out. Negative ones extend the bins below 0.
-    bins
-        Number of bins.
-
-    Returns
-    -------
-    Distribution
-        Without bins if there are no samples or all of them are 0.
+    The samples are of any shape, such as the pressure of the cells in contact. Infinite ones, such
+    as the gap where there is no indenter, are left out. Negative ones extend the bins below 0.
+    There are no bins if there are no samples or all of them are 0.
     """
     flat = np.asarray(values, dtype=np.float64).ravel()
     samples = flat[np.isfinite(flat)]

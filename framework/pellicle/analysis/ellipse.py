@@ -31,24 +31,13 @@ class Ellipse:
 
 
 def ellipse(contact: ArrayLike, grid: Grid) -> Ellipse:
-    """Return the ellipse with the centroid and the second moments of a contact.
+    """Return the ellipse with the centroid and the second moments of a contact, bool (nx, ny).
 
     A full ellipse with semi-axes a₁ ≥ a₂ has the principal second moments a₁²/4 and a₂²/4 per
-    area. Cells count as rectangles, so that a single cell has an extent.
-
-    Parameters
-    ----------
-    contact
-        Bool, shape (nx, ny).
-    grid
-        The cells.
-
-    Returns
-    -------
-    Ellipse
-        Without contact the semi-axes are 0, centre and angle NaN. On a periodic grid positions are
-        relative to the circular mean of the contact along each axis. If that is undefined, as in
-        full contact or a line contact, all values are NaN.
+    area. Cells count as rectangles, so that a single cell has an extent. Without contact the
+    semi-axes are 0, centre and angle NaN. On a periodic grid positions are relative to the circular
+    mean of the contact along each axis. If that is undefined, as in full contact or a line contact,
+    all values are NaN.
     """
     inside = np.asarray(contact, dtype=bool)
     if not inside.any():

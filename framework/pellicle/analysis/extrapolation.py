@@ -38,19 +38,9 @@ def extrapolate(spacing: ArrayLike, values: ArrayLike) -> Extrapolation:
     rough contact area by Prodanov, Dapp & Müser (2014). The exponent is fitted, too, by least
     squares: it depends on the quantity, the surface and the kernel.
 
-    Parameters
-    ----------
-    spacing
-        Cell size of each grid, in any unit; at least three different ones.
-    values
-        The quantity on each grid, of the same shape.
-
-    Returns
-    -------
-    Extrapolation
-        All NaN if no exponent between 0.1 and 8 fits best: the values do not converge yet. The
-        range of limits is NaN if that holds without one of the grids, or if fewer than three cell
-        sizes remain.
+    ``spacing`` has the cell size of each grid, in any unit, and ``values`` the quantity on it. All
+    is NaN if no exponent between 0.1 and 8 fits best: the values do not converge yet. The range of
+    limits is NaN if that holds without one of the grids, or if fewer than three cell sizes remain.
 
     Raises
     ------

@@ -51,13 +51,9 @@ def oscillations(
     is πK″δ̂² where depth or force is a pure sine. The polygon through the samples encloses less, by
     the share (2π/n)²/6: 0.6 % for n = 32.
 
-    Parameters
-    ----------
-    time, cycle, depth, force
-        t [s], cycles since the oscillation began, NaN where there is none, δ [m] and F [N] at each
-        step in order; shape (n,).
-    converged
-        Whether each step may be used; the response over a cycle with others is NaN.
+    The steps in order have t [s], cycles since the oscillation began, NaN where there is none, δ
+    [m] and F [N], each of shape (n,), and whether they ``converged``: the response over a cycle
+    with others is NaN.
     """
     t, cycles, delta, load = (np.asarray(v, dtype=float) for v in (time, cycle, depth, force))
     good = np.ones(t.shape, bool) if converged is None else np.asarray(converged, bool)

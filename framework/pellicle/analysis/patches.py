@@ -30,18 +30,11 @@ class Patches:
 
 
 def patches(contact: ArrayLike, grid: Grid, connectivity: Literal[4, 8] = 4) -> Patches:
-    """Return the patches of a contact.
+    """Return the patches of a contact, which is bool and of shape (nx, ny).
 
-    On a periodic grid, patches that touch across the edge of the domain are one.
-
-    Parameters
-    ----------
-    contact
-        Bool, shape (nx, ny).
-    grid
-        The cells.
-    connectivity
-        4: cells that share an edge belong to one patch; 8: those that share a corner do, too.
+    With a ``connectivity`` of 4 cells that share an edge belong to one patch, with 8 those that
+    share a corner do, too. On a periodic grid, patches that touch across the edge of the domain are
+    one.
     """
     labels, count = labelled(np.asarray(contact, dtype=bool), grid.boundary, connectivity)
     cells = np.bincount(labels.ravel(), minlength=count + 1)[1:]
@@ -52,20 +45,13 @@ def patches(contact: ArrayLike, grid: Grid, connectivity: Literal[4, 8] = 4) -> 
 
 
 def coordination(labels: Labels, grid: Grid) -> NDArray[np.int64]:
-    """Return the number of neighbours of each patch, shape (patches,).
+    """Return the number of neighbours of each patch of `Patches.labels`, shape (patches,).
 
     Each cell of the surface is assigned to the nearest patch; patches whose regions have a cell
     edge in common are neighbours. On a periodic grid the regions meet across the edge of the
     domain, too; on a free one they end there, so that patches near the edge have fewer neighbours.
     A patch is not a neighbour of its own images. Where many patches fill a plane the mean number
     is close to 6 (Euler).
-
-    Parameters
-    ----------
-    labels
-        See `Patches.labels`.
-    grid
-        The cells.
     """
     from scipy import ndimage
 

@@ -98,19 +98,11 @@ def path_summary(
     The indenter is out of reach before the first step, so a path that begins in contact has no
     jump-in there.
 
-    Parameters
-    ----------
-    depth, force, contact_radius
-        δ [m], F [N], negative where the indenter is pulled, and the radius of the circle that has
-        the contact area [m], 0 out of contact, at each step in order; shape (n,).
-    energy
-        Elastic energy plus energy of the interaction [J] at each step; without it the dissipated
-        energy is NaN.
-    converged
-        Whether each step may be used; the others are left out, and work and dissipated energy are
-        NaN if there are any.
-    force_error
-        Error of each force [N]; without it the accuracy of the pull-off is NaN.
+    The steps in order have δ [m], F [N], negative where the indenter is pulled, and the radius of
+    the circle that has the contact area [m], 0 out of contact; each of shape (n,). Without their
+    ``energy``, elastic and of the interaction [J], the dissipated energy is NaN, and without a
+    ``force_error`` [N] the accuracy of the pull-off is. Steps that did not converge are left out,
+    and work and dissipated energy are NaN if there are any.
     """
     columns = [np.asarray(values, dtype=float) for values in (depth, force, contact_radius)]
     good = np.ones(columns[0].shape, bool) if converged is None else np.asarray(converged, bool)

@@ -21,14 +21,7 @@ def perimeter(contact: ArrayLike, grid: Grid) -> float:
     cell across, where borders are parallel to an axis.
 
     On a free boundary the edge of the domain counts as border where there is contact; on a periodic
-    one it does not.
-
-    Parameters
-    ----------
-    contact
-        Bool, shape (nx, ny).
-    grid
-        The cells.
+    one it does not. ``contact`` is bool, of shape (nx, ny).
     """
     inside = np.asarray(contact, dtype=bool)
     if grid.boundary == "free":

@@ -33,7 +33,7 @@ class Spectrum:
 
 
 def spectrum(heights: ArrayLike, grid: Grid) -> Spectrum:
-    """Return the radially averaged power spectral density of heights.
+    """Return the radially averaged power spectral density of finite heights [m], shape (nx, ny).
 
     C(q) = |ĥ(q)|² / A with ĥ(q) = Σ h e^{−iq·x} dx dy over the domain of area A, as C^2D in Jacobs,
     Junge & Pastewka (2017). Rings are 2π/L wide, L being the longer edge of the domain. q = 0 is
@@ -43,13 +43,6 @@ def spectrum(heights: ArrayLike, grid: Grid) -> Spectrum:
     the edge: their mean weighted by the window sin²(πx/L_x) sin²(πy/L_y) (Hann) is subtracted, they
     are multiplied by the window, and C is divided by the mean square of the window. So
     `Spectrum.mean_square` is the mean square of the heights weighted by the window's square.
-
-    Parameters
-    ----------
-    heights
-        Finite heights [m], shape (nx, ny).
-    grid
-        The cells.
 
     Raises
     ------

@@ -16,16 +16,8 @@ def steepest(profile: Array, contact: Mask, grid: Grid) -> float:
     """Return the largest slope of an indenter in contact, in any direction.
 
     It is the largest gradient between four cells in contact that meet in a corner, or slope between
-    two neighbours if that is larger, as on the ridge of a roof or in a contact one cell wide.
-
-    Parameters
-    ----------
-    profile
-        Heights [m] of the grid's shape.
-    contact
-        Bool, of the same shape.
-    grid
-        The cells.
+    two neighbours if that is larger, as on the ridge of a roof or in a contact one cell wide. The
+    ``profile`` [m] and ``contact``, bool, have the grid's shape.
     """
     largest = 0.0
     for block in blocks(contact.shape[0], max(1, _BLOCK // contact.shape[1])):

@@ -10,7 +10,7 @@ from pellicle.commands import file_models
 from pellicle.errors import PluginError
 from pellicle.origins import Broken
 
-from .printing import echo, print_columns, print_json
+from .printing import echo, print_json, print_table
 
 
 def explain(
@@ -25,6 +25,7 @@ def explain(
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Print the fields of a component or of a table, with unit, default, meaning and an example."""
+    from pellicle.components import Column, Table
     from pellicle.config.explain import explanations, words_by_kind
 
     models = file_models()
@@ -37,7 +38,7 @@ def explain(
             print_json(words)
             return
         types = [", ".join(names) for names in words.values()]
-        print_columns([("kind", [*words]), ("types", types)])
+        print_table(Table([Column("kind", [*words]), Column("types", types)]))
         echo(
             "\none in full: pellicle explain TYPE; the types of a family in a line each: "
             "pellicle explain kernel"
@@ -45,18 +46,20 @@ def explain(
         return
     listed = explanations(type_, tables)
     if json:
-        print_json([e._asdict() | {"fields": [row._asdict() for row in e.fields]} for e in listed])
+        keys = "name", "kind", "unit", "default", "meaning"
+        fields = [[{key: getattr(row, key) for key in keys} for row in e.fields] for e in listed]
+        print_json([e._asdict() | {"fields": f} for e, f in zip(listed, fields, strict=True)])
         return
     for number, explanation in enumerate(listed):
         name, kind, origin, text, rows, example = explanation
         origin = f", from {origin}" if origin else ""
         echo("\n" * (number > 0) + f"{name} ({kind}{origin})\n\n{text}")
         if rows:
-            names, units, defaults, meanings = map(list, zip(*rows, strict=True))
-            columns = [("field", names), ("unit", units), ("default", defaults)]
+            heads = {"field": "name", "takes": "kind", "default": "default", "meaning": "meaning"}
             if kind == "family":
-                columns = [("type", names)]
+                heads = {"type": "name", "meaning": "meaning"}
             echo()
-            print_columns([*columns, ("meaning", meanings)])
+            columns = [Column(h, [getattr(row, key) for row in rows]) for h, key in heads.items()]
+            print_table(Table(columns))
         if example:
             echo(f"\nexample:\n\n{example}")

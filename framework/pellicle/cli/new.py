@@ -15,6 +15,7 @@ import typer
 
 from pellicle.commands import usable_commands
 from pellicle.errors import ConfigError, StorageError
+from pellicle.files import storage_errors
 
 from .printing import echo
 
@@ -95,8 +96,6 @@ def _examples() -> dict[str, tuple[str, Path]]:
 
 
 def _write_new(path: Path, content: bytes) -> None:
-    from pellicle.files import storage_errors
-
     with storage_errors(path):
         try:
             with path.open("xb") as file:
@@ -111,8 +110,6 @@ def write_plugin(family: str, name: str, parent: Path) -> Path:
     The package of the family's base class has a folder ``templates/FAMILY``. ``name`` is the
     component's type, such as ``graded`` or ``graded-solid``.
     """
-    from pellicle.files import storage_errors
-
     template = _template(family)
     names = _names(family, name)
     folder = parent / names["distribution"]
@@ -124,11 +121,10 @@ def write_plugin(family: str, name: str, parent: Path) -> Path:
         f"test_{names['module']}.py": template / "test",
         f"{names['type']}.toml": template / "example",
     }
+    if folder.exists():
+        raise StorageError(f"{folder} exists already; give another name")
     with storage_errors(folder):
-        try:
-            folder.mkdir()
-        except FileExistsError:
-            raise StorageError(f"{folder} exists already; give another name") from None
+        folder.mkdir()
         for file, source in sources.items():
             text = Template(source.read_text(encoding="utf-8")).substitute(names)
             (folder / file).write_text(text, encoding="utf-8")

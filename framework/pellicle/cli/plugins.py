@@ -29,6 +29,7 @@ def plugins(
     ] = False,
 ) -> None:
     """List the components that are installed, and what is broken and why."""
+    from pellicle.components import Table
     from pellicle.plugins import registry
 
     if check:
@@ -48,6 +49,9 @@ def plugins(
         for name, command in made.items()
         if not isinstance(command, Broken)
     ]
+    rows = [
+        (family, type_, of.distribution, of.version, text) for family, type_, of, text in installed
+    ]
     clashes: dict[tuple[str, str], Sequence[Origin]] = {
         **contents.clashes,
         **{("command", name): origins for name, origins in owners.items() if len(origins) > 1},
@@ -61,38 +65,30 @@ def plugins(
         (broken.origin.entry_point, [broken.origin], broken.error)
         for broken in (*contents.broken, *failed.values())
     ] + [(".".join(name), origins, claimed_by(origins)) for name, origins in clashes.items()]
-    heads = "family", "type", "origin", "version", "description"
-    rows = [
-        dict(zip(heads, (family, type_, of.distribution, of.version, summary), strict=True))
-        for family, type_, of, summary in installed
+    lost = [
+        (name, ", ".join(o.distribution for o in of), ", ".join(o.version for o in of), error)
+        for name, of, error in unusable
     ]
-    broken = [
-        {
-            "entry_point": name,
-            "origin": ", ".join(origin.distribution for origin in origins),
-            "version": ", ".join(origin.version for origin in origins),
-            "error": error,
-        }
-        for name, origins, error in unusable
-    ]
+    components = Table.of_rows(("family", "type", "origin", "version", "description"), rows)
+    broken = Table.of_rows(("entry_point", "origin", "version", "error"), lost)
     disabled = [str(origin) for origin in contents.disabled]
     if json:
-        print_json({"components": rows, "broken": broken, "disabled": disabled})
+        listed = {"components": components.records, "broken": broken.records}
+        print_json(listed | {"disabled": disabled})
         return
-    print_table(heads, rows)
-    if broken:
-        echo("broken:")
-        print_table(["entry_point", "origin", "version", "error"], broken)
+    print_table(components)
+    if lost:
+        print_table(broken, "broken")
     for origin in disabled:
         echo(f"switched off: {origin}")
 
 
 def _check(name: str | None, json: bool) -> None:
     """Check the examples of the components of a name; exit with 1 if one breaks its contract."""
+    from pellicle.components import Table
     from pellicle.plugins import registry
     from pellicle.testing.component import verdict_on_examples
 
-    heads = "family", "type", "origin", "verdict"
     rows, kept = [], True
     for family, members in registry().components.items():
         for type_, registered in members.items():
@@ -101,17 +97,17 @@ def _check(name: str | None, json: bool) -> None:
             if name in names or (name is None and not origin.is_own):
                 holds, verdict = verdict_on_examples(registered)
                 kept = kept and holds
-                cells = family, type_, origin.distribution, verdict
-                rows.append(dict(zip(heads, cells, strict=True)))
+                rows.append((family, type_, origin.distribution, verdict))
     if name is not None and not rows:
         raise ConfigError(
             f"{name!r} is neither a type, a family nor a distribution of what is installed; see "
             "`pellicle plugins`",
             "NAME",
         )
+    table = Table.of_rows(("family", "type", "origin", "verdict"), rows)
     if json:
-        print_json(rows)
+        print_json(table.records)
     else:
-        print_table(heads, rows)
+        print_table(table)
     if not kept:
         raise typer.Exit(NOT_CONVERGED)

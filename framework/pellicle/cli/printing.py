@@ -5,18 +5,19 @@ from __future__ import annotations
 import math
 import sys
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, redirect_stdout, suppress
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, redirect_stdout
 from contextvars import ContextVar
 from io import StringIO
 from numbers import Integral, Real
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from pellicle.errors import StorageError
-from pellicle.files import for_document
 
 if TYPE_CHECKING:
     from rich.console import Console
+
+    from pellicle.components import Table
 
 NOT_CONVERGED, BAD_INPUT, CRASHED, INTERRUPTED = 1, 2, 70, 130
 """70 is EX_SOFTWARE of sysexits.h; Python's own 1 for a traceback would mean NOT_CONVERGED."""
@@ -35,31 +36,17 @@ def echo(text: str = "", err: bool = False) -> None:
     _write(f"{text}\n", err)
 
 
-def print_table(names: Sequence[str], rows: Sequence[Mapping[str, str]]) -> None:
-    """Print rows under the names of their columns."""
-    print_columns([(name, [row[name] for row in rows]) for name in names])
-
-
-def print_columns(columns: Sequence[tuple[str, Sequence[str]]], caption: str = "") -> None:
-    """Print columns, given their heads and cells; none if there are none.
+def print_table(table: Table, title: str = "", *, si: bool = False) -> None:
+    """Print a table, with ``si`` its numbers in SI; nothing if it has no columns.
 
     On a terminal long heads and cells are folded; elsewhere a row is a line.
     """
-    from rich.table import Table
-    from rich.text import Text
+    from pellicle.show.numbers import text_of
 
-    if not columns:
-        return
-    table = Table(box=None, padding=(0, 2, 0, 0), pad_edge=False, header_style="")
-    for head, cells in columns:
-        side: Literal["right", "left"] = "right" if all(map(_is_number, cells)) else "left"
-        table.add_column(Text(for_document(head)), justify=side, overflow="fold")
-    for row in zip(*(cells for _, cells in columns), strict=True):
-        table.add_row(*(Text(for_document(cell)) for cell in row))
-    if caption:
-        echo(f"{caption}:")
-    lines = "".join(segment.text for segment in _console().render(table)).splitlines()
-    _write("".join(f"{line.rstrip()}\n" for line in lines))
+    if table.columns:
+        if title:
+            echo(f"{title}:")
+        _write(text_of(table, _console(), si=si))
 
 
 def _console(err: bool = False) -> Console:
@@ -90,14 +77,6 @@ def _write(text: str, err: bool = False) -> None:
         raise StorageError(
             f"standard output cannot be written ({error.strerror or error})"
         ) from None
-
-
-def _is_number(text: str) -> bool:
-    """Return whether a text is empty, a number, or a dash in place of one."""
-    with suppress(ValueError):
-        float(text.replace("∞", "inf").replace("–", "nan") or "0")
-        return True
-    return False
 
 
 def print_warning(message: Warning | str, *_: Any, **__: Any) -> None:

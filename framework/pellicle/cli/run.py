@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NamedTuple
+from time import monotonic
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from pellicle.errors import ConfigError
 from pellicle.hookspecs import RegisterCommand, hookimpl
 
 from .printing import INTERRUPTED, echo, print_json, print_table, print_warning
 
 if TYPE_CHECKING:
-    from pellicle.config.run import Run
-    from pellicle.config.study import Study
+    import xarray as xr
+
+    from pellicle.results import Result
 
 
 def run(
@@ -63,138 +63,62 @@ def run(
 
     Exit code 0 only if every step converged.
     """
-    from pellicle.config.doubtful_scales import doubtful_scales
     from pellicle.config.study import Study, from_toml
+    from pellicle.contact.caveats import Status
+    from pellicle.runs import runner
+    from pellicle.runs.journal import Journal
+    from pellicle.runs.progress import RunProgress
+    from pellicle.show import sentences, tables
+    from pellicle.show.doubtful_scales import doubts_of_scale
+    from pellicle.studies import runner as studies
 
-    configuration = from_toml(file, set_ or ())
-    for doubt in doubtful_scales(configuration).values():
+    from .results import exit_by_outcome, print_outcome_json, print_tables
+
+    began, configuration = monotonic(), from_toml(file, set_ or ())
+    for doubt in doubts_of_scale(configuration).values():
         print_warning(doubt)
     folder = directory or Path(file.stem)
-    display = _Display(quiet, si, json)
+    stem = folder / file.stem
     if dry_run:
-        _print_plan(configuration, folder / file.stem, overwrite, json)
-    elif isinstance(configuration, Study):
-        _run_study(configuration, folder, display, threads=threads, overwrite=overwrite)
-    else:
-        stem = folder / file.stem
-        _run_one(configuration, stem, display, threads=threads, overwrite=overwrite)
+        tasks = studies.planned(configuration, stem, overwrite=overwrite)
+        table, sentence = tables.planned(tasks)
+        if json:
+            print_json({"runs": table.records})
+        else:
+            print_table(table)
+            echo(sentence)
+        return
+    outcome: Result | xr.Dataset
+    try:
+        if isinstance(configuration, Study):
+            whole = f"{len(configuration.points)} runs"
+            outcome, files, resumed = studies.execute(
+                configuration, folder, progress=not quiet, overwrite=overwrite, threads=threads
+            )
+        else:
+            steps = len(configuration.loading.values)
+            whole, bar = f"{steps} steps", RunProgress(steps, not quiet)
+            journal = Journal(stem, configuration.identity, overwrite)
+            outputs = runner.standard_outputs(configuration.outputs)
+            outcome, files, resumed = runner.execute(
+                configuration, journal, outputs, bar, threads=threads
+            )
+            if Status.CONTACT_AT_EDGE.name in outcome.dataset["status_code"].values:
+                echo(sentences.larger_domain(file, folder), err=True)
+    except KeyboardInterrupt:
+        finished = "runs" if isinstance(configuration, Study) else "steps"
+        echo(sentences.interrupted(finished, folder), err=True)
+        raise typer.Exit(INTERRUPTED) from None
+    if json:
+        print_outcome_json(outcome, files)
+    elif not quiet:
+        print_tables(outcome, si=si, whole=False)
+        for sentence in sentences.done(files, resumed, whole, monotonic() - began):
+            echo(sentence)
+    exit_by_outcome(outcome)
 
 
 @hookimpl
 def register_commands(register: RegisterCommand) -> None:
     """Register the command."""
     register(run, file="pellicle.config.run:Run")
-
-
-class _Display(NamedTuple):
-    """How a result is printed."""
-
-    quiet: bool
-    si: bool
-    json: bool
-
-
-def _print_plan(configuration: Run | Study, stem: Path, overwrite: bool, json: bool) -> None:
-    from pellicle.config.study import Study
-    from pellicle.runs.journal import Journal
-    from pellicle.studies.runner import RunTask, tasks
-    from pellicle.units import readable
-
-    if isinstance(configuration, Study):
-        planned = tasks(configuration, stem.parent, overwrite=overwrite)
-    else:
-        journal = Journal(stem, configuration.identity, overwrite)
-        planned = [RunTask(configuration.title or stem.name, configuration, journal)]
-    rows, done = [], 0
-    for task in planned:
-        _, finished, problem = task.stored()
-        done += finished >= task.steps
-        nx, ny = task.run.grid.points
-        state = f"{finished} of {task.steps} steps done" if finished < task.steps else "done"
-        rows.append(
-            {
-                "run": task.name,
-                "file": str(task.journal.path),
-                "points": f"{nx} × {ny}",
-                "size": " × ".join(readable(edge, "m", 3) for edge in task.run.grid.size),
-                "steps": str(task.steps),
-                "memory": f"{task.memory / 1e6:.3g} MB",
-                "state": problem or (state if finished else "to do"),
-            }
-        )
-    if json:
-        print_json({"runs": rows})
-        return
-    print_table([*rows[0]], rows)
-    most = max(task.memory for task in planned) / 1e6
-    echo(
-        f"{len(planned)} run{'s' * (len(planned) > 1)}, {done} done, "
-        f"{len(planned) - done} to do; at most {most:.3g} MB each"
-    )
-
-
-def _run_one(
-    run: Run, stem: Path, display: _Display, *, threads: int | None, overwrite: bool
-) -> None:
-    from pellicle.contact.caveats import Status
-    from pellicle.runs.advice import size_for
-    from pellicle.runs.journal import Journal
-    from pellicle.runs.progress import RunProgress
-    from pellicle.runs.runner import execute, standard_outputs
-    from pellicle.units import DIGITS, readable
-
-    from .results import exit_by_convergence, print_result_json, print_steps
-
-    steps = len(run.loading.values)
-    journal, bar = Journal(stem, run.identity, overwrite), RunProgress(steps, not display.quiet)
-    try:
-        executed = execute(run, journal, standard_outputs(run.outputs), bar, threads=threads)
-    except KeyboardInterrupt:
-        echo(f"interrupted; finished steps are in {stem.parent}", err=True)
-        raise typer.Exit(INTERRUPTED) from None
-    if display.json:
-        print_result_json(executed.result, executed.files)
-    elif not display.quiet:
-        print_steps(executed.result, si=display.si)
-        _print_files(executed.files, executed.resumed, f"{steps} steps")
-    codes = executed.result.dataset["status_code"].values
-    if Status.CONTACT_AT_EDGE.name in codes:
-        with suppress(ConfigError):
-            x, y = (readable(edge, "m", DIGITS) for edge in size_for(run))
-            echo(
-                f'grid.size = ["{x}", "{y}"] holds the contact of every step; -o DIR solves it in '
-                f"another folder, --overwrite in place of the result in {stem.parent}",
-                err=True,
-            )
-    exit_by_convergence(executed.result)
-
-
-def _run_study(
-    study: Study, folder: Path, display: _Display, *, threads: int | None, overwrite: bool
-) -> None:
-    from pellicle.studies.runner import execute
-
-    from .results import exit_by_status, print_runs, print_study_json
-
-    try:
-        result = execute(
-            study, folder, progress=not display.quiet, overwrite=overwrite, threads=threads
-        )
-    except KeyboardInterrupt:
-        echo(
-            f"interrupted; finished runs are in {folder}, and the same command continues", err=True
-        )
-        raise typer.Exit(INTERRUPTED) from None
-    if display.json:
-        print_study_json(result.table, result.files)
-    elif not display.quiet:
-        print_runs(result.table, si=display.si)
-        _print_files(result.files, result.resumed, f"{len(study.points)} runs")
-    exit_by_status(result.table)
-
-
-def _print_files(files: tuple[Path, ...], resumed: int, whole: str) -> None:
-    if resumed:
-        echo(f"{resumed} of {whole} were done before (--overwrite starts over)")
-    for path in files:
-        echo(f"wrote {path}")

@@ -27,41 +27,29 @@ def show(
     ] = False,
 ) -> None:
     """Print the steps of a result, or the runs of a study, and its origin, or another table."""
-    from pellicle.results.result import load
+    from pellicle.results.result import Result, load
+    from pellicle.show import sentences
     from pellicle.studies.runner import is_table, read
-    from pellicle.studies.summary import caveats
 
-    from . import results as prints
+    from .results import exit_by_outcome, print_origin, print_outcome_json, print_tables
 
-    if is_table(results):
-        table, _ = read(results)
-        if json:
-            prints.print_study_json(table)
-        else:
-            prints.print_origin(table)
-            prints.print_runs(table, si=si)
-        for message in caveats(table):
-            echo(message, err=True)
-        prints.exit_by_status(table)
-        return
     try:
-        result = load(results)
+        outcome = read(results)[0] if is_table(results) else load(results)
     except StorageError:
         for name, command in usable_commands().items():
             with errors_attributed_to(name):
                 if command.show and command.show(results, si, json):
                     return
         raise
-    total, done = result.planned_steps, result.dataset.sizes["step"]
     if json:
-        prints.print_result_json(result)
+        print_outcome_json(outcome)
     else:
-        prints.print_origin(result.dataset)
-        prints.print_steps(result, si=si)
-        prints.print_contact(result, si=si)
-        prints.print_path(result, si=si)
-        prints.print_oscillations(result, si=si)
-    prints.exit_by_convergence(result)
-    if done < total:
-        echo(f"interrupted: {done} of {total} steps are finished; run it again", err=True)
+        print_origin(outcome.dataset if isinstance(outcome, Result) else outcome)
+        print_tables(outcome, si=si)
+    if not isinstance(outcome, Result):
+        for message in sentences.caveats(outcome):
+            echo(message, err=True)
+    exit_by_outcome(outcome)
+    if isinstance(outcome, Result) and (message := sentences.unfinished(outcome)):
+        echo(message, err=True)
         raise typer.Exit(NOT_CONVERGED)

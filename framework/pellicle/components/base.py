@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar, Final
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -24,8 +23,6 @@ class Component(Model):
     """Name of its family, which the base class of the family alone gives."""
     place: ClassVar[str]
     """Where a file has components of the family; ``[]`` stands for an entry of a list."""
-    examples: ClassVar[tuple[Mapping[str, Any], ...]] = ()
-    """Its fields as a user would write them: the kit and ``pellicle plugins --check`` ask these."""
     libraries: ClassVar[tuple[str, ...]] = ()
     """Distributions that it uses besides numpy and scipy; results record their versions."""
 

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
+from numbers import Real
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -15,7 +17,9 @@ from numpy.typing import NDArray
 
 from pellicle.analysis import Leg
 from pellicle.arrays import Array, Cells, Mask
-from pellicle.units import Scale, axis_unit, printed
+from pellicle.units import DIGITS, NOTHING, Scale, axis_unit, printed
+
+_SI_DIGITS = 6
 
 
 def extent(values: Iterable[NDArray[Any]]) -> tuple[float, float]:
@@ -108,8 +112,8 @@ class Series:
     steps: Cells | None = None
     """Index of the load step of each point, which a page marks."""
     panel: int = 0
-    stepped: bool = False
-    """Whether y is constant up to the next x."""
+    stepped: Literal["post", "mid"] | None = None
+    """Whether y is constant up to the next x, or about each x, as in a cell."""
     written: bool = True
     """Whether its numbers are written; those of a line that guides the eye are not."""
 
@@ -140,18 +144,18 @@ class Chart:
     """Ranges of x over which the ground is shaded."""
     heights: Sequence[float] = ()
     """Heights of the panels, relative to each other; all alike if empty."""
+    titles: Sequence[str] = ()
+    """Titles of the panels, if they are in a grid and share y, too."""
 
     _repr_png_ = _drawn
 
 
 @dataclass(frozen=True)
 class Panel:
-    """A field over the domain."""
+    """A field over the domain, whose centre is the origin."""
 
-    x: Array
-    """Positions of cells [m], shape (nx,)."""
-    y: Array
-    """Positions of cells [m], shape (ny,)."""
+    size: tuple[float, float]
+    """Edge lengths of the domain along x and y [m]."""
     values: NDArray[Any]
     """In SI, or numbers of parts, shape (nx, ny)."""
     title: str = ""
@@ -179,12 +183,76 @@ class Fields:
     _repr_png_ = _drawn
 
 
-class Column(NamedTuple):
-    """A column of a table."""
+@dataclass(frozen=True)
+class Column:
+    """A column of a table, or another list of values."""
 
-    head: str
-    """With the unit of its numbers."""
-    values: Sequence[object]
+    words: str
+    """Its head, to which a table for people adds the unit, such as "contact radius"."""
+    values: Sequence[object] | NDArray[Any]
+    """Numbers in SI, NaN where there is none, or texts."""
+    unit: str = ""
+    """SI unit of its numbers; people read all of them with one prefix."""
+    meaning: str = ""
+    """Shown on a page while the pointer rests on the head."""
+    name: str = ""
+    """Its name in files; the words if empty."""
+    digits: int = DIGITS
+    """Significant digits that people read."""
+    texts: Mapping[str, str] = field(default_factory=dict)
+    """Words for values that are texts, such as types of components."""
+    bad: Sequence[bool] = ()
+    """Which cells a page marks, as what people should not rely on."""
+    frames: Sequence[int | None] = ()
+    """The frame of the first maps of a page that a click on each cell shows, if any."""
+
+    @property
+    def head(self) -> str:
+        """The head of the column in files: name and SI unit."""
+        unit = "" if self.unit in ("", "1") else f" [{self.unit}]"
+        return f"{self.name or self.words}{unit}"
+
+    @cached_property
+    def scale(self) -> Scale:
+        """The unit in which people read the numbers, which the largest of them gives."""
+        values: Any = self.values
+        if not isinstance(values, np.ndarray):
+            values = [value for value in values if isinstance(value, Real)]
+        return axis_unit(values, self.unit)
+
+    def number(self, value: object, *, si: bool = False) -> str:
+        """Return a value in SI as people read it, without the unit."""
+        if isinstance(value, str):
+            return self.texts.get(value, value)
+        scale, digits = self.unit_and_digits(si=si)
+        return scale.number(value, digits)
+
+    def text(self, value: object) -> str:
+        """Return words, value and unit: "surface tension 30 mN/m"."""
+        number = self.number(value)
+        return f"{self.words} {number if number == NOTHING else self.scale.with_unit(number)}"
+
+    @property
+    def listing(self) -> str:
+        """The values as people read them in a row, with the unit; of many, some are left out."""
+        return self.scale.listing([self.number(value) for value in self._listed])
+
+    def unit_and_digits(self, *, si: bool = False) -> tuple[Scale, int]:
+        """Return how people read the numbers; with ``si`` without a prefix and with six digits."""
+        if si:
+            return Scale(1.0, "" if self.unit == "1" else printed(self.unit)), _SI_DIGITS
+        return self.scale, self.digits
+
+    def read(self, *, si: bool = False) -> tuple[str, list[str]]:
+        """Return the head and the cells as people read them."""
+        unit = self.unit_and_digits(si=si)[0].unit
+        head = f"{self.words} [{unit}]" if unit else self.words
+        return head, [self.number(value, si=si) for value in self._listed]
+
+    @property
+    def _listed(self) -> Sequence[object]:
+        values = self.values
+        return values.tolist() if isinstance(values, np.ndarray) else values
 
 
 @dataclass(frozen=True)
@@ -192,12 +260,26 @@ class Table:
     """Columns of equal length."""
 
     columns: Sequence[Column]
+    caption: str = ""
+    """A sentence on a page."""
+    folded: bool = False
+    """Whether a page shows only the caption until a click on it."""
 
     @classmethod
-    def of_rows(cls, heads: Sequence[str], rows: Sequence[Sequence[object]]) -> Table:
+    def of_rows(
+        cls, heads: Sequence[str], rows: Sequence[Sequence[object]], caption: str = ""
+    ) -> Table:
         """Return a table, given its rows."""
         columns = zip(*rows, strict=True) if rows else [()] * len(heads)
-        return cls([Column(head, values) for head, values in zip(heads, columns, strict=True)])
+        named = [Column(head, values) for head, values in zip(heads, columns, strict=True)]
+        return cls(named, caption)
+
+    @property
+    def records(self) -> list[dict[str, object]]:
+        """The values of each row by the names of their columns, in SI."""
+        names = [column.name or column.words for column in self.columns]
+        rows = zip(*(column.values for column in self.columns), strict=True)
+        return [dict(zip(names, row, strict=True)) for row in rows]
 
 
 Shown = Chart | Fields | Table | Sequence[Chart | Fields] | bytes

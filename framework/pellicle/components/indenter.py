@@ -9,7 +9,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to, read_only, real_array
-from pellicle.errors import ConfigError, PluginError, shown
+from pellicle.errors import ConfigError, PluginError, problems_within, shown
 from pellicle.grid import Grid
 from pellicle.units import DIGITS, LARGEST, readable
 
@@ -45,12 +45,8 @@ class Indenter(Component):
 
         ``x`` of shape (nx, 1) and ``y`` of shape (1, ny) are coordinates of the cell centres [m]
         from the centre of the domain; the result has shape (nx, ny). For an unbounded indenter that
-        is rotated, ``x`` and ``y`` both have shape (nx, ny).
-
-        Raises
-        ------
-        ConfigError
-            The indenter has no profile on these points.
+        is rotated, ``x`` and ``y`` both have shape (nx, ny). An indenter that has no profile on
+        these points raises a ConfigError.
         """
 
 
@@ -157,11 +153,8 @@ class IsShallowLimit(Protocol):
 def profile_of(indenter: Indenter, grid: Grid) -> Array:
     """Return the profile f ≤ 0 [m] of an indenter on a grid, read-only."""
     x, y = (read_only(points) for points in grid.coordinates())
-    try:
-        with errors_attributed_to(indenter):
-            value, footprint = indenter.profile(x, y), indenter.footprint
-    except ConfigError as error:
-        raise error.within("indenter") from None
+    with problems_within("indenter"), errors_attributed_to(indenter):
+        value, footprint = indenter.profile(x, y), indenter.footprint
     profile = real_array(indenter, "profile(x, y)", value, grid.shape)
     name = component_name(indenter)
     if footprint not in get_args(Footprint):

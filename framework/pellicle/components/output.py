@@ -40,10 +40,7 @@ class Runs(Protocol):
     def open(self, name: str = "") -> xr.Dataset:
         """Return all numbers and fields of a run, given its name in the table of a study.
 
-        Raises
-        ------
-        StorageError
-            The file of the run does not exist or cannot be read.
+        A file that does not exist or cannot be read is a StorageError.
         """
 
     def datasets(self) -> Iterator[tuple[tuple[int, ...], xr.Dataset | None]]:
@@ -52,10 +49,7 @@ class Runs(Protocol):
     def column(self, text: str) -> xr.DataArray:
         """Return the value of an expression for each step; fields in it have to be reduced.
 
-        Raises
-        ------
-        ConfigError
-            The text is not arithmetic, or names an unknown variable.
+        A text that is not arithmetic, or names an unknown variable, is a ConfigError.
         """
 
     def from_each(self, function: Callable[[xr.Dataset], Any]) -> xr.DataArray:
@@ -138,30 +132,28 @@ def stem_of(output: Output, stem: Path) -> Path:
 def refuse_shared_files(outputs: Sequence[Output], *, of_study: bool = False) -> None:
     """Refuse outputs that would write the same file, or one that the framework writes itself."""
     for index, output in enumerate(outputs):
-        if of_study and output.scope != "run":
-            name, owner, reserved = "study", "the table of the study", [".h5", ".csv"]
-        else:
-            name, owner, reserved = "NAME", "the result of the run", [".h5"]
-        if shared := _shared(reserved, _suffixes(output)):
+        whole = of_study and output.scope != "run"
+        if shared := _shared([".h5", ".csv"] if whole else [".h5"], _suffixes(output)):
+            owner = (
+                f"study{shared}, the table of the study"
+                if whole
+                else f"NAME{shared}, the result of the run"
+            )
             raise ConfigError(
-                f"{output.type_name!r} would write {name}{shared}, {owner}; leave it out",
-                f"outputs.{index}.type",
+                f"{output.type_name!r} would write {owner}; leave it out", f"outputs.{index}.type"
             )
         for earlier, other in enumerate(outputs[:index]):
             if not (shared := _shared(_suffixes(output), _suffixes(other))):
                 continue
             # The field to change is the name of either, or else the type of the later one.
-            pair = sorted(
-                ((index, output), (earlier, other)),
-                key=lambda one: "name" not in type(one[1]).model_fields,
-            )
-            (place, changed), (beside, kept) = pair
-            is_nameable = "name" in type(changed).model_fields
-            remedy = "give it another name" if is_nameable else "leave one out"
+            named = [i for i in (index, earlier) if "name" in type(outputs[i]).model_fields]
+            place = named[0] if named else index
+            beside = index + earlier - place
+            field, remedy = ("name", "give it another name") if named else ("type", "leave one out")
             raise ConfigError(
-                f"{changed.type_name!r} would write NAME{shared}, as outputs.{beside} "
-                f"({kept.type_name!r}) does; {remedy}",
-                f"outputs.{place}.{'name' if is_nameable else 'type'}",
+                f"{outputs[place].type_name!r} would write NAME{shared}, as outputs.{beside} "
+                f"({outputs[beside].type_name!r}) does; {remedy}",
+                f"outputs.{place}.{field}",
             )
 
 

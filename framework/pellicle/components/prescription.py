@@ -14,7 +14,7 @@ from pellicle.checks import component_name, errors_attributed_to, real_number
 from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.initial_guess import overlap_pressure
 from pellicle.contact.law import Law
-from pellicle.contact.load_step import FinishedStep, start_of
+from pellicle.contact.load_step import FinishedStep
 from pellicle.contact.problem import Depth, Force, Problem
 from pellicle.contact.solution import State
 from pellicle.errors import ConfigError, PluginError, shown
@@ -61,10 +61,6 @@ class Setting:
         """Return the problem of a load step."""
         profile = self.profile if self.left is None else self.profile - self.left
         return Problem(self.grid, self.operator, profile, control, law=self.law, left=self.left)
-
-    def start(self, problem: Problem) -> State | None:
-        """Return the start of a solve of ``problem``; see `pellicle.contact.load_step.start_of`."""
-        return start_of(problem, self.state, self.path)
 
     def force_at(self, depth: float) -> float:
         """Return an estimate of the force [N] at a depth [m], by one application of the operator.
@@ -129,13 +125,7 @@ class Prescription(Component):
         """Return the depth, the force or the search that a prescribed ``value`` stands for."""
 
     def check(self, setting: Setting, value: float) -> None:
-        """Refuse a value that cannot be reached, before any step is solved.
-
-        Raises
-        ------
-        ConfigError
-            The value is not allowed in this setting.
-        """
+        """Refuse a value that cannot be reached, by a ConfigError; nothing is solved yet."""
 
     def report(self, setting: Setting, step: Equilibrium) -> dict[str, float]:
         """Return the `variables` of a solved step, except that of kind ``residual``."""

@@ -214,20 +214,15 @@ def _checked_state(solver: Solver, problem: Problem, value: object) -> State:
             f"{component_name(solver)}: solve() returned {shown(value)}; it has to return a "
             "pellicle.Solution"
         )
-    if not isinstance(value.state, State):
-        raise PluginError(
-            f"{component_name(solver)}: solve() returned a Solution of {shown(value.state)}; it "
-            "has to be one of a pellicle.State: State.of_pressure(pressure), or with an "
-            "interaction one that has the wall pressure too"
-        )
-    pressure = real_array(solver, "solve().pressure", value.pressure, problem.grid.shape)
-    if not isinstance(value.iterations, Integral) or not isinstance(value.stop, Stop):
-        raise PluginError(
-            f"{component_name(solver)}: solve() returned iterations {shown(value.iterations)} and "
-            f"stop {shown(value.stop)}; they have to be a whole number and a pellicle.Stop"
-        )
+    for member, kind in {"state": State, "iterations": Integral, "stop": Stop}.items():
+        if not isinstance(found := getattr(value, member), kind):
+            raise PluginError(
+                f"{component_name(solver)}: solve() returned a Solution of {member} {shown(found)}"
+                "; it needs a pellicle.State, such as State.of_pressure(pressure), a whole "
+                "number of iterations and a pellicle.Stop"
+            )
     # The solver may reuse the memory of the arrays that it returned.
-    pressure = pressure.copy()
+    pressure = real_array(solver, "solve().pressure", value.pressure, problem.grid.shape).copy()
     if problem.law is None:
         return State.of_pressure(pressure)
     wall = real_array(solver, "solve().state.wall", value.state.wall, problem.grid.shape)

@@ -17,8 +17,7 @@ from pellicle.schema.ranges import Values
 from pellicle.units import DIGITS, quantity_of, readable, split
 from pellicle.variables import ROLE, WORDS, WORDS_OF_VALUES
 
-from .describe import field_words, words_at
-from .load_steps import VALUES
+from .describe import field_rows, field_words, words_at
 from .run import Run
 
 
@@ -142,8 +141,5 @@ def short(value: object) -> str:
 
 def units_of(run: Run) -> dict[str, str]:
     """Return the SI unit of each field with one, by dotted path."""
-    quantities = {path: quantity_of(field) for path, _, field in walk(run) if field}
-    units = {path: quantity.unit for path, quantity in quantities.items() if quantity}
-    loading = f"loading.{run.loading.prescribed}"
-    of_legs = [path for path, *_ in walk(run.loading.path, f"{loading}.") if path.endswith(VALUES)]
-    return units | dict.fromkeys(of_legs, units[loading])
+    rows = field_rows(Run.model_fields, json.loads(run.to_json()))
+    return {row.name: row.unit for row in rows if row.unit}

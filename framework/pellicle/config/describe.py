@@ -1,91 +1,61 @@
-"""The configuration of a run in words, and as rows of value with unit, meaning and origin."""
+"""The fields of a configuration: one walk, for explanations, pages, figures and documentation."""
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from typing import Any, NamedTuple, get_args, get_origin
+from pathlib import Path
+from types import NoneType
+from typing import Annotated, Any, Literal, NamedTuple, get_args, get_origin
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from pellicle.components import Component
+from pellicle.components import Component, HasForceCurve
 from pellicle.components.base import words_of_type
 from pellicle.errors import ConfigError, PluginError
-from pellicle.plugins import Origin, Registered, registry
-from pellicle.units import quantity_of, readable
+from pellicle.grid import Grid
+from pellicle.plugins import Origin, registry
+from pellicle.units import parts_of, quantity_of, readable
 from pellicle.variables import words_of_name
 
-from .load_steps import KINDS, LoadSteps, with_quantity
-from .loading import Loading, keys_of, prescribed_in, prescriptions
+from .load_steps import LoadSteps, legs_with
+from .loading import Loading, keys_of, prescription_in
 
 
-class Input(NamedTuple):
-    """One value of a configuration."""
+class FieldRow(NamedTuple):
+    """A field of a configuration."""
 
     name: str
-    """Dotted path, as in ``--set``."""
+    """Dotted path, as in ``--set``; without values, ``[]`` stands for the entries of a list."""
     part: str
     """Words of the table that it is in, such as "kernel"."""
     words: str
-    """Words of the field, such as "surface tension"."""
+    """Words of the field, such as "surface tension" or "thickness of layer 2"."""
     value: str
-    """The value as text, with a unit that brings it near 1 … 1000; a component by its words."""
+    """The value as text, with a unit that brings it near 1 … 1000; a component by its words.
+
+    Empty for a field that is not set, for a table and for an entry of a list of values.
+    """
     meaning: str
+    unit: str = ""
+    """SI unit, "1" of a pure number; empty for what is no number."""
+    kind: str = ""
+    """What it takes: unit and bounds, or the kind of value."""
+    default: str = ""
+    """The default as a file would give it, or in words, such as "none" or "required"."""
     origin: Origin | None = None
     """Distribution and entry point of a component."""
 
 
-def inputs(configuration: Mapping[str, Any], model: type[BaseModel]) -> Iterator[Input]:
+def inputs(configuration: Mapping[str, Any], model: type[BaseModel]) -> Iterator[FieldRow]:
     """Yield the values of a configuration of a ``model`` such as `Run`, in the form of its JSON.
 
     Fields of components that are not installed have no unit.
     """
-    for name, value, meaning, origin in _table(configuration, model.model_fields, ""):
-        top = name.partition(".")[0]
-        part = field_words(top, model.model_fields.get(top))
-        yield Input(name, part, words_at(configuration, model, name), value, meaning, origin)
-
-
-_SNAKE = re.compile(r"\b[a-z]+(?:_[a-z]+)+\b")
-_Row = tuple[str, str, str, Origin | None]
-
-
-def _table(table: Mapping[str, Any], fields: Mapping[str, FieldInfo], path: str) -> Iterator[_Row]:
-    for key, value in table.items():
-        info, name = fields.get(key), f"{path}{key}"
-        if isinstance(value, Mapping):
-            yield from _rows_of(value, info, name)
-        elif isinstance(value, list) and value and all(isinstance(v, Mapping) for v in value):
-            for index, entry in enumerate(value):
-                yield from _rows_of(entry, info, f"{name}.{index}")
-        elif value not in ([], ""):
-            quantity = quantity_of(info) if info else None
-            text = readable(value, quantity.unit if quantity else "1")
-            if isinstance(value, bool):
-                text = "yes" if value else "no"
-            description = (info.description if info else None) or ""
-            # Other fields that it names are named in words.
-            meaning = _SNAKE.sub(lambda m: field_words(m[0], fields.get(m[0])), description)
-            yield name, text, meaning, None
-
-
-def _rows_of(table: Mapping[str, Any], info: FieldInfo | None, name: str) -> Iterator[_Row]:
-    """Yield the values in the table of a component or of another part of the run."""
-    if "type" in table:
-        type_ = str(table["type"])
-        if entry := registered(model_in(info.annotation) if info else None, type_):
-            yield name, words_of_type(entry.component, type_), entry.summary, entry.origin
-        else:
-            yield name, words_of_name(type_), "", None
-    inner = {key: value for key, value in table.items() if key != "type"}
-    yield from _table(inner, fields_of_table(table, info), f"{name}.")
-
-
-def field_words(name: str, field: FieldInfo | None) -> str:
-    """Return the words of a field: its title, or its name without underscores."""
-    return (field.title if field else None) or words_of_name(name)
+    return (row for row in field_rows(model.model_fields, configuration) if row.value)
 
 
 def words_at(configuration: Mapping[str, Any], model: type[BaseModel], key: str) -> str:
@@ -95,24 +65,90 @@ def words_at(configuration: Mapping[str, Any], model: type[BaseModel], key: str)
     by its words alone, as in "surface tension"; deeper ones with what they belong to, as in
     "thickness of layer 2".
     """
-    noun, owner = "", ""
-    table: Any = configuration
-    fields: Mapping[str, FieldInfo] = model.model_fields
-    field: FieldInfo | None = None
-    for depth, name in enumerate(key.split(".")):
-        if name == "type" and depth:
-            break
-        if name.isdecimal():
-            entries = table if isinstance(table, list) else []
-            table = entries[int(name)] if int(name) < len(entries) else None
-            noun = _entry(noun, field, entries, int(name))
+    words = {row.name: row.words for row in field_rows(model.model_fields, configuration)}
+    return words.get(key.removesuffix(".type")) or words_of_name(key)
+
+
+_SNAKE = re.compile(r"\b[a-z]+(?:_[a-z]+)+\b")
+
+
+def field_rows(
+    fields: Mapping[str, FieldInfo],
+    table: Mapping[str, Any] | None = None,
+    path: str = "",
+    part: str = "",
+    owner: str = "",
+) -> Iterator[FieldRow]:
+    """Yield the fields of a table and of the tables in it, outer ones before inner ones.
+
+    With the values of a ``table``, in the form of its JSON, these are the fields of its components
+    too, and values that no field describes. Without, components and the tables that have an
+    explanation of their own, grid and loading, are one field. Names begin with the ``path`` of the
+    table, words end with those of its ``owner``.
+    """
+    given = table or {}
+    for key in (*given, *(name for name in fields if name not in given)):
+        if key == "type":
+            continue
+        info, value = fields.get(key), given.get(key)
+        noun = field_words(key, info)
+        meaning = (info.description if info else None) or ""
+        quantity = quantity_of(info) if info else None
+        unit = quantity.unit if quantity else ""
+        facts = (unit, _kind_of(info), _default_of(info)) if info else ()
+        row = FieldRow(f"{path}{key}", part or noun, _with_owner(noun, owner), "", meaning, *facts)
+        if table is None:
+            yield row
+            inner = model_in(info.annotation) if info else None
+            if info and inner and not issubclass(inner, (Component, Grid, Loading)):
+                is_list = not {tuple, list}.isdisjoint(map(get_origin, parts_of(info.annotation)))
+                start = f"{row.name}{'[]' * is_list}."
+                yield from field_rows(inner.model_fields, None, start, row.part)
+            continue
+        # Other fields that it names are named in words.
+        meaning = _SNAKE.sub(lambda match: field_words(match[0], fields.get(match[0])), meaning)
+        row = row._replace(meaning=meaning)
+        if isinstance(value, Mapping):
+            yield from _table(row, value, info, row.words if path else "")
+            continue
+        tables = isinstance(value, list) and all(isinstance(entry, Mapping) for entry in value)
+        if isinstance(value, bool):
+            row = row._replace(value="yes" if value else "no")
+        elif value is not None and not tables:
+            row = row._replace(value=readable(value, unit))
+        yield row
+        for index, entry in enumerate(value if isinstance(value, list) else ()):
+            words = _with_owner(_entry(noun, info, tables, index), owner)
+            inner_row = row._replace(name=f"{row.name}.{index}", words=words, value="")
+            yield from _table(inner_row, entry, info, words) if tables else [inner_row]
+
+
+def _table(
+    row: FieldRow, table: Mapping[str, Any], info: FieldInfo | None, owner: str
+) -> Iterator[FieldRow]:
+    """Yield the row of the table of a component or of another part of the run, and those in it."""
+    model = model_in(info.annotation) if info else None
+    fields = model.model_fields if model else {}
+    if steps := _load_steps(info):
+        kinds = legs_with(steps.quantity).items()
+        fields = next((kind.model_fields for key, kind in kinds if key in table), {})
+    elif "type" in table:
+        type_, family = str(table["type"]), getattr(model, "family", "")
+        if entry := registry().components.get(family, {}).get(type_):
+            words, fields = words_of_type(entry.component, type_), entry.component.model_fields
+            row = row._replace(value=words, meaning=entry.summary, origin=entry.origin)
         else:
-            owner = _with_owner(noun, owner) if depth > 1 else ""
-            field = fields.get(name)
-            noun = field_words(name, field)
-            table = table.get(name) if isinstance(table, Mapping) else None
-        fields = fields_of_table(table, field) if isinstance(table, Mapping) else {}
-    return _with_owner(noun, owner)
+            row, fields = row._replace(value=words_of_name(type_), meaning=""), {}
+    elif model is Loading:
+        with suppress(ConfigError, PluginError):
+            fields = keys_of(prescription_in(table))
+    yield row
+    yield from field_rows(fields, table, f"{row.name}.", row.part, owner)
+
+
+def field_words(name: str, field: FieldInfo | None) -> str:
+    """Return the words of a field: its title, or its name without underscores."""
+    return (field.title if field else None) or words_of_name(name)
 
 
 def _with_owner(noun: str, owner: str) -> str:
@@ -121,55 +157,84 @@ def _with_owner(noun: str, owner: str) -> str:
     return f"{noun} of {'' if numbered else 'the '}{owner}" if owner else noun
 
 
-def _entry(noun: str, field: FieldInfo | None, entries: list[Any], index: int) -> str:
-    """Return words for an entry of a list: "size along x" of a pair, "layer 2" of tables."""
+def _entry(noun: str, field: FieldInfo | None, tables: bool, index: int) -> str:
+    """Return words for an entry of a list: "size along x" of a pair, "layer 2" of ``tables``."""
     choices = (field.annotation, *get_args(field.annotation)) if field else ()
     items = [get_args(choice) for choice in choices if get_origin(choice) is tuple]
     if index < 2 and any(len(types) == 2 and ... not in types for types in items):
         return f"{noun} along {'xy'[index]}"
-    tables = any(isinstance(entry, Mapping) for entry in entries)
-    if tables and _load_steps(field):
-        return f"leg {index + 1}"
-    return f"{noun.removesuffix('s') if tables else noun} {index + 1}"
+    if tables:
+        noun = "leg" if _load_steps(field) else noun.removesuffix("s")
+    return f"{noun} {index + 1}"
+
+
+_KINDS: Mapping[Any, str] = {
+    bool: "true or false",
+    int: "whole number",
+    float: "number",
+    str: "text",
+    Path: "file",
+    Any: "array",
+    HasForceCurve: "force curve",
+}
+_BOUNDS = (">", "gt"), ("≥", "ge"), ("<", "lt"), ("≤", "le")
+
+
+def _kind_of(info: FieldInfo) -> str:
+    """Return what a field takes: unit and bounds of a quantity, or its kind of value."""
+    if quantity := quantity_of(info):
+        return ", ".join(["number" if quantity.unit == "1" else quantity.unit, *quantity.bounds])
+    bounds = [
+        f"{sign} {bound}"
+        for entry in info.metadata
+        for sign, name in _BOUNDS
+        if (bound := getattr(entry, name, None)) is not None
+    ]
+    return ", ".join([_kind(info.annotation), *bounds])
+
+
+def _kind(annotation: Any) -> str:
+    origin, parts = get_origin(annotation), get_args(annotation)
+    if origin is Literal:
+        return " or ".join(json.dumps(value, ensure_ascii=False) for value in parts)
+    if origin is Annotated:
+        return _kind(parts[0])
+    type_ = origin or annotation
+    if isinstance(type_, type) and issubclass(type_, (BaseModel, Mapping)):
+        return "table"
+    if not parts:
+        return next((_KINDS[base] for base in getattr(type_, "__mro__", ()) if base in _KINDS), "")
+    kinds = [_kind(part) for part in parts if part not in (NoneType, ..., Any)]
+    text = " or ".join(filter(None, dict.fromkeys(kinds)))
+    if origin not in (tuple, list):
+        return text
+    plural = "s" * (text in ("table", "text", "file", "number", "whole number"))
+    return f"list of {text}{plural}" if text else "list"
+
+
+def _default_of(info: FieldInfo) -> str:
+    """Return the default of a field as a file would give it, or in words such as "none"."""
+    if info.is_required():
+        return "required"
+    if getattr(info, "default_factory_takes_validated_data", False):
+        return "from other fields"
+    value = info.get_default(call_default_factory=True)
+    if value is None or value in ((), "", {}):
+        return "none"
+    if isinstance(value, Component):
+        return value.type_name
+    if isinstance(value, BaseModel):
+        return "see below"
+    if (quantity := quantity_of(info)) and quantity.unit != "1":
+        return readable(value, quantity.unit)
+    return json.dumps(value, ensure_ascii=False, default=str)
 
 
 def _load_steps(field: FieldInfo | None) -> LoadSteps | None:
     return next((m for m in field.metadata if isinstance(m, LoadSteps)), None) if field else None
 
 
-def registered(model: type[BaseModel] | None, type_: object) -> Registered | None:
-    """Return the installed component of a type, if ``model`` is the base class of its family."""
-    if model is None or not issubclass(model, Component):
-        return None
-    return registry().components.get(model.family, {}).get(str(type_))
-
-
-def fields_of_table(table: Mapping[str, Any], field: FieldInfo | None) -> Mapping[str, FieldInfo]:
-    """Return the fields that a table has by name, given the field that holds it.
-
-    A component that is not installed has none.
-    """
-    if steps := _load_steps(field):
-        kind = next((kind for key, kind in KINDS.items() if key in table), None)
-        return with_quantity(kind, steps.quantity).model_fields if kind else {}
-    model: type[BaseModel] | None = model_in(field.annotation) if field else None
-    if "type" in table:
-        entry = registered(model, table["type"])
-        model = entry.component if entry else None
-    elif model is Loading:
-        with suppress(ConfigError, PluginError):
-            return keys_of(prescriptions()[prescribed_in(table)])
-    return model.model_fields if model else {}
-
-
 def model_in(annotation: Any) -> type[BaseModel] | None:
     """Return the model that a field holds, alone or in a list."""
     types = (part for part in parts_of(annotation) if isinstance(part, type))
     return next((type_ for type_ in types if issubclass(type_, BaseModel)), None)
-
-
-def parts_of(annotation: Any) -> Iterator[Any]:
-    """Yield an annotation, and those that it is made of."""
-    yield annotation
-    for part in get_args(annotation):
-        yield from parts_of(part)

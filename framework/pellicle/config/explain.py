@@ -6,22 +6,18 @@ import inspect
 import itertools
 import json
 import re
-from collections.abc import Iterator, Mapping
-from pathlib import Path
-from types import NoneType
-from typing import Any, Literal, NamedTuple, get_args, get_origin
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 from pydantic import BaseModel
-from pydantic.fields import FieldInfo
 
-from pellicle.components import Component, Prescription
+from pellicle.components import Prescription
 from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import Grid
 from pellicle.plugins import Registered, registry
 from pellicle.schema.messages import similar
-from pellicle.units import quantity_of, readable
 
-from .describe import model_in, parts_of
+from .describe import FieldRow, field_rows
 from .loading import Loading, Options, keys_of, prescriptions
 from .run import Run
 from .study import Study
@@ -38,18 +34,6 @@ _EXAMPLES: Mapping[str, str] = {
     "loading": '[loading]\ndepth = { start = "1 um", stop = "5 um", num = 5 }',
     "study": '[study.vary]\n"kernel.tension" = ["0 mN/m", "10 mN/m", "50 mN/m"]',
 }
-_KINDS: Mapping[type, str] = {bool: "true or false", int: "whole number", float: "number"}
-
-
-class FieldRow(NamedTuple):
-    """A field of a table."""
-
-    name: str
-    """Key, with those of the tables that it is in; ``[]`` stands for an entry of a list."""
-    unit: str
-    """SI unit, or the kind of value."""
-    default: str
-    meaning: str
 
 
 class Explanation(NamedTuple):
@@ -79,7 +63,7 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
         return [_of_table(name, entries[name])]
     family = name if name in families else name.removesuffix("s")
     if family in families:
-        types = [FieldRow(t, "", "", entry.summary) for t, entry in families[family].items()]
+        types = [FieldRow(t, "", t, "", entry.summary) for t, entry in families[family].items()]
         meaning = _documentation(registry().families[family])
         return [Explanation(family, "family", "", meaning, types, "")]
     given, _, type_ = name.rpartition(".")
@@ -110,116 +94,40 @@ def words_by_kind(tables: Mapping[str, type[BaseModel]]) -> dict[str, list[str]]
 
 
 def _of_table(name: str, model: type[BaseModel]) -> Explanation:
-    rows = rows_of((Options if model is Loading else model).model_fields)
+    rows = [*field_rows((Options if model is Loading else model).model_fields)]
     if model is Study:
         rows = [row for row in rows if row.name != "run"]
     if model is Loading:
         of_types = []
         for type_, component in prescriptions().items():
-            for row in rows_of(keys_of(component)):
+            for row in field_rows(keys_of(component)):
                 required = "one of these" if row.name == type_ else f"with {type_}"
                 of_types.append(row._replace(default=row.default.replace("required", required)))
         rows = [row for row in of_types if row.name not in Options.model_fields] + rows
-    example = _EXAMPLES[name] if name in _EXAMPLES else _lines(dict(example_values(model)))
+    examples = getattr(model, "examples", ())
+    example = _EXAMPLES[name] if name in _EXAMPLES else _lines(examples[0]) if examples else ""
     return Explanation(name, "table", "", _documentation(model), rows, example)
 
 
 def _of_component(entry: Registered) -> Explanation:
-    family = entry.component.family
-    origin = f"{entry.origin.distribution} {entry.origin.version}"
-    if refusal := refusal_of_example(entry.component):
-        example = "\n# ".join(["# none; it would be refused:", *refusal.splitlines()])
-    else:
-        name = entry.component.place.replace("[]", "")
+    component, example = entry.component, ""
+    fields = component.model_fields
+    table: dict[str, Any] = {"type": entry.type}
+    if issubclass(component, Prescription):
+        fields, table = keys_of(component), {entry.type: [component.quantity().example]}
+    if entry.examples:
+        name = component.place.replace("[]", "")
         # A line for each key, and inner tables on one.
-        head = f"[[{name}]]" if entry.component.place.endswith("[]") else f"[{name}]"
-        example = f"{head}\n{_lines(example_table(entry))}"
-    fields = entry.component.model_fields
-    if issubclass(entry.component, Prescription):
-        fields = keys_of(entry.component)
-    text = _documentation(entry.component)
-    return Explanation(entry.type, family, origin, text, rows_of(fields), example)
+        head = f"[[{name}]]" if component.place.endswith("[]") else f"[{name}]"
+        example = f"{head}\n{_lines({**table, **entry.examples[0]})}"
+    origin = f"{entry.origin.distribution} {entry.origin.version}"
+    rows, text = [*field_rows(fields)], _documentation(component)
+    return Explanation(entry.type, component.family, origin, text, rows, example)
 
 
 def _documentation(model: type[BaseModel]) -> str:
     """Return the documentation of a class without the marks of its markup."""
     return (inspect.getdoc(model) or "").replace("``", "").replace("`", "")
-
-
-def rows_of(fields: Mapping[str, FieldInfo], prefix: str = "") -> list[FieldRow]:
-    """Return the fields of a table and of the tables in it, without those of components."""
-    rows = []
-    for name, info in fields.items():
-        if name == "type":
-            continue
-        quantity = quantity_of(info)
-        if info.is_required():
-            default = "required"
-        else:
-            value = info.get_default(call_default_factory=True, validated_data={})
-            default = _default(value, quantity.unit if quantity else "1")
-        unit = quantity.unit if quantity and quantity.unit != "1" else _kind(info.annotation)
-        rows.append(FieldRow(f"{prefix}{name}", unit, default, info.description or ""))
-        inner = model_in(info.annotation)
-        if inner is not None and not issubclass(inner, (Component, Grid, Loading)):
-            mark = "[]" if _is_list(info.annotation) else ""
-            rows += rows_of(inner.model_fields, f"{prefix}{name}{mark}.")
-    return rows
-
-
-def _default(value: Any, unit: str) -> str:
-    if value is None or value in ((), "", {}):
-        return "none"
-    if isinstance(value, Component):
-        return value.type_name
-    if isinstance(value, BaseModel):
-        return "see below"
-    if isinstance(value, bool):
-        return str(value).lower()
-    return readable(value, unit) if not isinstance(value, dict) else str(value)
-
-
-def _is_list(annotation: Any) -> bool:
-    return any(get_origin(part) in (tuple, list) for part in parts_of(annotation))
-
-
-def _kind(annotation: Any) -> str:
-    """Return the kind of value of a field without a unit, in words."""
-    if get_origin(annotation) is Literal:
-        return " or ".join(map(str, get_args(annotation)))
-    type_ = dict if get_origin(annotation) is dict else annotation
-    if isinstance(type_, type):
-        if issubclass(type_, (BaseModel, dict)):
-            return "table"
-        return "text" if issubclass(type_, (str, Path)) else _KINDS.get(type_, "")
-    inner = [a for a in get_args(annotation) if a is not NoneType and a is not ...]
-    kinds = list(dict.fromkeys(filter(None, map(_kind, inner))))
-    if get_origin(annotation) in (tuple, list):
-        return f"list of {kinds[0]}s" if kinds in (["table"], ["text"], ["number"]) else "list"
-    return " or ".join(kinds)
-
-
-def refusal_of_example(component: type[Component]) -> str:
-    """Return why a component refuses the values of its example; empty if it takes them."""
-    fields = component.model_fields.items()
-    files = {name for name, info in fields if Path in parts_of(info.annotation)}
-    try:
-        component(**dict(example_values(component)))
-    except ConfigError as error:
-        # The file that it names is the user's to give.
-        return "" if files.issuperset(field for field, _ in error.problems) else str(error)
-    except Exception as error:
-        return f"{type(error).__name__}: {error}"
-    return ""
-
-
-def example_table(entry: Registered) -> Mapping[str, Any]:
-    """Return the table of a component in a file, with its required fields only."""
-    component = entry.component
-    values = dict(example_values(component))
-    if issubclass(component, Prescription):
-        return {entry.type: [component.quantity().example], **values}
-    return {"type": entry.type, **values}
 
 
 def _lines(table: Mapping[str, Any]) -> str:
@@ -229,44 +137,11 @@ def _lines(table: Mapping[str, Any]) -> str:
 def _inline(value: Any) -> str:
     if isinstance(value, Mapping):
         return f"{{ {', '.join(f'{_key(key)} = {_inline(v)}' for key, v in value.items())} }}"
-    if isinstance(value, list):
+    if isinstance(value, (list, tuple)):
         return f"[{', '.join(map(_inline, value))}]"
     # JSON writes texts, numbers and truth values as TOML does.
-    return json.dumps(value, ensure_ascii=False)
+    return json.dumps(value, ensure_ascii=False, default=str)
 
 
 def _key(name: str) -> str:
     return name if re.fullmatch(r"[\w-]+", name) else json.dumps(name)
-
-
-def example_values(model: type[BaseModel]) -> Iterator[tuple[str, Any]]:
-    """Yield the fields of a model that are required or have ``examples``, with an example.
-
-    It is the first of the ``examples`` of the field; without any, its unit or its kind gives one.
-    Of alternatives in ``json_schema_extra`` the first is taken.
-    """
-    extra: Any = model.model_config.get("json_schema_extra")
-    names_required: set[str] = set()
-    for key in ("anyOf", "oneOf") if isinstance(extra, dict) else ():
-        names_required |= {*(extra.get(key) or [{}])[0].get("required", ())}
-    for name, info in model.model_fields.items():
-        if name != "type" and (info.is_required() or info.examples or name in names_required):
-            yield name, _example(name, info)
-
-
-def _example(name: str, info: FieldInfo) -> Any:
-    if info.examples:
-        return info.examples[0]
-    inner = model_in(info.annotation)
-    value: Any
-    if (quantity := quantity_of(info)) is not None:
-        value = quantity.example
-    elif inner is not None and issubclass(inner, Component):
-        types = registry().components.get(inner.family, {}).values()
-        simplest = min(types, key=lambda e: (len(e.component.model_fields), e.type), default=None)
-        value = example_table(simplest) if simplest else {"type": "…"}
-    elif inner is not None:
-        value = dict(example_values(inner))
-    else:
-        value = {"true or false": True, "whole number": 1}.get(_kind(info.annotation), name)
-    return [value] if _is_list(info.annotation) else value

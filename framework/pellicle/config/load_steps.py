@@ -22,8 +22,7 @@ _MOST = 1_000_000
 _FEWEST_OF_CYCLE = 4
 
 Number = Annotated[
-    int,
-    Field(title="number of steps", ge=1, description="number of load steps of the leg"),
+    int, Field(title="number of steps", ge=1, description="number of load steps of the leg")
 ]
 
 
@@ -85,8 +84,6 @@ Leg = Move | Hold | Oscillation
 """A part of a path that goes on from the end of the one before, in ``num`` load steps."""
 KINDS: Mapping[str, type[Leg]] = {"to": Move, "hold": Hold, "amplitude": Oscillation}
 """The kinds of leg by the field that only this kind has."""
-VALUES = "to", "amplitude"
-"""Fields in the unit of the prescription."""
 _FORMS = (
     "{ to, time, num }, { hold, num } or { amplitude, frequency, cycles, num }, with num steps "
     "for each leg, for each cycle of an oscillation"
@@ -94,17 +91,17 @@ _FORMS = (
 
 
 @cache
-def with_quantity(kind: type[Leg], quantity: Quantity) -> type[Leg]:
-    """Return a kind of leg whose prescribed values have unit and range of ``quantity``.
+def legs_with(quantity: Quantity) -> Mapping[str, type[Leg]]:
+    """Return the kinds of leg whose prescribed values have unit and range of ``quantity``.
 
-    It describes, and reads tables; paths hold legs of the three kinds themselves, which pickle.
+    They describe, and read tables; paths hold legs of the three kinds themselves, which pickle.
     """
     allowed = {"to": quantity, "amplitude": Quantity(quantity.unit, above=0)}
-    fields: dict[str, Any] = {
-        name: (Annotated[float, allowed[name], kind.model_fields[name]], ...)
-        for name in allowed.keys() & kind.model_fields.keys()
-    }
-    return create_model(kind.__name__, __base__=kind, **fields)
+    kinds = dict(KINDS)
+    for key in allowed:
+        fields: Any = {key: (Annotated[float, allowed[key], KINDS[key].model_fields[key]], ...)}
+        kinds[key] = create_model(KINDS[key].__name__, __base__=KINDS[key], **fields)
+    return kinds
 
 
 def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
@@ -113,7 +110,17 @@ def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
     with all_problems() as within:
         for index, entry in enumerate(entries):
             with within(str(index)):
-                legs.append(_leg(entry, quantity))
+                table = entry.model_dump() if isinstance(entry, Leg) else entry
+                if not isinstance(table, Mapping):
+                    raise ConfigError(
+                        f"{shown(entry)} is not a leg, as others of the list are; give {_FORMS}"
+                    )
+                keys = [key for key in KINDS if key in table]
+                if len(keys) != 1:
+                    mixes = f"mixes {' and '.join(keys)}"
+                    has = f"has {', '.join(map(str, table)) or 'no key'}"
+                    raise ConfigError(f"{mixes if keys else has}; give {_FORMS}")
+                legs.append(KINDS[keys[0]](**dict(legs_with(quantity)[keys[0]](**table))))
     if isinstance(legs[0], Hold):
         raise ConfigError(
             'holds before any value is reached; begin with { to, time, num }, whose time = "0 s" '
@@ -133,20 +140,6 @@ def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
             str(lowest.leg),
         ) from None
     return tuple(legs)
-
-
-def _leg(entry: object, quantity: Quantity) -> Leg:
-    if isinstance(entry, Leg):
-        entry = entry.model_dump()
-    if not isinstance(entry, Mapping):
-        raise ConfigError(f"{shown(entry)} is not a leg, as others of the list are; give {_FORMS}")
-    keys = [key for key in KINDS if key in entry]
-    if len(keys) != 1:
-        mixes = f"mixes {' and '.join(keys)}"
-        has = f"has {', '.join(map(str, entry)) or 'no key'}"
-        raise ConfigError(f"{mixes if keys else has}; give {_FORMS}")
-    kind = KINDS[keys[0]]
-    return kind(**dict(with_quantity(kind, quantity)(**entry)))
 
 
 def sampled(legs: Sequence[Leg]) -> tuple[Sample, ...]:
@@ -238,7 +231,7 @@ class LoadSteps:
             "required": sorted(RANGE),
             "additionalProperties": False,
         }
-        legs = [with_quantity(kind, self.quantity).model_json_schema() for kind in KINDS.values()]
+        legs = [kind.model_json_schema() for kind in legs_with(self.quantity).values()]
         several: list[dict[str, Any]] = [
             {"type": "array", "items": items, "minItems": 1}
             for items in (value_schema, {"anyOf": legs})

@@ -132,8 +132,7 @@ class Loading(Options):
         for index, (before, after) in enumerate(itertools.pairwise(self.time), start=1):
             if after < before:
                 raise ConfigError(
-                    f"falls from {before:g} to {after:g} s; times must not fall",
-                    f"time.{index}",
+                    f"falls from {before:g} to {after:g} s; times must not fall", f"time.{index}"
                 )
         return self
 
@@ -182,14 +181,6 @@ class Loading(Options):
         with all_problems() as within, within(self.prescribed):
             LoadSteps(self.prescription.quantity(), legs=True)(self.path)
 
-    @property
-    def variables(self) -> set[str]:
-        """The names of the result variables that this loading adds."""
-        timed = self.times is not None
-        used = {"stiffness": self.stiffness, "time": timed, "cycle": self.oscillates}
-        names = {variable.name for variable in self.prescription.variables}
-        return names | {name for name, is_used in used.items() if is_used}
-
 
 def fields_from(table: Mapping[str, Any], interaction: bool = True) -> dict[str, Any]:
     """Return the fields of a `Loading` from the table of a file.
@@ -197,7 +188,7 @@ def fields_from(table: Mapping[str, Any], interaction: bool = True) -> dict[str,
     Without an interaction values that pull, such as a force below 0, are refused.
     """
     data = {key: value for key, value in table.items() if value is not None}
-    component = prescriptions()[prescribed_in(data)]
+    component = prescription_in(data)
     keys = keys_of(component)
     type_, *_ = keys
     own = {name: data[name] for name in keys.keys() & data.keys() - {type_, *OPTIONS}}
@@ -229,13 +220,13 @@ def prescriptions() -> dict[str, type[Prescription]]:
     return {t: e.component for t, e in entries.items() if issubclass(e.component, Prescription)}
 
 
-def prescribed_in(data: Mapping[str, Any]) -> str:
-    """Return the key of a table that names its prescription."""
-    families = registry().components["prescription"]
-    types = [*_USUAL, *sorted(families.keys() - {*_USUAL})]
+def prescription_in(data: Mapping[str, Any]) -> type[Prescription]:
+    """Return the prescription that a key of a table names."""
+    installed = prescriptions()
+    types = sorted(installed, key=lambda name: (name not in _USUAL, name))
     keys = [name for name in types if name in data]
     if len(keys) == 1:
-        return keys[0]
+        return installed[keys[0]]
     remedy = f"give exactly one of {', '.join(types)}"
     if keys:
         # One that an override adds stands last.

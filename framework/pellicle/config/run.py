@@ -34,6 +34,7 @@ from pellicle.components import (
     Output,
     Solver,
 )
+from pellicle.components.base import words_of_type
 from pellicle.components.kernel import branches_of
 from pellicle.components.output import ResultFile, refuse_shared_files
 from pellicle.errors import ConfigError
@@ -42,10 +43,8 @@ from pellicle.grid import Grid, grid_of_run
 from pellicle.plugins import registry
 from pellicle.schema.from_file import FromFile
 from pellicle.schema.model import get, replaced, walk
-from pellicle.schema.notebook import summary
 from pellicle.variables import VARIABLES, Variable, corrected_area, corrected_fraction
 
-from .describe import inputs
 from .loading import Loading, fields_from
 
 DEFAULT_SOLVER = "active_set"
@@ -209,16 +208,9 @@ class Run(FromFile):
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: every value with its unit and meaning."""
-        values = list(inputs(json.loads(self.to_json()), Run))
-        types = {i.name: i.value for i in values}
-        rows = [
-            (i.part, "type" if i.words == i.part else i.words, i.value, i.meaning)
-            for i in values
-            if i.name != "title"
-        ]
-        sentence = f"{types['indenter']} on {types['kernel']}"
-        heads = "of", "input", "value", "meaning"
-        return summary(self.title or "Run", sentence, heads, rows)
+        from pellicle.show.notebook import of_run
+
+        return of_run(self)
 
     @property
     def variables(self) -> list[Variable]:
@@ -226,16 +218,18 @@ class Run(FromFile):
         kinds = {"main", "other", "contact", "effort", "residual", "status"}
         kinds |= {"interaction", "path"} if self.interaction else set()
         kinds |= {"oscillation"} if self.loading.oscillates else set()
-        areas = [corrected_area(correction.type_name) for correction in self.corrections]
-        return [
-            *(
-                variable
-                for variable in (*VARIABLES.values(), *self.loading.prescription.variables)
-                if variable.type != "text"
-                and (variable.kind in kinds or variable.name in self.loading.variables)
-            ),
-            *(variable for area in areas for variable in (area, corrected_fraction(area))),
-        ]
+        requested = {
+            "stiffness": self.loading.stiffness,
+            "time": self.loading.times is not None,
+            "cycle": self.loading.oscillates,
+        }
+        listed = [v for v in VARIABLES.values() if v.kind in kinds or requested.get(v.name)]
+        listed += self.loading.prescription.variables
+        for correction in self.corrections:
+            type_ = correction.type_name
+            area = corrected_area(type_, words_of_type(type(correction), type_))
+            listed += [area, corrected_fraction(area)]
+        return [variable for variable in listed if variable.type != "text"]
 
     @property
     def identity(self) -> str:

@@ -15,17 +15,15 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from pellicle.components import Executor, FromRegistry
 from pellicle.components.output import refuse_shared_files
-from pellicle.errors import ConfigError, Problem, all_problems, first_of, shown
+from pellicle.errors import ConfigError, Problem, all_problems, first_of, problems_within, shown
 from pellicle.results.derived import constants
 from pellicle.schema.expression import CONSTANTS, FUNCTIONS, evaluate, names_in
 from pellicle.schema.from_file import FromFile, overridden, paths_relative_to, read_toml
 from pellicle.schema.model import get, python_names, replaced
-from pellicle.schema.notebook import summary
 from pellicle.schema.ranges import Axes, expand
 from pellicle.variables import BEYOND_THEORY, FIELDS, VARIABLES
 
 from .coordinates import Coordinate, as_json, coordinate, short, tell_apart
-from .describe import words_at
 from .run import Run
 
 DEFAULT_EXECUTOR = "serial"
@@ -58,15 +56,12 @@ def _expanded(entries: object) -> tuple[Axes, ...]:
         raise ConfigError(f"{shown(entries)} is not allowed; give [[study.zip]] tables")
     tables = []
     for index, table in enumerate(entries):
-        try:
-            axes = expand(table)
-        except ConfigError as error:
-            raise error.within(str(index)) from None
-        lengths = {key: len(values) for key, values in axes.items()}
-        if len(set(lengths.values())) != 1:
-            reason = ", ".join(f"{key} has {n}" for key, n in lengths.items()) or "is empty"
-            raise ConfigError(f"{reason}; give axes of equally many values", str(index))
-        tables.append(axes)
+        with problems_within(str(index)):
+            tables.append(expand(table))
+            lengths = {key: len(values) for key, values in tables[-1].items()}
+            if len(set(lengths.values())) != 1:
+                reason = ", ".join(f"{key} has {n}" for key, n in lengths.items()) or "is empty"
+                raise ConfigError(f"{reason}; give axes of equally many values")
     return tuple(tables)
 
 
@@ -109,24 +104,16 @@ class Study(FromFile):
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: the varied parameters and the number of runs."""
-        run = self.points[0].run
-        configuration = json.loads(run.to_json())
-        rows = [
-            (words_at(configuration, Run, name), ", ".join(map(str, values)), name)
-            for axes in self.dimensions.values()
-            for name, values in axes.items()
-        ]
-        heads = ("varied", "values", "field")
-        return summary(run.title or "Study", f"{len(self.points)} runs", heads, rows)
+        from pellicle.show.notebook import of_study
+
+        return of_study(self)
 
     @model_validator(mode="after")
     def _create_runs(self) -> Self:
         self._check_axes()
         self._check_derived()
-        try:
+        with problems_within("run"):
             refuse_shared_files(self.points[0].run.outputs or (), of_study=True)
-        except ConfigError as error:
-            raise error.within("run") from None
         return self
 
     @cached_property
@@ -324,10 +311,8 @@ def _points_of(table: Mapping[str, Any], dimensions: Mapping[str, Axes]) -> Iter
 def _run(shared: Mapping[str, Any], values: Mapping[str, Any]) -> Run:
     data: Any = shared
     for key, value in values.items():
-        try:
+        with problems_within(key):
             data = replaced(data, key, value)
-        except ConfigError as error:
-            raise error.within(key) from None
     return Run(**data)
 
 

@@ -142,6 +142,35 @@ class Status(Enum):
         }.get(self, usual)
 
 
+class Limit(NamedTuple):
+    """A limit that a whole run exceeds by far."""
+
+    template: str
+    """That of its sentence, which names a load step."""
+    phrase: str
+    """What is limited, as the subject of a sentence of its own."""
+
+    def sentence(self, values: Mapping[str, float | str]) -> str:
+        """Return the message to the user, given the values that it states."""
+        return _Sentence(values).format(self.template)
+
+
+FEW_CELLS = Limit(
+    "step {step:.0f}: at pull-off the radius of the contact has {cells:.1f} cells, so the "
+    "pull-off force {off:variant}; use more points, or a smaller grid.size",
+    "the pull-off force is that of a contact of few cells",
+)
+THROUGH_LAYER = Limit(
+    "step {step:.0f}: the surface is pressed down by {deepest:m}, through a layer "
+    "{thickness:m} thick to its rigid base: the numbers are those of the equations, not of an "
+    "experiment; press in less far",
+    "the surface is pressed through a layer to its rigid base",
+)
+SLOPES = Limit(
+    "step {step:.0f}: slopes in contact reach {slope:.1f}, and the theory is for slopes up to "
+    "0.3: force and area are those of the equations, not of an experiment; press in less far",
+    "slopes in contact are far beyond the theory",
+)
 _GRAVEST_FIRST: Final = tuple(Status)
 _VARIANTS: Final = {
     "nothing nearer": "nothing nearer can be resolved: use more points",
@@ -161,6 +190,8 @@ _VARIANTS: Final = {
     ),
     "known": " and lost {lost:J}",
     "unknown": "",
+    "known error": "may be off by {error:.0%}",
+    "unknown error": "has no known error",
 }
 """Parts of sentences that a value names."""
 

@@ -31,10 +31,6 @@ class Depth:
     compliance: float = 0.0
     """Compliance of the spring between base and indenter [m/N]; 0 without a spring."""
 
-    def scaled(self, height: float, pressure: float) -> Depth:
-        """Return the control in units of ``height`` [m] and ``pressure`` [Pa]."""
-        return Depth(self.value / height, self.compliance * pressure / height)
-
 
 @dataclass(frozen=True)
 class Force:
@@ -42,10 +38,6 @@ class Force:
 
     value: float
     """Force on the domain [N]."""
-
-    def scaled(self, height: float, pressure: float) -> Force:
-        """Return the control in units of ``pressure`` [Pa]."""
-        return Force(self.value / pressure)
 
 
 @dataclass(frozen=True)
@@ -172,11 +164,16 @@ class Problem:
 
         The lengths of the grid remain in m. The profile is in C order afterwards.
         """
+        control = self.control
+        if isinstance(control, Depth):
+            control = Depth(control.value / height, control.compliance * pressure / height)
+        else:
+            control = Force(control.value / pressure)
         return replace(
             self,
             operator=self.operator.scaled(pressure / height),
             profile=np.divide(self.profile, height, order="C"),
-            control=self.control.scaled(height, pressure),
+            control=control,
             law=self.law.scaled(height, pressure) if self.law else None,
             left=None if self.left is None else self.left / height,
         )

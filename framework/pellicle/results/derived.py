@@ -22,8 +22,6 @@ REDUCTIONS: dict[str, Callable[[Any], Any]] = {
     name: methodcaller(name, CELLS) for name in ("mean", "sum", "min", "max")
 }
 """Functions that reduce a field to one number for each step."""
-
-
 FIRST_RUN = "first_run"
 """Attribute of a study's table: the configuration of the first run as JSON in SI."""
 VARYING = "varying"
@@ -35,9 +33,8 @@ DERIVED = "derived"
 
 def configuration_of(data: xr.Dataset) -> dict[str, Any]:
     """Return the configuration of a result, or of the first run of a study, in SI."""
-    configuration: dict[str, Any] = json.loads(
-        data.attrs.get(FIRST_RUN, data.attrs["configuration"])
-    )
+    text = data.attrs.get(FIRST_RUN, data.attrs["configuration"])
+    configuration: dict[str, Any] = json.loads(text)
     return configuration
 
 
@@ -54,14 +51,13 @@ def names(data: xr.Dataset) -> dict[str, Any]:
         for key, value in constants(configuration_of(data)).items()
         if not key.startswith(varied) and key not in varying
     }
-    numeric = {str(name): data[name] for name in data.variables if data[name].dtype.kind in "iuf"}
     # numpy refuses to subtract bools.
-    truths = {
-        str(name): data[name].astype(float)
+    columns = {
+        str(name): data[name].astype(float) if data[name].dtype == bool else data[name]
         for name in data.variables
-        if data[name].dtype.kind == "b"
+        if data[name].dtype.kind in "iufb"
     }
-    return {**fixed, **numeric, **truths}
+    return {**fixed, **columns}
 
 
 def derive(

@@ -13,7 +13,7 @@ from pellicle.units import DIGITS, readable
 from pellicle.variables import VARIABLES
 
 from .dimensions import parts
-from .wording import wording
+from .wording import column_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -38,7 +38,7 @@ def prescribed_variable(data: xr.Dataset) -> str:
 def label_of_step(data: xr.Dataset, index: int) -> str:
     """Return what a load step prescribes: "depth 3 µm", "1 s, force 5 nN"."""
     name = prescribed_variable(data)
-    label = wording(data[name]).text(data[name].values[index].item())
+    label = column_of(data[name]).text(data[name].values[index].item())
     if has_times(data):
         label = f"{readable(data['time'].values[index].item(), 's', DIGITS)}, {label}"
     return label
@@ -46,17 +46,12 @@ def label_of_step(data: xr.Dataset, index: int) -> str:
 
 def has_path(data: xr.Dataset) -> bool:
     """Return whether a result, or any run of a study, has variables of its whole path."""
-    return has_interaction(data) or has_oscillation(data)
-
-
-def has_oscillation(data: xr.Dataset) -> bool:
-    """Return whether a leg of a result, or of any run of a study, oscillates."""
-    return "cycle" in data
+    return has_interaction(data) or "cycle" in data
 
 
 def oscillations_of(steps: xr.Dataset) -> list[Oscillation]:
     """Return the response of each oscillation on the path of a run."""
-    if not has_oscillation(steps):
+    if "cycle" not in steps:
         return []
     done = steps.isel(step=np.isfinite(steps["time"].values))
     names = "time", "cycle", "depth", "force", "converged"

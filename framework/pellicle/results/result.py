@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import isfinite, nan, sqrt
@@ -13,24 +12,30 @@ import numpy as np
 
 from pellicle.analysis import Oscillation
 from pellicle.analysis.steepness import steepest
-from pellicle.contact.caveats import Caveat, Status, by_phrase, from_text
+from pellicle.contact.caveats import (
+    FEW_CELLS,
+    SLOPES,
+    THROUGH_LAYER,
+    Caveat,
+    Limit,
+    Status,
+    by_phrase,
+    from_text,
+)
 from pellicle.errors import ConfigError, StorageError, first_of
 from pellicle.files import for_document, is_folder
 from pellicle.grid import Grid
-from pellicle.schema.notebook import summary
-from pellicle.units import DIGITS, axis_unit, readable
-from pellicle.variables import CAVEATS, COORDINATES, REQUIRED, VARIABLES
+from pellicle.units import axis_unit
+from pellicle.variables import CAVEATS, COORDINATES, REQUIRED
 
 from . import storage
+from .derived import configuration_of
 from .path import has_interaction, label_of_step, oscillations_of, path_variables
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_SHOWN = "time", "depth", "force", "contact_area"
 _NO_CONTACT = "0.93"
-_MOST = 12
-"""Rows of the table in a notebook."""
 _STEEPEST = 1.0
 """Slope above which a contact without interaction is warned of; the theory is for 0.3."""
 _CELLS = 12
@@ -47,8 +52,7 @@ class Result:
     @property
     def configuration(self) -> dict[str, Any]:
         """The full configuration of the run, in SI floats."""
-        configuration: dict[str, Any] = json.loads(self.dataset.attrs["configuration"])
-        return configuration
+        return configuration_of(self.dataset)
 
     @property
     def grid(self) -> Grid:
@@ -117,77 +121,41 @@ class Result:
         status. So is pull-off by a range that is not that of the cells: no error of its force is
         known.
         """
-        messages, summary, grid = dict[str, str](), self.path_summary, self.grid
+        limits = dict[Limit, dict[str, float | str]]()
+        summary, grid = self.path_summary, self.grid
         cells = summary.get("pull_off_radius", nan) / sqrt(grid.cell_area)
         if "force_error" in self.dataset and 0 < cells < _CELLS and min(grid.shape) > 1:
-            error = summary["pull_off_accuracy"] / -summary["pull_off"]
-            off = f"may be off by {error:.0%}" if isfinite(error) else "has no known error"
-            messages["the pull-off force is that of a contact of few cells"] = (
-                f"step {summary['pull_off_step']:.0f}: at pull-off the radius of the contact has "
-                f"{cells:.1f} cells, so the pull-off force {off}; use more points, or a smaller "
-                "grid.size"
-            )
+            step, error = summary["pull_off_step"], summary["pull_off_accuracy"]
+            known = "known error" if isfinite(error) else "unknown error"
+            error /= -summary["pull_off"]
+            limits[FEW_CELLS] = {"step": step, "cells": cells, "error": error, "off": known}
         last = self.dataset.isel(step=int(np.argmax(self.dataset["contact_area"].values)))
         contact, displacement = last["contact"].values, last["displacement"].values
-        if not contact.any() or not np.isfinite(displacement).all():
-            return messages
-        step = int(last["step"])
-        thickness, deepest = last.attrs["depth_to_base"], float(displacement[contact].max())
-        if deepest > thickness:
-            messages["the surface is pressed through a layer to its rigid base"] = (
-                f"step {step}: the surface is pressed down by {readable(deepest, 'm', DIGITS)}, "
-                f"through a layer {readable(thickness, 'm', DIGITS)} thick to its rigid base: the "
-                "numbers are those of the equations, not of an experiment; press in less far"
-            )
-        slope = steepest(displacement, contact, grid)
-        # As it is told: an indenter of that very slope is not beyond it by rounding.
-        if round(slope, 1) > _STEEPEST and not has_interaction(self.dataset):
-            messages["slopes in contact are far beyond the theory"] = (
-                f"step {step}: slopes in contact reach {slope:.1f}, and the theory is for slopes "
-                "up to 0.3: force and area are those of the equations, not of an experiment; press "
-                "in less far"
-            )
-        return messages
-
-    def caveats_by_phrase(self) -> dict[str, list[tuple[int, str]]]:
-        """Return number and sentence of the steps with each kind of caveat, failures left out.
-
-        The keys say what is limited: "the cells are too coarse for this contact". Of small domains
-        the step that needs the largest comes first.
-        """
-        groups = by_phrase(self.caveats())
-        return {p: [(number, c.sentence) for number, c in group] for p, group in groups.items()}
+        if contact.any() and np.isfinite(displacement).all():
+            of_step = {"step": int(last["step"])}
+            thickness, deepest = last.attrs["depth_to_base"], float(displacement[contact].max())
+            if deepest > thickness:
+                limits[THROUGH_LAYER] = {**of_step, "deepest": deepest, "thickness": thickness}
+            slope = steepest(displacement, contact, grid)
+            # As it is told: an indenter of that very slope is not beyond it by rounding.
+            if round(slope, 1) > _STEEPEST and not has_interaction(self.dataset):
+                limits[SLOPES] = {**of_step, "slope": slope}
+        return {limit.phrase: limit.sentence(values) for limit, values in limits.items()}
 
     def warnings(self) -> list[str]:
         """Return a message for each kind of caveat, with the first step that has it."""
-        groups = self.caveats_by_phrase().values()
-        return [*map(first_message, groups), *self.beyond_theory().values()]
+        groups = by_phrase(self.caveats()).values()
+        messages = [first_message([(n, c.sentence) for n, c in group]) for group in groups]
+        return [*messages, *self.beyond_theory().values()]
 
     def _of(self, *statuses: Status) -> list[tuple[int, str]]:
         return [(number, c.sentence) for number, c in self.caveats() if c.status in statuses]
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: status, numbers of the steps, all variables folded away."""
-        solved, planned, failed = len(self.dataset["step"]), self.planned_steps, self.failures()
-        outcome = f"{solved} of {planned} steps" if solved < planned else f"{planned} steps"
-        outcome += f", {len(failed)} did not converge" if failed else ", all converged"
-        columns = [
-            [readable(float(v), VARIABLES[name].unit, 4) for v in self.dataset[name].values]
-            for name in _SHOWN
-            if name in self.dataset
-        ]
-        numbers = map(str, self.dataset["step"].values.tolist())
-        statuses = map(str, self.dataset["status"].values)
-        rows = [list(row) for row in zip(numbers, *columns, statuses, strict=True)]
-        if len(rows) > _MOST:
-            rows = [*rows[: _MOST - 1], ["…"] * len(rows[0]), rows[-1]]
-        return summary(
-            str(self.dataset.attrs["title"] or "Result"),
-            outcome,
-            ["step", *(n.replace("_", " ") for n in _SHOWN if n in self.dataset), "status"],
-            rows,
-            details=self.dataset._repr_html_(),
-        )
+        from pellicle.show.notebook import of_result
+
+        return of_result(self)
 
     def plot(self, variable: str = "pressure", *, step: int = -1, **options: Any) -> Any:
         """Draw a field of a load step as a map, x to the right and y up; grey without pressure.

@@ -1,4 +1,4 @@
-"""The runs that an output shows: one run, or all runs of a study."""
+"""The runs that an output shows, one or all of a study, and how far each is."""
 
 from __future__ import annotations
 
@@ -9,14 +9,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from pellicle.contact.caveats import Status
 from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.schema.expression import evaluate, names_in
 from pellicle.variables import FIELDS, WALL_PRESSURE
 
 from . import storage
 from .derived import CELLS, REDUCTIONS, as_array, names
-from .dimensions import with_paths
+from .dimensions import parts, with_paths
 from .path import with_path
 
 if TYPE_CHECKING:
@@ -67,9 +69,19 @@ class StoredRuns:
 
     def column(self, text: str) -> xr.DataArray:
         """Return the value of an expression for each step."""
-        if names_in(text) & {*FIELDS, WALL_PRESSURE, *CELLS}:
-            return self.from_each(lambda run: _by_step(text, run))
-        return as_array(text, self.table)
+        if not names_in(text) & {*FIELDS, WALL_PRESSURE, *CELLS}:
+            return as_array(text, self.table)
+
+        def by_step(run: xr.Dataset) -> Any:
+            value = evaluate(text, names(run), REDUCTIONS)
+            if set(getattr(value, "dims", ())) & set(CELLS):
+                raise ConfigError(
+                    f"{shown(text)} has a value for each cell instead of each step; put fields, "
+                    f"x and y inside {', '.join(REDUCTIONS)}, such as mean(pressure)"
+                )
+            return value
+
+        return self.from_each(by_step)
 
     def from_each(self, function: Callable[[xr.Dataset], Any]) -> xr.DataArray:
         """Return the values of ``function`` for all steps of all runs; NaN for missing runs."""
@@ -84,12 +96,43 @@ class StoredRuns:
         return xr.DataArray(values, coords, (*runs.dims, "step"))
 
 
-def _by_step(text: str, run: xr.Dataset) -> Any:
-    """Return the value of an expression over a run for each step."""
-    value = evaluate(text, names(run), REDUCTIONS)
-    if set(getattr(value, "dims", ())) & set(CELLS):
-        raise ConfigError(
-            f"{shown(text)} has a value for each cell instead of each step; put fields, "
-            f"x and y inside {', '.join(REDUCTIONS)}, such as mean(pressure)"
-        )
-    return value
+_LEAST_LETTERS = 8
+_WORST_FIRST = "failed", "not run", "NOT CONVERGED"
+
+
+def axes_of(table: xr.Dataset) -> list[str]:
+    """Return the varied parameters of a study, given its table."""
+    return [str(name) for name in table.coords if name != "step"]
+
+
+def runs_of(table: xr.Dataset) -> Iterator[xr.Dataset]:
+    """Yield the part of the table of a study that belongs to each run."""
+    return parts(table, table["run"].dims)
+
+
+def short_files(table: xr.Dataset) -> list[str]:
+    """Return the names of the files of runs, cut after the letters that differ, but at least 8."""
+    names = [str(run["run"].item()) for run in runs_of(table)]
+    lengths = range(_LEAST_LETTERS, max(map(len, names), default=_LEAST_LETTERS) + 1)
+    least = next((n for n in lengths if len({name[:n] for name in names}) == len({*names})), None)
+    return [f"{name[:least]}…" if least and least < len(name) else name for name in names]
+
+
+def progress_of(run: xr.Dataset) -> tuple[int, int, str]:
+    """Return the number of finished steps, of planned steps, and the worst verdict of a run."""
+    (statuses,) = statuses_of(run)
+    verdicts = {status.verdict for status in statuses}
+    worst = next((verdict for verdict in _WORST_FIRST if verdict in verdicts), "converged")
+    done = sum(status not in (Status.NOT_RUN, Status.FAILED) for status in statuses)
+    return done, len(statuses), worst
+
+
+def statuses_of(table: xr.Dataset) -> list[list[Status]]:
+    """Return the statuses of the steps of each run."""
+    return [[Status[code] for code in run if code] for run in by_run(table, "status_code")]
+
+
+def by_run(table: xr.Dataset, name: str) -> NDArray[Any]:
+    """Return a variable of the steps, of shape (runs, steps)."""
+    values = table[name].values
+    return values.reshape(-1, values.shape[-1])

@@ -20,7 +20,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from pellicle.errors import StorageError, shown
+from pellicle.errors import StorageError
 from pellicle.files import atomic_write, is_file, is_folder, storage_errors
 
 from . import checksum, netcdf
@@ -74,16 +74,6 @@ def append(dataset: xr.Dataset, path: Path) -> None:
         _join(path, segments, dataset)
     else:
         write(dataset, path.with_name(f".{path.name}.{len(own) + len(waiting):08d}.tail"))
-
-
-def require_consecutive(steps: xr.Dataset, path: Path) -> None:
-    """Refuse to resume a file whose steps are not 1, 2, …, as when two processes wrote it."""
-    numbers = steps["step"].values.tolist()
-    if numbers != list(range(1, len(numbers) + 1)):
-        raise StorageError(
-            f"{path}: its steps are {shown(numbers)}, not 1, 2, …, so it cannot be resumed; "
-            f"{REPLACING}"
-        )
 
 
 def close(path: Path) -> None:

@@ -3,100 +3,47 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pellicle.arrays import Array
-from pellicle.units import DIGITS, NOTHING, Scale, axis_unit, printed
-from pellicle.variables import (
-    CORRECTED_FRACTION,
-    VARIABLES,
-    WORDS,
-    WORDS_OF_VALUES,
-    words_of_name,
-)
+from pellicle.components.charts import Column
+from pellicle.units import DIGITS
+from pellicle.variables import CORRECTED_FRACTION, WORDS, WORDS_OF_VALUES, words_of_name
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_SI_DIGITS, _ALL_DIGITS = 6, 15
+_ALL_DIGITS = 15
 _AXES: Final = {"semi_major_axis", "semi_minor_axis", "major_axis_angle"}
 _OF_A_PERIOD: Final = {"contact_fraction", "mean_pressure"}
 _ROUND: Final = 1e-9
 
 
-@dataclass(frozen=True)
-class Wording:
-    """A variable as figures and tables show it: in words, and in one unit for all values."""
+def column_of(variable: xr.DataArray) -> Column:
+    """Return a variable or a coordinate of a result or a table as a column.
 
-    words: str
-    """Such as "contact radius"."""
-    scale: Scale
-    digits: int = DIGITS
-    """Significant digits of its numbers."""
-    texts: Mapping[str, str] = field(default_factory=dict)
-    """Words for values that are texts, such as types of components."""
-
-    @property
-    def head(self) -> str:
-        """Words and unit, for an axis or a column: "contact radius [µm]"."""
-        return f"{self.words} [{self.scale.unit}]" if self.scale.unit else self.words
-
-    def number(self, value: object) -> str:
-        """Return a value in SI as text in the unit, without it."""
-        if isinstance(value, str):
-            return self.texts.get(value, value)
-        return self.scale.number(value, self.digits)
-
-    def text(self, value: object) -> str:
-        """Return words, value and unit: "surface tension 30 mN/m"."""
-        number = self.number(value)
-        return f"{self.words} {number if number == NOTHING else self.scale.with_unit(number)}"
-
-    def listing(self, values: Iterable[object]) -> str:
-        """Return several values in SI as a list with the unit; of many, some are left out."""
-        return self.scale.listing([self.number(value) for value in values])
-
-
-def wording(variable: xr.DataArray, *, si: bool = False) -> Wording:
-    """Return how a variable or a coordinate of a result or a table is shown.
-
-    Its attributes or, without them, its name give the words; its largest value the prefix of its
-    unit, which with ``si`` has none. The values of a coordinate have as many digits as distinguish
-    them, four at least; with ``si`` numbers have six.
+    Its attributes or, without them, its name give the words. The numbers of a coordinate have as
+    many digits as distinguish them, four at least.
     """
-    name = str(variable.name)
-    words = str(variable.attrs.get(WORDS, words_of_name(name)))
-    unit = str(variable.attrs.get("units", "1"))
-    if variable.dtype.kind not in "iuf":
-        return Wording(
-            words, Scale(1.0, ""), texts=json.loads(variable.attrs.get(WORDS_OF_VALUES, "{}"))
-        )
-    if si:
-        return Wording(words, Scale(1.0, "" if unit == "1" else printed(unit)), digits=_SI_DIGITS)
-    scale = axis_unit(variable.values, unit)
-    is_axis = variable.ndim == 1 and name in variable.coords
-    return Wording(words, scale, _digits(variable.values, scale) if is_axis else DIGITS)
-
-
-def wording_of(name: str, values: Sequence[float], *, si: bool = False) -> Wording:
-    """Return how values of a variable of `VARIABLES` are shown."""
-    import xarray as xr
-
-    attributes = VARIABLES[name].attributes
-    return wording(xr.DataArray(list(values), dims="row", name=name, attrs=attributes), si=si)
-
-
-def _digits(values: Array, scale: Scale) -> int:
-    """Return the number of digits that distinguish values, at least `DIGITS`."""
-    distinct = {*values.tolist()}
-    for digits in range(DIGITS, _ALL_DIGITS):
-        if len({scale.number(value, digits) for value in distinct}) == len(distinct):
-            return digits
-    return _ALL_DIGITS
+    name, attributes, values = str(variable.name), variable.attrs, variable.values.ravel()
+    is_number = variable.dtype.kind in "iuf"
+    column = Column(
+        str(attributes.get(WORDS, words_of_name(name))),
+        values,
+        str(attributes.get("units", "1")) if is_number else "",
+        str(attributes.get("long_name", "")),
+        name,
+        texts=json.loads(attributes.get(WORDS_OF_VALUES, "{}")),
+    )
+    if is_number and variable.ndim == 1 and name in variable.coords:
+        distinct = {*values.tolist()}
+        for digits in range(DIGITS, _ALL_DIGITS):
+            if len({column.scale.number(value, digits) for value in distinct}) == len(distinct):
+                return replace(column, digits=digits)
+        return replace(column, digits=_ALL_DIGITS)
+    return column
 
 
 def has_one_shape(data: xr.Dataset) -> bool:

@@ -36,10 +36,7 @@ class Journal:
         if self.overwrite or not exists:
             return None
         steps = storage.read(self.path, without=["x", "y"])
-        if steps.attrs.get("identity") != self.identity:
-            return None
-        storage.require_consecutive(steps, self.path)
-        return steps
+        return steps if steps.attrs.get("identity") == self.identity else None
 
     def resume(self) -> list[xr.Dataset]:
         """Return the steps that an earlier process finished, each a dataset of its own."""
@@ -52,7 +49,6 @@ class Journal:
             steps = load(self.path).dataset
         except StorageError as error:
             raise StorageError(f"{error}; {storage.REPLACING}") from None
-        storage.require_consecutive(steps, self.path)
         return [steps.isel(step=[index]) for index in range(steps.sizes["step"])]
 
     def append(self, step: xr.Dataset) -> None:

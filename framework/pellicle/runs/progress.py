@@ -7,10 +7,10 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager
 from typing import TYPE_CHECKING, NamedTuple, Self
 
-from pellicle.components import Monitor, Say, Task
+from pellicle.components import Monitor, Task
 
 if TYPE_CHECKING:
     import rich.progress
@@ -32,18 +32,6 @@ class ProgressMessage(NamedTuple):
     """Residual over the tolerance."""
     done: float
     """Number of finished steps, plus the finished share of the current one."""
-
-
-class ProgressReporter(nullcontext[None]):
-    """Passes the progress of a run to a function, at most ten times a second."""
-
-    def __init__(self, steps: int, say: Say) -> None:
-        super().__init__()
-        self._steps, self._say = steps, say
-
-    def step(self, index: int) -> Monitor:
-        """Return the monitor of a load step, counted from 0."""
-        return _monitor(index, self._steps, self._say)
 
 
 class _Progress:
@@ -104,7 +92,7 @@ class RunProgress(_Progress):
         if self._bars:
             self._task = self._bars.add_task("", total=float(steps), message="")
 
-    def step(self, index: int) -> Monitor:
+    def __call__(self, index: int) -> Monitor:
         """Return the monitor of a load step, counted from 0."""
 
         def update(message: ProgressMessage) -> None:
@@ -117,7 +105,7 @@ class RunProgress(_Progress):
                 f"residual {message.residual_ratio:.1e} × tolerance",
             )
 
-        show = _monitor(index, self._steps, update)
+        show = reporting(index, self._steps, update)
 
         def monitor(iteration: int, residual_ratio: float) -> None:
             """Show or report an iteration."""
@@ -204,7 +192,7 @@ class BatchProgress(_Progress):
         return f"{self._done - self._failed} done, {self._failed} failed, {left} left"
 
 
-def _monitor(index: int, steps: int, show: Callable[[ProgressMessage], None]) -> Monitor:
+def reporting(index: int, steps: int, show: Callable[[ProgressMessage], None]) -> Monitor:
     """Return a monitor of a load step that passes its progress on, at most ten times a second."""
     highest, shown_at = 1.0, 0.0
 
@@ -244,5 +232,5 @@ def _bars() -> rich.progress.Progress | None:
     return bars()
 
 
-Bar = RunProgress | ProgressReporter
-"""The context in which a run is solved; it receives the progress of the run."""
+Bar = AbstractContextManager[Callable[[int], Monitor]]
+"""The context in which a run is solved; it yields the monitor of each load step, from 0."""

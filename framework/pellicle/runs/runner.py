@@ -10,7 +10,7 @@ from contextlib import ExitStack, closing
 from functools import partial
 from itertools import chain
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import scipy.fft
 import xarray as xr
@@ -40,6 +40,7 @@ STANDARD_OUTPUTS = ("csv", "figures")
 _LONGEST_STEM = 120
 # Points of a transform from which threads save time.
 _LARGE = 1024**2
+Outcome = TypeVar("Outcome", Result, xr.Dataset)
 Value = TypeVar("Value")
 
 
@@ -108,14 +109,14 @@ def solve(run: Run) -> Result:
     return execute(run, None, (), RunProgress(len(run.loading.values), False)).result
 
 
-class Executed(NamedTuple):
-    """The outcome of a run."""
+class Executed(NamedTuple, Generic[Outcome]):
+    """The outcome of a run, or of a study, whose result is its table."""
 
-    result: Result
+    result: Outcome
     files: tuple[Path, ...]
-    """The result file and the files of the outputs."""
+    """The files of the result and of the outputs."""
     resumed: int
-    """Number of steps that an earlier process had solved."""
+    """Number of steps, or of runs of a study, that an earlier process had solved."""
 
 
 def execute(
@@ -126,7 +127,7 @@ def execute(
     *,
     threads: int | None = None,
     lock: bool = True,
-) -> Executed:
+) -> Executed[Result]:
     """Solve the load steps that ``journal`` lacks and write the outputs beside it.
 
     After an interruption the outputs still show the finished steps. Without a journal nothing is
@@ -141,9 +142,10 @@ def execute(
     def runs() -> Runs:
         return StoredRuns.of_run(read_only_dataset(result.dataset), run.to_json(portable=True))
 
-    with scipy.fft.set_workers(threads or default_threads(run.grid)), bar, ExitStack() as stack:
+    workers = scipy.fft.set_workers(threads or default_threads(run.grid))
+    with workers, bar as monitor_of, ExitStack() as stack:
         try:
-            solved = solve_steps(run, compose(run), steps, bar)
+            solved = solve_steps(run, compose(run), steps, monitor_of)
             if journal:
                 if lock:
                     stack.enter_context(locked(journal.stem.parent, journal.stem.name))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -12,21 +12,18 @@ import xarray as xr
 from pellicle.components import Monitor, Search, Setting
 from pellicle.components.kernel import branches_of
 from pellicle.components.prescription import target_of
-from pellicle.components.solver import solution_of
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
-from pellicle.contact.equilibrium import equilibrium_of
 from pellicle.contact.load_step import FinishedStep, LoadStep, end_of
 from pellicle.results.step import Steps, step_dataset
 
-from .progress import Bar
 from .relaxation import Relaxation
-from .target_search import reach
+from .target_search import reach, solved
 from .terms import Surroundings, Term
 from .terms.adhesion import adhesion
 from .terms.contact import contact
 from .terms.relaxation import relaxation
-from .terms.requested import corrected_variables, corrections, prescription, stiffness
+from .terms.requested import corrections, prescription, stiffness
 
 
 class Physics:
@@ -44,19 +41,17 @@ class Physics:
             adhesion: run.interaction,
         }
         self.terms: tuple[Term, ...] = tuple(partial(t, run) for t, has in named.items() if has)
-        areas = corrected_variables(run) if run.corrections else ()
-        self.variables = (*areas, *run.loading.prescription.variables)
 
 
 def solve_steps(
-    run: Run, setting: Setting, steps: Steps, bar: Bar
+    run: Run, setting: Setting, steps: Steps, monitor_of: Callable[[int], Monitor]
 ) -> Generator[xr.Dataset, None, None]:
     """Solve the load steps missing from ``steps``; add and yield each as soon as it is solved."""
     origin, physics = provenance(run), Physics(run)
     for index in range(len(steps), len(run.loading.values)):
         # Without a name for the solved step, only its copy in ``steps`` outlives the solve.
         yield steps.append(
-            _next_step(run, setting, steps.path, physics, bar.step(index)).assign_attrs(origin)
+            _next_step(run, setting, steps.path, physics, monitor_of(index)).assign_attrs(origin)
         )
 
 
@@ -76,7 +71,7 @@ def _next_step(
     for term in physics.terms:
         step = term(step, surroundings)
     seconds = time.perf_counter() - started
-    return step_dataset(run.grid, len(path) + 1, step, physics.variables, seconds)
+    return step_dataset(run.grid, len(path) + 1, step, run.variables, seconds)
 
 
 def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> LoadStep:
@@ -86,8 +81,5 @@ def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> Lo
     if isinstance(target, Search):
         step = reach(setting, target, run.solver, monitor)
     else:
-        problem = setting.problem(target)
-        solution = solution_of(run.solver, problem, setting.start(problem), monitor)
-        equilibrium = equilibrium_of(problem, solution)
-        step = LoadStep(equilibrium, solution.iterations, solution.stop, solution.jumped)
+        step = solved(setting, target, run.solver, monitor)
     return replace(step, applications=setting.operator.applications - applied)

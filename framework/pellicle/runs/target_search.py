@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -18,10 +18,9 @@ from pellicle.components import Monitor, Solver
 from pellicle.components.prescription import Search, Setting
 from pellicle.components.solver import solution_of
 from pellicle.contact.caveats import Caveat, Status
-from pellicle.contact.equilibrium import Equilibrium, equilibrium_of
-from pellicle.contact.load_step import LoadStep
-from pellicle.contact.problem import Depth
-from pellicle.contact.solution import Solution
+from pellicle.contact.equilibrium import equilibrium_of
+from pellicle.contact.load_step import LoadStep, start_of
+from pellicle.contact.problem import Depth, Force
 
 # Number of trials to bracket the goal, after which it counts as out of reach.
 _MOST_TRIALS: Final = 40
@@ -50,11 +49,17 @@ def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) ->
         above = trials(high)
     if jumps := below < 0 < above:
         brentq(trials, low, high, xtol=search.width, rtol=1e-15)
-    solution = trials.solution
-    step = LoadStep(
-        trials.nearest, trials.iterations, solution.stop, solution.jumped, missed=trials.missed
-    )
+    step = replace(trials.nearest, iterations=trials.iterations, missed=trials.missed)
     return step.having({}, _not_met(trials, jumps=jumps))
+
+
+def solved(setting: Setting, control: Depth | Force, solver: Solver, monitor: Monitor) -> LoadStep:
+    """Return the load step at a depth or a force."""
+    problem = setting.problem(control)
+    start = start_of(problem, setting.state, setting.path)
+    solution = solution_of(solver, problem, start, monitor)
+    equilibrium = equilibrium_of(problem, solution)
+    return LoadStep(equilibrium, solution.iterations, solution.stop, solution.jumped)
 
 
 def _not_met(trials: _Trials, *, jumps: bool) -> Iterator[Caveat]:
@@ -91,7 +96,7 @@ def _stride(excess: float, trials: int) -> float:
 
 @dataclass
 class _Trials:
-    """Solves for one control after the other, and keeps the solution nearest to the goal."""
+    """Solves for one control after the other, and keeps the step nearest to the goal."""
 
     setting: Setting
     search: Search
@@ -109,8 +114,7 @@ class _Trials:
     limit: float = math.inf
     """Depth of full contact over `scale`, which no load exceeds."""
     scale: float = field(init=False)
-    nearest: Equilibrium = field(init=False)
-    solution: Solution = field(init=False)
+    nearest: LoadStep = field(init=False)
 
     def first(self) -> float:
         """Return the first control, scaled as in `excess`: the guess or that of the last step."""
@@ -141,15 +145,13 @@ class _Trials:
 
     def _try(self, control: float) -> float:
         goal = self.search.goal
-        problem = self.setting.problem(self.search.control(control))
-        solution = solution_of(self.solver, problem, self.setting.start(problem), self.monitor)
-        equilibrium = equilibrium_of(problem, solution)
-        self.iterations += solution.iterations
-        value = self.search.measure(equilibrium)
+        step = solved(self.setting, self.search.control(control), self.solver, self.monitor)
+        self.iterations += step.iterations
+        value = self.search.measure(step.equilibrium)
         missed = abs(value - goal) / (abs(goal) or 1.0)
         # Of two equal values the later is nearer to the jump.
         if missed <= self.missed:
-            self.missed, self.nearest, self.solution = missed, equilibrium, solution
+            self.missed, self.nearest = missed, step
         if abs(value - goal) <= self.search.resolution:
             return 0.0
         if value < goal:

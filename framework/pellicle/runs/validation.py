@@ -39,12 +39,8 @@ class CheckedCase:
 def validate(cases: Iterable[Case] | None = None) -> Iterator[CheckedCase]:
     """Yield each case with its computed value; by default all registered cases.
 
-    Cases in a row that share a configuration share its run.
-
-    Raises
-    ------
-    ConfigError, PluginError
-        A case cannot be run.
+    Cases in a row that share a configuration share its run. One that cannot be run is a ConfigError
+    or a PluginError.
     """
     if cases is None:
         cases = chain.from_iterable(suite() for suite in registry().suites)

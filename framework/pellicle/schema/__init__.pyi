@@ -13,4 +13,3 @@ from .model import Model as Model
 from .model import get as get
 from .model import replaced as replaced
 from .model import walk as walk
-from .notebook import summary as summary

@@ -6,7 +6,7 @@ Entries of lists count from 0, as in ``grid.size.0``; a key of a table may itsel
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
@@ -20,6 +20,9 @@ class Model(BaseModel):
     """A frozen model that refuses unknown fields with a `ConfigError` naming field and remedy."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, validate_default=False)
+    examples: ClassVar[tuple[Mapping[str, Any], ...]] = ()
+    """Its fields as a user would write them: the first is the example of ``pellicle explain``, all
+    those of components are asked by ``pellicle plugins --check``."""
 
     # Positional only, so that a key "self" in a file is refused as an unknown field.
     def __init__(self, /, **data: Any) -> None:

@@ -1,15 +1,15 @@
 __all__: list[str]
 
+from .doubtful_scales import doubts_of_scale as doubts_of_scale
 from .drawing import draw as draw
+from .fields import up_to_rim as up_to_rim
+from .fields import with_rim as with_rim
 from .fields import without_round_off as without_round_off
 from .html import Block as Block
-from .html import Cell as Cell
 from .html import Code as Code
-from .html import Column as Column
 from .html import Notice as Notice
 from .html import Picture as Picture
 from .html import Section as Section
-from .html import Table as Table
 from .html import Text as Text
 from .html import page as page
 from .maps import Field as Field
@@ -17,8 +17,7 @@ from .maps import Frame as Frame
 from .maps import Maps as Maps
 from .maps import frame as frame
 from .maps import side as side
-from .rim import up_to_rim as up_to_rim
-from .rim import with_rim as with_rim
+from .notebook import summary as summary
 from .saving import figure_of as figure_of
 from .saving import figures as figures
 from .saving import png as png

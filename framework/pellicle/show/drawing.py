@@ -13,7 +13,7 @@ from pellicle.arrays import Array
 from pellicle.components.charts import Axis, Chart, Fields, Panel, Series, extent
 from pellicle.units import Scale, axis_unit
 
-from .style import LINES, MARKERS, NO_CONTACT, add_colour_bar, colour, sparse_marker
+from .style import LINES, MARKERS, NO_CONTACT, colour
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,8 +27,8 @@ _RETRACTION = (0, (2.5, 1.2))
 _GREY, _PALE = "0.4", "0.6"
 _MOST_MARKED = 80
 """Points of a line that all have a marker; of more, some have, at a distance."""
-_MARKER_DISTANCE = 0.04
-"""Over the diagonal of the axes."""
+_MARKER_DISTANCE, _SPARSE_DISTANCE = 0.04, 0.12
+"""Over the diagonal of the axes; the latter on a smooth curve."""
 _LETTERS = 50
 """Letters of a line of the label of an axis."""
 _NOT_CONVERGED = "not converged"
@@ -47,8 +47,9 @@ class Drawn(NamedTuple):
 
 def size_of(shown: Chart | Fields) -> tuple[float, float]:
     """Return width and height [inch] for a chart or for fields."""
-    if isinstance(shown, Fields) and len(shown.panels) > 1:
-        across, down = _arrangement(shown)
+    count = len(shown.panels if isinstance(shown, Fields) else shown.titles)
+    if count > 1:
+        across, down = _arrangement(count)
         return _MAP * across + 1.2, _MAP * down + 1.0
     return SIZE
 
@@ -62,15 +63,21 @@ def draw(figure: Figure | SubFigure, shown: Chart | Fields) -> list[Drawn]:
 
 
 def _draw_chart(figure: Figure | SubFigure, chart: Chart) -> list[Drawn]:
+    count, in_grid = len(chart.y), bool(chart.titles)
+    across, down = _arrangement(count) if in_grid else (1, count)
     ratios = {"height_ratios": chart.heights} if chart.heights else {}
-    panels = figure.subplots(len(chart.y), sharex=True, squeeze=False, gridspec_kw=ratios).ravel()
+    shared: dict[str, Any] = {"sharex": True, "sharey": in_grid, "gridspec_kw": ratios}
+    all_axes = figure.subplots(down, across, squeeze=False, **shared).ravel()
+    panels, unused = all_axes[:count], all_axes[count:]
+    for axes in unused:
+        axes.remove()
     # What is published is in the units that follow from the rest.
     scaled = [s for s in chart.series if s.role != "published"]
     scale_x = chart.x.scale([s.x for s in scaled])
-    drawn, scales = [], []
+    drawn, groups = [], []
     for number, (axes, axis) in enumerate(zip(panels, chart.y, strict=True)):
-        scale_y = axis.scale([s.y for s in scaled if s.panel == number])
-        scales.append(scale_y)
+        scale_y = axis.scale([s.y for s in scaled if in_grid or s.panel == number])
+        groups.append((panels if in_grid else [axes], axis, scale_y))
         for low, high in chart.shaded:
             axes.axvspan(low * scale_x.factor, high * scale_x.factor, color="0.9", zorder=0, lw=0)
         drawn += [
@@ -78,25 +85,42 @@ def _draw_chart(figure: Figure | SubFigure, chart: Chart) -> list[Drawn]:
             for series in chart.series
             if series.panel == number
         ]
-        axes.set_ylabel(textwrap.fill(axis.label(scale_y), _LETTERS))
+        if number % across == 0:
+            axes.set_ylabel(textwrap.fill(axis.label(scale_y), _LETTERS))
+        if number + across >= count:
+            axes.set_xlabel(textwrap.fill(chart.x.label(scale_x), _LETTERS))
+            axes.tick_params(labelbottom=True)
         if axis.signed:
             axes.axhline(0.0, color=_PALE, linewidth=0.6)
         axes.grid(alpha=0.3)
     _name_legs(panels[0], chart)
-    # Panels share x, and limits end the search for them.
-    for axes, axis, scale_y in zip(panels, chart.y, scales, strict=True):
-        _set_scale(axes, "x", chart.x, scale_x.factor)
-        _set_scale(axes, "y", axis, scale_y.factor)
-        if axes.get_legend_handles_labels()[1]:
-            axes.legend(frameon=False, fontsize="small")
-    panels[-1].set_xlabel(textwrap.fill(chart.x.label(scale_x), _LETTERS))
-    panels[0].set_title(chart.title)
+    _set_scale(panels, "x", chart.x, scale_x.factor)
+    for group, axis, scale_y in groups:
+        _set_scale(group, "y", axis, scale_y.factor)
+    _name(figure, panels, chart)
     if chart.note:
         place = {"transform": panels[0].transAxes, "fontsize": "small"}
         panels[0].text(0.02, 0.02, chart.note, color="red", **place)
     if len(panels) > 1:
         figure.align_ylabels(panels)
     return drawn
+
+
+def _name(figure: Figure | SubFigure, panels: Sequence[Axes], chart: Chart) -> None:
+    """Give panels titles and legends; those of a grid have one legend beside them."""
+    named = [dict(zip(*axes.get_legend_handles_labels()[::-1], strict=True)) for axes in panels]
+    if not chart.titles:
+        panels[0].set_title(chart.title)
+        for axes, entries in zip(panels, named, strict=True):
+            if entries:
+                axes.legend(frameon=False, fontsize="small")
+        return
+    figure.suptitle(chart.title)
+    for axes, title in zip(panels, chart.titles, strict=True):
+        axes.set_title(title, fontsize="small")
+    if distinct := {name: handle for entries in named for name, handle in entries.items()}:
+        beside: dict[str, Any] = {"loc": "outside right upper", "fontsize": "small"}
+        figure.legend(distinct.values(), distinct.keys(), **beside)
 
 
 def _draw_series(axes: Axes, series: Series, chart: Chart, scale_x: Scale, scale_y: Scale) -> Drawn:
@@ -143,14 +167,18 @@ def _style(series: Series, chart: Chart) -> dict[str, Any]:
     if is_reference:
         style["zorder"] = 1
     if series.stepped:
-        style["drawstyle"] = "steps-post"
-    if look.marker is not None and look.sparse:
-        style |= sparse_marker(look.marker)
-    elif look.marker is not None:
-        marker = MARKERS[look.marker % len(MARKERS)]
-        style |= {"marker": marker, "markersize": 4, "markerfacecolor": "white"}
-        if look.line is not None and series.x.size > _MOST_MARKED:
-            style["markevery"] = _MARKER_DISTANCE
+        style["drawstyle"] = f"steps-{series.stepped}"
+    if look.marker is None:
+        return style
+    style["marker"] = MARKERS[look.marker % len(MARKERS)]
+    if look.sparse:
+        # Smooth curves that coincide show their markers beside each other.
+        first = _SPARSE_DISTANCE * (0.2 + 0.25 * (look.marker % 4))
+        return style | {"markersize": 3.5, "markevery": (first, _SPARSE_DISTANCE)}
+    style |= {"markersize": 4, "markerfacecolor": "white"}
+    of_legs = (series.x[leg.steps].size for leg in series.legs)
+    if look.line is not None and max(of_legs, default=series.x.size) > _MOST_MARKED:
+        style["markevery"] = _MARKER_DISTANCE
     return style
 
 
@@ -195,32 +223,39 @@ def _name_legs(axes: Axes, chart: Chart) -> None:
         axes.plot([], [], label="retraction", linestyle=_RETRACTION, **style)
 
 
-def _set_scale(axes: Axes, direction: str, axis: Axis, factor: float) -> None:
-    """Make an axis logarithmic if it shows a positive value, and set its limits.
+def _set_scale(panels: Sequence[Axes], direction: str, axis: Axis, factor: float) -> None:
+    """Make the axis of panels that share it logarithmic if it shows a positive value, and limit it.
 
     Beside negative values, a logarithmic axis leaves out those that are not positive, and the lines
     to them; otherwise such lines end at the edge. A linear axis of positive values does not begin
     below 0.
     """
     low, high = (None if end is None else end * factor for end in axis.limits)
-    if axis.log and np.isfinite(getattr(axes.dataLim, f"minpos{direction}")):
-        signed = getattr(axes.dataLim, f"{direction}0") < 0
-        getattr(axes, f"set_{direction}scale")("log", nonpositive="mask" if signed else "clip")
-    elif low is None and getattr(axes.dataLim, f"{direction}0") >= 0:
-        drawn = getattr(axes, f"get_{direction}lim")()
+    lowest = min(getattr(axes.dataLim, f"{direction}0") for axes in panels)
+    positive = min(getattr(axes.dataLim, f"minpos{direction}") for axes in panels)
+    if axis.log and np.isfinite(positive):
+        nonpositive = "mask" if lowest < 0 else "clip"
+        for axes in panels:
+            getattr(axes, f"set_{direction}scale")("log", nonpositive=nonpositive)
+    elif low is None and lowest >= 0:
+        drawn = getattr(panels[0], f"get_{direction}lim")()
         low = 0.0 if drawn[0] < 0 else None
-    getattr(axes, f"set_{direction}lim")(low, high)
+    elif low is not None and high is None and np.isfinite(lowest):
+        # Values that hardly differ would lie on the edge, which is 5 % of their range above them.
+        highest = max(getattr(axes.dataLim, f"{direction}1") for axes in panels)
+        high = max(getattr(panels[0], f"get_{direction}lim")()[1], low + 1.03 * (highest - low))
+    getattr(panels[0], f"set_{direction}lim")(low, high)
 
 
-def _arrangement(fields: Fields) -> tuple[int, int]:
+def _arrangement(count: int) -> tuple[int, int]:
     """Return the number of panels across and down."""
-    count = max(len(fields.panels), 1)
-    across = min(count, _ACROSS)
+    count = max(count, 1)
+    across = 3 if count > _ACROSS and count % 3 == 0 and count % _ACROSS else min(count, _ACROSS)
     return across, ceil(count / across)
 
 
 def _draw_fields(figure: Figure | SubFigure, fields: Fields) -> None:
-    across, down = _arrangement(fields)
+    across, down = _arrangement(len(fields.panels))
     all_axes = figure.subplots(down, across, squeeze=False).ravel()
     for axes in all_axes[len(fields.panels) :]:
         axes.set_axis_off()
@@ -242,24 +277,25 @@ def _draw_fields(figure: Figure | SubFigure, fields: Fields) -> None:
         below: dict[str, Any] = {"loc": "outside lower center", "ncols": 2, "fontsize": "small"}
         figure.legend(patches, [words, f"no {words}"], **below)
     elif not fields.parts:
-        bar = all_axes[min(across, len(fields.panels)) - 1]
-        add_colour_bar(bar, image, fields.axis.label(scale))
+        # A bar beside the map, as high as it.
+        last = all_axes[min(across, len(fields.panels)) - 1]
+        beside = last.inset_axes((1.04, 0.0, 0.05, 1.0))
+        image.figure.colorbar(image, cax=beside, label=fields.axis.label(scale))
 
 
 def _draw_panel(
     axes: Axes, panel: Panel, factor: float, colours: dict[str, Any], *, parts: bool
 ) -> Any:
     """Draw a field times ``factor``, or numbers of ``parts``, and return its image."""
-    length = axis_unit(np.append(panel.x, panel.y), "m")
-    x, y = panel.x * length.factor, panel.y * length.factor
+    length = axis_unit(np.array(panel.size) / 2, "m")
+    x, y = (edge / 2 * length.factor for edge in panel.size)
     values = panel.values.T * factor if factor != 1.0 else panel.values.T
     if parts:
         values = (values % _PARTS).astype(np.uint8)
     if panel.blank is not None:
         values = np.ma.masked_where(panel.blank.T, values)
         axes.set_facecolor(NO_CONTACT)
-    halves = [(c[1] - c[0] if c.size > 1 else 1.0) / 2 for c in (x, y)]
-    edges: Any = x[0] - halves[0], x[-1] + halves[0], y[0] - halves[1], y[-1] + halves[1]
+    edges: Any = -x, x, -y, y
     # The stage "rgba" converts every cell to four colour values first.
     shared: dict[str, Any] = {"origin": "lower", "interpolation_stage": "data"}
     image = axes.imshow(values, extent=edges, **shared, **colours)
@@ -267,7 +303,7 @@ def _draw_panel(
         # matplotlib warns of a contour that does not exist.
         if mask.any() and not mask.all() and min(mask.shape) > 1:
             line: dict[str, Any] = {"colors": "black", "linewidths": 0.8, "linestyles": style}
-            axes.contour(x, y, mask.T.astype(float), levels=[0.5], **line)
+            axes.contour(mask.T.astype(float), levels=[0.5], extent=edges, origin="lower", **line)
     axes.set(xlabel=f"x [{length.unit}]", ylabel=f"y [{length.unit}]")
     axes.set_title(panel.title, fontsize="medium")
     return image

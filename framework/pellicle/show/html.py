@@ -7,18 +7,24 @@ the values of the maps are in it, and it forbids the browser to fetch anything e
 from __future__ import annotations
 
 import base64
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from pellicle.components.charts import Column, Table
 from pellicle.files import for_document
 
 from .maps import Maps
+from .numbers import is_number
 
 if TYPE_CHECKING:
     from jinja2 import Template
+
+_HASH = re.compile(r"\b([0-9a-f]{8})[0-9a-f]{24,}\b")
 
 
 @dataclass(frozen=True)
@@ -41,45 +47,6 @@ class Notice:
     """Whether all is well; None if it is, with reservations."""
     details: Sequence[str] = ()
     """Lines below it."""
-
-
-@dataclass(frozen=True)
-class Column:
-    """The head of a column."""
-
-    name: str
-    unit: str = ""
-    meaning: str = ""
-    """Shown while the pointer rests on the head."""
-    words: bool = False
-    """Whether its cells are words, not numbers."""
-
-
-@dataclass(frozen=True)
-class Cell:
-    """A cell of a table with a link or a mark."""
-
-    text: str
-    frame: int | None = None
-    """Index of the frame of the page's first maps that a click shows."""
-    bad: bool = False
-    whole: str = ""
-    """The text in full, if it is shortened; shown while the pointer rests on the cell."""
-
-
-@dataclass(frozen=True)
-class Table:
-    """Rows of texts under heads; a click on a head sorts them."""
-
-    kind: ClassVar[str] = "table"
-    caption: str
-    columns: Sequence[Column]
-    rows: Sequence[Sequence[str | Cell]]
-
-    @property
-    def cells(self) -> list[list[Cell]]:
-        """The rows, every cell a `Cell`."""
-        return [[c if isinstance(c, Cell) else Cell(c) for c in row] for row in self.rows]
 
 
 @dataclass(frozen=True)
@@ -167,6 +134,18 @@ def page(title: str, sections: Sequence[Section], subtitle: str = "") -> str:
     )
 
 
+def _column(column: Column) -> dict[str, Any]:
+    """Return the head and the cells of a column of a table; hashes are shortened."""
+    label, texts = column.read()
+    cells = [
+        {"text": short, "whole": text if short != text else "", "bad": bad, "frame": frame}
+        for text, bad, frame in zip_longest(texts, column.bad, column.frames)
+        for short in (_HASH.sub(r"\1…", text),)
+    ]
+    words = not all(map(is_number, texts))
+    return {"column": column, "label": label, "words": words, "cells": cells}
+
+
 def _part(name: str) -> str:
     return files("pellicle.show").joinpath(name).read_text(encoding="utf-8")
 
@@ -182,4 +161,5 @@ def _template() -> Template:
         lstrip_blocks=True,
         finalize=lambda value: for_document(value) if type(value) is str else value,
     )
+    environment.filters["shown"] = lambda table: list(map(_column, table.columns))
     return environment.from_string(_part("page.html"))

@@ -17,6 +17,12 @@ for (const head of document.querySelectorAll("th")) {
   });
 }
 
+// On a narrow page each row is a list, so that long tables begin folded; paper shows all.
+const folds = [...document.querySelectorAll("details")];
+if (matchMedia("(max-width: 40rem)").matches)
+  for (const fold of folds) fold.open &&= fold.querySelectorAll("tbody tr").length <= 3;
+addEventListener("beforeprint", () => { for (const fold of folds) fold.open = true; });
+
 const NOTHING = 65535;
 const MARGIN = { left: 58, right: 84, top: 26, bottom: 40 };
 // A map on paper: half a page wide, in the colours of a page in the light.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -63,10 +64,11 @@ def write_charts(
 
 
 def figure_of(
-    shown: Chart | Fields | Sequence[Chart | Fields],
+    shown: Chart | Fields | Sequence[Chart | Fields], *, titled: bool = True
 ) -> tuple[Callable[[Figure], list[Drawn]], tuple[float, float]]:
     """Return what fills a figure with charts and fields side by side, and its size [inch]."""
     beside = [shown] if isinstance(shown, (Chart, Fields)) else shown
+    beside = beside if titled else [replace(part, title="") for part in beside]
 
     def fill(figure: Figure) -> list[Drawn]:
         places: Any = [figure] if len(beside) == 1 else figure.subfigures(1, len(beside))

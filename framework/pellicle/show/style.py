@@ -18,7 +18,6 @@ from pellicle.variables import ROLE, SEED
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 OKABE_ITO = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"
@@ -28,8 +27,6 @@ NO_CONTACT = "0.93"
 MARKERS = "os^Dv<>P"
 LINES = ("-", "--", "-.", ":")
 _SMALL = 8.0
-_MARKER_DISTANCE = 0.12
-"""Distance of the markers on a smooth curve over the diagonal of the axes."""
 _LIGHTEST = 0.8
 _LABELLED_DECADES = 2.2
 
@@ -106,14 +103,6 @@ def colour(number: int, count: int, *, ordered: bool = False) -> Any:
     return f"C{number}"
 
 
-def sparse_marker(number: int) -> dict[str, Any]:
-    """Return keywords of ``Axes.plot`` for a smooth curve: its marker, far apart and filled."""
-    marker = MARKERS[number % len(MARKERS)]
-    # Curves that coincide show their markers beside each other.
-    first = _MARKER_DISTANCE * (0.2 + 0.25 * (number % 4))
-    return {"marker": marker, "markersize": 3.5, "markevery": (first, _MARKER_DISTANCE)}
-
-
 def is_ordered(table: xr.Dataset, dim: str | None) -> bool:
     """Return whether the values along a dimension are numbers to compare, which seeds are not."""
     return (
@@ -167,6 +156,9 @@ def lay_out(figure: Figure) -> None:
     if engine is None:
         return
     engine.execute(figure)
+    if any(axes.get_aspect() != "auto" for axes in figure.axes):
+        # Axes of a fixed aspect move, with their titles and labels, as they get their places.
+        engine.execute(figure)
     covering = []
     for axes in figure.axes:
         legend = axes.get_legend()
@@ -186,8 +178,3 @@ def lay_out(figure: Figure) -> None:
     if covering:
         engine.execute(figure)
     figure.set_layout_engine("none")
-
-
-def add_colour_bar(axes: Axes, image: Any, label: str) -> None:
-    """Add a bar of colours beside a map, as high as it."""
-    image.figure.colorbar(image, cax=axes.inset_axes((1.04, 0.0, 0.05, 1.0)), label=label)

@@ -8,13 +8,13 @@ import threading
 import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from functools import partial
 from itertools import chain
 from multiprocessing import parent_process
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import xarray as xr
 
@@ -24,23 +24,22 @@ from pellicle.checks import checked_threads, read_only_dataset
 from pellicle.components import Executor, Output, Say
 from pellicle.config.run import Run
 from pellicle.config.study import DEFAULT_EXECUTOR, Study
-from pellicle.contact.caveats import Caveat, Status
+from pellicle.contact.caveats import Status
 from pellicle.errors import ConfigError, ConvergenceWarning, PluginError, StorageError
 from pellicle.files import check_writable, is_file, is_folder
 from pellicle.plugins import registry
 from pellicle.results import storage
 from pellicle.results.dimensions import with_paths, with_python_names
-from pellicle.results.runs import StoredRuns
+from pellicle.results.runs import StoredRuns, progress_of
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.memory_estimate import memory_of
-from pellicle.runs.progress import ProgressReporter
+from pellicle.runs.progress import reporting
+from pellicle.show.sentences import caveats, failures, run_names, shared
 from pellicle.variables import BEYOND_THEORY
 
 from . import table
-from .summary import caveats, failures, progress_of, run_names
 
-_TABLE_SHARE = 0.05
 _LONG = 10.0
 """Time [s] of the runs that are left, one after the other, from which processes share them."""
 _WARNINGS = "warnings"
@@ -77,15 +76,6 @@ class RunTask:
         except StorageError as error:
             return None, 0, str(error)
         return numbers, 0 if numbers is None else numbers.sizes["step"], ""
-
-
-class StudyResult(NamedTuple):
-    """The outcome of a study."""
-
-    table: xr.Dataset
-    files: tuple[Path, ...]
-    resumed: int
-    """Number of runs that had been finished before."""
 
 
 def run_study(
@@ -141,26 +131,34 @@ def run_study(
             progress=progress,
             overwrite=overwrite,
             threads=threads,
-        ).table
+        ).result
     if message := failures(rows):
         warnings.warn(f"{message}; see status", ConvergenceWarning, stacklevel=2)
     return with_python_names(rows)
 
 
-def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[RunTask]:
-    """Return all runs of a study, finished or not; its outputs have to fit it."""
-    table.check_outputs(study)
-    outputs = tuple(o for o in study.points[0].run.outputs or () if o.scope == "run")
-    names = run_names(table.StudyTable(study).dataset())
+def planned(configuration: Run | Study, stem: Path, *, overwrite: bool = False) -> list[RunTask]:
+    """Return the run of a configuration, or those of a study, finished or not.
+
+    ``stem`` is the path of the files of a run without their suffixes; a study is in its folder. The
+    outputs of a study have to fit it.
+    """
+    if isinstance(configuration, Run):
+        journal = Journal(stem, configuration.identity, overwrite)
+        return [RunTask(configuration.title or stem.name, configuration, journal)]
+    table.check_outputs(configuration)
+    points, folder = configuration.points, stem.with_name("runs")
+    outputs = tuple(o for o in points[0].run.outputs or () if o.scope == "run")
+    names = run_names(table.StudyTable(configuration).dataset())
     return [
         RunTask(
             name,
             point.run,
-            Journal(directory / "runs" / identity[:16], identity, overwrite),
+            Journal(folder / identity[:16], identity, overwrite),
             point.position,
             outputs,
         )
-        for name, point in zip(names, study.points, strict=True)
+        for name, point in zip(names, points, strict=True)
         for identity in (point.run.identity,)
     ]
 
@@ -172,21 +170,68 @@ def execute(
     progress: bool = False,
     overwrite: bool = False,
     threads: int | None = None,
-) -> StudyResult:
+) -> runner.Executed[xr.Dataset]:
     """Solve the runs of a study that are not finished, in a folder that no other process uses.
 
     After an interruption the table and the outputs show the finished steps.
     """
     with locked(directory, "study"):
-        return _execute(study, directory, progress, overwrite, threads)
+        path, first = directory / "study.h5", study.points[0].run
+        rows, unfinished = _begun(study, path, overwrite)
+        resumed = len(study.points) - len(unfinished)
+        rows.write(directory)
+        messages: dict[str, None] = {}
+
+        def keep(task: RunTask, outcome: xr.Dataset | Exception) -> tuple[str, bool]:
+            del unfinished[task.index]
+            if isinstance(outcome, Exception):
+                _collect(task, rows)
+                reason = "; ".join(str(outcome).splitlines()) or "no reason given"
+                if not isinstance(outcome, (ConfigError, StorageError)):
+                    reason = f"{type(outcome).__name__}: {reason}"
+                verdict = rows.fail(task.index, reason)
+            else:
+                rows.put(task.index, outcome)
+                rows.beyond_theory[task.index] = outcome.attrs[BEYOND_THEORY]
+                messages.update(dict.fromkeys(outcome.attrs[_WARNINGS]))
+                _, _, verdict = progress_of(outcome)
+            # On a full disk all later runs would fail: writing the table at once detects that.
+            rows.write(directory, at_once=isinstance(outcome, StorageError))
+            return verdict, verdict != "converged"
+
+        def runs() -> StoredRuns:
+            configuration = study.to_json(portable=True)
+            return StoredRuns.of_study(read_only_dataset(whole), directory, configuration)
+
+        def written(write: Callable[[], tuple[Path, ...]]) -> tuple[Path, ...]:
+            try:
+                return write()
+            except ConfigError as error:
+                messages[str(error)] = None
+                return ()
+
+        try:
+            with BatchProgress(len(study.points), resumed, progress) as bar:
+                _solve_all(study.executor, list(unfinished.values()), keep, bar, threads)
+        finally:
+            for task in unfinished.values():
+                _collect(task, rows)
+            rows.write(directory, at_once=True)
+            whole = rows.dataset()
+            outputs = [o for o in runner.standard_outputs(first.outputs) if o.scope != "run"]
+            calls = runner.writers(outputs, runs, directory / "study", first)
+            of_outputs = runner.all_done([partial(written, call) for call in calls])
+    for message in (*messages, *caveats(whole)):
+        warnings.warn(message, stacklevel=3)
+    return runner.Executed(whole, (*rows.files, *chain(*of_outputs)), resumed)
 
 
-def _execute(
-    study: Study, directory: Path, progress: bool, overwrite: bool, threads: int | None
-) -> StudyResult:
-    path, first = directory / "study.h5", study.points[0].run
+def _begun(
+    study: Study, path: Path, overwrite: bool
+) -> tuple[table.StudyTable, dict[tuple[int, ...], RunTask]]:
+    """Return the table of a study with the steps on disk, and the unfinished runs by index."""
     check_writable(path)
-    check_writable(directory / "runs" / "run.h5")
+    check_writable(path.parent / "runs" / "run.h5")
     rows = table.StudyTable(study)
     if not overwrite and path.exists():
         # A file that is not the table of a study is not replaced.
@@ -194,61 +239,12 @@ def _execute(
             rows.recall(storage.table(path))
         except StorageError as error:
             raise StorageError(f"{error}; {storage.REPLACING}") from None
-    runs_of_study = tasks(study, directory)
+    tasks = planned(study, path)
     if overwrite:
         # Otherwise an interruption would leave results of before among the new ones.
-        for task in runs_of_study:
+        for task in tasks:
             storage.remove(task.journal.path)
-    unfinished = {task.index: task for task in runs_of_study if _collect(task, rows) < task.steps}
-    resumed = len(study.points) - len(unfinished)
-    files = _Writer(directory)
-    files.write(rows)
-    messages: dict[str, None] = {}
-
-    def keep(task: RunTask, outcome: xr.Dataset | Exception) -> tuple[str, bool]:
-        del unfinished[task.index]
-        if isinstance(outcome, Exception):
-            _collect(task, rows)
-            reason = "; ".join(str(outcome).splitlines()) or "no reason given"
-            if not isinstance(outcome, (ConfigError, StorageError)):
-                reason = f"{type(outcome).__name__}: {reason}"
-            rows.fail(task.index, reason)
-            verdict = Caveat(Status.FAILED, {"reason": reason}).sentence
-        else:
-            rows.put(task.index, outcome)
-            rows.beyond_theory[task.index] = outcome.attrs.pop(BEYOND_THEORY)
-            messages.update(dict.fromkeys(outcome.attrs.pop(_WARNINGS)))
-            _, _, verdict = progress_of(outcome)
-        # On a full disk all later runs would fail: writing the table at once detects that.
-        files.write(rows, at_once=isinstance(outcome, StorageError))
-        return verdict, verdict != "converged"
-
-    def runs() -> StoredRuns:
-        return StoredRuns.of_study(
-            read_only_dataset(whole), directory, study.to_json(portable=True)
-        )
-
-    def written(write: Callable[[], tuple[Path, ...]]) -> tuple[Path, ...]:
-        try:
-            return write()
-        except ConfigError as error:
-            messages[str(error)] = None
-            return ()
-
-    try:
-        with BatchProgress(len(study.points), resumed, progress) as bar:
-            _solve_all(study.executor, list(unfinished.values()), keep, bar, threads)
-    finally:
-        for task in unfinished.values():
-            _collect(task, rows)
-        files.write(rows, at_once=True)
-        whole = rows.dataset()
-        outputs = [o for o in runner.standard_outputs(first.outputs) if o.scope != "run"]
-        calls = runner.writers(outputs, runs, directory / "study", first)
-        of_outputs = runner.all_done([partial(written, call) for call in calls])
-    for message in (*messages, *caveats(whole)):
-        warnings.warn(message, stacklevel=4)
-    return StudyResult(whole, (*files.paths, *chain(*of_outputs)), resumed)
+    return rows, {task.index: task for task in tasks if _collect(task, rows) < task.steps}
 
 
 def _solve_all(
@@ -272,24 +268,16 @@ def _solve_all(
         start = time.monotonic()
         solve_by(registry().make(Executor, {"type": DEFAULT_EXECUTOR}), [task])
         left = len(todo) * (time.monotonic() - start)
-        if left > _LONG and _can_share(todo, threads or 1):
+        # A process that another one started leaves the cores to its siblings.
+        crowded = parent_process() or min(len(todo), runner.available_cores() // (threads or 1)) < 2
+        if left <= _LONG or crowded:
+            continue
+        needed = 2 * (max(task.memory for task in todo) + memory.PROCESS)
+        if (available := memory.available()) is None or needed <= available:
             executor = registry().make(Executor, {"type": "processes", "threads": threads or 1})
-            bar.say(
-                f"the other {len(todo)} runs would take {left:.0f} s here: they go to processes, "
-                "as many as cores and memory allow (study.executor decides otherwise)"
-            )
+            bar.say(shared(len(todo), left))
     if executor:
         solve_by(executor, todo)
-
-
-def _can_share(todo: Sequence[RunTask], threads: int) -> bool:
-    """Return whether two of the tasks can be executed at once, each in a process of its own."""
-    # A process that another one started leaves the cores to its siblings.
-    if min(len(todo), runner.available_cores() // threads) < 2 or parent_process():
-        return False
-    available = memory.available()
-    needed = 2 * (max(task.memory for task in todo) + memory.PROCESS)
-    return available is None or needed <= available
 
 
 def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
@@ -297,7 +285,7 @@ def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
 
     Warnings are stored in the attributes, so that a warning is shown once for all runs.
     """
-    bar = ProgressReporter(task.steps, say)
+    bar = nullcontext(partial(reporting, steps=task.steps, show=say))
     with _recorded_warnings() as caught:
         executed = runner.execute(
             task.run, task.journal, task.outputs, bar, threads=threads, lock=False
@@ -347,14 +335,14 @@ def read(path: Path) -> tuple[xr.Dataset, Path]:
         return rows, whole.parent
     try:
         study = Study.of(json.loads(rows.attrs["configuration"]))
-        runs = tasks(study, whole.parent)
+        tasks = planned(study, whole)
     except (ConfigError, PluginError):
         # A file that it reads, or a plugin, may be gone.
         return rows, whole.parent
     current = table.StudyTable(study)
     current.recall(dataset)
     of_steps = rows[[name for name in rows.data_vars if "step" in rows[name].dims]]
-    for task in runs:
+    for task in tasks:
         current.put(task.index, of_steps.isel(dict(zip(study.dimensions, task.index, strict=True))))
         _collect(task, current)
     return current.dataset().assign_attrs(rows.attrs), whole.parent
@@ -373,20 +361,3 @@ def is_table(path: Path) -> bool:
     except StorageError:
         return True
     return False
-
-
-class _Writer:
-    """Keeps the files of the table up to date, spending a small share of the time of the study."""
-
-    def __init__(self, directory: Path) -> None:
-        self._directory = directory
-        self._next = 0.0
-        self.paths: tuple[Path, ...] = ()
-
-    def write(self, rows: table.StudyTable, *, at_once: bool = False) -> None:
-        start = time.monotonic()
-        if start < self._next and not at_once:
-            return
-        self.paths = table.write(rows.dataset(), self._directory)
-        end = time.monotonic()
-        self._next = end + (end - start) / _TABLE_SHARE

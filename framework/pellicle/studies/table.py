@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import csv
 import json
+import time
 from pathlib import Path
 from typing import Any
 
@@ -11,20 +11,22 @@ import numpy as np
 import xarray as xr
 
 from pellicle.checks import errors_attributed_to
-from pellicle.components import Runs
+from pellicle.components import Column, Runs, Table
 from pellicle.config.coordinates import units_of
 from pellicle.config.provenance import facts_of, now_with
 from pellicle.config.study import Study
 from pellicle.contact.caveats import Caveat, Status
-from pellicle.errors import ConfigError
-from pellicle.files import atomic_write, for_document
+from pellicle.errors import problems_within
+from pellicle.files import for_document
 from pellicle.results import storage
-from pellicle.results.derived import CELLS, DERIVED, FIRST_RUN, VARYING, derive, header
+from pellicle.results.derived import CELLS, DERIVED, FIRST_RUN, VARYING, derive
 from pellicle.results.dimensions import with_python_names
 from pellicle.results.path import with_path
 from pellicle.results.runs import StoredRuns
+from pellicle.show.numbers import write_csv
 from pellicle.variables import BEYOND_THEORY, CAVEATS, FIELDS, VARIABLES, WALL_PRESSURE
 
+_SHARE_OF_WRITING = 0.05
 _TEXTS = "status_code", "status", CAVEATS
 
 
@@ -57,6 +59,9 @@ class StudyTable:
         self.beyond_theory = np.full(study.shape, "", dtype=object)
         """What is far beyond the theory in each run."""
         self._descriptions: dict[str, dict[str, str]] = {}
+        self._next_write = 0.0
+        self.files: tuple[Path, ...] = ()
+        """The files of the table that `write` wrote."""
 
     def put(self, index: tuple[int, ...], scalars: xr.Dataset) -> None:
         """Store the steps of a run."""
@@ -75,21 +80,25 @@ class StudyTable:
             for index, name in np.ndenumerate(self._runs):
                 self.beyond_theory[index] = texts.get(name, "")
 
-    def fail(self, index: tuple[int, ...], reason: str) -> None:
-        """Record why the remaining steps of a run are missing."""
+    def fail(self, index: tuple[int, ...], reason: str) -> str:
+        """Record why the remaining steps of a run are missing, and return it as a sentence."""
         codes = self._values["status_code"][index]
         missing = codes == Status.NOT_RUN.name
         codes[missing] = Status.FAILED.name
-        self._values["status"][index][missing] = Caveat(Status.FAILED, {"reason": reason}).sentence
+        sentence = Caveat(Status.FAILED, {"reason": reason}).sentence
+        self._values["status"][index][missing] = sentence
+        return sentence
 
     def dataset(self) -> xr.Dataset:
         """Return the table, with NaN for missing numbers."""
         dimensions = *self._study.dimensions, "step"
         numbers = [name for name in self._values if name not in _TEXTS]
-        variables: dict[str, Any] = {
-            name: (dimensions, _whole(self._values[name], name), self._descriptions.get(name, {}))
-            for name in (*numbers, *_TEXTS)
-        }
+        variables: dict[str, Any] = {}
+        for name in (*numbers, *_TEXTS):
+            values = self._values[name]
+            counts = name in VARIABLES and VARIABLES[name].type == "count"
+            whole = values.astype(int) if counts and np.isfinite(values).all() else values.copy()
+            variables[name] = dimensions, whole, self._descriptions.get(name, {})
         description = {"long_name": "name of the run's file"}
         variables["run"] = dimensions[:-1], self._runs.copy(), description
         if self.beyond_theory.astype(bool).any():
@@ -99,39 +108,34 @@ class StudyTable:
             key: (dimension, *coordinate)
             for key, (dimension, coordinate) in self._study.coordinates().items()
         }
-        coordinates["step"] = (
-            "step",
-            np.arange(1, self._values["status"].shape[-1] + 1),
-            {"long_name": "load step, counted from 1"},
-        )
+        counted = {"long_name": "load step, counted from 1"}
+        coordinates["step"] = "step", np.arange(1, self._values["status"].shape[-1] + 1), counted
         table = with_path(xr.Dataset(variables, coordinates, self._attributes))
         if not numbers:
             return table
         return derive(table, self._study.derived, units_of(self._study.points[0].run))
 
-
-def _whole(values: np.ndarray[Any, np.dtype[Any]], name: str) -> np.ndarray[Any, np.dtype[Any]]:
-    """Return a copy of values, as integers if they are counts and none is missing."""
-    counts = name in VARIABLES and VARIABLES[name].type == "count"
-    return values.astype(int) if counts and np.isfinite(values).all() else values.copy()
+    def write(self, directory: Path, *, at_once: bool = False) -> None:
+        """Write the files of the table; if not ``at_once``, in a small share of the time only."""
+        start = time.monotonic()
+        if at_once or start >= self._next_write:
+            self.files = write(self.dataset(), directory)
+            end = time.monotonic()
+            self._next_write = end + (end - start) / _SHARE_OF_WRITING
 
 
 def write(table: xr.Dataset, directory: Path) -> tuple[Path, Path]:
     """Write ``study.h5`` and ``study.csv`` and return their paths."""
     whole, text = directory / "study.h5", directory / "study.csv"
     storage.write(with_python_names(table), whole)
-    with atomic_write(text) as part, part.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        columns = ["run", *table.coords, *(n for n in table.data_vars if n not in ("run", CAVEATS))]
-        writer.writerow(header(str(name), table[name]) for name in columns)
-        status = table["status"]
-        cells = [
-            table[name].broadcast_like(status).transpose(*status.dims).values.ravel()
-            for name in columns
-        ]
-        # A run may have fewer steps than the table.
-        exists = cells[columns.index("status")] != ""
-        writer.writerows(zip(*(column[exists].tolist() for column in cells), strict=True))
+    status = table["status"]
+    # A run may have fewer steps than the table.
+    exists = status.values.ravel() != ""
+    columns = []
+    for name in ("run", *table.coords, *(n for n in table.data_vars if n not in ("run", CAVEATS))):
+        values = table[name].broadcast_like(status).transpose(*status.dims).values.ravel()[exists]
+        columns.append(Column(str(name), values.tolist(), table[name].attrs.get("units", "")))
+    write_csv(Table(columns), text)
     return whole, text
 
 
@@ -141,11 +145,9 @@ def check_outputs(study: Study) -> None:
     for number, output in enumerate(study.points[0].run.outputs or ()):
         if output.scope == "run":
             continue
-        try:
-            with errors_attributed_to(output), np.errstate(all="ignore"):
-                output.check(runs)
-        except ConfigError as error:
-            raise error.within(f"outputs.{number}") from None
+        field = f"outputs.{number}"
+        with problems_within(field), errors_attributed_to(output), np.errstate(all="ignore"):
+            output.check(runs)
 
 
 def _planned(study: Study) -> Runs:

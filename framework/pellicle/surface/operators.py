@@ -313,13 +313,8 @@ class FreeOperator(Operator):
 def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
     """Return the operator of ``kernel`` on ``grid``.
 
-    Raises
-    ------
-    ConfigError
-        The kernel cannot be used on this boundary, or its values are not finite and positive.
-    PluginError
-        The kernel changes its argument, or returns anything but an array of real numbers of the
-        argument's shape.
+    A kernel that cannot be used on this boundary, or whose values are not finite and positive, is a
+    ConfigError; one that returns anything but real numbers of the argument's shape, a PluginError.
     """
     # Overflow gives infinite or NaN values, which are detected later.
     with np.errstate(all="ignore"):

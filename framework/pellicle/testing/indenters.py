@@ -21,15 +21,8 @@ def check_indenter(indenter: Indenter, grid: Grid | None = None) -> None:
     Besides the rules of all components: ``profile`` returns float heights ≤ 0 of the grid's shape,
     0 at the lowest point; it is pure; each height depends on its own point only, unless the
     indenter ends with the domain; a force curve, if the indenter has one, rises and agrees with its
-    partial derivatives; and a small indentation converges.
-
-    Parameters
-    ----------
-    indenter
-        The component.
-    grid
-        Points that suit the indenter, the lowest point among them; 13 × 11 on 1.3 mm × 1.1 mm if
-        None.
+    partial derivatives; and a small indentation converges. The points of ``grid`` suit the
+    indenter, its lowest point among them; they are 13 × 11 on 1.3 mm × 1.1 mm if None.
     """
     check(
         indenter,
@@ -40,19 +33,9 @@ def check_indenter(indenter: Indenter, grid: Grid | None = None) -> None:
 
 
 def profile_is_accepted(indenter: Indenter, grid: Grid) -> None:
-    """A run accepts profile(x, y): float64 of the grid's shape, ≤ 0; and the footprint."""
-    profile_of(indenter, grid)
-
-
-def profile_is_pure(indenter: Indenter, grid: Grid) -> None:
-    """profile(x, y) does not change x or y, and a second call returns an equal, new array."""
-    # `profile_is_accepted` has asked with read-only coordinates.
-    first = indenter.profile(*grid.coordinates())
-    expected = first.copy()
-    if first.flags.writeable:
-        first[...] = -np.inf
-    again = indenter.profile(*grid.coordinates())
-    require(np.array_equal(again, expected, equal_nan=True), "the second profile differs")
+    """A run accepts profile(x, y), float64 ≤ 0, the same in a second call; and the footprint."""
+    first, second = (profile_of(indenter, grid) for _ in range(2))
+    require(np.array_equal(first, second), "the second profile differs")
 
 
 def lowest_point_is_at_zero(indenter: Indenter, grid: Grid) -> None:

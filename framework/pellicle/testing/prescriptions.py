@@ -8,15 +8,14 @@ from typing import Any
 
 from pellicle.components import Force, Prescription, Search, Setting, Solver
 from pellicle.components.prescription import check_value, report_of, target_of
-from pellicle.components.solver import solution_of
 from pellicle.config.run import Run
-from pellicle.contact.equilibrium import Equilibrium, measure
+from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.load_step import LoadStep
 from pellicle.contact.solution import Stop
 from pellicle.errors import ConfigError
 from pellicle.results.step import step_dataset
 from pellicle.runs.compose import compose
-from pellicle.runs.target_search import reach
+from pellicle.runs.target_search import reach, solved
 
 from .component import check, require, require_close, rules_of
 from .small_runs import HALF_SPACE, ROUGH, ignore
@@ -33,14 +32,10 @@ def check_prescription(prescription: Prescription, values: Sequence[float] = ())
     of a search grows with the force, or falls if it is not ``increasing``; and prescribing the
     value of a known step reproduces that step.
 
-    Parameters
-    ----------
-    prescription
-        The component, checked on a rough surface of 1 mm × 1 mm and 10 µm root mean square height
-        on a periodic half-space of 10 kPa, under 0.1 and 0.2 mN.
-    values
-        The prescribed quantity [its unit] under these two forces. They can be left out if a result
-        has a variable named like the prescription's type, for example from ``report``.
+    The steps are of a rough surface of 1 mm × 1 mm and 10 µm root mean square height on a periodic
+    half-space of 10 kPa, under 0.1 and 0.2 mN. ``values`` are the prescribed quantity [its unit]
+    under these two forces. They can be left out if a result has a variable named like the
+    prescription's type, for example from ``report``.
     """
     check(prescription, "prescription", rules_of(__name__), tuple(values))
 
@@ -52,9 +47,8 @@ def _reference_steps() -> tuple[Setting, tuple[Equilibrium, ...], Solver]:
     loading: Any = {"force": ["0.1 mN", "0.2 mN"]}
     run = Run(grid=grid, kernel=HALF_SPACE, indenter=ROUGH, loading=loading)
     setting = compose(run)
-    problems = [setting.problem(Force(force)) for force in run.loading.values]
-    steps = [measure(p, solution_of(run.solver, p, None, ignore).pressure) for p in problems]
-    return setting, tuple(steps), run.solver
+    steps = [solved(setting, Force(force), run.solver, ignore) for force in run.loading.values]
+    return setting, tuple(step.equilibrium for step in steps), run.solver
 
 
 def _value(prescription: Prescription, step: Equilibrium) -> float | None:
@@ -129,8 +123,7 @@ def step_has_what_is_prescribed(prescription: Prescription, values: Sequence[flo
         if isinstance(target, Search):
             step = reach(setting, target, solver, ignore).equilibrium
         else:
-            problem = setting.problem(target)
-            step = measure(problem, solution_of(solver, problem, None, ignore).pressure)
+            step = solved(setting, target, solver, ignore).equilibrium
         what = f"the force [N] at {value:g} {prescription.unit}"
         require_close(step.force, reference.force, what, relative=_NEAR)
         again = _value(prescription, step)

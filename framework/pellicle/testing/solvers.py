@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pellicle.components import IterativeSolver, Solver
-from pellicle.components.solver import response_of, solution_of
+from pellicle.components import Solver
+from pellicle.components.solver import response_of
 from pellicle.config.run import Run
-from pellicle.contact.equilibrium import measure, measure_stiffness
+from pellicle.contact.equilibrium import measure_stiffness
 from pellicle.contact.problem import Depth, Force, Problem
-from pellicle.contact.solution import State, Stop
+from pellicle.contact.solution import State
 from pellicle.surface.operators import make_operator
 
 from .component import check, require, require_close, rules_of
@@ -49,9 +49,9 @@ def check_solver(solver: Solver) -> None:
 
     Besides the rules of all components: a paraboloid, a punch and a rough surface, on free and
     periodic grids, with depth, force and mean pressure prescribed, are solved to the solver's
-    ``tolerance``, with pressure ≥ 0; the solution depends on neither the step before nor the unit
-    of stiffness; arguments are unchanged; the monitor is called; ``response`` is that of a flat
-    punch; and the ``residual`` of an iterative solver has no side effect.
+    ``tolerance``, with pressure ≥ 0 and arguments unchanged; the solution depends on neither the
+    step before nor the unit of stiffness; the monitor is called; and ``response`` is that of a
+    flat punch.
     """
     check(solver, "solver", rules_of(__name__))
 
@@ -82,42 +82,6 @@ def _state(pressure: Any) -> State:
     return State(pressure, pressure, 0.0)
 
 
-def solve_returns_a_solution(solver: Solver) -> None:
-    """solve() returns a Solution of real numbers and leaves its problem as it is."""
-    for problem in _problems():
-        solution_of(solver, problem, None, ignore)
-
-
-def pressure_is_nowhere_negative(solver: Solver) -> None:
-    """solve() returns a finite pressure ≥ 0."""
-    for problem in _problems():
-        pressure = solver.solve(problem, None, ignore).pressure
-        require(np.isfinite(pressure).all(), "a pressure that is not finite")
-        lowest, highest = pressure.min(), pressure.max()
-        require(lowest >= 0, f"{lowest:g} Pa for {problem.control}; the highest is {highest:g} Pa")
-
-
-def done_means_solved(solver: Solver) -> None:
-    """A solver that stops with Stop.DONE has met its tolerance, measured independently."""
-    for problem in _problems():
-        solution = solver.solve(problem, None, ignore)
-        residual = measure(problem, solution.pressure).residual
-        what = f"Stop.DONE at a residual of {residual:.1e}, for {problem.control}"
-        require(solution.stop is not Stop.DONE or residual <= solver.tolerance, what)
-
-
-def start_belongs_to_the_caller(solver: Solver) -> None:
-    """solve() changes neither the start nor the profile, and returns another array."""
-    for problem in _problems():
-        pressure = np.full(problem.grid.shape, 100.0)
-        profile = problem.profile.copy()
-        solution = solver.solve(problem, _state(pressure), ignore)
-        require((pressure == 100.0).all(), "solve() changes start.pressure")
-        require(np.array_equal(profile, problem.profile), "solve() changes problem.profile")
-        shared = np.shares_memory(solution.pressure, pressure)
-        require(not shared, "the pressure returned is the array start.pressure")
-
-
 def response_is_that_of_a_flat_punch(solver: Solver) -> None:
     """response() displaces the contact of a state by 1 and acts nowhere else."""
     for problem in _problems():
@@ -126,20 +90,6 @@ def response_is_that_of_a_flat_punch(solver: Solver) -> None:
         residual = measure_stiffness(problem, contact, pressure).residual
         what = f"response() misses the displacement 1 by {residual:.1e}"
         require(residual <= solver.tolerance, what)
-
-
-def residual_has_no_side_effect(solver: Solver) -> None:
-    """residual() of an iterative solver neither applies the operator nor changes the iterate."""
-    if not isinstance(solver, IterativeSolver):
-        return
-    for problem in _problems():
-        state = solver.begin(problem, None)
-        for _ in range(3):
-            applied = problem.operator.applications
-            first, second = solver.residual(problem, state), solver.residual(problem, state)
-            require(problem.operator.applications == applied, "residual() applies the operator")
-            require(first == second, f"residual() returns {first:g}, and then {second:g}")
-            state = solver.step(problem, state)
 
 
 def _require_same_pressure(

@@ -85,11 +85,8 @@ class Quantity:
     def __call__(self, value: object) -> float:
         """Return ``value`` in SI.
 
-        Raises
-        ------
-        ValueError
-            The value is not a number, lacks a unit, has another dimension, is not finite, is beyond
-            `LARGEST` or out of bounds.
+        One that is no number, lacks a unit, has another dimension, is not finite, is beyond
+        `LARGEST` or out of bounds is a ValueError.
         """
         number = self._in_si(value)
         if not math.isfinite(number):
@@ -198,18 +195,18 @@ class Quantity:
 
 def quantity_of(info: FieldInfo) -> Quantity | None:
     """Return the quantity of a field of one or several values; None for any other field."""
-    for annotation in (*info.metadata, *_annotations(info.annotation)):
-        quantity = getattr(annotation, "quantity", annotation)
+    for part in (*info.metadata, *parts_of(info.annotation)):
+        quantity = getattr(part, "quantity", part)
         if isinstance(quantity, Quantity):
             return quantity
     return None
 
 
-def _annotations(annotation: Any) -> Iterator[Any]:
-    """Yield the annotations of the types inside a type."""
-    yield from getattr(annotation, "__metadata__", ())
-    for inner in get_args(annotation):
-        yield from _annotations(inner)
+def parts_of(annotation: Any) -> Iterator[Any]:
+    """Yield a type, the types that it is made of, and what they are annotated with."""
+    yield annotation
+    for part in get_args(annotation):
+        yield from parts_of(part)
 
 
 Length = Annotated[float, Quantity("m", above=0)]

@@ -17,7 +17,7 @@ import platformdirs
 from pellicle import Grid, Study, registry, results, run_study
 from pellicle.arrays import Array
 from pellicle.components import Executor, Indenter
-from pellicle.errors import ConfigError, ConvergenceError, ConvergenceWarning
+from pellicle.errors import ConfigError, ConvergenceError, ConvergenceWarning, problems_within
 from pellicle.units import readable
 
 from .interpolated import SCALE, SimulatedCurve, stretched
@@ -150,10 +150,8 @@ def plan(indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GR
     if scales(indenter) and scales(solid.kernel):
         candidates = (*lengths(indenter), *lengths(solid.kernel), deepest)
         unit = next(value for value in candidates if value > 0)
-    try:
+    with problems_within("kernel"):
         kernel = scaled(solid.kernel, unit, (solid.modulus, solid.tension))
-    except ConfigError as error:
-        raise error.within("kernel") from None
     shape = scaled(indenter, unit)
     # Rounded up, so that curves of about the same depth share a study.
     top = int(np.ceil(np.log2(deepest / unit) - 1e-9))

@@ -10,7 +10,7 @@ from pydantic.fields import FieldInfo
 
 from pellicle import registry
 from pellicle.components import Component, Kernel
-from pellicle.errors import ConfigError, shown
+from pellicle.errors import ConfigError, problems_within, shown
 from pellicle.schema import Model, get, replaced, walk
 from pellicle.units import Quantity, quantity_of
 
@@ -54,7 +54,7 @@ def solid(spec: str | Mapping[str, Any], poissons_ratio: float | None = None) ->
         for one of them, or another Poisson's ratio.
     """
     table: Any = {"type": spec} if isinstance(spec, str) else dict(spec)
-    try:
+    with problems_within("kernel"):
         modulus, _ = _field(table, "reduced_modulus")
         tension, _ = _field(table, "tension")
         for path in (modulus, tension, f"{modulus.rpartition('.')[0]}.youngs_modulus".lstrip(".")):
@@ -73,8 +73,6 @@ def solid(spec: str | Mapping[str, Any], poissons_ratio: float | None = None) ->
                 f"is {own:g}, and poissons_ratio of the fit is {poissons_ratio:g}; give it once",
                 path,
             )
-    except ConfigError as error:
-        raise error.within("kernel") from None
     return Solid(kernel, modulus, tension, poissons_ratio if ratio is None else ratio)
 
 

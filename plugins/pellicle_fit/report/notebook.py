@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from io import BytesIO
 
-from pellicle.schema import summary
-from pellicle.show import FigureStyle
+from pellicle.components import Table
+from pellicle.show import FigureStyle, summary
 from pellicle.units import decimal
 from pellicle_fit.many import ManyFits
 from pellicle_fit.result import FitResult
@@ -27,7 +27,7 @@ def html_of_fit(fit: FitResult) -> str:
     title = f"Fit of {count} curves" if count else "Fit of a curve"
     sentence = f"{sentence_of_fit(fit)} {_state(fit)}"
     heads = "parameter", "value", "95 % interval", "unit"
-    return summary(title, sentence, heads, rows, picture=_picture(panels(fit)))
+    return summary(title, sentence, Table.of_rows(heads, rows), picture=_picture(panels(fit)))
 
 
 def _state(fit: FitResult) -> str:
@@ -56,8 +56,8 @@ def html_of_population(fits: ManyFits) -> str:
     ]
     heads = "parameter", "group", "accepted", "open", "median", "lower quartile", "upper quartile"
     title = f"Fits of {len(fits.rows)} curves"
-    picture = _picture(panels(fits)[-1:])
-    return summary(title, sentences_of_population(fits), heads, rows, picture=picture)
+    picture, table = _picture(panels(fits)[-1:]), Table.of_rows(heads, rows)
+    return summary(title, sentences_of_population(fits), table, picture=picture)
 
 
 def _picture(shown: list[Panel]) -> bytes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -11,9 +12,10 @@ from typing import Any
 import numpy as np
 
 from pellicle import Run
+from pellicle.components import Column, Table
 from pellicle.config.describe import inputs
 from pellicle.files import atomic_write, json_text
-from pellicle.show import Block, Cell, Code, Column, Notice, Picture, Section, Table, Text, svg
+from pellicle.show import Block, Code, Notice, Picture, Section, Text, svg
 from pellicle.show import page as render
 from pellicle.units import axis_unit, decimal, readable
 from pellicle_fit.many import FITTED, ManyFits
@@ -34,8 +36,6 @@ _LINES = 200
 """Lines of a list of warnings or failed curves."""
 _PAGES = 6
 """Pages of the contact sheet on the page, which a browser has to load at once."""
-_HASH = 12
-"""Digits of a hash that are shown."""
 _LONGEST = 2_000_000
 """Letters of JSON that the page repeats."""
 _COLUMNS = (
@@ -136,45 +136,42 @@ def _first(lines: Sequence[str]) -> list[str]:
 
 def _rows_of_curves(rows: Sequence[Row]) -> Table:
     """Return the table with a row for each curve."""
-    columns: dict[Column, Sequence[str | Cell]] = {}
-    columns[Column("curve", words=True)] = [row["curve"] for row in rows]
+    columns = [Column("curve", [row["curve"] for row in rows])]
     if any(row["group"] for row in rows):
-        columns[Column("group", words=True)] = [row["group"] for row in rows]
+        columns.append(Column("group", [row["group"] for row in rows]))
     if any(row.get("elastic") for row in rows):
-        columns[Column("model", words=True)] = [
-            row.get("chosen", {}).get("model", "") for row in rows
-        ]
+        columns.append(Column("model", [row.get("chosen", {}).get("model", "") for row in rows]))
     for name, unit in _COLUMNS:
         estimates = [row.get(name) for row in rows]
         if any(estimates):
-            columns |= _intervals(name.replace("_", " "), estimates, unit)
+            columns += _intervals(name.replace("_", " "), estimates, unit)
     for name, head in (("chi_squared", "χ²"), ("r_squared", "R²")):
-        columns[Column(head)] = [decimal(row[name], 5) if name in row else "" for row in rows]
+        texts = [decimal(row[name], 5) if name in row else "" for row in rows]
+        columns.append(Column(head, texts))
     verdicts = [row["status"].partition(":")[0] for row in rows]
-    columns[Column("status", words=True)] = [Cell(v, bad=v != FITTED) for v in verdicts]
+    columns.append(Column("status", verdicts, bad=[v != FITTED for v in verdicts]))
+    marked = [True] * len(rows)
     if any(row["status"] == FITTED and not row["accepted"] for row in rows):
         reasons = [row["reason"] if row["status"] == FITTED else "" for row in rows]
-        columns[Column("rejected", words=True)] = [Cell(text, bad=True) for text in reasons]
+        columns.append(Column("rejected", reasons, bad=marked))
     if any(row["outlier"] for row in rows):
         marks = ["stands out" if row["outlier"] else "" for row in rows]
-        columns[Column("modulus", words=True)] = [Cell(mark, bad=True) for mark in marks]
-    return _table("Each curve on its own, with its 95 % intervals.", columns)
+        columns.append(Column("modulus", marks, bad=marked))
+    return Table(columns, "Each curve on its own, with its 95 % intervals.")
 
 
 def _groups(fits: ManyFits) -> Table:
     """Return median and quartiles of each parameter in each group."""
     heads = ["parameter", "group", "accepted", "open", "stand out", "median", "lower quartile"]
-    columns = [Column(head, words=head in heads[:2]) for head in [*heads, "upper quartile"]]
     rows, parts = [], fits.summary()
     scales = group_scales(parts)
     for part in parts:
-        shown = scales[part.parameter]
+        how = scales[part.parameter]
         values = part.median, part.lower_quartile, part.upper_quartile
         counts = [f"{part.n} of {part.curves}", str(part.open), str(part.outliers)]
-        numbers = map(shown.number, values)
-        name = f"{words(part.parameter)} [{shown.unit}]"
-        rows.append([name, part.group, *counts, *numbers])
-    return Table("The accepted curves.", columns, rows)
+        name = f"{words(part.parameter)} [{how.unit}]"
+        rows.append([name, part.group, *counts, *map(how.number, values)])
+    return Table.of_rows([*heads, "upper quartile"], rows, "The accepted curves.")
 
 
 def _sheets(fits: ManyFits) -> list[Block]:
@@ -204,7 +201,7 @@ def _record(fit: FitResult) -> list[Block]:
     """Return the table of the files that were fitted, and the versions."""
     if fit.record is None:
         return []
-    heads: dict[str, list[str | Cell]] = {
+    heads: dict[str, list[str]] = {
         "file": [entry["file"] or "numbers given in Python" for entry in fit.record.data],
         "curve": [entry["curve"] or "" for entry in fit.record.data],
         "columns": [
@@ -220,20 +217,11 @@ def _record(fit: FitResult) -> list[Block]:
         },
         "segment": [entry["segment"] for entry in fit.record.data],
         "baseline": [entry["baseline"] for entry in fit.record.data],
-        "SHA-256": [_shortened(entry["sha256"] or "") for entry in fit.record.data],
+        "SHA-256": [entry["sha256"] or "" for entry in fit.record.data],
     }
-    columns = {
-        Column(head, words=True): texts
-        for head, texts in heads.items()
-        if any(text not in ("", Cell("")) for text in texts)
-    }
+    columns = [Column(head, texts) for head, texts in heads.items() if any(texts)]
     versions = ", ".join(f"{name} {number}" for name, number in fit.record.versions.items())
-    return [_table("The data, and how they were read.", columns), Text(f"Versions: {versions}.")]
-
-
-def _shortened(digest: str) -> Cell:
-    """Return the beginning of a hash."""
-    return Cell(f"{digest[:_HASH]}…", whole=digest) if digest else Cell("")
+    return [Table(columns, "The data, and how they were read."), Text(f"Versions: {versions}.")]
 
 
 def _estimates(fit: Fit | PooledFit) -> Table:
@@ -247,15 +235,12 @@ def _estimates(fit: Fit | PooledFit) -> Table:
         bound = "" if estimate.held else bound
         value = decimal(estimate.value * factor, 4)
         rows.append([words(name), value, interval(estimate), unit, bound])
-    heads = ("parameter", "value", "interval", "unit", "bound")
-    columns = [
-        Column(head, meaning=_MEANINGS.get(head, ""), words=head in ("parameter", "unit"))
-        for head in heads
-    ]
     caption = f"Estimates, with {100 * CONFIDENCE:.0f} % intervals of the profile likelihood."
     if fit.chosen is not None:
         caption += f" {_OF_TENSION}"
-    return Table(caption, columns, rows)
+    table = Table.of_rows(("parameter", "value", "interval", "unit", "bound"), rows, caption)
+    columns = [replace(c, meaning=_MEANINGS.get(c.words, "")) for c in table.columns]
+    return replace(table, columns=columns)
 
 
 def _rivals(fit: FitResult) -> list[Block]:
@@ -263,13 +248,9 @@ def _rivals(fit: FitResult) -> list[Block]:
     if fit.rivals is None:
         return []
     rows = fit.rivals.rows()
-    columns = {
-        Column(head, words=head in ("model", "counts", "parameters")): [row[head] for row in rows]
-        for head in rows[0]
-    }
     margin, pull_off = fit.rivals.margin, fit.rivals.pull_off
     caption = f"What describes the data, best first; below {decimal(margin, 3)}, ΔAIC is a tie."
-    table = _table(caption, columns)
+    table = Table.of_rows([*rows[0]], [[*row.values()] for row in rows], caption)
     return [*([Text(_sentence(pull_off))] if pull_off else []), table]
 
 
@@ -281,27 +262,25 @@ def _data(fit: Fit) -> Table:
         ["χ² of the fit", decimal(fit.chi_squared, 5)],
         ["χ² without tension", decimal(fit.chi_squared_without_tension, 5)],
     ]
-    columns = [Column(head, words=True) for head in ("what", "value")]
-    return Table("Noise and residuals of the curve.", columns, rows)
+    return Table.of_rows(("what", "value"), rows, "Noise and residuals of the curve.")
 
 
 def _curves(fit: PooledFit) -> Table:
     curves = fit.curves
+    points = [Column("contact point", [c.contact_point.value for c in curves], "m")]
     if fit.contact_points:
         points = _intervals("contact point", [c.contact_point.to_dict() for c in curves], "m")
-    else:
-        points = _numbers("contact point", [c.contact_point.value for c in curves], "m")
-    columns = {
-        Column("curve", words=True): [c.name for c in curves],
-        **points,
-        **_numbers("noise", [c.noise for c in curves], "N"),
-        Column("points"): [str(c.points) for c in curves],
-        Column("χ²"): [decimal(c.chi_squared, 5) for c in curves],
-        Column("χ² alone"): [decimal(c.chi_squared_alone, 5) for c in curves],
-        **_numbers("modulus alone", [c.reduced_modulus_alone for c in curves], "Pa"),
-        **_numbers("tension alone", [c.tension_alone for c in curves], "N/m"),
-    }
-    return _table("Each curve in the pool, and its own fit.", columns)
+    columns = [
+        Column("curve", [c.name for c in curves]),
+        *points,
+        Column("noise", [c.noise for c in curves], "N"),
+        Column("points", [c.points for c in curves]),
+        Column("χ²", [c.chi_squared for c in curves], digits=5),
+        Column("χ² alone", [c.chi_squared_alone for c in curves], digits=5),
+        Column("modulus alone", [c.reduced_modulus_alone for c in curves], "Pa"),
+        Column("tension alone", [c.tension_alone for c in curves], "N/m"),
+    ]
+    return Table(columns, "Each curve in the pool, and its own fit.")
 
 
 def _inputs(models: Sequence[Mapping[str, Any]]) -> Table:
@@ -325,35 +304,25 @@ def _inputs(models: Sequence[Mapping[str, Any]]) -> Table:
             text = f"{values[0]} … {values[-1]} ({distinct} values)"
         words = "type" if field.words == field.part else field.words
         rows.append([field.part, words, text, field.meaning])
-    columns = [Column(head, words=True) for head in ("of", "input", "value", "meaning")]
-    return Table("The indenter, and the known properties of the solid.", columns, rows)
+    caption = "The indenter, and the known properties of the solid."
+    return Table.of_rows(("of", "input", "value", "meaning"), rows, caption)
 
 
-def _table(caption: str, columns: Mapping[Column, Sequence[str | Cell]]) -> Table:
-    return Table(caption, list(columns), list(zip(*columns.values(), strict=True)))
-
-
-def _numbers(name: str, values: Sequence[float], unit: str) -> dict[Column, list[str]]:
-    """Return a column of numbers, in a unit that brings them between about 1 and 1000."""
-    factor, prefixed = axis_unit(np.array(values), unit)
-    return {Column(name, prefixed): [decimal(value * factor, 4) for value in values]}
-
-
-def _intervals(
-    name: str, estimates: Sequence[Mapping[str, Any] | None], unit: str
-) -> dict[Column, list[str]]:
+def _intervals(name: str, estimates: Sequence[Mapping[str, Any] | None], unit: str) -> list[Column]:
     """Return the columns value, low and high of a parameter of many curves.
 
     An estimate is the dictionary of `Estimate.to_dict`, or None for a curve that was not fitted.
     """
-    factor, prefixed = axis_unit(np.array([e["value"] for e in estimates if e]), unit)
+    factor, prefixed = axis_unit([e["value"] for e in estimates if e], unit)
     heads = {"value": name, "low": f"{name}, low", "high": f"{name}, high"}
-    return {
-        Column(head, prefixed, _MEANINGS.get(key, "")): [
-            _end(e[key], factor, e["held"] and key != "value") if e else "" for e in estimates
-        ]
+    return [
+        Column(
+            f"{head} [{prefixed}]",
+            [_end(e[key], factor, e["held"] and key != "value") if e else "" for e in estimates],
+            meaning=_MEANINGS.get(key, ""),
+        )
         for key, head in heads.items()
-    }
+    ]
 
 
 def _end(value: float | None, factor: float, fixed: bool) -> str:

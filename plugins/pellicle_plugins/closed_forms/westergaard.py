@@ -1,6 +1,6 @@
-"""Partial contact of a two-dimensional sinusoidal surface, without tension.
+"""Contact of a sinusoidal surface: partial without tension, full with any.
 
-Westergaard (1939); Johnson (1985), section 13.2.  The rigid surface has the height
+Partial contact: Westergaard (1939); Johnson (1985), section 13.2.  The rigid surface has the height
 Δ cos(2πx/λ): Δ is the amplitude, half of the height from valley to crest, and every
 crest x = nλ carries a strip of contact |x − nλ| < a.
 """
@@ -15,7 +15,6 @@ from numpy.typing import ArrayLike
 from pellicle.arrays import Array
 
 from .arguments import not_negative, positive, single
-from .full_contact import pressure_amplitude
 
 
 @dataclass(frozen=True)
@@ -70,3 +69,19 @@ def wavy(
         mean_pressure=value,
         full_pressure=full,
     )
+
+
+def pressure_amplitude(
+    amplitude: float, wavelength: float, reduced_modulus: float, tension: float = 0.0
+) -> float:
+    """Return the amplitude [Pa] of the pressure that keeps a sine in full contact.
+
+    A displacement Δ cos(q x) needs the pressure (E*/2)(q + s q²) Δ cos(q x) about its
+    mean, q = 2π/λ and s = 2τ₀/E*: the stiffness symbol of the tensed half-space.
+    Contact is full once the mean pressure reaches this amplitude.  Δ [m] is half of the height from
+    valley to crest, λ [m] the wavelength, E* = E / (1 − ν²) [Pa] and τ₀ [N/m] the tension.
+    """
+    not_negative(amplitude=amplitude, tension=tension)
+    positive(wavelength=wavelength, reduced_modulus=reduced_modulus)
+    q = 2 * np.pi / wavelength
+    return (reduced_modulus * q / 2 + tension * q**2) * amplitude

@@ -25,7 +25,6 @@ class Dask(Executor):
     address: Annotated[
         str,
         Field(
-            examples=["tcp://node1:8786"],
             description='address of the scheduler, such as "tcp://node1:8786"; start one with '
             "`dask scheduler`, its workers with `dask worker ADDRESS`, or use the executor "
             '"processes" on one machine',

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from pellicle.arrays import Array
 from pellicle.components import Footprint, FromRegistry, Indenter
-from pellicle.errors import ConfigError
+from pellicle.errors import ConfigError, problems_within
 from pellicle.units import Quantity
 
 
@@ -21,7 +21,6 @@ class Transformed(Indenter):
         Indenter,
         FromRegistry(),
         Field(
-            examples=[{"type": "sphere", "radius": "10 um"}],
             description="the indenter to change: a table with type",
         ),
     ]
@@ -92,9 +91,7 @@ class Scaled(Transformed):
     factor: Annotated[
         float,
         Quantity("1", at_least=0),
-        Field(
-            title="height factor", examples=[0.5], description="factor of the heights; 0 is flat"
-        ),
+        Field(title="height factor", description="factor of the heights; 0 is flat"),
     ]
 
     def profile(self, x: Array, y: Array) -> Array:
@@ -106,10 +103,8 @@ class Scaled(Transformed):
 
 def profile_of_part(part: Indenter, x: Array, y: Array, field: str) -> Array:
     """Return the profile [m] of the part in ``field``; its errors name that field."""
-    try:
+    with problems_within(field):
         return part.profile(x, y)
-    except ConfigError as error:
-        raise error.within(field) from None
 
 
 class Sum(Indenter):
@@ -132,12 +127,6 @@ class Sum(Indenter):
         tuple[Annotated[Indenter, FromRegistry()], ...],
         Field(
             min_length=1,
-            examples=[
-                [
-                    {"type": "paraboloid", "radius": "1 mm"},
-                    {"type": "cone", "half_angle": "85 degree"},
-                ]
-            ],
             description="the indenters to add: tables with type",
         ),
     ]

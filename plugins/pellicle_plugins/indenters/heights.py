@@ -40,7 +40,6 @@ class Heights(FromHeights):
         InputPath | None,
         Field(
             title="file",
-            examples=["heights.txt"],
             description="file with a 2-D array [along x, along y]: .npy, text (.txt, .csv, .dat) "
             "with blanks, commas or semicolons, .h5 or .mat",
         ),
@@ -48,7 +47,6 @@ class Heights(FromHeights):
     unit: Annotated[
         HeightUnit,
         Field(
-            examples=["um"],
             description="length that a height of 1 in the data stands for [m]: 'um'",
         ),
     ]

@@ -32,9 +32,7 @@ class SelfAffine(Indenter):
     footprint: ClassVar[Footprint] = "domain"
     type: Literal["self_affine"] = "self_affine"
     examples = ({"rms_height": "10 um", "hurst": 0.7, "cutoff_wavelength": "0.4 mm", "seed": 3},)
-    rms_height: Annotated[
-        Length, Field(examples=["100 nm"], description="root mean square of the heights [m]")
-    ]
+    rms_height: Annotated[Length, Field(description="root mean square of the heights [m]")]
     hurst: Annotated[
         float,
         Quantity("1", at_least=0, at_most=1),

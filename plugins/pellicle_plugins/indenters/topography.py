@@ -49,7 +49,6 @@ class Topography(FromHeights):
         InputPath,
         Field(
             title="file",
-            examples=["scan.x3p"],
             description="text, or a file that SurfaceTopography can read",
         ),
     ]

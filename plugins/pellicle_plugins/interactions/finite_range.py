@@ -64,7 +64,7 @@ class Adhesive(Interaction):
     ]
     range: Annotated[
         Length | None,
-        Field(examples=["20 nm"], description="gap at which the traction ends [m]; or strength"),
+        Field(description="gap at which the traction ends [m]; or strength"),
     ] = None
     strength: Annotated[
         Strength | None, Field(description="traction that separates a closed gap [Pa]; or range")

@@ -79,7 +79,6 @@ class ElasticConstants(ElasticModulus):
         PoissonsRatio,
         Field(
             title="Poisson's ratio",
-            examples=[0.45],
             description="Poisson's ratio ν, −1 < ν ≤ 0.5; 0.5 is incompressible",
         ),
     ]

@@ -39,7 +39,7 @@ class TensedMembrane(ElasticSolid):
     """Elastic half-space under a skin of constant equi-biaxial tension (Hajji 1978)."""
 
     type: Literal["tensed_membrane"] = "tensed_membrane"
-    examples = ({"youngs_modulus": 7500.0, "poissons_ratio": 0.5, "tension": "1 N/m"},)
+    examples = ({"reduced_modulus": "10 kPa", "tension": "1 N/m"},)
     tension: Annotated[
         Tension,
         Field(title="surface tension", description="tension τ₀ of the surface [N/m], 0 for none"),

@@ -62,7 +62,6 @@ class Layered(Kernel):
         ElasticConstants | Literal["rigid"],
         BeforeValidator(_substrate, json_schema_input_type=ElasticConstants | Literal["rigid"]),
         Field(
-            examples=["rigid"],
             description='what the layers are glued to: "rigid", or a half-space as a table of '
             "youngs_modulus or reduced_modulus, and poissons_ratio",
         ),

@@ -20,7 +20,6 @@ class Skin(Kernel):
         Tension,
         Field(
             title="surface tension",
-            examples=["5 mN/m"],
             description="tension τ₀ of the skin [N/m], 0 for none",
         ),
     ] = 0.0
@@ -48,7 +47,7 @@ class BendingSkin(Skin, ElasticSolid):
     """
 
     type: Literal["bending_skin"] = "bending_skin"
-    examples = ({"reduced_modulus": 10000.0, "tension": "0.1 N/m", "bending": "100 pN*m"},)
+    examples = ({"reduced_modulus": "10 kPa", "tension": "0.1 N/m", "bending": "100 pN*m"},)
     bending: Annotated[
         BendingStiffness,
         Field(
@@ -121,7 +120,6 @@ class Coated(Skin, KernelOf):
         Kernel,
         FromRegistry(),
         Field(
-            examples=[{"type": "half_space", "reduced_modulus": "10 kPa"}],
             description="the kernel under the skin: a table with type",
         ),
     ]

@@ -105,7 +105,6 @@ class Viscoelastic(KernelOf):
         Kernel,
         FromRegistry(),
         Field(
-            examples=[{"type": "half_space", "reduced_modulus": "10 kPa"}],
             description="the instantaneous response, or for a power law that at its time: a kernel "
             "without a skin, as a table with type",
         ),

@@ -17,6 +17,7 @@ from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
 from pellicle.errors import ConfigError
 from pellicle.results.result import Result
 from pellicle.results.wording import is_periodic
+from pellicle.show.sentences import FEW_CELLS, STEEP_RIM, limits_of_curve
 from pellicle.units import Quantity
 from pellicle_plugins.validation.adhesive_path import curve_of
 
@@ -39,10 +40,6 @@ _SUMMARY_HEADS = (
     "fixed_depth_depth [m]",
     "status",
 )
-_CELLS = 12
-"""Contact radius in cells below which force and radius may be off by more than 2 %."""
-_STEEP = 0.3
-"""Slope above which linear elasticity is beyond its range."""
 _LINE = 70
 """Letters of a line of text across the figure."""
 _MARKERS = {"pull-off": 0, "no load": 1, "last at fixed depth": 4}
@@ -165,27 +162,18 @@ def _status(
     spacing = max(Result(path).grid.spacing)
     steps = np.argsort(path["contact_radius"].values)
     slopes = path["contact_radius"].values[steps], _steepest_slopes(path)[steps]
-    missing, coarse, steep = [], [], []
+    missing, coarse, steep = list[str](), dict[str, float](), dict[str, float]()
     for mark, contact in points.items():
         radius = float(contact.contact_radius)
         slope = float(np.interp(radius, *slopes))
         if np.isnan(radius):
             missing.append(mark)
             continue
-        if radius < _CELLS * spacing:
-            coarse.append(f"{mark} {radius / spacing:.1f}")
-        if slope > _STEEP:
-            steep.append(f"{mark} {slope:.2f}")
-    low, high = curve.contact_radius[[0, -1]]
-    range_ = f"not at a contact radius from {low:.3g} to {high:.3g} m, those of the path"
-    remedy = f"from {_CELLS} on force and radius are good to 2 %, so use more points"
-    theory = f"the theory is for small slopes, below about {_STEEP}"
-    problems = {
-        f"{', '.join(missing)}: {range_}": missing,
-        f"contact radius in cells: {', '.join(coarse)}; {remedy}": coarse,
-        f"slope of the indenter at the rim: {', '.join(steep)}; {theory}": steep,
-    }
-    return "; ".join(text for text, marks in problems.items() if marks) or "computed"
+        if radius < FEW_CELLS * spacing:
+            coarse[mark] = radius / spacing
+        if slope > STEEP_RIM:
+            steep[mark] = slope
+    return limits_of_curve(missing, coarse, steep, *curve.contact_radius[[0, -1]])
 
 
 def _steepest_slopes(path: xr.Dataset) -> Array:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
-from pydantic import Field
+from pydantic import AfterValidator, BeforeValidator, Field
 
 from pellicle.components import Axis, Output, Runs
 from pellicle.config.describe import words_at
@@ -17,13 +18,14 @@ from pellicle.config.run import Run
 from pellicle.errors import ConfigError, StorageError
 from pellicle.results.derived import configuration_of, names
 from pellicle.results.result import Result
-from pellicle.results.wording import wording
+from pellicle.results.runs import StoredRuns
+from pellicle.results.wording import column_of
 from pellicle.schema.expression import evaluate, formula
 from pellicle.schema.messages import nearest
 from pellicle.show.fields import without_round_off
 from pellicle.show.saving import write_charts
 from pellicle.show.style import FigureStyle, is_ordered
-from pellicle.units import DIGITS, readable
+from pellicle.units import DIGITS, Quantity, readable
 from pellicle.variables import words_of_name
 from pellicle_plugins.validation.reference import require_solution
 
@@ -35,6 +37,14 @@ MOST_LEGS = 4
 _PLACEHOLDER = re.compile(r"\{([^{}:]+)(?::(\.\d+[fg]))?\}")
 
 
+Texts = Annotated[
+    tuple[str, ...],
+    BeforeValidator(
+        lambda value: (value,) if isinstance(value, str) else value,
+        json_schema_input_type=str | tuple[str, ...],
+    ),
+]
+"""One text, or a list of them."""
 Formats = Annotated[
     tuple[Literal["png", "svg", "pdf"], ...],
     Field(min_length=1, description="file formats to write: png, svg, pdf"),
@@ -51,6 +61,13 @@ Reference = Annotated[
 ]
 
 
+class Chosen(dict[str, Any]):
+    """Values of axes by name; of equal ones, as of equal outputs, the hashes are equal."""
+
+    def __hash__(self) -> int:  # type: ignore[override]
+        return hash(frozenset(self.items()))
+
+
 class TableFigure(Output):
     """A figure of the runs of a study, or of the steps of one run."""
 
@@ -64,9 +81,20 @@ class TableFigure(Output):
     style: StyleField = FigureStyle()
     title: Annotated[str, Field(description="title of the figure")] = ""
     by: Annotated[
-        str | None,
-        Field(description="axis of the study, or step: each value has its own curve or panel"),
-    ] = None
+        Texts,
+        Field(
+            description="axis of the study, or step, or several: each value has its own curve or "
+            "panel"
+        ),
+    ] = ()
+    where: Annotated[
+        dict[str, Any],
+        AfterValidator(Chosen),
+        Field(
+            description="values of other axes of the study for which it is drawn, such as "
+            '{ "kernel.tension" = "10 mN/m" }'
+        ),
+    ] = Field(default_factory=Chosen)
     label: Annotated[
         str | None,
         Field(
@@ -94,15 +122,36 @@ class TableFigure(Output):
         yield from (run for _, run in self.steps(runs))
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
-        """Write the figure in each format, and its numbers."""
+        """Write the figure in each format, and its numbers; nothing if no step has numbers."""
+        if "converged" not in runs.table:
+            return ()
         return write_charts(self.charts(runs), stem, self.formats, self.style)
 
-    def picked(self, table: xr.Dataset) -> Iterator[tuple[Label, xr.Dataset]]:
+    def shown(self, runs: Runs) -> Runs:
+        """Return the runs that `where` leaves."""
+        table = runs.table
+        for name, wanted in self.where.items():
+            require_axes(filter(lambda axis: axis != "step", table.coords), [name], "where")
+            axis, same = table[name], table[name].values == wanted
+            if axis.dtype.kind in "if":
+                try:
+                    value = Quantity(str(axis.attrs.get("units", "1")))(wanted)
+                except ValueError as error:
+                    raise ConfigError(f"{name}: {error}", "where") from None
+                same = np.isclose(axis.values, value, rtol=1e-9, atol=0.0)
+            if not np.any(same):
+                values = column_of(axis).listing
+                raise ConfigError(f"{wanted!r} is no value of {name}, which has {values}", "where")
+            table = table.isel({axis.dims[0]: int(np.argmax(same))})
+        return StoredRuns(table, runs.open, runs.configuration)
+
+    def picked(self, runs: Runs) -> Iterator[tuple[Label, xr.Dataset]]:
         """Yield the name of each curve or panel and the point of the table that it shows.
 
         Other axes are at their first value, steps at the last of the table.
         """
-        one_axis(table.sizes, self.by, "by")
+        table = self.shown(runs).table
+        require_axes(table.sizes, self.by, "by")
         first = {str(dim): -1 if dim == "step" else 0 for dim in table.sizes}
         for index in along(table, self.by):
             point = table.isel({**first, **index})
@@ -110,11 +159,11 @@ class TableFigure(Output):
 
     def is_ordered(self, runs: Runs) -> bool:
         """Return whether the curves belong to numbers to compare."""
-        return is_ordered(runs.table, self.by)
+        return len(self.by) == 1 and is_ordered(runs.table, self.by[0])
 
     def opened(self, runs: Runs) -> Iterator[tuple[Label, xr.Dataset, xr.Dataset]]:
         """Yield the name, the point of the table and the run of each, if there is its file."""
-        for name, point in self.picked(runs.table):
+        for name, point in self.picked(runs):
             try:
                 run = runs.open(str(point["run"].item()))
             except StorageError:
@@ -125,22 +174,25 @@ class TableFigure(Output):
         """Yield the name of each curve or panel and the last load step of its run, if finished."""
         for name, point, run in self.opened(runs):
             number = int(point["step"].item())
-            if self.by != "step":
+            if "step" not in self.by:
                 number = min(number, Result(run).planned_steps)
             if number in run["step"]:
                 yield name, without_round_off(run.sel(step=number))
 
 
-def one_axis(dims: Iterable[object], chosen: str | None, field: str) -> None:
-    """Refuse a ``chosen`` dimension that is not among ``dims``."""
-    if chosen is not None and chosen not in dims:
-        suggestion = nearest(chosen, map(str, dims))
-        raise ConfigError(f"{chosen!r} is not an axis of the table; {suggestion}", field)
+def require_axes(known: Iterable[object], chosen: Iterable[str], field: str) -> None:
+    """Refuse an axis that is not among those of the table."""
+    names = [*map(str, known)]
+    for axis in chosen:
+        if axis not in names:
+            suggestion = nearest(axis, names)
+            raise ConfigError(f"{axis!r} is not an axis of the table; {suggestion}", field)
 
 
-def along(table: xr.Dataset, dim: str | None) -> list[dict[str, int]]:
-    """Return the indices along a dimension; without one, a single index of the whole table."""
-    return [{dim: index} for index in range(table.sizes[dim])] if dim else [{}]
+def along(table: xr.Dataset, dims: Sequence[str]) -> list[dict[str, int]]:
+    """Return the indices along dimensions, the last fastest; without any, that of the table."""
+    ranges = [range(table.sizes[dim]) for dim in dims]
+    return [dict(zip(dims, index, strict=True)) for index in product(*ranges)]
 
 
 class Label(NamedTuple):
@@ -152,13 +204,13 @@ class Label(NamedTuple):
     """For the column ``curve`` of its numbers, such as "kernel.tension = 30 mN/m"."""
 
 
-def label(template: str | None, data: xr.Dataset, dim: str | None, whole: xr.Dataset) -> Label:
+def label(template: str | None, data: xr.Dataset, dims: Sequence[str], whole: xr.Dataset) -> Label:
     """Return the name of a curve or a panel.
 
     ``{…}`` in the template is an expression, replaced by its mean over ``data``, the part of the
-    table ``whole`` that is shown. Without a template the name is the value of the dimension
-    ``dim``; without that, the values of all axes of the study for which ``data`` has only one. The
-    words have values in one unit for all parts.
+    table ``whole`` that is shown. Without a template the name has the values of ``dims``; without
+    those, of all axes of the study for which ``data`` has only one. The words have values in one
+    unit for all parts.
     """
     if template is not None:
         variables = names(data)
@@ -171,10 +223,10 @@ def label(template: str | None, data: xr.Dataset, dim: str | None, whole: xr.Dat
         text = _PLACEHOLDER.sub(mean, template)
         return Label(text, text)
     words, keys = [], []
-    for axis in [dim] if dim else json.loads(data.attrs.get("axes", "[]")):
+    for axis in dims or json.loads(data.attrs.get("axes", "[]")):
         if data[axis].ndim == 0:
             value, unit = data[axis].item(), data[axis].attrs.get("units", "1")
-            words.append(wording(whole[axis]).text(value))
+            words.append(column_of(whole[axis]).text(value))
             keys.append(f"{axis} = {readable(value, unit, DIGITS) if unit != '1' else value}")
     return Label(", ".join(words), ", ".join(keys))
 
@@ -188,7 +240,7 @@ def axis_of(text: str, label: str | None, data: xr.Dataset) -> Axis:
     name = text.strip()
     if label is not None or name not in data.variables:
         return Axis(in_words(text, data) if label is None else label, as_given=True)
-    return Axis(wording(data[name]).words, str(data[name].attrs.get("units", "1")))
+    return Axis(column_of(data[name]).words, str(data[name].attrs.get("units", "1")))
 
 
 def in_words(text: str, data: xr.Dataset) -> str:
@@ -197,7 +249,7 @@ def in_words(text: str, data: xr.Dataset) -> str:
 
     def words(name: str) -> str:
         if name in data.variables:
-            return wording(data[name]).words
+            return column_of(data[name]).words
         return words_at(configuration, Run, name) if "." in name else words_of_name(name)
 
     return formula(text, words)

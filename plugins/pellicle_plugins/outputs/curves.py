@@ -4,52 +4,47 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
+from itertools import product
+from math import prod
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import Field, model_validator
 
-from pellicle.analysis import Leg, extrapolate, legs
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown
-from pellicle.errors import ConfigError
-from pellicle.results.path import has_interaction, has_path, has_times
+from pellicle.errors import ConfigError, StorageError
+from pellicle.results.path import has_path
+from pellicle.results.runs import StoredRuns
 from pellicle.schema.expression import names_in
 from pellicle.schema.model import Model
-from pellicle.show.style import is_log_spaced
-from pellicle.units import printed
+from pellicle.show.style import is_log_spaced, is_ordered
+from pellicle.units import printed, readable
 from pellicle.variables import FIELDS, WALL_PRESSURE
 from pellicle_plugins.validation.reference import exact
 
 from .base import (
-    MOST_LEGS,
+    Label,
     Log,
     Reference,
     TableFigure,
+    Texts,
     XLabel,
     YLabel,
     along,
     axis_of,
     in_words,
     label,
-    one_axis,
+    require_axes,
 )
+from .curve_points import limit_of, points_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _SPREADS = {"range": "range", "std": "± standard deviation", "sem": "± standard error"}
-_GRIDS = 3
-"""Fewest grids from which a limit follows."""
-
-
-_Texts = Annotated[
-    tuple[str, ...],
-    BeforeValidator(
-        lambda value: (value,) if isinstance(value, str) else value,
-        json_schema_input_type=str | tuple[str, ...],
-    ),
-]
-"""One text, or a list of them."""
+MOST_PANELS = 12
+_NONE = np.empty(0)
 
 
 class Published(Model):
@@ -70,6 +65,10 @@ class Published(Model):
 class Curves(TableFigure):
     """One number against another over the runs, one curve for each value of an axis.
 
+    Colours distinguish the values of the first axis of `by`, markers and line styles those of the
+    second. Each value of the axes that are left, if there are any, has a panel; `where` chooses a
+    value instead.
+
     ``x`` and ``y`` are arithmetic over the columns of the table, the numbers of the configuration
     by their dotted path, and fields (``x``, ``y``, ``pressure``, ``displacement``, ``gap``,
     ``contact``) inside ``mean``, ``sum``, ``min`` or ``max`` over the cells. The numbers drawn are
@@ -82,6 +81,7 @@ class Curves(TableFigure):
 
     type: Literal["curves"] = "curves"
     examples = (
+        {"x": "depth / indenter.radius", "y": "contact_area", "reference": "axisymmetric"},
         {
             "x": "depth / indenter.radius",
             "y": ["contact_area", "contact_area_yastrebov"],
@@ -96,7 +96,7 @@ class Curves(TableFigure):
     y_label: YLabel = None
     x: Annotated[str, Field(description="expression for the horizontal axis")] = "depth"
     y: Annotated[
-        _Texts, Field(min_length=1, description="expression, or several, for the vertical axis")
+        Texts, Field(min_length=1, description="expression, or several, for the vertical axis")
     ] = ("force",)
     series: Annotated[
         tuple[str, ...], Field(description="name of each y in the legend; its expression if absent")
@@ -131,25 +131,57 @@ class Curves(TableFigure):
             raise ConfigError(
                 f"{len(self.series)} names for {len(self.y)} of y; give as many", "series"
             )
-        if self.by is not None and self.by == self.over:
+        if self.over in self.by:
             raise ConfigError(f"{self.over!r} is the axis of by already; give another", "over")
+        most = 1 if self.reference and len(self.y) > 1 else 2
+        if len(self.by) > most:
+            raise ConfigError(
+                f"a curve tells {len(self.by)} axes apart by its colour and marker; give {most}"
+                f"{', since markers tell several y apart' if most == 1 else ''}: the values of "
+                "others have panels",
+                "by",
+            )
         return self
 
-    def _with_by(self, table: xr.Dataset) -> Curves:
-        """Return these curves with the axis that ``by`` is by default.
+    def _axes_told(self, table: xr.Dataset) -> tuple[Sequence[str], Sequence[str]]:
+        """Return the axes of which each value has curves, and those of which each has a panel.
 
-        It is the only long axis beside step, or step if ``x`` is that axis.
+        Each curve goes along an axis that ``x`` names, else along the steps, else along the last.
+        Without `by`, the first of the others has curves.
         """
-        steps = self._over_steps(table)
+        steps, taken = self._over_steps(table), {self.over, *self.by}
         long = [
             str(dim)
             for dim, size in table.sizes.items()
-            if size > 1 and dim != self.over and (steps or dim != "step")
+            if size > 1 and dim not in taken and (steps or dim != "step")
         ]
-        if self.by is not None or len(long) != 2 or (long[1] != "step" and steps):
-            return self
-        by = long[1] if long[0] in names_in(self.x) else long[0]
-        return self.model_copy(update={"by": by})
+        used = {
+            dim for name in names_in(self.x) if name in table.coords for dim in table[name].dims
+        }
+        goes_along = [
+            *(d for d in long if d in used),
+            *(d for d in long if d == "step"),
+            *long[-1:],
+        ]
+        rest = [dim for dim in long if dim not in goes_along[:1]]
+        return (self.by, rest) if self.by else (rest[:1], rest[1:])
+
+    def check(self, runs: Runs) -> None:
+        """Refuse what cannot be shown, and expressions that the reference has no value for."""
+        super().check(runs)
+        if not self.reference:
+            return
+
+        def unsolved(name: str) -> xr.Dataset:
+            raise StorageError(name)
+
+        reference = exact(StoredRuns(runs.table, unsolved))
+        for field, text in [("x", self.x), *(("y", text) for text in self.y)]:
+            try:
+                reference.column(text)
+            except ConfigError as error:
+                message = f"{text!r} has no value in the semi-analytic solution: {error}"
+                raise ConfigError(message, field) from None
 
     def compared(self, runs: Runs) -> Iterator[xr.Dataset]:
         """Yield all runs."""
@@ -165,31 +197,46 @@ class Curves(TableFigure):
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
         """Yield the curves."""
-        yield "", self._with_by(runs.table)._chart(runs)
+        yield "", self._chart(self.shown(runs))
 
     def _chart(self, runs: Runs) -> Chart:
         table = runs.table
-        one_axis(table.sizes, self.by, "by")
-        one_axis(table.sizes, self.over, "over")
+        require_axes(table.sizes, self.by, "by")
+        require_axes(table.sizes, [self.over] if self.over else [], "over")
+        if self.over == "step" and not self._over_steps(table):
+            raise ConfigError("x and y have one value for each run, and none for each step", "over")
+        by, panels = self._axes_told(table)
+        count = prod(table.sizes[dim] for dim in panels)
+        if count > MOST_PANELS:
+            first = table[panels[-1]]
+            value = readable(first.values.tolist()[0], str(first.attrs.get("units", "1")))
+            raise ConfigError(
+                f"{' and '.join(panels)} would make {count} panels, and at most {MOST_PANELS} are "
+                f'legible; choose values, such as {{ "{panels[-1]}" = "{value}" }}',
+                "where",
+            )
         x, *ys = (runs.column(text) for text in (self.x, *self.y))
-        along, log = self.x.strip(), self.log
-        if "log" not in self.model_fields_set and along in table.sizes and along != "step":
+        along_x, log = self.x.strip(), self.log
+        if "log" not in self.model_fields_set and along_x in table.sizes and along_x != "step":
             # An evenly growing axis of the study.
-            values = table[along].values
+            values = table[along_x].values
             log = ("x",) if values.dtype.kind in "if" and is_log_spaced(values) else ()
         y_axis, names = self._y_axis(ys, table)
-        series = [*self._series(runs, x, ys, names), *self._published()]
+        series = list(self._series(runs, [x, *ys], names, by, panels))
+        series += self._legend(table, names, by)
+        series += [one for panel in range(count) for one in self._published(panel)]
         if self.over is not None and any(one.low is not None for one in series):
-            none = np.empty(0)
-            band = Series(none, none, legend=_SPREADS[self.spread], low=none, high=none)
+            band = Series(_NONE, _NONE, legend=_SPREADS[self.spread], low=_NONE, high=_NONE)
             series.append(replace(band, look=Look(None)))
+        titles = [label(None, table.isel(cell), panels, table) for cell in along(table, panels)]
         return Chart(
             replace(axis_of(self.x, self.x_label, table), log="x" in log, column="x"),
-            [replace(y_axis, log="y" in log, column="y")],
+            [replace(y_axis, log="y" in log, column="y")] * count,
             series,
             self.title,
-            hues=table.sizes[self.by] if self.by else len(ys),
-            ordered=self.is_ordered(runs),
+            hues=table.sizes[by[0]] if by else len(ys),
+            ordered=is_ordered(table, by[0] if by else None),
+            titles=[title.words.replace(", ", "\n") for title in titles] if panels else (),
         )
 
     def _y_axis(self, ys: Sequence[xr.DataArray], table: xr.Dataset) -> tuple[Axis, Sequence[str]]:
@@ -212,59 +259,90 @@ class Curves(TableFigure):
         return Axis(words, units[0] if has_unit else "1", as_given=not has_unit), names
 
     def _series(
-        self, runs: Runs, x: xr.DataArray, ys: Sequence[xr.DataArray], names: Sequence[str]
+        self,
+        runs: Runs,
+        columns: Sequence[xr.DataArray],
+        names: Sequence[str],
+        by: Sequence[str],
+        panels: Sequence[str],
     ) -> Iterator[Series]:
-        """Yield what is drawn, in order; entries that only the legend shows have no points.
-
-        Colours and markers distinguish the values of `by`, line styles those of y. Beside a
-        reference there are no lines, so that markers distinguish several y.
-        """
-        table = runs.table
+        """Yield the curves of x and each y, each with its limit and its reference."""
+        table, (x, *ys) = runs.table, columns
+        over_time = "time" in names_in(self.x)
+        points_at = partial(points_of, over=self.over, spread=self.spread, over_time=over_time)
         reference = exact(runs) if self.reference else None
-        places = along(table, self.by)
-        for number, (text, y) in enumerate(zip(self.y, ys, strict=True)):
-            name = self.series[number] if self.series else text
-            of_reference = [reference.column(t) for t in (self.x, text)] if reference else []
-            line = None if reference else number
-            for index, point in enumerate(places):
-                part = table.isel(point)
-                curve = label(self.label, part, self.by, table)
-                legend = "" if number else curve.words
-                if not self.by and (self.series or len(ys) > 1):
-                    legend = names[number]
-                marker = index if self.by and not (reference and len(ys) > 1) else number
-                look = Look(index if self.by else number, line, marker)
-                drawn = self._points(part, _at(x, point), _at(y, point))
-                if number:
-                    # Several bands could not be told apart.
-                    drawn = replace(drawn, low=None, high=None)
-                yield replace(drawn, key=curve.key, name=name, legend=legend, look=look)
-                if self.extrapolate:
-                    if (count := np.unique(_at(x, point)).size) < _GRIDS:
-                        raise ConfigError(
-                            f"{count} values of x on a curve do not fix a limit, a coefficient and "
-                            f"an exponent; vary the grid over at least {_GRIDS}",
-                            "extrapolate",
-                        )
-                    yield from self._limit(drawn, curve.key, name, look.hue)
-                if reference:
-                    points = self._points(part, *(_at(axis, point) for axis in of_reference))
-                    order = np.argsort(points.x)
-                    is_last = (number + 1, index + 1) == (len(ys), len(places))
-                    yield Series(
-                        points.x[order],
-                        points.y[order],
-                        key=curve.key,
-                        name=f"{name}, semi-analytic",
-                        legend="semi-analytic" if is_last else "",
-                        look=Look(None),
-                        role="reference",
-                    )
-            if self.by and len(ys) > 1:
-                look = Look(None, line, number if reference else None)
-                yield Series(np.empty(0), np.empty(0), legend=names[number], look=look)
+        of_reference = [reference.column(text) for text in (self.x, *self.y)] if reference else []
+        for (number, y), (panel, cell), place in product(
+            enumerate(ys), enumerate(along(table, panels)), along(table, by)
+        ):
+            point, name = cell | place, self.series[number] if self.series else self.y[number]
+            part, curve = table.isel(point), self._curve(table, point, by, panels)
+            shown: dict[str, Any] = {"key": curve.key, "panel": panel}
+            look = self._look(number, list(place.values()))
+            # Names of the first curve with each colour; `_legend` has the rest.
+            legend = "" if number or panel or any([*place.values()][1:]) else curve.words
+            if not by and (len(ys) > 1 or self.series):
+                legend = names[number]
+            points = points_at(part, _at(x, point), _at(y, point))
+            if number:
+                # Several bands could not be told apart.
+                points = replace(points, low=None, high=None)
+            yield replace(points, **shown, name=name, legend=legend, look=look)
+            if self.extrapolate:
+                for one in limit_of(_at(x, point), points, name, look.hue):
+                    yield replace(one, **shown)
+            if reference:
+                at_point = (_at(of_reference[index], point) for index in (0, number + 1))
+                points = points_at(part, *at_point)
+                order = np.argsort(points.x)
+                points = Series(points.x[order], points.y[order], look=Look(None), role="reference")
+                yield replace(points, **shown, name=f"{name}, semi-analytic")
 
-    def _published(self) -> Iterator[Series]:
+    def _look(self, number: int, place: Sequence[int]) -> Look:
+        """Return the look of a curve of the y of a number, given its indices along the axes of by.
+
+        Colours and markers distinguish the values of an axis, line styles those of y. A second axis
+        has the markers, and of one y the line styles. Beside a reference there are no lines, so
+        that markers distinguish several y.
+        """
+        many = len(self.y) > 1
+        if len(place) > 1:
+            line = number if many else place[1]
+            return Look(place[0], None if self.reference else line, place[1])
+        hue = place[0] if place else number
+        marker = number if self.reference and many else hue
+        return Look(hue, None if self.reference else number, marker)
+
+    def _curve(
+        self, table: xr.Dataset, point: dict[str, int], by: Sequence[str], panels: Sequence[str]
+    ) -> Label:
+        """Return the words for the colour of a curve, and its key."""
+        if not by:
+            return label(self.label, table.isel(point), (), table)
+        name = label(self.label, table.isel({by[0]: point[by[0]]}), by[:1], table)
+        if others := [*by[1:], *panels]:
+            other = label(None, table.isel(point), others, table)
+            name = Label(name.words, f"{name.key}, {other.key}")
+        return name
+
+    def _legend(
+        self, table: xr.Dataset, names: Sequence[str], by: Sequence[str]
+    ) -> Iterator[Series]:
+        """Yield entries that only the legend shows: several y, a second axis, the reference."""
+        looks = {}
+        if by and len(names) > 1:
+            looks = {name: self._look(number, [0]) for number, name in enumerate(names)}
+            if not self.reference:
+                looks = {name: look._replace(marker=None) for name, look in looks.items()}
+        for number, place in enumerate(along(table, by[1:]) if len(by) > 1 else ()):
+            words = label(None, table.isel(place), by[1:], table).words
+            looks[words] = self._look(0, [0, number])
+        for words, look in looks.items():
+            yield Series(_NONE, _NONE, legend=words, look=look._replace(hue=None))
+        if self.reference:
+            yield Series(_NONE, _NONE, legend="semi-analytic", look=Look(None), role="reference")
+
+    def _published(self, panel: int) -> Iterator[Series]:
         for number, other in enumerate(self.published):
             look = Look(None, 0 if other.style == "line" else None, number)
             yield Series(
@@ -275,74 +353,9 @@ class Curves(TableFigure):
                 legend=other.label,
                 look=look,
                 role="published",
+                panel=panel,
+                written=not panel,
             )
-
-    def _limit(self, points: Series, key: str, name: str, hue: int | None) -> Iterator[Series]:
-        """Yield a curve continued to x = 0, and its limit there with the error."""
-        # An interrupted study may lack some of the grids.
-        if np.unique(points.x).size < _GRIDS:
-            return
-        fit = extrapolate(points.x, points.y)
-        x = np.linspace(0, float(points.x.max()), 200)
-        y = np.append(fit.limit, fit(x[1:]))
-        yield Series(x, y, look=Look(hue), role="reference", written=False)
-        assert points.converged is not None
-        yield Series(
-            np.zeros(1),
-            np.array([fit.limit]),
-            key=key,
-            name=f"{name}, extrapolated",
-            look=Look(hue, None),
-            low=np.array([fit.lowest]),
-            high=np.array([fit.highest]),
-            columns={"converged": bool(points.converged.all()), "exponent": fit.exponent},
-        )
-
-    def _points(self, table: xr.Dataset, x: xr.DataArray, y: xr.DataArray) -> Series:
-        """Return the points of one curve, in the order of the table, with the legs of its path."""
-        import xarray as xr
-
-        converged = table["converged"]
-        if has_path(table) and "step" not in (*x.dims, *y.dims):
-            # Runs may have fewer steps than the table.
-            converged = (converged | (table["status"] == "")).all("step")
-        x, y, good = xr.broadcast(x, y, converged.astype(float))
-        columns = [x, y, y, y, good.fillna(0.0), xr.ones_like(x)]
-        if self.over is not None:
-            finished = (x + y).notnull()
-            x, y, good = (column.where(finished) for column in (x, y, good))
-            middle = x.mean(self.over), y.mean(self.over)
-            count = finished.sum(self.over)
-            ends = y.min(self.over), y.max(self.over)
-            if self.spread != "range":
-                squares = ((y - middle[1]) ** 2).sum(self.over) / (count - 1).clip(min=1)
-                half = (squares if self.spread == "std" else squares / count.clip(min=1)) ** 0.5
-                ends = middle[1] - half, middle[1] + half
-            columns = [*middle, *ends, good.min(self.over).fillna(0.0), count]
-        long = [str(dim) for dim, size in columns[0].sizes.items() if size > 1]
-        if len(long) > 1:
-            raise ConfigError(
-                f"each curve would go over {' and '.join(long)}; give one of them to by, or to "
-                "over for mean and spread",
-                "by",
-            )
-        values = np.array([column.values.ravel().astype(float) for column in columns])
-        values = values[:, finite := np.isfinite(values).all(axis=0)]
-        path: list[Leg] = []
-        loops = has_interaction(table) or (has_times(table) and "time" not in names_in(self.x))
-        if loops and long == ["step"] and self.over is None:
-            path = legs(xr.broadcast(table["depth"], x)[0].values.ravel()[finite])
-            # The many legs of an oscillation are not told apart by their style.
-            path = path if has_interaction(table) or len(path) <= MOST_LEGS else []
-        middle_x, middle_y, low, high, good, runs = values
-        series = Series(middle_x, middle_y, converged=good == 1, legs=path)
-        if not (runs > 1).any():
-            return series
-        spread = {"y_lowest": low, "y_highest": high, "runs": runs.astype(int)}
-        written: dict[str, Any] = {
-            name: np.where(runs > 1, column, None) for name, column in spread.items()
-        }
-        return replace(series, low=low, high=high, columns=written | {"spread": self.spread})
 
 
 def _at(column: xr.DataArray, point: dict[str, int]) -> xr.DataArray:

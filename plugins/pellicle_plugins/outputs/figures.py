@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Literal
 
@@ -11,21 +13,24 @@ import numpy as np
 
 from pellicle.analysis import legs
 from pellicle.components import Axis, Chart, Fields, Look, Output, Runs, Series
-from pellicle.results.dimensions import parts
 from pellicle.results.path import has_interaction, has_times
 from pellicle.results.result import Result
-from pellicle.results.wording import is_periodic, wording
+from pellicle.results.runs import StoredRuns
+from pellicle.results.wording import column_of, is_periodic
 from pellicle.show.saving import write_charts
-from pellicle.show.style import FigureStyle, is_log_spaced, is_ordered, is_seed
+from pellicle.show.style import FigureStyle, is_seed
 from pellicle.variables import CONTACT_AREA, CORRECTED_AREA
 
 from .base import MOST_LEGS, Formats, StyleField
+from .curves import MOST_PANELS, Curves
 from .step_figures import pressure_map, profile
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _MOST_NAMED = 10
+_ALIKE = 10.0
+"""Ratio of the times that runs take up to which one axis shows all."""
 _OVER_TIME = "force", "depth", "contact_area"
 FIGURES = "pressure", "profile", "force_depth", "area_force", "time"
 """Figures of a run, which are the suffixes of the file names too."""
@@ -51,7 +56,7 @@ class Figures(Output):
     def charts(self, runs: Runs) -> Iterator[tuple[str, Chart | Fields]]:
         """Yield the figures of the result of a run, or of the table of a study."""
         is_run = runs.axes is None
-        shown = figures_of(Result(runs.open())) if is_run else figures_of_study(runs.table)
+        shown = figures_of(Result(runs.open())) if is_run else figures_of_study(runs)
         for name, make in shown.items():
             yield f"-{name}", make()
 
@@ -75,14 +80,14 @@ def figures_of(result: Result) -> dict[str, Callable[[], Chart | Fields]]:
     return {name: partial(figure, result) for name, figure in figures.items()}
 
 
-def figures_of_study(table: xr.Dataset) -> dict[str, Callable[[], Chart]]:
+def figures_of_study(runs: Runs) -> dict[str, Callable[[], Chart]]:
     """Return what makes each figure of a study: force, and contact fraction or area, by variable.
 
     A free domain has no nominal area of which the contact is a fraction.
     """
-    area = "contact_fraction" if is_periodic(table) else "contact_area"
-    names = ("force", area) if "force" in table else ()
-    return {name: partial(study_curves, table, name) for name in names}
+    area = "contact_fraction" if is_periodic(runs.table) else "contact_area"
+    names = ("force", area) if "force" in runs.table else ()
+    return {name: partial(study_curves, runs, name) for name in names}
 
 
 def force_depth(result: Result) -> Chart:
@@ -93,7 +98,7 @@ def force_depth(result: Result) -> Chart:
 def area_force(result: Result) -> Chart:
     """Return the contact area, counted over cells and corrected, against force."""
     corrected = {
-        str(name): wording(variable).words.removeprefix(f"{CONTACT_AREA}, ")
+        str(name): column_of(variable).words.removeprefix(f"{CONTACT_AREA}, ")
         for name, variable in result.dataset.data_vars.items()
         if str(name).startswith(CORRECTED_AREA)
     }
@@ -105,58 +110,58 @@ def over_time(result: Result) -> Chart:
     """Return force, depth and contact area against time, one above the other."""
     data = result.dataset
     series = [
-        _series(data, "time", name, Look(number, marker=0), panel=number)
+        replace(_series(data, "time", name, Look(number, marker=0)), panel=number)
         for number, name in enumerate(_OVER_TIME)
     ]
     axes = [_axis(data[name], signed=True) for name in _OVER_TIME]
     return Chart(_axis(data["time"]), axes, series, _title(data), hues=len(_OVER_TIME))
 
 
-def study_curves(table: xr.Dataset, variable: str) -> Chart:
+def study_curves(runs: Runs, variable: str) -> Chart:
     """Return a variable of a study against the depth, one colour for each value of its first axis.
 
-    Where steps have times, it is shown against the time; where each run has one step only, against
-    the first axis of numbers instead.
+    Where steps have times of one magnitude, it is shown against the time; where each run has one
+    step only, against its longest axis of numbers. Seeds only repeat runs, of which the mean is
+    drawn, and further axes have panels. The title says which values are left out.
     """
-    # The horizontal axis, and the dimension along which each line goes.
-    dimensions = [str(d) for d in table["status"].dims if d != "step"]
-    numbers = [d for d in dimensions if table[d].dtype.kind in "if" and table.sizes[d] > 1]
-    over_steps = table.sizes["step"] > 1 or not numbers
-    along = "step" if over_steps else numbers[0]
-    against = ("time" if has_times(table) else "depth") if over_steps else along
-    # Values of the first of the others have colours of their own; seeds are only repetitions.
-    rest = [d for d in dimensions if d != along]
-    compared = sorted(rest, key=lambda d: is_seed(table[d]) or table.sizes[d] == 1)[:1]
-    stacked = [str(d) for d in table["status"].dims if d not in (along, *compared)]
-    named_by = wording(table[compared[0]]) if compared else None
-    many = table.sizes[compared[0]] if compared else 1
-    pulls, series = has_interaction(table), list[Series]()
-    for number, part in enumerate(parts(table, compared)):
-        # Of many values only some are named: colours change evenly between them.
-        named = named_by and number % -(-many // _MOST_NAMED) == 0
-        legend = named_by.text(part[compared[0]].item()) if named and named_by else ""
-        for line in parts(part, stacked):
-            look = Look(number, marker=number)
-            tells_legs = pulls and against == "depth"
-            finished = line.isel({along: np.isfinite(line["depth"].values)}) if tells_legs else line
-            series.append(
-                _series(finished, against, variable, look, legend=legend, tells_legs=tells_legs)
-            )
-            legend = ""
-    log = along != "step" and is_log_spaced(table[against].values)
-    ordered = bool(compared) and is_ordered(table, compared[0])
-    # The path of a contact that sticks goes below a depth of 0.
-    x, y = _axis(table[against], signed=True, log=log), _axis(table[variable], signed=pulls)
-    return Chart(x, [y], series, _title(table), hues=many, ordered=ordered)
+    table = runs.table
+    varied = [str(d) for d in table["status"].dims if d != "step" and table.sizes[d] > 1]
+    axes = sorted(varied, key=lambda axis: is_seed(table[axis]))
+    numbers = [axis for axis in axes if table[axis].dtype.kind in "if"]
+    x = "depth"
+    if has_times(table):
+        ends = table["time"].max("step")
+        x = "time" if ends.max() <= _ALIKE * ends.min() else "depth"
+    if table.sizes["step"] == 1 and numbers:
+        x = max(numbers, key=lambda axis: (not is_seed(table[axis]), table.sizes[axis]))
+    rest = [axis for axis in axes if axis != x]
+    seeds = [axis for axis in rest[1:] if is_seed(table[axis])][:1]
+    remarks = [_title(table)]
+    for axis in rest[:1]:
+        if (count := table.sizes[axis]) > _MOST_NAMED:
+            table = table.isel({axis: slice(None, None, -(-count // _MOST_NAMED))})
+            chosen = f"{table.sizes[axis]} of {count} values"
+            remarks.append(f"{chosen} of {column_of(table[axis]).words}")
+    panels = [axis for axis in rest[1:] if axis not in seeds]
+    while prod(table.sizes[axis] for axis in panels) > MOST_PANELS:
+        axis = panels.pop()
+        remarks.append(column_of(table[axis]).text(table[axis].values[0].item()))
+        table = table.isel({axis: 0})
+    title = "\n".join(filter(None, remarks))
+    curves = Curves(x=x, y=variable, by=rest[:1], over=(*seeds, None)[0], title=title)
+    ((_, chart),) = curves.charts(StoredRuns(table, runs.open, runs.configuration))
+    assert isinstance(chart, Chart)
+    start = None if has_interaction(table) else 0.0
+    return replace(chart, y=[replace(axis, limits=(start, None)) for axis in chart.y])
 
 
 def _curves(result: Result, labels: dict[str, str], against: str) -> Chart:
     """Return variables, with their labels, against another over the steps of a run."""
     data = result.dataset
     pulls, path = has_interaction(data), legs(data["depth"].values)
-    tells_legs = pulls or (has_times(data) and len(path) <= MOST_LEGS)
+    told = path if pulls or (has_times(data) and len(path) <= MOST_LEGS) else ()
     series = [
-        _series(data, against, name, Look(n, n, n), legend=label, tells_legs=tells_legs)
+        replace(_series(data, against, name, Look(n, n, n)), legend=label, legs=told)
         for n, (name, label) in enumerate(labels.items())
     ]
     first = next(iter(labels))
@@ -164,35 +169,18 @@ def _curves(result: Result, labels: dict[str, str], against: str) -> Chart:
     return Chart(x, [y], series, _title(data), hues=len(labels))
 
 
-def _series(
-    data: xr.Dataset,
-    x: str,
-    y: str,
-    look: Look,
-    *,
-    legend: str = "",
-    panel: int = 0,
-    tells_legs: bool = False,
-) -> Series:
-    """Return one variable of the steps of a run, or of runs, against another."""
+def _series(data: xr.Dataset, x: str, y: str, look: Look) -> Series:
+    """Return one variable of the steps of a run against another."""
     good = data["converged"].values.astype(bool)
-    return Series(
-        data[x].values.astype(float),
-        data[y].values.astype(float),
-        name=y,
-        legend=legend,
-        look=look,
-        converged=good,
-        legs=legs(data["depth"].values) if tells_legs else (),
-        steps=np.arange(good.size, dtype=np.int64),
-        panel=panel,
-    )
+    points = data[x].values.astype(float), data[y].values.astype(float)
+    steps = np.arange(good.size, dtype=np.int64)
+    return Series(*points, name=y, look=look, converged=good, steps=steps)
 
 
-def _axis(variable: xr.DataArray, *, signed: bool = False, log: bool = False) -> Axis:
+def _axis(variable: xr.DataArray, *, signed: bool = False) -> Axis:
     unit = str(variable.attrs.get("units", "1"))
-    start = None if signed or log else 0.0
-    return Axis(wording(variable).words, unit, log=log, limits=(start, None), signed=signed)
+    start = None if signed else 0.0
+    return Axis(column_of(variable).words, unit, limits=(start, None), signed=signed)
 
 
 def _title(data: xr.Dataset) -> str:

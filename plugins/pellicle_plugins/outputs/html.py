@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
@@ -14,37 +14,38 @@ import tomli_w
 from pydantic import Field
 
 from pellicle import Grid, Run, registry
-from pellicle.components import Output, Runs
-from pellicle.config.describe import inputs
+from pellicle.components import Output, Runs, Table
+from pellicle.config.describe import FieldRow, inputs
 from pellicle.errors import StorageError
 from pellicle.files import atomic_write
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
-from pellicle.results.path import has_interaction, label_of_step, prescribed_variable
-from pellicle.results.result import Result, first_message
-from pellicle.results.wording import wording
+from pellicle.results.path import has_interaction, label_of_step
+from pellicle.results.result import Result
+from pellicle.results.runs import axes_of, progress_of, runs_of
+from pellicle.show import tables
 from pellicle.show.drawing import DIVERGING
-from pellicle.show.fields import default_step, draws_contact, without_round_off
+from pellicle.show.fields import default_step, without_round_off
 from pellicle.show.html import Code, Notice, Picture, Section, Text, page
 from pellicle.show.maps import Field as MapField
 from pellicle.show.maps import Frame, Maps, frame, side
-from pellicle.studies.summary import caveats, failures, progress_of, reasons, run_names, runs_of
+from pellicle.show.methods import methods
+from pellicle.show.sentences import (
+    aim_of_path,
+    caption_of_runs,
+    caption_of_setup,
+    caption_of_steps,
+    range_of_path,
+    run_names,
+    sentence_of_step,
+    sentence_of_study,
+    status_of_run,
+    status_of_study,
+)
 from pellicle.variables import FIELDS as RESULT_FIELDS
 from pellicle.variables import WALL_PRESSURE
 
 from .html_curves import curves_of_outputs, curves_of_run, curves_of_study, picture
-from .html_tables import (
-    input_table,
-    inputs_of_study,
-    origin_tables,
-    oscillation_tables,
-    path_tables,
-    run_table,
-    step_tables,
-    study_path_tables,
-)
-from .methods import methods
-from .sentences import sentence_of_step, sentence_of_study, sentences_of_path
 from .step_figures import cross_section
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ class Html(Output):
     """
 
     type: Literal["html"] = "html"
-    examples = ({"points": 8, "frames": 1},)
+    examples = ({}, {"points": 8, "frames": 1})
     shares_stem: ClassVar[bool] = True
     points: Annotated[
         int,
@@ -106,11 +107,11 @@ class Html(Output):
             sections = self._sections_of_run(Result(runs.open()), run, runs)
         else:
             run = json.loads(table.attrs[FIRST_RUN])
-            varied = tuple(str(name) for name in table.coords if name != "step")
+            varied = tuple(axes_of(table))
             sections = self._sections_of_study(runs, run, varied, stem.parent / "runs")
         sections += [
             Section("Methods", [Text(methods(run, table.attrs, varied))]),
-            Section("Provenance", [*origin_tables(table.attrs, run)]),
+            Section("Provenance", tables.origin(table.attrs, inputs(run, Run))),
             Section("How to reproduce it", [*_reproduce(configuration, stem)]),
         ]
         date = table.attrs["date"].replace("T", " ").replace("+00:00", " UTC")
@@ -128,25 +129,23 @@ class Html(Output):
         maps, chosen = self._maps_of_steps(result)
         step_shown = default_step(data) % data.sizes["step"]
         first, label = sentence_of_step(data, step_shown), label_of_step(data, step_shown)
-        rest = sentences_of_path(data, result.path_summary)
-        sentences = [Text(first, lead=True), *([Text(rest)] if rest else [])]
-        numbers = [*step_tables(data), *path_tables(result), *oscillation_tables(result)]
+        setup = _setup(data.isel(step=step_shown), configuration, label)
+        aim = aim_of_path(data, result.path_summary)
+        lead, rest = (aim, first) if aim else (first, range_of_path(data))
+        sentences = [Text(lead, lead=True), *([Text(rest)] if rest else [])]
+        of_steps, off = tables.all_steps(data), data["contact_area"].values == 0
+        if off.any() and not off.all():
+            apart, *_ = tables.all_steps(data.isel(step=off))
+            apart = replace(apart, caption="Results of the steps out of contact.", folded=True)
+            of_steps = [*tables.all_steps(data.isel(step=~off))[:-1], apart, of_steps[-1]]
+        numbers = [*of_steps, *tables.path(data), *tables.oscillations(data)]
         return [
-            Section(
-                "In short",
-                [*sentences, _status(result)],
-            ),
+            Section("In short", [*sentences, Notice(*status_of_run(result))]),
             Section("Maps", [maps]),
             Section("Curves", curves_of_run(result, chosen, maps.begin)),
             Section("Outputs", [*curves_of_outputs(runs, _outputs(configuration), chosen)]),
             Section("Numbers", numbers),
-            Section(
-                "Set-up",
-                [
-                    _setup(data.isel(step=step_shown), configuration, label),
-                    input_table(list(inputs(configuration, Run))),
-                ],
-            ),
+            Section("Set-up", [setup, _inputs(inputs(configuration, Run))]),
         ]
 
     def _sections_of_study(
@@ -168,30 +167,19 @@ class Html(Output):
                 setups.append(_setup(step, first_run, label))
         sentence = sentence_of_study(table, len(rows))
         lead = [Text(sentence, lead=True)] if sentence else []
-        failed, warnings = failures(table), [*caveats(table)]
-        if failed:
-            details = [*reasons(table), *warnings]
-            status = Notice(f"{failed[0].upper()}{failed[1:]}.", False, details)
-        else:
-            converged = f"Every step of all {len(rows)} runs converged."
-            status = Notice(converged, None if warnings else True, warnings)
-        which = "The last step in contact" if draws_contact(table) else "The last step"
-        of_runs = _share_in_words(len(frames), len(rows), "run")
-        caption = f"{which} of {of_runs}, each in colours over its own range."
+        caption = caption_of_runs(table, len(frames))
         maps = Maps(caption, "run", tuple(mapped.values()), list(frames.values()))
-        numbers = [run_table(table, rows, list(frames)), *study_path_tables(table, rows)]
+        of_runs = tables.runs(table, mapped=list(frames))
+        numbers = [of_runs, *tables.paths_of_runs(table)]
         return [
-            Section(
-                "In short",
-                [*lead, status],
-            ),
+            Section("In short", [*lead, Notice(*status_of_study(table))]),
             Section("Maps", [maps] if frames else []),
-            Section("Curves", curves_of_study(table)),
+            Section("Curves", [*curves_of_study(runs)]),
             Section("Outputs", [*curves_of_outputs(runs, _outputs(first_run))]),
             Section("Numbers", numbers),
             Section(
                 "Set-up",
-                [*setups[:1], input_table(inputs_of_study(table, list(inputs(first_run, Run))))],
+                [*setups[:1], _inputs(tables.inputs_of_study(table, inputs(first_run, Run)))],
             ),
         ]
 
@@ -211,13 +199,8 @@ class Html(Output):
             frames.append(replace(_frame(label, grid, step, mapped, points), note=note))
         step_shown = default_step(data) % steps
         begin = int(np.searchsorted(chosen, step_shown, side="right")) - 1
-        *first, last = [f"{field.name}" for field in mapped.values()]
-        names = f"{', '.join(first)} and {last}".capitalize()
-        words = wording(data[prescribed_variable(data)]).words
-        # Over the range of the last step the first ones would have one colour.
-        colours = ", each in colours over its own range" if len(chosen) > 1 else ""
-        shown_steps = _share_in_words(len(chosen), steps, "load step")
-        caption = f"{names} at prescribed {words}, in {shown_steps}{colours}."
+        names = [field.name for field in mapped.values()]
+        caption = caption_of_steps(data, names, len(chosen))
         return Maps(caption, "load step", tuple(mapped.values()), frames, max(begin, 0)), chosen
 
     def _steps_of_runs(
@@ -271,41 +254,19 @@ def _frame(
     return frame(label, grid, [step[name].values for name in mapped], points, empty)
 
 
-def _share_in_words(number: int, count: int, noun: str) -> str:
-    """Return how many are shown in words: "each run", "3 of 8 runs"."""
-    return f"each {noun}" if number == count else f"{number} of {count} {noun}s"
-
-
 def _setup(step: xr.Dataset, configuration: dict[str, Any], label: str) -> Picture:
     """Return the indenter over the surface in a load step."""
-    values = {i.name: i.value for i in inputs(configuration, Run)}
-    caption = f"The {values['indenter']} on the {values['kernel']}, at {label}; heights stretched."
-    return picture(cross_section(step), caption)
+    return picture(cross_section(step), caption_of_setup(configuration, label))
+
+
+def _inputs(fields: Iterable[FieldRow]) -> Table:
+    caption = "All inputs that determine the result, defaults included."
+    return tables.inputs((i for i in fields if not i.name.startswith("outputs.")), caption)
 
 
 def _outputs(configuration: dict[str, Any]) -> list[Output]:
     """Return the outputs that a configuration names."""
     return [registry().make(Output, output) for output in configuration.get("outputs") or ()]
-
-
-def _status(result: Result) -> Notice:
-    total = result.planned_steps
-    done, failed = result.dataset.sizes["step"], result.failures()
-    sentences = []
-    if done < total:
-        sentences.append(f"The run ended early: {done} of {total} load steps are finished.")
-    count = "The load step" if done == 1 else f"All {done} load steps"
-    bad = f"{len(failed)} of {done} load steps did not converge: do not rely on them."
-    sentences.append(bad if failed else f"{count} converged.")
-    details = [f"Step {step}: {message}" for step, message in failed]
-    for phrase, steps in result.caveats_by_phrase().items():
-        sentences.append(f"In {len(steps)} of {done} {phrase}.")
-        details.append(f"S{first_message(steps)[1:]}")
-    for subject, message in result.beyond_theory().items():
-        sentences.append(f"{subject[0].upper()}{subject[1:]}.")
-        details.append(f"S{message[1:]}")
-    is_good = None if details else True
-    return Notice(" ".join(sentences), is_good if done == total and not failed else False, details)
 
 
 def _reproduce(configuration: dict[str, Any], stem: Path) -> Iterator[Code]:

@@ -10,15 +10,14 @@ from typing import TYPE_CHECKING
 from pellicle.components import Chart, Fields, Output, Runs, Table
 from pellicle.results.path import label_of_step
 from pellicle.results.result import Result
-from pellicle.results.wording import wording
+from pellicle.results.wording import column_of
 from pellicle.show import Picture, figure_of, svg
-from pellicle.show.drawing import Drawn, marks_of
+from pellicle.show.drawing import SIZE, Drawn, marks_of
 
 from .figures import figures_of, figures_of_study
 from .step_figures import profile
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.figure import Figure
 
 _PROFILES = 16
@@ -60,12 +59,13 @@ def _profiles(result: Result, chosen: list[int], begin: int) -> Picture:
     return replace(drawn[chosen[begin]], by_frame=frames if len(drawn) > 1 else ())
 
 
-def curves_of_study(table: xr.Dataset) -> list[Picture]:
-    """Return a figure for each variable that is drawn over a study."""
-    return [
-        picture(make(), f"{wording(table[name]).words.capitalize()} over the study.")
-        for name, make in figures_of_study(table).items()
-    ]
+def curves_of_study(runs: Runs) -> Iterator[Picture]:
+    """Yield a figure for each variable that is drawn over a study."""
+    for name, make in figures_of_study(runs).items():
+        chart, words = make(), column_of(runs.table[name]).words.capitalize()
+        title = runs.table.attrs.get("title", "")
+        remarks = [line for line in chart.title.splitlines() if line != title]
+        yield picture(chart, f"{', '.join([f'{words} over the study', *remarks])}.")
 
 
 def curves_of_outputs(
@@ -90,13 +90,12 @@ def picture(
     """Return a picture, with marks at the load steps ``marked``."""
     marks: list[list[tuple[float, float]]] = []
     drawn: list[Drawn] = []
-    beside = [shown] if isinstance(shown, (Chart, Fields)) else shown
     # The page has a title, and a title may be longer than a figure is wide.
-    fill, size = figure_of([replace(part, title="") for part in beside])
+    fill, size = figure_of(shown, titled=False)
 
     def mark(figure: Figure) -> None:
         if marked:
             marks.extend(marks_of(figure, drawn, marked))
 
     drawing = svg(lambda figure: drawn.extend(fill(figure)), size, mark)
-    return Picture(drawing, caption, caption, marks, wide=len(beside) > 1)
+    return Picture(drawing, caption, caption, marks, wide=size[0] > SIZE[0])

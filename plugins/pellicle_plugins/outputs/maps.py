@@ -11,6 +11,7 @@ from pellicle.arrays import Mask
 from pellicle.components import Axis, Fields, Panel, Runs, Shown
 from pellicle.results.derived import as_array
 from pellicle.results.path import has_interaction
+from pellicle.results.result import Result
 from pellicle.schema.expression import names_in
 from pellicle.show.fields import contact_and_zone
 from pellicle.variables import WALL_PRESSURE, words_of_name
@@ -54,9 +55,8 @@ class Maps(TableFigure):
                 outlines, pulls = contact_and_zone(run), True
             cells = values.transpose("x", "y").values
             blank = cells == 0 if text in _ONLY_IN_CONTACT else None
-            x, y = run["x"].values, run["y"].values
-            panels.append(Panel(x, y, cells, name.words, blank, outlines))
-        axis = Axis(words_of_name(text))
+            panels.append(Panel(Result(run).grid.size, cells, name.words, blank, outlines))
+        axis = Axis(self.field_label or words_of_name(text))
         if panels and panels[0].values.dtype != bool:
             axis = axis_of(text, self.field_label, run)
         centred = pulls and "pressure" in names_in(text)

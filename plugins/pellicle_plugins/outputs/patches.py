@@ -52,7 +52,7 @@ class Patches(TableFigure):
 
     def check(self, runs: Runs) -> None:
         """Refuse an axis or a label that the table does not have; four cells are no grid."""
-        list(self.picked(runs.table))
+        list(self.picked(runs))
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
         """Yield all patches, and the map of the last curve beside the numbers of patches."""
@@ -77,16 +77,16 @@ class Patches(TableFigure):
             patches = analysis.patches(step["contact"], Result(step).grid, self.connectivity)
             rows += _rows(name, step, patches)
             rank, look = np.arange(1.0, patches.count + 1), Look(number, marker=number)
-            series.append(Series(patches.area, rank, legend=name.words, look=look, stepped=True))
+            series.append(Series(patches.area, rank, legend=name.words, look=look, stepped="post"))
             panels = [_map(name, step, patches)]
         return rows, series, panels
 
 
 def _map(name: Label, step: xr.Dataset, patches: analysis.Patches) -> Panel:
     """Return the patches, numbered in turn."""
-    x, y, labels = step["x"].values, step["y"].values, patches.labels
+    size, labels = Result(step).grid.size, patches.labels
     title = f"{name.words}\n{patches.count} patches".lstrip()
-    return Panel(x, y, (labels % 20).astype(np.uint8), title, blank=labels == 0)
+    return Panel(size, labels.astype(np.int32), title, blank=labels == 0)
 
 
 def _rows(name: Label, step: xr.Dataset, patches: analysis.Patches) -> Iterator[tuple[object, ...]]:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Literal
 
+import numpy as np
 from pydantic import Field
 
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
 from pellicle.results.derived import as_array
 from pellicle.results.path import has_interaction
 from pellicle.schema.expression import names_in
-from pellicle.show.rim import with_rim
+from pellicle.show.fields import with_rim
 from pellicle.variables import FIELDS, WALL_PRESSURE
 from pellicle_plugins.validation.reference import exact_line
 
@@ -51,14 +53,21 @@ class Profiles(TableFigure):
         for number, (name, line) in enumerate(lines):
             x, y = self._columns(line)
             rows += [(name.key, "run", *point) for point in zip(x.values, y.values, strict=True)]
-            look = Look(number, number)
+            look, shown = Look(number, number), line
+            if self._fields() == {"pressure"} and not has_interaction(line):
+                shown = with_rim(line)
             if self.reference:
-                # Cells on both sides of the centre alike.
-                x, y = (column[:: max(1, x.size // _MARKERS)] for column in (x, y))
+                # Cells on both sides of the centre alike, without those whose place the rim takes.
+                marked = np.isin(line[self.along], shown[self.along])
+                marked[np.arange(x.size) % max(1, x.size // _MARKERS) > 0] = False
+                x, y = x[marked], y[marked]
                 look = Look(number, None, number)
-            elif self._fields() == {"pressure"} and not has_interaction(line):
-                x, y = self._columns(with_rim(line))
-            series.append(Series(x.values, y.values, legend=name.words, look=look))
+            else:
+                x, y = self._columns(shown)
+            # At a rim that sticks the pressure has a peak in single cells.
+            in_cells = has_interaction(line) and self._fields() & {"pressure", WALL_PRESSURE}
+            one = Series(x.values, y.values, legend=name.words, look=look)
+            series.append(replace(one, stepped="mid") if in_cells else one)
             if self.reference:
                 x, y = self._columns(exact_line(line))
                 is_last = number == len(lines) - 1

@@ -9,8 +9,7 @@ import numpy as np
 from pellicle.components import Axis, Chart, Fields, Look, Panel, Series
 from pellicle.results.path import has_interaction, label_of_step
 from pellicle.results.result import Result
-from pellicle.show.fields import contact_and_zone, default_step, without_round_off
-from pellicle.show.rim import with_rim
+from pellicle.show.fields import contact_and_zone, default_step, with_rim, without_round_off
 from pellicle.units import readable
 
 if TYPE_CHECKING:
@@ -31,7 +30,7 @@ def pressure_map(result: Result, step: int | None = None) -> Fields:
     pressure, pulls = data["pressure"].transpose("x", "y").values, has_interaction(data)
     outlines = contact_and_zone(data) if pulls else []
     title = _caption(result, step)
-    panel = Panel(data["x"].values, data["y"].values, pressure, title, pressure == 0, outlines)
+    panel = Panel(result.grid.size, pressure, title, pressure == 0, outlines)
     words = "pressure, negative where it pulls" if pulls else "contact pressure"
     return Fields(Axis(words, "Pa", limits=(None if pulls else 0.0, None)), [panel], centred=pulls)
 
@@ -52,7 +51,7 @@ def profile(result: Result, step: int | None = None) -> Chart:
     # A view would keep the whole field in memory while the chart is drawn.
     line = data.isel(y=row).copy(deep=True)
     x, gap, contact = line["x"].values, line["gap"].values, line["contact"].values
-    pulls, depth = has_interaction(data), float(data["depth"])
+    half, pulls, depth = result.grid.spacing[0] / 2, has_interaction(data), float(data["depth"])
     height = max(depth, 0.0)
     if pulls:
         # The surface rises above the undeformed plane, and the indenter hangs over it.
@@ -62,19 +61,23 @@ def profile(result: Result, step: int | None = None) -> Chart:
         near = np.isfinite(gap)
     shown, shaded = (line if pulls else with_rim(line)), list[tuple[float, float]]()
     if pulls and contact.any():
-        half = (x[1] - x[0]) / 2 if x.size > 1 else 0.5
         ends = np.flatnonzero(np.diff(np.pad(contact, 1).astype(int)))
         shaded = [(x[a] - half, x[b - 1] + half) for a, b in ends.reshape(-1, 2).tolist()]
+    # A single cell across has an edge length all the same.
+    across = Axis("x", "m", limits=(-half, half) if x.size == 1 else (None, None))
     words = "pressure" if pulls else "contact pressure"
     axes = [Axis(words, "Pa", limits=(None if pulls else 0.0, None), signed=pulls)]
-    series = [Series(shown["x"].values, shown["pressure"].values, name="pressure")]
+    # At a rim that sticks the pressure has a peak in single cells, which no line goes through.
+    points = shown["x"].values, shown["pressure"].values
+    look = Look(marker=0 if x.size == 1 else None)
+    series = [Series(*points, name="pressure", look=look, stepped="mid" if pulls else None)]
     if gap[near].any():
         end = None if near.all() else float(gap[near].max())
         axes.append(Axis("gap", "m", limits=(0.0, end)))
         series.append(Series(x, gap, name="gap", look=Look(None), panel=1))
     title = f"{_caption(result, step)}, y = {readable(line['y'].item(), 'm', 3)}"
     heights = (3, 1)[: len(axes)]
-    return Chart(Axis("x", "m"), axes, series, title, shaded=shaded, heights=heights)
+    return Chart(across, axes, series, title, shaded=shaded, heights=heights)
 
 
 def cross_section(step: xr.Dataset) -> Chart:

@@ -14,7 +14,7 @@ from pellicle.results.result import Result
 from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
 from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.closed_forms import hertz, sneddon
-from pellicle_plugins.closed_forms.full_contact import pressure_amplitude
+from pellicle_plugins.closed_forms.westergaard import pressure_amplitude
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 from .adhesive_path import curve_of

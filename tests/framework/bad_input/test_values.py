@@ -9,7 +9,7 @@ import pytest
 
 import pellicle as pl
 from pellicle import memory
-from pellicle.config.doubtful_scales import doubtful_scales
+from pellicle.show.doubtful_scales import doubts_of_scale
 from tests.framework.bad_input.command_line import says
 
 
@@ -70,7 +70,7 @@ def test_a_scale_that_lacks_a_unit(table: str, values: dict[str, Any], message: 
     """A value out of scale with the others is doubted by name, and nothing else is."""
     changed = {**BEAD.get(table, {}), **values}
     given = {name: value for name, value in changed.items() if value is not None}
-    ((path, text),) = doubtful_scales(pl.Run(**{**BEAD, table: given})).items()
+    ((path, text),) = doubts_of_scale(pl.Run(**{**BEAD, table: given})).items()
     assert path.startswith(f"{table}." if table != "kernel" else "kernel.tension")
     assert message in text
 
@@ -85,5 +85,5 @@ def test_plausible_scales_are_not_doubted(scale: float) -> None:
         loading={"force": [0.1 * scale**2, scale**2]},
         interaction={"type": "jkr", "work_of_adhesion": scale},
     )
-    assert doubtful_scales(run) == {}
-    assert doubtful_scales(pl.Run(**BEAD)) == {}
+    assert doubts_of_scale(run) == {}
+    assert doubts_of_scale(pl.Run(**BEAD)) == {}

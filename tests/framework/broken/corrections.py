@@ -38,11 +38,9 @@ def across_x(f: Any, c: Any, h: Any) -> Any:
 
 # Methods take contact c and spacing h [m].
 BROKEN: dict[str, Any] = {
-    "area_is_pure": [
+    "no_contact_has_no_area": [
         *(constant(repr(value), value, "a real number") for value in (np.nan, "1 mm^2", True)),
         Broken("marks cells", GIVEN, "free", area=lambda f, c, h: f(np.logical_or(c, 1, out=c), h)),
-    ],
-    "no_contact_has_no_area": [
         constant("negative", -1.0, "-1 m²; it has to be between 0 and 4.8e-08 m²"),
         constant("a square metre", 1.0, "1 m²; it has to be between 0 and 4.8e-08 m²"),
         Broken("one cell", NONE, "apart", area=lambda f, c, h: max(f(c, h), h[0] * h[1])),

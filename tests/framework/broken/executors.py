@@ -80,7 +80,7 @@ def halting(f: Any, work: Any, tasks: Any, report: Any) -> Iterator[Any]:
     dead = False
     for task, outcome in f(work, tasks, report):
         yield task, RuntimeError("no worker is left") if dead else outcome
-        dead = dead or "ended the process" in str(outcome)
+        dead = dead or (isinstance(outcome, Exception) and task.home != 0)
 
 
 ITSELF = Refused("it has to yield each of the tasks that it was given once, the object itself")
@@ -97,11 +97,13 @@ BROKEN: dict[str, Any] = {
         Broken("yields outcomes alone", ALONE, map=yields(lambda task, out: out)),
         Broken("loses outcomes", NOTHING, map=yields(lambda task, out: (task, None))),
         Broken("gives outcomes to other tasks", UNSEEN, map=crossing),
+        Broken(
+            "takes equal tasks for one",
+            UNSEEN,
+            map=carries_out(lambda tasks: [*dict.fromkeys(tasks)]),
+        ),
     ],
     "each_task_is_executed_once": Broken("carries tasks out twice", UNSEEN, attempt=twice),
-    "equal_tasks_are_two_tasks": Broken(
-        "takes equal tasks for one", UNSEEN, map=carries_out(lambda tasks: [*dict.fromkeys(tasks)])
-    ),
     "no_tasks_yield_nothing": Broken("needs a task", UNSEEN, map=fragile),
     "failure_is_an_outcome": [
         Broken(

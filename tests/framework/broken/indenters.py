@@ -54,11 +54,9 @@ BROKEN: dict[str, Any] = {
             footprint="domain",
             profile=lambda f, x, y: 1e-6 * (np.cos(3e4 * x) * np.cos(3e4 * y) - 1) - 1e-5,
         ),
+        Broken("grows", ONCE, profile=lambda f, x, y: f(x, y) * (1 + 1e-9 * next(LOOKS))),
         Broken("moves", GIVEN, profile=lambda f, x, y: f(np.subtract(x, 1e-6, out=x), y)),
     ],
-    "profile_is_pure": Broken(
-        "grows", ONCE, profile=lambda f, x, y: f(x, y) * (1 + 1e-9 * next(LOOKS))
-    ),
     "lowest_point_is_at_zero": [
         Broken("hovers by little", SUMMIT, profile=lambda f, x, y: f(x, y) - 1e-8),
         Broken("hovers", HOVERS, profile=lambda f, x, y: f(x, y) - 1e-5),

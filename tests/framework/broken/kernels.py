@@ -67,26 +67,27 @@ def relaxing(fault: str, run: Refused | Taken = RULE, **members: Any) -> Broken:
     return Broken(fault, run, "relaxes", good=Relaxing, **members)
 
 
-def form(fault: str, **members: Any) -> Broken:
+def form(fault: str, run: Refused = RULE, **members: Any) -> Broken:
     """Return a kernel whose closed form is another."""
-    return Broken(fault, RULE, **members)
+    return Broken(fault, run, **members)
 
 
 ANSWERS = count(1)
 OTHERS = Taken("this grid has no such wave")
 BRANCHES = Refused("branches() returned (Branch(", "shares and times have to be positive and")
 ARRAY = Refused("kernel 'broken': compliance(q) returned a", "return an array of float64 of shape")
+LIST = Refused("kernel 'broken' failed", error=TypeError)
+PLACE = Refused("read-only", "kernel 'broken' failed", error=ValueError)
 MEAN = Refused("mean_compliance() returned 'infinite'", "a real number")
 BROKEN: dict[str, Any] = {
-    "compliance_is_vectorised": [
-        Broken("transpose", RULE, compliance=lambda f, q: f(q).T),
-        Broken("whole numbers", RULE, compliance=lambda f, q: np.ceil(f(q)).astype(int)),
-        Broken("values in a list", RULE, compliance=lambda f, q: f(q).tolist()),
+    "values_are_of_their_argument_alone": [
+        Broken("transpose", ARRAY, compliance=lambda f, q: f(q).T),
+        Broken("whole numbers", ARRAY, compliance=lambda f, q: np.ceil(f(q)).astype(int)),
+        Broken("masked", ARRAY, compliance=lambda f, q: np.ma.masked_array(f(q), q > np.median(q))),
         Broken("looks at all waves", RULE, compliance=lambda f, q: f(q) * (1 + 1e-6 * q / q.max())),
+        Broken("works in place", PLACE, compliance=lambda f, q: f(np.multiply(q, 2, out=q))),
+        form("form in place", PLACE, greens_function=lambda f, r: f(np.multiply(r, 2, out=r))),
     ],
-    "compliance_leaves_its_argument": Broken(
-        "works in place", RULE, compliance=lambda f, q: f(np.multiply(q, 2, out=q))
-    ),
     "compliance_is_positive_and_finite": [
         *(bad(fault, value) for fault, value in (("zero", 0.0), ("nan", np.nan))),
         Broken("short", OTHERS, compliance=lambda f, q: np.where(q > 1e7, np.nan, f(q))),
@@ -95,25 +96,12 @@ BROKEN: dict[str, Any] = {
         Broken("softer to shorter waves", RULE, compliance=lambda f, q: q * 1e-12),
         Broken("overflows", RULE, compliance=lambda f, q: 1e-12 * q**20),
     ],
-    "periodic_operator_is_the_compliance": [
-        Broken("masked", ARRAY, compliance=lambda f, q: np.ma.masked_array(f(q), q > np.median(q))),
-        Broken(
-            "single precision for many waves",
-            RULE,
-            compliance=lambda f, q: f(q) if q.size < 300 else np.float64(np.float32(f(q))),
-        ),
-        Broken("mean in words", MEAN, mean_compliance=lambda f: "infinite"),
+    "runs_converge": [
+        hole("nan at a wave of one grid", np.sqrt(2) * 2e3 * np.pi),
+        hole("nan at a wave of one preconditioner", 1.5e3 * np.pi),
     ],
-    "periodic_run_converges": hole("nan at a wave of one grid", np.sqrt(2) * 2e3 * np.pi),
-    "free_run_converges": hole("nan at a wave of one preconditioner", 1.5e3 * np.pi),
-    "uniform_pressure_sinks_by_the_mean_compliance": Broken(
-        "fickle mean", RULE, mean_compliance=lambda f: 1e-6 * next(ANSWERS)
-    ),
     "closed_form_is_whole": form(
         "half of a closed form", good=WithoutForm, greens_function=lambda f, r: 1e-5 / r
-    ),
-    "closed_form_leaves_its_argument": form(
-        "form in place", greens_function=lambda f, r: f(np.multiply(r, 2, out=r))
     ),
     "primitive_is_the_integral_of_the_closed_form": [
         form("primitive too large", radial_primitive=lambda f, r: 1.01 * f(r)),
@@ -139,6 +127,9 @@ BROKEN: dict[str, Any] = {
     ],
     "scaled_by_one_is_the_kernel": [
         relaxing("relaxes on", scaled=lambda f, share: Relaxing(reduced_modulus=1e4)),
+        Broken("mean in words", MEAN, mean_compliance=lambda f: "infinite"),
+        Broken("fickle mean", RULE, mean_compliance=lambda f: 1e-6 * next(ANSWERS)),
+        Broken("values in a list", LIST, compliance=lambda f, q: f(q).tolist()),
         relaxing("softer when scaled by one", scaled=lambda f, share: f(0.99 * share)),
     ],
     "scaled_stiffens_the_solid_alone": relaxing(

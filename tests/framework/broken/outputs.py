@@ -64,29 +64,24 @@ def empties(f: Any, runs: Any, stem: Any) -> Any:
     return (path,)
 
 
-CHANGES, OWN = Refused("read-only", error=ValueError), Taken("each output gets data of its own")
+CHANGES = Refused("read-only", error=ValueError)
 THERE = Refused("there is a file", "output 'broken' failed", error=RuntimeError)
 UNSEEN = Taken("a run does not look into the files of an output")
 PATHS = Refused("write(runs, stem) returned", "a tuple of pathlib.Path")
 ASTRAY = Refused("write(runs, stem) returned", "its files have to begin with the stem")
 SUFFIXES = Refused("suffixes is", "it has to be a tuple of texts")
 BROKEN: dict[str, Any] = {
-    "leaves_its_data_as_they_are": [
-        Broken("changes steps", CHANGES, step=lambda f, record, stem: zero(record)),
-        Broken("changes the result", CHANGES, write=before(lambda runs, _: zero(runs.open()))),
-        Broken(
-            "the table", CHANGES, "study", scope="both", write=before(lambda r, _: zero(r.table))
-        ),
-        Broken(
-            "renames", OWN, write=before(lambda runs, _: runs.open().attrs.update(title="mine"))
-        ),
-        Broken("cannot write", Refused("read-only", "'broken' failed", error=OSError), write=fails),
-    ],
     "loses_no_step": [
         Broken("forgets the first step", UNSEEN, shown=lambda f, depths: depths[1:] or [0]),
         Broken("forgets the last step", UNSEEN, shown=lambda f, depths: depths[:-1] or [0]),
     ],
     "leaves_the_files_it_returns": [
+        Broken("changes steps", CHANGES, step=lambda f, record, stem: zero(record)),
+        Broken("changes the result", CHANGES, write=before(lambda runs, _: zero(runs.open()))),
+        Broken(
+            "the table", CHANGES, "study", scope="both", write=before(lambda r, _: zero(r.table))
+        ),
+        Broken("cannot write", Refused("read-only", "'broken' failed", error=OSError), write=fails),
         Broken("returns nothing", PATHS, write=lambda f, *given: None),
         Broken("returns text", PATHS, write=lambda f, *given: [str(f(*given)[0])]),
         Broken("file elsewhere", ASTRAY, write=lambda f, _, stem: [stem.parent / ".." / stem.name]),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -14,13 +13,12 @@ import pytest
 import pellicle as pl
 from pellicle import testing
 from pellicle.components import Variable
-from pellicle.config import explain
 from pellicle.plugins import checked_type, registry
 from pellicle.testing import component as component_rules
 from tests.framework.broken.catalogue import GRID, PARTS, Broken, Taken, make, run
 from tests.framework.broken.corrections import Correction
 from tests.framework.broken.executors import EXECUTORS, Executor
-from tests.framework.broken.general import Tied, TwoFaced
+from tests.framework.broken.general import TwoFaced
 from tests.framework.broken.interactions import INTERACTIONS
 from tests.framework.broken.kernels import Kernel
 from tests.framework.broken.outputs import Output
@@ -208,17 +206,3 @@ def test_the_registry_makes_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     _register(monkeypatch, component_rules, TwoFaced)
     with pytest.raises(AssertionError, match="breaks the rule goes_through_the_registry\n"):
         testing.check_indenter(TwoFaced(radius=1e-3))
-
-
-def test_an_example_is_printed_only_if_it_makes_the_component(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Where fields are tied their units give no example; that of a pure number has no unit."""
-    _register(monkeypatch, explain, Tied)
-    (tied,) = explain.explanations("broken", {})
-    assert tomllib.loads(tied.example) == {}
-    assert "outer: has to exceed radius" in tied.example
-    share: Any = type("Share", (Volume,), {"__module__": __name__, "unit": "1"})
-    entry = replace(registry().components["prescription"]["gap_volume"], component=share)
-    (value,) = explain.example_table(entry)["gap_volume"]
-    assert share.quantity()(value) > 0

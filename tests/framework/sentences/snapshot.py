@@ -72,7 +72,10 @@ class Answer(NamedTuple):
             text = re.sub(pattern, instead, text, flags=re.MULTILINE)
         if self.code < 2:
             # Numbers that are computed.
-            shown = re.sub(r" {2,}|-{3,}", " ", _NUMBER.sub("#", self.stdout))
+            shown = re.sub(
+                r"\b[0-9a-f]{8,}(…|(?=\.h5))|^date: .*\n", "", self.stdout, flags=re.MULTILINE
+            )
+            shown = re.sub(r" {2,}|-{3,}", " ", _NUMBER.sub("#", shown))
             text = _NUMBER.sub("#", text) + shown
         return "\n".join(line.rstrip() for line in text.splitlines() if line.strip())
 

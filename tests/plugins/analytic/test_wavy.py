@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from pellicle_plugins.closed_forms.full_contact import pressure_amplitude
-from pellicle_plugins.closed_forms.westergaard import wavy
+from pellicle_plugins.closed_forms.westergaard import pressure_amplitude, wavy
 
 AMPLITUDE, WAVELENGTH, E = 2e-6, 1e-3, 1e5
 

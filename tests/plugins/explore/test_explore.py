@@ -8,7 +8,6 @@ import queue
 import threading
 import time
 import tomllib
-import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from importlib.resources import files
@@ -294,23 +293,6 @@ def test_an_impossible_change_leaves_the_run_before(
     assert not page.explorer._message.visible
 
 
-def test_values_that_exclude_each_other_are_refused(start: pl.Run) -> None:
-    """The message stands beside the field that was changed, and the run stays as it was."""
-    rough = {
-        "type": "self_affine",
-        "rms_height": "100 nm",
-        "hurst": 0.8,
-        "cutoff_wavelength": "4 um",
-        "roll_off_wavelength": "16 um",
-    }
-    page = Page(pl.Run(**{**configuration_of(start), "indenter": rough}))
-    page.type("roll-off wavelength", "2 um")
-    page.rest()
-    (message,) = page.errors
-    assert message.startswith("2 µm is shorter than cutoff_wavelength")
-    assert page.explorer._configuration["indenter"]["roll_off_wavelength"] == 16e-6
-
-
 @pytest.mark.parametrize("is_closed", [False, True])
 def test_a_long_solve_is_cancelled(
     start: pl.Run, monkeypatch: pytest.MonkeyPatch, is_closed: bool
@@ -344,27 +326,6 @@ def test_a_long_solve_is_cancelled(
         assert page.saved["kernel"]["tension"] == "6 mN/m"
 
 
-def test_two_pages_leave_the_warnings_in_order(start: pl.Run) -> None:
-    """Runs of two pages that overlap do not restore the filters of each other."""
-    before = list(warnings.filters)
-    is_inside, is_done = threading.Event(), threading.Event()
-
-    def enter_second(*_: object) -> None:
-        if other.ident is None:
-            other.start()
-            is_inside.wait(0.3)
-
-    def stay_longer(*_: object) -> None:
-        is_inside.set()
-        is_done.wait(0.3)
-
-    other = threading.Thread(target=solved, args=(configuration_of(start), stay_longer))
-    solved(configuration_of(start), enter_second)
-    is_done.set()
-    other.join(20)
-    assert list(warnings.filters) == before
-
-
 def test_a_load_of_nothing_is_refused(start: pl.Run) -> None:
     """Load steps keep their proportion, which 0 would take from them; a tiny one may stick."""
     page = Page(start)
@@ -378,34 +339,6 @@ def test_a_load_of_nothing_is_refused(start: pl.Run) -> None:
     switch.active = True
     page.rest()
     assert page.saved["interaction"]["work_of_adhesion"] == "1 mJ/m²"
-
-
-@pytest.mark.slow
-def test_rows_are_used_again(start: pl.Run) -> None:
-    """Bokeh keeps every part that was on a page, so switches must not make new ones.
-
-    What was typed, refused or not, and the work of adhesion survive them.
-    """
-    page = Page(start)
-    page.rest()
-    switch = page.document.select_one({"type": Checkbox})
-    assert isinstance(switch, Checkbox)
-    page.type("surface tension", "6.28318 mN/m")
-    page.type("thickness", "5 Pa")
-    rows = dict(page.explorer._rows)
-    switch.active = True
-    assert {"interaction.work_of_adhesion"} == page.explorer._rows.keys() - rows.keys()
-    page.type("work of adhesion", "0.3 mJ/m^2")
-    parts = page.explorer._panel.children
-    for active in (False, True):
-        switch.active = active
-    assert page.explorer._panel.children == parts
-    page.rest()
-    assert page.saved["interaction"]["work_of_adhesion"] == "0.3 mJ/m^2"
-    assert page.saved["kernel"]["tension"] == "6.28318 mN/m"
-    assert page.field("surface tension").value == "6.28318 mN/m"
-    assert page.field("thickness").value == "5 Pa"
-    assert len(page.errors) == 1
 
 
 def test_slider_and_field_follow_each_other(start: pl.Run) -> None:

@@ -13,10 +13,8 @@ import pellicle as pl
 from pellicle_fit.curves.columns import Calibration
 from pellicle_fit.curves.curve import Curve
 from pellicle_fit.curves.readers import read
-from pellicle_fit.models.force_model import tension_model
 from pellicle_fit.parameters import CONTACT_POINT, OFFSET, SLOPE, TENSION, Coordinates
 from pellicle_fit.parameters import MODULUS as REDUCED_MODULUS
-from pellicle_fit.statistics.likelihood import Likelihood
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.plugins.fit import instruments
 from tests.plugins.fit.conftest import holds
@@ -205,50 +203,6 @@ def test_noise_of_the_deflection_is_in_the_position_too() -> None:
     assert 0.4 < np.sqrt(np.mean(np.square(errors))) < 1.6
     blind = pl.fit(*seen, indenter=BEAD)
     assert any("does not describe the curve" in message for message in blind.messages)
-
-
-def test_balance_of_cantilever_and_solid() -> None:
-    """At the truth nothing is left but the noise, and slopes are derivatives of the residuals."""
-    noise = 0.01 * float(FORCE.max())
-    likelihood = Likelihood(*SEEN, tension_model(BEAD), noise, tuple(TRUTH), SPRING)
-    assert likelihood.residuals(TRUTH) * noise == pytest.approx(-NOISE, abs=1e-8 * FORCE.max())
-    here = {p: value + 0.01 * likelihood.ranges[p].scale for p, value in TRUTH.items()}
-    here[REDUCED_MODULUS] = TRUTH[REDUCED_MODULUS] + 0.1
-    away = np.abs(POSITION - here[CONTACT_POINT]) > 0.1e-6
-    for column, parameter in enumerate(likelihood.parameters):
-        step = 1e-5 * likelihood.ranges[parameter].scale
-        above, below = (
-            likelihood.residuals(here | {parameter: here[parameter] + change})
-            for change in (step, -step)
-        )
-        slope = likelihood.jacobian(here)[:, column]
-        derivative = (above - below) / (2 * step)
-        assert derivative[away] == pytest.approx(slope[away], abs=1e-4 * np.abs(slope).max())
-
-
-@pytest.mark.parametrize("points", [SEEN[0].size, 500])
-def test_fitted_curve_of_a_cantilever_has_no_noise(points: int) -> None:
-    """At the truth it is the true curve, at the measured and at other positions of the base."""
-    likelihood = Likelihood(*SEEN, tension_model(BEAD), 1e-10, tuple(TRUTH), SPRING)
-    position, force = likelihood.resampled(points).fitted(TRUTH)
-    true = MODULUS * BEAD.force_curve(position, LENGTH).force
-    assert force == pytest.approx(true, abs=1e-8 * FORCE.max())
-    assert position[[0, -1]] == pytest.approx(
-        POSITION[[0, -1]], abs=3 * np.abs(NOISE).max() / SPRING
-    )
-    assert likelihood.fitted(TRUTH)[0] == pytest.approx(POSITION, abs=1e-8 * FORCE.max() / SPRING)
-
-
-@pytest.mark.parametrize("points", [2 * SEEN[0].size, 501])
-def test_fitted_curve_of_both_passes_reaches_the_deepest_point(points: int) -> None:
-    """It goes in and back out along the true curve, also between the measured positions."""
-    path, pull = (np.concatenate([values, values[::-1]]) for values in (POSITION, FORCE))
-    likelihood = Likelihood(path, pull, tension_model(BEAD), 1e-10, tuple(TRUTH), segment="both")
-    position, force = likelihood.resampled(points).fitted(TRUTH)
-    assert force == pytest.approx(MODULUS * BEAD.force_curve(position, LENGTH).force)
-    assert position[[0, -1]] == pytest.approx(POSITION[0])
-    assert position.max() == pytest.approx(POSITION[-1])
-    assert (np.diff(position) >= 0).sum() == pytest.approx(points / 2, abs=2)
 
 
 def test_bad_calibration() -> None:

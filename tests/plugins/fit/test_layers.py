@@ -17,10 +17,9 @@ from numpy.typing import NDArray
 import pellicle as pl
 from pellicle_fit.config import FitConfig
 from pellicle_fit.models import simulation
-from pellicle_fit.models.layer import FreeLayerModel, LayerModel
+from pellicle_fit.models.layer import LayerModel
 from pellicle_fit.models.simulation import Simulation
 from pellicle_fit.one_curve import fit_problem
-from pellicle_fit.parameters import MODULUS, TENSION, THICKNESS
 from pellicle_fit.problem import FitProblem, problems
 from pellicle_fit.statistics.design import _designs
 from tests.plugins.fit.conftest import holds
@@ -221,21 +220,3 @@ def test_advice_stays_within_the_layer() -> None:
     assert not any("deeper" in text for text in words)
     assert any("shallower" in text for text in words)
     assert any("a larger radius" in text for text in words)
-
-
-def test_free_layer_as_a_force_model() -> None:
-    """Force and derivatives by modulus, tension and thickness, as any model of a rival has."""
-    bead = pl.indenter("sphere", radius=RADIUS)
-    assert isinstance(bead, pl.HasLayerForceCurve)
-    model = FreeLayerModel(bead, RATIO)
-    depth = np.array([-1e-7, 0.2e-6, 1e-6])
-    values = {MODULUS: TRUE_MODULUS, TENSION: TRUE_TENSION, THICKNESS: THICK}
-    here = model.force(depth, values)
-    assert here.force == pytest.approx(model.at(THICK).force(depth, values).force)
-    for parameter in model.parameters:
-        h = 1e-4 * values[parameter]
-        ends = [model.force(depth, values | {parameter: values[parameter] + e}) for e in (h, -h)]
-        numerical = (ends[0].force - ends[1].force) / (2 * h)
-        assert here.by_parameter[parameter] == pytest.approx(numerical, rel=1e-4)
-    twice = model.force(depth, model.scaled(values, 2.0))
-    assert twice.force == pytest.approx(2 * here.force)

@@ -132,29 +132,6 @@ def test_pool_of_the_same_curve_twice(measured: dict[str, tuple[Array, Array]]) 
 
 
 @pytest.mark.slow
-def test_slopes_and_bound_are_those_of_all_points(fit: pl.PooledFit) -> None:
-    """The six rows that stand for a curve keep χ², its gradient and the Fisher information."""
-    pool = Pool.of([replace(member, free=member.parameters) for member in fit.pool.members])
-    away = pool.deviations(fit.parameters)
-    here = {p: value + 0.3 * away[p] for p, value in fit.parameters.items()}
-    parts = pool.parts(here)
-    whole = sum(m.chi_squared(part) for m, part in zip(pool.members, parts, strict=True))
-    assert pool.chi_squared(here) == pytest.approx(whole, rel=1e-12)
-    stacked = np.zeros((sum(m.force.size for m in pool.members), len(here)))
-    left = np.concatenate([m.residuals(p) for m, p in zip(pool.members, parts, strict=True)])
-    first, *others = [m.jacobian(p) for m, p in zip(pool.members, parts, strict=True)]
-    stacked[: len(first), :5] = first
-    stacked[len(first) :, [5, 1, 2, 6, 7]] = others[0]
-    gradient = pool.jacobian(here).T @ pool.residuals(here)
-    scale = np.array([pool.ranges[p].scale for p in pool.parameters])
-    assert gradient * scale == pytest.approx(stacked.T @ left * scale, rel=1e-8, abs=1e-6)
-    scaled = stacked * scale
-    bound = np.sqrt(np.diag(np.linalg.inv(scaled.T @ scaled))) * scale
-    deviations = pool.deviations(here)
-    assert [deviations[p] for p in pool.parameters] == pytest.approx(bound, rel=1e-6)
-
-
-@pytest.mark.slow
 def test_ends_are_where_the_profile_has_risen(fit: pl.PooledFit) -> None:
     """At each end the least χ² is up by the stated rise, and no start finds less."""
     random = np.random.default_rng(3)

@@ -11,29 +11,20 @@ import fit_traps
 import numpy as np
 import pytest
 from fit_rivals import KINDS, MODULUS_, RADIUS, Sample, fitted, path
-from numpy.typing import NDArray
 from scipy.special import beta
 
 import pellicle as pl
-from pellicle_fit.alternatives import unseen_pairs
-from pellicle_fit.comparison import Comparison, RivalFit, Verdict
-from pellicle_fit.curves.curve import Segment
-from pellicle_fit.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
-from pellicle_fit.models.effects import DRAG, DRIFT, DragModel, DriftModel
-from pellicle_fit.models.force_model import ClosedFormModel, ForceModel
-from pellicle_fit.models.history import History, constant_speed
+from pellicle_fit.comparison import RivalFit, Verdict
+from pellicle_fit.models.adhesive import WORK_OF_ADHESION, AdhesiveModel
+from pellicle_fit.models.force_model import ClosedFormModel
+from pellicle_fit.models.history import History
 from pellicle_fit.models.relaxing import (
     EXPONENT,
-    RELAXATION_TIME,
-    SHARE,
     PowerLawModel,
-    StandardLinearModel,
 )
-from pellicle_fit.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Values
+from pellicle_fit.parameters import CONTACT_POINT, MODULUS, TENSION
 from pellicle_fit.report.page import save_report
 from pellicle_fit.report.sentences import sentence_of_fit
-from pellicle_fit.statistics.likelihood import Likelihood
-from pellicle_fit.statistics.noise import is_beyond_chance
 from pellicle_fit.statistics.pooled_likelihood import Pool
 from pellicle_fit.statistics.rival import Rival
 from pellicle_fit.statistics.rivals import MARGIN, NONE, TENSED
@@ -42,7 +33,6 @@ from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid, Sphere
 from tests.plugins.fit.conftest import ends_of, holds
 
-Array = NDArray[np.float64]
 BEAD = Paraboloid(radius=RADIUS)
 ELASTIC = ClosedFormModel(BEAD)
 DATA = Path(__file__).parents[2] / "data"
@@ -108,52 +98,6 @@ def test_power_law_under_tension(exponent: float, tension: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("model", "values"),
-    [
-        (PowerLawModel(ELASTIC, HISTORY), {TENSION: 1e-3, EXPONENT: 0.2}),
-        (StandardLinearModel(ELASTIC, HISTORY), {TENSION: 1e-3, SHARE: 0.3, RELAXATION_TIME: 0.3}),
-        (DragModel(ELASTIC, HISTORY), {TENSION: 1e-3, DRAG: 50.0}),
-        (DriftModel(ELASTIC, HISTORY), {TENSION: 1e-3, DRIFT: 1e-10}),
-        (
-            AdhesiveModel(ELASTIC, ROWS.sense < 0, np.zeros(ROWS.sense.size), 0.05),
-            {TENSION: 1e-3, WORK_OF_ADHESION: 1e-6},
-        ),
-        (
-            AdhesiveModel(
-                ELASTIC,
-                ROWS.sense < 0,
-                np.where(ROWS.depth > 0.01, 1.0, -1.0),
-                0.05,
-                (ROWS.sense < 0) & (ROWS.depth <= 0.01),
-            ),
-            {TENSION: 1e-3, WORK_OF_ADHESION: 1e-6},
-        ),
-    ],
-)
-@pytest.mark.parametrize("stiffness", [None, 0.05])
-def test_derivatives(model: ForceModel, values: Values, stiffness: float | None) -> None:
-    """The Jacobian agrees with differences of the residuals."""
-    force = np.maximum(ROWS.depth, 0.0) ** 1.5 * 1e-9
-    likelihood = Likelihood(
-        ROWS.depth * DEPTH, force, model, 1e-12, (), stiffness, ROWS.time, "both"
-    )
-    at = {CONTACT_POINT: 1e-10, MODULUS: np.log(MODULUS_), OFFSET: 0.0, SLOPE: 0.0}
-    at |= {p: p.coordinate(value) for p, value in values.items()}
-    jacobian = likelihood.jacobian(at)
-    for column, parameter in enumerate(likelihood.parameters):
-        step = 1e-5 * likelihood.ranges[parameter].scale
-        above, below = (
-            likelihood.residuals(at | {parameter: at[parameter] + s}) for s in (step, -step)
-        )
-        difference = (above - below) / (2 * step)
-        # Rows that touch or let go within the step are left out.
-        error = np.abs(difference - jacobian[:, column])
-        assert np.median(error) <= 2e-3 * np.median(np.abs(difference)) + 1e-12
-        inner = np.sort(error)[: int(0.97 * error.size)]
-        assert np.linalg.norm(inner) <= 0.02 * np.linalg.norm(difference)
-
-
-@pytest.mark.parametrize(
     "tension",
     [0.0, pytest.param(1e-3, marks=pytest.mark.slow), pytest.param(2e-2, marks=pytest.mark.slow)],
 )
@@ -175,22 +119,6 @@ def test_adhesive_branch_is_that_of_the_integral_equation(tension: float) -> Non
     pull_off = float(theory.instability(0.0).force)
     assert model.pull_off(values) == pytest.approx(pull_off, rel=1e-3)
     assert -1.5001 <= pull_off / (np.pi * work * RADIUS) <= -0.999
-
-
-def test_jumps_decide_which_rows_touch() -> None:
-    """Rows of a retraction before its jump touch, and no others."""
-    force = np.concatenate([np.zeros(50), np.linspace(-1, 3, 100)])
-    force += 0.05 * np.random.default_rng(1).standard_normal(150)
-    states = attachment(np.arange(150.0), force, np.full(150, True))
-    assert states.tolist() == [-1.0] * 50 + [1.0] * 100
-    assert not attachment(np.arange(150.0), np.maximum(force, 0.0), np.full(150, True)).any()
-
-
-def test_time_at_constant_speed() -> None:
-    """Without times the approach takes 1 s, and the way back as long for as far."""
-    position = np.concatenate([np.linspace(0, 2, 21), np.linspace(2, 1, 11)[1:]])
-    time = constant_speed(position)
-    assert time[[0, 20, 30]] == pytest.approx([0, 1, 1.5])
 
 
 def test_clean_curve_is_never_told_to_measure_more() -> None:
@@ -300,15 +228,6 @@ def test_a_search_that_loses_the_adhesion_starts_again() -> None:
     assert best.parameters[WORK_OF_ADHESION] == pytest.approx(truth[WORK_OF_ADHESION], abs=1.0)
 
 
-def test_few_failing_curves_of_many_are_chance() -> None:
-    """One of twenty curves without fault fails a check now and then; one alone seldom does."""
-    assert is_beyond_chance(1, 1)
-    assert is_beyond_chance(1, 2)
-    assert not is_beyond_chance(1, 20)
-    assert is_beyond_chance(3, 20)
-    assert not is_beyond_chance(0, 20)
-
-
 @pytest.mark.slow
 def test_one_speed_does_not_tell_a_tension_from_relaxation_beside_it() -> None:
     """A tensed power-law solid: modulus and tension of the elastic model miss by a factor of 2."""
@@ -416,26 +335,6 @@ def test_intervals_hold_the_value_where_the_elastic_model_fails() -> None:
         assert np.ptp(ends_of(estimate)) == pytest.approx(4 * estimate.bound, rel=0.2)
 
 
-def test_balance_of_a_cantilever_derives_the_force_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Derivatives of a model with a memory are those of the last Newton step only."""
-    count = 0
-    whole = PowerLawModel._derivatives
-
-    def counted(*arguments: Any) -> Any:
-        nonlocal count
-        count += 1
-        return whole(*arguments)
-
-    monkeypatch.setattr(PowerLawModel, "_derivatives", counted)
-    force = np.maximum(ROWS.depth, 0.0) ** 1.5 * 1e-9
-    likelihood = Likelihood(
-        ROWS.depth * DEPTH, force, PowerLawModel(ELASTIC, HISTORY), 1e-12, (), 0.005, ROWS.time
-    )
-    at = {CONTACT_POINT: 1e-10, MODULUS: np.log(MODULUS_), TENSION: 1e-3, EXPONENT: 0.2}
-    likelihood.linearised(at | {OFFSET: 0.0, SLOPE: 0.0})
-    assert count == 1
-
-
 @pytest.mark.slow
 def test_retraction_whose_jump_is_not_seen() -> None:
     """Rows without contact hold the end of the branch, and other last rows widen the intervals.
@@ -489,90 +388,6 @@ def test_the_chosen_model_is_the_answer(tmp_path: Path) -> None:
     assert float(many["r_squared"][0]) > 0.99
 
 
-@pytest.mark.parametrize(
-    ("verdict", "ranked", "alternatives"),
-    [
-        # A pair that is hardly better than one of its effects widens nothing.
-        ("needed", {"tension": 0.0, "tension+drag": -1.0, "drag": 40.0}, {"tension"}),
-        (
-            "needed",
-            {"tension+drag": 0.0, "tension": 3.0, "drag": 40.0},
-            {"tension", "tension+drag"},
-        ),
-        (
-            "undecided",
-            {"drag": 0.0, "tension": 3.0, "power_law": 3.9},
-            {"drag", "tension", "power_law"},
-        ),
-        ("not shown", {"drag": 0.0, "tension": 1.0, "none": 5.0}, {"tension"}),
-        ("not shown", {"drag": 0.0, "tension": 4.0, "none": 7.0}, {"drag", "tension"}),
-        ("not shown", {"none": 0.0, "sphere": 0.3, "tension": 2.0}, {"sphere", "tension"}),
-        # The modulus of a cone depends on its angle, which is arbitrary.
-        ("undecided", {"cone": 0.0, "sphere": 1.0, "tension": 2.0}, {"sphere", "tension"}),
-    ],
-)
-def test_models_whose_moduli_count(
-    verdict: Verdict, ranked: dict[str, float], alternatives: set[str]
-) -> None:
-    """The modulus is told over the models that are tied, not over those that hold another."""
-    comparison = Comparison(tuple(ranking({"none": 100.0} | ranked)), verdict, "", "", ())
-    assert {fit.rival.code for fit in comparison.alternatives} == alternatives
-
-
-@pytest.mark.parametrize(("aic", "counts"), [(2.0, True), (4.0, False)])
-def test_relaxation_beside_a_tension_counts_at_one_speed(aic: float, counts: bool) -> None:
-    """Though curves of one speed need it no more than any other pair."""
-    ranked = {"tension": 0.0, "tension+power_law": aic, "power_law": 40.0, "none": 100.0}
-    fits = tuple(ranking(ranked))
-    comparison = Comparison(fits, "needed", "", "", (), unseen=("tension+power_law",))
-    codes = {fit.rival.code for fit in comparison.alternatives}
-    assert codes == {"tension"} | ({"tension+power_law"} if counts else set())
-
-
-def test_what_measurements_do_not_show() -> None:
-    """Adhesion in approaches; relaxation at one speed, without a dwell."""
-
-    def unseen(
-        *rows: fit_rivals.Path, segment: Segment = "approach", timed: bool = True
-    ) -> tuple[str, ...]:
-        curves = [
-            Likelihood(
-                path.depth,
-                path.depth,
-                ELASTIC,
-                1.0,
-                (CONTACT_POINT,),
-                time=path.time if timed else None,
-                segment=segment,
-            )
-            for path in rows
-        ]
-        return unseen_pairs(Pool.of(curves) if len(curves) > 1 else curves[0])
-
-    adhesion, relaxation = "tension+adhesion", "tension+power_law"
-    assert unseen(path()) == (adhesion, relaxation)
-    assert unseen(path(), path(rate=1.2)) == (adhesion, relaxation)
-    assert unseen(path(), path(rate=10.0)) == (adhesion,)
-    assert unseen(path(dwell=True)) == (adhesion,)
-    # Where times are not known, another depth is no other speed.
-    deep = path()._replace(depth=10 * path().depth)
-    assert unseen(path(), deep) == (adhesion,)
-    assert unseen(path(), deep, timed=False) == (adhesion, relaxation)
-    assert unseen(path("both"), segment="both") == ()
-
-
-@pytest.mark.parametrize(("gain", "chosen"), [(1.2, None), (7.0, "tension+adhesion")])
-def test_an_effect_beside_tension_has_to_beat_tension_alone(
-    gain: float, chosen: str | None
-) -> None:
-    """Of tied explanations with tension the one with fewer parameters counts."""
-    ranked = {"tension+adhesion": 0.0, "tension": gain, "adhesion": 40.0, "none": 3000.0}
-    comparison = judge(Pool.of([]), ranking(ranked), [], 3.84)
-    assert comparison.verdict == "needed"
-    assert (comparison.chosen and comparison.chosen.rival.code) == chosen
-    assert ("beside it there is adhesion" in comparison.sentence) == (chosen is not None)
-
-
 @pytest.mark.parametrize(("threshold", "verdict"), [(3.84, "needed"), (4.5, "undecided")])
 def test_a_tension_is_not_needed_within_the_threshold_of_intervals(
     threshold: float, verdict: Verdict
@@ -584,13 +399,6 @@ def test_a_tension_is_not_needed_within_the_threshold_of_intervals(
         comparison = judge(Pool.of([]), ranking(ranked), [], threshold)
     assert comparison.verdict == verdict
     assert len(comparison.tied) == (1 if verdict == "needed" else 2)
-
-
-def test_a_difference_is_told_from_the_explanation_that_it_is_to() -> None:
-    """The best explanation with tension may be a pair, whose ΔAIC is not that of tension alone."""
-    ranked = {"adhesion": 0.0, "tension+drag": 50.0, "tension": 90.0, "none": 95.0}
-    sentence = judge(Pool.of([]), ranking(ranked), [], 3.84).sentence
-    assert "better than tension and drag (ΔAIC = 50)" in sentence
 
 
 @pytest.mark.parametrize(

@@ -8,18 +8,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle_fit.models import simulation
 from pellicle_fit.models.interpolated import SimulatedCurve
-from pellicle_fit.models.simulation import Plan, half_widths, plan, simulate
+from pellicle_fit.models.simulation import Plan, plan, simulate
 from pellicle_fit.models.solid import scaled, solid
 from tests.plugins.fit.conftest import ends_of
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
 
-Array = NDArray[np.float64]
 LAYER = {"type": "bonded_layer", "thickness": "4 um"}
 RADIUS = 2e-6
 
@@ -65,50 +63,6 @@ def test_between_the_nodes(exact_nodes: SimulatedCurve, ratio: float) -> None:
     depth = RADIUS * np.geomspace(0.01, 0.4, 50)
     here = exact_nodes.force_curve(depth, ratio * RADIUS).force
     assert here == pytest.approx(exact.force_curve(depth, ratio * RADIUS).force, rel=3e-4)
-
-
-@pytest.mark.parametrize("depth", [1e-4, 0.03, 0.3, 0.9])
-@pytest.mark.parametrize("ratio", [1e-3, 0.3, 100.0])
-def test_sensitivities(exact_nodes: SimulatedCurve, depth: float, ratio: float) -> None:
-    """Sensitivities are derivatives, beyond the nodes too; there is no force before contact."""
-    at, length = np.array([-1.0, depth]) * RADIUS, ratio * RADIUS
-    curve = exact_nodes.force_curve(at, length)
-    assert all(values[0] == 0 for values in curve)
-    h = 1e-5
-    by_depth = [exact_nodes.force_curve(at * (1 + e), length).force[1] for e in (h, -h)]
-    by_length = [exact_nodes.force_curve(at, length * (1 + e)).force[1] for e in (h, -h)]
-    assert np.subtract(*by_depth) / (2 * h * at[1]) == pytest.approx(curve.by_depth[1], rel=1e-6)
-    assert np.subtract(*by_length) / (2 * h * length) == pytest.approx(
-        curve.by_length[1], rel=1e-6, abs=1e-9 * curve.force[1] / length
-    )
-
-
-@pytest.mark.parametrize(
-    ("indenter", "depth", "expected"),
-    [
-        ({"type": "paraboloid", "radius": 2.0}, 1e-4, (0.02, 0.02)),
-        ({"type": "quadric", "radius_x": 2.0, "radius_y": 0.02}, 1.0, (2.0, 0.2)),
-        ({"type": "cone", "half_angle": np.pi / 4}, 3e-9, (3e-9, 3e-9)),
-        ({"type": "flat_punch", "radius": 5.0}, 1e-3, (5.0, 5.0)),
-    ],
-)
-def test_extent(indenter: dict[str, Any], depth: float, expected: tuple[float, float]) -> None:
-    """The width of an indenter at a depth is found whatever its shape, a little wide at most."""
-    body = pl.indenter(indenter.pop("type"), **indenter)
-    for width, half in zip(half_widths(body, depth), expected, strict=True):
-        assert 0.99 * half <= width <= 1.03 * half
-
-
-def test_plan_knows_no_units() -> None:
-    """Problems of the same proportions are one study, and about the same depth is the same."""
-    small = solid({"type": "coated", "substrate": LAYER}, 0.5)
-    large = solid({"type": "coated", "substrate": LAYER | {"thickness": "4 mm"}}, 0.5)
-    shapes = [pl.indenter("quadric", radius_x=3 * unit, radius_y=7 * unit) for unit in (1e-6, 1e-3)]
-    one = plan(shapes[0], small, 1.1e-6).study({"type": "serial"})
-    two = plan(shapes[1], large, 1.3e-3).study({"type": "serial"})
-    assert [point.run.identity for point in one.points] == [p.run.identity for p in two.points]
-    other = plan(shapes[0], large, 1.1e-6).study({"type": "serial"})
-    assert other.points[0].run.identity != one.points[0].run.identity
 
 
 @pytest.mark.slow

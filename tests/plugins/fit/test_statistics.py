@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import log
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,13 +12,8 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 import pellicle as pl
-from pellicle_fit.models.force_model import tension_model
-from pellicle_fit.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Parameter
-from pellicle_fit.report.figures import save_figure
-from pellicle_fit.statistics.chi_squared import ChiSquared
-from pellicle_fit.statistics.likelihood import Likelihood
+from pellicle_fit.parameters import CONTACT_POINT, MODULUS, TENSION, Parameter
 from pellicle_plugins.indenters.of_revolution import Cone, FlatPunch, Paraboloid, Sphere
-from tests.pictures import drawn_width
 from tests.plugins.fit.conftest import ends_of
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
@@ -72,34 +66,6 @@ def test_tension_is_not_claimed_where_there_is_none() -> None:
     sample = list(scores(12, seed=6, points=400, tensed=False))
     assert sum(score.claims_tension for score in sample) <= 1
     assert all(score.covers_tension for score in sample if not score.claims_tension)
-
-
-@pytest.mark.parametrize("ratio", [0.0, 1e-3, 0.3, 20.0])
-def test_jacobian(ratio: float) -> None:
-    """The Jacobian is the derivative of the residuals in every parameter."""
-    position, force = synthetic(ratio)
-    indenter = Paraboloid(radius=RADIUS)
-    assert isinstance(indenter, pl.HasForceCurve)
-    likelihood = Likelihood(position, force, tension_model(indenter), 1.0, ())
-    tension = ratio * RADIUS * MODULUS_TRUE / 2
-    # Between two points, so that the step crosses none.
-    here = {
-        CONTACT_POINT: 1e-6 - 0.4e-9,
-        MODULUS: float(np.log(MODULUS_TRUE)),
-        TENSION: tension,
-        OFFSET: 1e-9,
-        SLOPE: 1e-3,
-    }
-    jacobian = likelihood.jacobian(here)
-    for column, parameter in enumerate(likelihood.parameters):
-        step = 1e-5 * likelihood.ranges[parameter].scale
-        beyond = here | {parameter: here[parameter] + step}
-        near = likelihood.jacobian(beyond)[:, column] + jacobian[:, column]
-        slope = (likelihood.model(beyond) - likelihood.model(here)) / step
-        # The first point in contact is left out: force is not smooth where it begins.
-        away = np.abs(position - here[CONTACT_POINT]) > 20e-9
-        tolerance = 1e-4 * np.abs(jacobian[:, column]).max()
-        assert np.allclose(slope[away], near[away] / 2, atol=tolerance)
 
 
 def test_interval_ends_are_where_the_profile_has_risen() -> None:
@@ -258,21 +224,3 @@ def test_curve_of_the_solver_is_recovered(type_: str, points: int, size: int) ->
     for estimate, truth in ((fit.reduced_modulus, 4e3), (fit.tension, 4e-3)):
         low, high = ends_of(estimate)
         assert low <= truth <= high < 1.5 * low
-
-
-@pytest.mark.slow
-def test_figures_leave_gaps_where_a_search_fails(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A figure of a fit that ended is drawn, even if beyond its intervals no search does."""
-    curve = synthetic(0.3, points=60)
-    one = fitted(*curve)
-    pool = pl.fit_pooled({"a": curve, "b": curve}, indenter="paraboloid", radius=RADIUS)
-
-    def fails(*_: object) -> None:
-        raise pl.ConvergenceError("no search ends")
-
-    monkeypatch.setattr(ChiSquared, "minimise", fails)
-    for name, fit in (("one", one), ("pool", pool)):
-        figure = save_figure(fit, tmp_path / f"{name}.png")
-        assert drawn_width(figure, (0.0, 0.5)) > 0.6

@@ -17,7 +17,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import scipy.io
 
 import pellicle as pl
 from pellicle import memory
@@ -455,14 +454,6 @@ def test_terrain(tmp_path: Path) -> None:
     profile = terrain.profile(*pl.Grid(points=24, size="1 mm").coordinates())
     lowered = np.sort(TERRAIN - TERRAIN.max(), axis=None) * 1e-9
     np.testing.assert_allclose(np.sort(profile, axis=None), lowered, atol=1e-18)
-
-
-def test_complex_heights_are_refused(tmp_path: Path) -> None:
-    """A part that is imaginary is not dropped."""
-    path = tmp_path / "a.mat"
-    scipy.io.savemat(path, {"z": _heights() * (1 + 1j)})
-    with pytest.raises(pl.ConfigError, match=r"^path: .* holds complex values"):
-        pl.indenter("topography", path=path, unit=1, size=["1.3 mm", "1.1 mm"])
 
 
 def test_without_the_library(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

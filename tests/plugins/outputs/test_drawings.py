@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any, Literal
 
@@ -13,6 +14,9 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli.app import app
+from pellicle.components import Chart
+from pellicle.results import StoredRuns
+from pellicle_plugins.outputs.curves import Curves
 from tests.plugins.outputs.shared import bead, rows
 
 TENSION, RADIUS = "kernel.tension", "indenter.radius"
@@ -97,14 +101,59 @@ def test_an_output_that_fails_keeps_no_other_from_drawing(tmp_path: Path) -> Non
     assert (tmp_path / "study-distributions.png").exists()
 
 
+def shown(**curves: Any) -> Chart:
+    """Return the curves of a study of three axes, of 2, 3 and 2 values, and two steps."""
+    plan = {"indenter.radius": [1e-3, 2e-3], TENSION: [0.0, 0.01, 1.0], "indenter.centre.0": [0, 1]}
+    axes = {name: (name, values, {"units": "N/m"}) for name, values in plan.items()}
+    table = xr.Dataset(coords=axes | {"step": [1, 2]})
+    shape = 2, 3, 2, 2
+    columns = {"force": np.arange(24.0).reshape(shape), "converged": np.ones(shape, bool)}
+    columns |= {"depth": np.broadcast_to([1.0, 2.0], shape), "status": np.full(shape, "")}
+    table = table.assign({name: ((*plan, "step"), column) for name, column in columns.items()})
+    table = table.assign(run=(tuple(plan), np.full(shape[:-1], "a")))
+    table.attrs = {"configuration": "{}", "axes": json.dumps([*plan])}
+    ((_, chart),) = Curves(**curves).charts(StoredRuns(table, lambda name: table))
+    assert isinstance(chart, Chart)
+    return chart
+
+
+def test_two_axes_have_colours_and_markers_and_others_panels() -> None:
+    """No two curves of a panel look alike, and all looks are in the legend."""
+    chart = shown(by=[RADIUS, TENSION])
+    assert [title.split()[-2] for title in chart.titles] == ["0", "1"]
+    curves = [one for one in chart.series if one.x.size]
+    assert len({(one.panel, one.look.hue, one.look.line, one.look.marker) for one in curves}) == 12
+    assert len({one.key for one in curves}) == 12
+    assert curves[2].y.tolist() == [8.0, 9.0]
+    assert [one.legend.split()[1] for one in chart.series if one.legend] == [
+        "1",
+        "2",
+        "0",
+        "0.01",
+        "1",
+    ]
+
+
+def test_an_axis_is_shown_at_one_value() -> None:
+    """The value has a unit; without `by` the first axis has colours, the next panels."""
+    chart = shown(where={TENSION: "10 mN/m"})
+    assert [one.y.tolist() for one in chart.series if not one.panel] == [[4.0, 5.0], [16.0, 17.0]]
+    for where, message in (
+        ({TENSION: "15 mN/m"}, "no value of kernel.tension, which has 0, 0.01, 1 N/m"),
+        ({TENSION: "1 m"}, "kernel.tension: '1 m' is a length"),
+        ({"step": 1}, "'step' is not an axis"),
+    ):
+        with pytest.raises(pl.ConfigError, match=message):
+            shown(where=where)
+
+
 def test_what_cannot_be_drawn_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The message says which axis there is, and nothing is solved before."""
     monkeypatch.chdir(tmp_path)
-    plan = study({"type": "maps", "name": "good"}, {"type": "curves", "by": TENSION})
+    curves = {"type": "curves", "where": {TENSION: "2 N/m"}}
+    plan = study({"type": "maps", "name": "good"}, curves)
     (tmp_path / "plan.toml").write_text(tomli_w.dumps(plan), encoding="utf-8")
-    with pytest.raises(
-        pl.ConfigError, match=r"^outputs\.1.*would go over indenter.radius and step"
-    ):
+    with pytest.raises(pl.ConfigError, match=r"^outputs\.1\.where: .*which has 0, 1 N/m"):
         pl.run_study(plan, tmp_path, progress=False)
     for command in (["run", "--dry-run"], ["check"]):
         done = CliRunner().invoke(app, [*command, "plan.toml"])
@@ -121,6 +170,13 @@ def test_a_reference_that_does_not_exist_is_refused_at_once(type_: str, tmp_path
     with pytest.raises(pl.ConfigError, match=r"^outputs\.0\.reference: .*'quadric'"):
         pl.run_study(plan, tmp_path, progress=False)
     assert not list(tmp_path.rglob("*.h5"))
+
+
+def test_a_number_that_the_reference_lacks_is_refused_at_once(tmp_path: Path) -> None:
+    """The semi-analytic solution knows no iterations."""
+    curves = {"type": "curves", "y": "iterations", "by": TENSION, "reference": "axisymmetric"}
+    with pytest.raises(pl.ConfigError, match=r"^outputs\.0\.y: 'iterations' has no value in"):
+        pl.run_study(study(curves), tmp_path, progress=False)
 
 
 def test_fields_are_reduced_for_each_run(tmp_path: Path) -> None:

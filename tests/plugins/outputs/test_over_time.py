@@ -11,6 +11,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import pellicle as pl
+from pellicle.results import StoredRuns
 from pellicle.results.path import label_of_step
 from pellicle.show import draw, figures
 from pellicle_plugins.outputs import html_curves
@@ -127,7 +128,7 @@ def test_study_is_drawn_over_time(tmp_path: Path) -> None:
         vary={"kernel.relaxation.0.time": ["0.5 s", "5 s"]},
     )
     table = pl.run_study(study, directory=tmp_path, progress=False)
-    chart = study_curves(table, "force")
+    chart = study_curves(StoredRuns.of_study(table, Path()), "force")
     assert (chart.x.words, chart.x.unit) == ("time", "s")
     ends = {line.legend.rpartition(" relaxation 1 ")[2]: line.y for line in chart.series}
     assert ends["0.5 s"][-1] < ends["5 s"][-1]

@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 
 import pellicle as pl
+from pellicle.components import Chart, Table
+from pellicle.results.runs import StoredRuns
 from pellicle.show import up_to_rim
 from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Paraboloid
+from pellicle_plugins.outputs.profiles import Profiles
 from pellicle_plugins.outputs.step_figures import profile
 
 RADIUS, MODULUS, DEPTH, SIZE = 1e-3, 10e3, 50e-6, 0.8e-3
@@ -43,6 +46,16 @@ def test_the_line_is_the_solution(tension: float, points: int) -> None:
     # The line falls at the rim itself.
     np.testing.assert_array_equal(np.diff(series.x) >= 0, True)
     assert (np.diff(series.x) == 0).sum() == 2
+    # Marks beside the solution are those of the cells that the line keeps.
+    runs = StoredRuns.of_run(result.dataset)
+    numbers, chart = (part for _, part in Profiles(reference="axisymmetric").charts(runs))
+    assert isinstance(chart, Chart)
+    marks, solution = chart.series
+    expected = np.interp(marks.x, solution.x, solution.y)
+    np.testing.assert_allclose(marks.y, expected, atol=0.03 * highest)
+    assert marks.x.size > 50
+    assert isinstance(numbers, Table)
+    assert [*numbers.columns[1].values].count("run") == points
 
 
 def test_an_elliptic_contact_has_a_rim() -> None:

@@ -21,7 +21,6 @@ from pellicle.cli.app import app
 from pellicle.show.fields import default_step
 from pellicle.units import readable
 from pellicle.variables import VARIABLES, names_of
-from tests.pictures import pixels
 from tests.plugins.outputs.shared import rows
 
 # A coarse grid makes pictures in seconds; the units E* = R = w = 1 make slopes steep.
@@ -135,14 +134,6 @@ def test_the_last_step_in_contact_is_drawn(bead: tuple[Path, pl.Result]) -> None
     assert retraction["contact_area"].values[-1] == 0
     assert retraction["contact_area"].values[default_step(retraction)] > 0
     assert default_step(data.isel(step=[4])) == -1
-    assert default_step(data.drop_vars("zone_area").isel(step=slice(0, 5))) == -1
-
-
-def test_tension_is_blue_and_pressure_red(bead: tuple[Path, pl.Result]) -> None:
-    """Both signs occur, so the map has both colours, and no colour is that of an empty cell."""
-    red, _, blue = np.moveaxis(pixels(bead[0] / "run-maps.png"), -1, 0)
-    assert ((red - blue) > 0.15).mean() > 5e-3
-    assert ((blue - red) > 0.15).mean() > 5e-3
 
 
 def test_approach_and_retraction_are_told_apart(bead: tuple[Path, pl.Result]) -> None:

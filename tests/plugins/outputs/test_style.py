@@ -11,6 +11,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 import pellicle as pl
+from pellicle.results import StoredRuns
 from pellicle.show import draw, save_figure
 from pellicle.show.style import FigureStyle, is_log_spaced
 from pellicle_plugins.outputs.figures import study_curves
@@ -55,7 +56,7 @@ def test_a_bad_style_file_is_named(content: str | None, tmp_path: Path) -> None:
 def test_legend_has_colours_and_markers_of_the_lines(table: Any) -> None:
     """Each curve of a study differs from the others by colour and by marker, as in the legend."""
     figure = Figure()
-    draw(figure, study_curves(table, "force"))
+    draw(figure, study_curves(StoredRuns.of_study(table, Path()), "force"))
     (axes,) = figure.axes
     lines = [line for line in axes.lines if not str(line.get_label()).startswith("_")]
     legend = axes.get_legend()

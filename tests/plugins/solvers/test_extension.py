@@ -10,12 +10,8 @@ from numpy.typing import NDArray
 
 from pellicle import Kernel
 from pellicle_plugins.kernels.skins import BendingSkin
-from pellicle_plugins.solvers import biharmonic
-from pellicle_plugins.solvers import multilevel_extension as extension
 from pellicle_plugins.solvers.multilevel_extension import (
     Extension,
-    _interpolate,
-    _transposed_interpolate,
 )
 from pellicle_plugins.solvers.preconditioner import OnContact, Preconditioner
 from tests.plugins.solvers.problems import BOUNDARIES, Boundary, make, skin
@@ -97,40 +93,6 @@ def test_lone_cell_loses_by_its_order() -> None:
         assert spread.min() == pytest.approx(2.0 ** (5 * (order - 2)), rel=0.5)
     np.testing.assert_array_equal(lone_cell(number, [2.0] * 5), 1.0)
     np.testing.assert_allclose(lone_cell(number, [4.0] * 5), 1.0, rtol=4 * SINGLE)
-
-
-def test_blocks_join_without_a_seam(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Worked on in one block or in many, the interpolation and its transpose are the same."""
-    rng = np.random.default_rng(5)
-    coarse = rng.normal(size=(13, 8)).astype(np.float32)
-    free, own = rng.uniform(size=(2, 26, 16)).astype(np.float32)
-    whole = _interpolate(coarse, free, own.copy()), _transposed_interpolate(own, free)
-    for block in (1, 4 * 8 * 3):
-        monkeypatch.setattr(extension, "_BLOCK", block)
-        np.testing.assert_array_equal(_interpolate(coarse, free, own.copy()), whole[0])
-        np.testing.assert_allclose(_transposed_interpolate(own, free), whole[1], rtol=1e-6)
-
-
-@pytest.mark.parametrize("shape", [(48, 40), (6, 64), (4, 4), (96,), (4,)])
-@pytest.mark.parametrize("method", ["apply", "apply_transpose"])
-def test_sweeps_by_a_matrix_and_over_all_cells_are_the_same(
-    shape: tuple[int, ...], method: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The share of cells above which sweeps go over all of them changes no value."""
-    rng = np.random.default_rng(4)
-    free = np.ones(shape, dtype=np.float32)
-    some = rng.choice(free.size, size=max(1, free.size // 400), replace=False)
-    free.ravel()[some] = rng.uniform(size=some.size)
-    field, stretch = rng.normal(size=shape).astype(np.float32), biharmonic.stretch_of(1.0, 1.3)
-    results = []
-    for share in (0.0, 1.0):
-        monkeypatch.setattr(biharmonic, "_DENSE", share)
-        results.append(field.copy())
-        getattr(biharmonic.sweeps_near(free, stretch), method)(results[-1])
-    np.testing.assert_allclose(results[0], results[1], atol=2e-4)  # 5e-5: sweeps amplify rounding
-    assert np.abs(results[0] - field).max() > 1
-    if min(shape) > 20:
-        assert (results[0] == field).any()
 
 
 def preconditioned(boundary: Boundary, contact: NDArray[np.bool_], tension: float) -> OnContact:

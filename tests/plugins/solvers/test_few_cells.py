@@ -9,7 +9,7 @@ from pellicle import Problem, Stop
 from pellicle.arrays import Array
 from pellicle.contact import measure
 from pellicle_plugins.kernels.skins import BendingSkin
-from pellicle_plugins.solvers import active_set, few_cells
+from pellicle_plugins.solvers import active_set
 from pellicle_plugins.solvers.active_set import ActiveSet
 from pellicle_plugins.solvers.few_cells import solved_on_few_cells
 from tests.plugins.solvers.problems import BOUNDARIES, Boundary, Prescribed, make, solve
@@ -60,21 +60,6 @@ def test_solution_is_exact(boundary: Boundary, prescribed: Prescribed, value: fl
             assert state.force == pytest.approx(value, rel=1e-12)
         results.append(pressure)
     np.testing.assert_allclose(results[0], results[1], atol=1e-6 * results[0].max())
-
-
-def test_too_many_cells_are_left_to_others() -> None:
-    """A contact above the limit, one of no pressure and one of most of the plane are not solved."""
-    problem = rough_plate("periodic", "force", 2.0)
-    shape = problem.grid.shape
-    column, gap = np.ones(shape), np.zeros(shape)
-    few = np.zeros(shape, dtype=bool)
-    many = np.ones(shape, dtype=bool)
-    assert many.sum() > few_cells.MOST_CELLS
-    for contact in (few, many):
-        trial = contact.astype(np.float64)
-        assert solved_on_few_cells(problem, column, contact, trial, gap, 0.0) is None
-    few[3, 4] = True
-    assert solved_on_few_cells(problem, column, few, -few.astype(np.float64), gap, 0.0) is None
 
 
 @pytest.mark.parametrize("boundary", ["periodic", pytest.param("free", marks=pytest.mark.slow)])

@@ -6,15 +6,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pellicle import Grid, Problem
+from pellicle import Problem
 from pellicle_plugins.kernels.skins import BendingSkin
 from pellicle_plugins.solvers.contact_cg import _Directions
 from pellicle_plugins.solvers.preconditioner import (
-    OnContact,
     Preconditioner,
-    _free_shape,
-    _halvings,
-    _round_up,
 )
 from tests.plugins.solvers.problems import BOUNDARIES, Boundary, make, skin
 
@@ -92,32 +88,6 @@ def test_pressure_of_cells_that_leave(kernel: str, share: float) -> None:
     assert error(moved) < share * error(np.where(stay, pressure, 0.0))
 
 
-def test_a_lift_serves_on_a_contact_that_has_changed_little(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Of sum 1 on either, it is computed anew for a contact that has lost its cells."""
-    applications = 0
-    original = OnContact.__call__
-
-    def counted(self: OnContact, residual: Array, mean: float = 0.0) -> NDArray[np.float32]:
-        nonlocal applications
-        applications += 1
-        return original(self, residual, mean)
-
-    monkeypatch.setattr(OnContact, "__call__", counted)
-    preconditioner = Preconditioner(problem("tension", "free").operator)
-    contact = island()
-    changed, other = contact.copy(), ~contact
-    changed[9, 8:12] ^= True
-    lifts = []
-    for cells, expected in ((contact, 1), (changed, 1), (other, 2)):
-        lifts.append(preconditioner.lift(preconditioner.on(cells)))
-        assert lifts[-1].shape == (np.count_nonzero(cells),)
-        assert lifts[-1].sum() == pytest.approx(1.0, rel=1e-12)
-        assert applications == expected
-    assert 0.9 < lifts[1][(contact & changed)[changed]].sum() / lifts[1].sum() <= 1 + 1e-12
-
-
 @pytest.mark.parametrize("boundary", BOUNDARIES)
 def test_directions_under_a_force_are_symmetric(boundary: Boundary) -> None:
     """With the lift of another contact too: P M Pᵀ is symmetric, of no net force, and positive."""
@@ -134,15 +104,3 @@ def test_directions_under_a_force_are_symmetric(boundary: Boundary) -> None:
     np.testing.assert_allclose(products, products.T, atol=1e-5 * scale)
     assert np.linalg.eigvalsh(products + products.T).min() > 0
     assert np.abs(outcomes.sum(axis=1)).max() < 1e-6 * np.abs(outcomes).sum(axis=1).max()
-
-
-def test_large_grids_are_halved_to_as_many_cells() -> None:
-    """From 4096 cells on the coarsest plane has 32 or more each way."""
-    for points, halvings in ((64, 6), (2048, 6), (4095, 6), (4096, 7), (8192, 8), (10000, 8)):
-        assert _halvings((points, points)) == halvings
-        plane = _round_up((points, points))
-        assert plane[0] == plane[1] >= points
-        assert plane[0] % 2 ** min(halvings, points.bit_length() - 2) == 0
-        assert plane[0] < points + 2**halvings
-    assert _halvings((4096, 8)) == 6
-    assert _free_shape(Grid(points=4096, size=1.0, boundary="free")) == (5120, 5120)

@@ -29,11 +29,6 @@ def values_are_finite_and_of_their_gap_alone(interaction: Interaction, case: Cas
     """Energy, traction and slope are finite floats for each gap up to the cutoff, on its own.
 
     The gap is not changed, and a second call returns the same.
-
-    Raises
-    ------
-    PluginError
-        Values are of another kind or shape, or the cutoff is not a length.
     """
     law = _law(interaction, case)
     gaps = np.linspace(0.0, law.cutoff(), 24)

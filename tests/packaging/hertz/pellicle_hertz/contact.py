@@ -11,9 +11,10 @@ from pellicle.units import Length, Modulus
 class Contact(FromFile):
     """A sphere in an elastic half-space."""
 
-    radius: Annotated[Length, Field(description="radius R [m]", examples=["5 um"])]
-    reduced_modulus: Annotated[Modulus, Field(description="E* [Pa]", examples=["2 kPa"])]
-    depth: Annotated[Length, Field(description="depth δ [m]", examples=["0.5 um"])]
+    examples = ({"radius": "5 um", "reduced_modulus": "2 kPa", "depth": "0.5 um"},)
+    radius: Annotated[Length, Field(description="radius R [m]")]
+    reduced_modulus: Annotated[Modulus, Field(description="E* [Pa]")]
+    depth: Annotated[Length, Field(description="depth δ [m]")]
 
     @property
     def force(self) -> float:

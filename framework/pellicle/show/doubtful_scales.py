@@ -8,11 +8,10 @@ from contextlib import suppress
 
 import numpy as np
 
+from pellicle.config.run import Run
+from pellicle.config.study import Study
 from pellicle.schema.model import walk
 from pellicle.units import Quantity, printed, quantity_of, readable
-
-from .run import Run
-from .study import Study
 
 _LARGE = 1.0
 """Edge of a domain [m] beyond which a solid of a modulus above `_STIFF` is doubted."""
@@ -26,7 +25,7 @@ _STICKY = 10.0
 """Largest plausible displacement by adhesion over the domain."""
 
 
-def doubtful_scales(configuration: Run | Study) -> dict[str, str]:
+def doubts_of_scale(configuration: Run | Study) -> dict[str, str]:
     """Return, by path, a message on each value out of scale with the others of its run.
 
     Of the runs of a study the first that has such a value is quoted.

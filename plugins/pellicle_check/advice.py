@@ -11,17 +11,11 @@ import numpy as np
 import xarray as xr
 from scipy.ndimage import binary_dilation
 
+import pellicle as pl
+from pellicle import Grid, Run, Status
 from pellicle.arrays import Array, Mask
-from pellicle.components.base import role_of
-from pellicle.components.indenter import profile_of
-from pellicle.config.run import Run
-from pellicle.contact.caveats import Status
 from pellicle.errors import ConfigError
-from pellicle.grid import Grid
-from pellicle.schema.model import walk
-from pellicle.variables import SHORTEST_WAVE
-
-from .runner import solve
+from pellicle.schema import walk
 
 _SHARES = 1 / 4, 1 / 3, 1 / 2
 """Cells along an edge of the coarser grids, over those of the run."""
@@ -38,6 +32,8 @@ _AREA_ERROR = 0.1
 """Relative error of the counted area up to which fewer cells are advised."""
 _ROUND_OFF = 1e-9
 """Relative difference between grids up to which a quantity counts as prescribed."""
+_SHORTEST_WAVE = {"role": "shortest wave"}
+"""What marks the field of an indenter that holds its shortest wave."""
 _WIDE = 0.5
 """Share of the domain below which the contact leaves cells unused."""
 
@@ -110,7 +106,14 @@ def advise(run: Run, allowed: float) -> Advice:
     less than 5 of 100 true errors of force and depth exceed: order 2 for smooth contacts without
     interaction and history, 1 for others.
     """
-    grids = _resolving(run)
+    grids = _coarser(run.grid)
+    # Each of the coarser grids resolves the indenter if possible.
+    for shares in _LARGEST_SHARES:
+        try:
+            run.indenter.profile(*grids[0].coordinates())
+            break
+        except ConfigError:
+            grids = _coarser(run.grid, shares, math.inf)
     results = [_solved(run, grid) for grid in grids]
     at_edge = _at_edge(results[-1])
     if at_edge:
@@ -130,8 +133,8 @@ def advise(run: Run, allowed: float) -> Advice:
     extent = np.max([_extent(contact, grids[-1]) for contact in contacts], axis=0)
     fitting = run.grid.size if at_edge else _fitting_size(run, extent)
     points = _points(run.grid, fitting or run.grid.size, factor)
-    fields = ((value, field) for _, value, field in walk(run.indenter) if field)
-    waves = [value for value, field in fields if role_of(field) == SHORTEST_WAVE]
+    fields = ((value, field.json_schema_extra) for _, value, field in walk(run.indenter) if field)
+    waves = [value for value, role in fields if role == _SHORTEST_WAVE]
     in_wave = min(waves) / run.grid.cell_size if waves else None
     return Advice(steps, points, fitting, at_edge, in_wave)
 
@@ -210,7 +213,7 @@ def _solved(run: Run, grid: Grid) -> xr.Dataset:
     with warnings.catch_warnings():
         # Coarse grids warn of being coarse.
         warnings.simplefilter("ignore")
-        return solve(_on(run, grid)).dataset
+        return pl.run(_on(run, grid), progress=False).dataset
 
 
 def _on(run: Run, grid: Grid) -> Run:
@@ -234,7 +237,7 @@ def _is_smooth(run: Run, grid: Grid, contact: Mask) -> bool:
     """Return whether all contacts are of a smooth body, away from its edges, and elastic."""
     if run.interaction or run.loading.times is not None or run.indenter.footprint == "domain":
         return False
-    beside = ~np.isfinite(profile_of(run.indenter, grid))
+    beside = ~np.isfinite(np.broadcast_to(run.indenter.profile(*grid.coordinates()), grid.points))
     return not (contact.any(axis=0) & binary_dilation(beside, np.ones((3, 3)))).any()
 
 
@@ -248,18 +251,6 @@ def _coarser(grid: Grid, shares: Sequence[float] = _SHARES, most: float = 2 * _M
             "grid.points",
         )
     return [grid.model_copy(update={"points": tuple(points)}) for points in sizes]
-
-
-def _resolving(run: Run) -> list[Grid]:
-    """Return three coarser grids, each of which resolves the indenter if possible."""
-    grids = _coarser(run.grid)
-    for shares in _LARGEST_SHARES:
-        try:
-            profile_of(run.indenter, grids[0])
-            break
-        except ConfigError:
-            grids = _coarser(run.grid, shares, math.inf)
-    return grids
 
 
 def _points(grid: Grid, size: tuple[float, float], factor: float) -> tuple[int, int]:

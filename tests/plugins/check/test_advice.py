@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 import pellicle as pl
 from pellicle.cli.app import app
 from pellicle.errors import ConfigError
-from pellicle.runs.advice import advise
+from pellicle_check.advice import advise
 from pellicle_plugins.axisymmetric.equation import HasAbelTransform
 from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid

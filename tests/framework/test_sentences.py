@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from pellicle.show.sentences import aim_of_path, sentence_of_study
 from pellicle.variables import VARIABLES
-from pellicle_plugins.outputs.sentences import sentence_of_study
 
 RADII = {"contact_radius": [[1e-6, 6.33e-6], [1e-6, 4.62e-6]], "patches": [[1, 1], [1, 1]]}
 
@@ -61,3 +61,19 @@ def test_without_numbers_there_is_no_sentence() -> None:
     """Runs that all failed are not described."""
     nothing = [[1e-9, np.nan]] * 2
     assert sentence_of_study(table(depth=nothing, force=nothing), 2) == ""
+
+
+def test_a_path_is_told_by_what_it_was_made_for() -> None:
+    """Pull-off has the unit of all forces; of a hold the force before and after it is told."""
+    columns = {"time": [0.1, 1, 5], "depth": [1e-6, 2e-6, 2e-6], "force": [1e-9, 9e-9, 4e-9]}
+    data = xr.Dataset(
+        {name: ("step", np.array(v), VARIABLES[name].attributes) for name, v in columns.items()},
+        attrs={"prescribed": "depth"},
+    )
+    held = aim_of_path(data, {})
+    assert (
+        held == "Force 9 nN at its peak, after 1 s; force 4 nN at the end of the hold, after 5 s."
+    )
+    pulled = aim_of_path(data, {"pull_off": -2e-10, "pull_off_depth": -1e-7})
+    assert pulled == "Pull-off force -0.2 nN, depth at pull-off -0.1 µm."
+    assert aim_of_path(data.isel(step=[0, 1]), {"pull_off": np.nan}) == ""

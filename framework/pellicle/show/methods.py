@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, cast
 
-from pellicle import Run
 from pellicle.components import Prescription
 from pellicle.components.prescription import OPTIONS
-from pellicle.config.describe import Input, inputs
+from pellicle.config.describe import FieldRow, inputs
+from pellicle.config.run import Run
 from pellicle.plugins import registry
 from pellicle.units import DIGITS, axis_unit, readable
 from pellicle.variables import words_of_name
@@ -40,7 +40,6 @@ def methods(
             f"{i.words} {i.value}"
             for i in known.values()
             if i.name.startswith(f"{name}.")
-            and i.value not in ("", "false", "False")
             and not any(f"{i.name}.".startswith(f"{axis}.") for axis in varied)
         )
         described.append(f"{name}: {known[name].value}{f' ({values})' if values else ''}")
@@ -62,7 +61,7 @@ def methods(
 def _loading(
     loading: Mapping[str, Any],
     attributes: Mapping[str, Any],
-    known: Mapping[str, Input],
+    known: Mapping[str, FieldRow],
     varied: tuple[str, ...],
 ) -> str:
     """Return a sentence on what the load steps prescribe."""

@@ -1,0 +1,363 @@
+"""Sentences: what a run or a study will do, what became of it, and what its maps show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pellicle.arrays import Array
+from pellicle.components.charts import Column
+from pellicle.config.describe import inputs
+from pellicle.config.run import Run
+from pellicle.contact.caveats import Status, by_phrase, from_text
+from pellicle.errors import first_of
+from pellicle.results.path import has_interaction, has_times, label_of_step, prescribed_variable
+from pellicle.results.result import Result
+from pellicle.results.runs import axes_of, by_run, runs_of, short_files, statuses_of
+from pellicle.results.wording import column_of, has_one_shape, is_periodic
+from pellicle.units import decimal, readable
+from pellicle.variables import BEYOND_THEORY, CAVEATS, VARIABLES
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from pellicle.runs.validation import CheckedCase
+
+_DIGITS = 3
+_FEW = 5
+"""Number of runs up to which the sentence of a study lists their numbers."""
+_AIMS = (
+    ("storage_stiffness", "loss_stiffness", "phase", "oscillation_frequency"),
+    ("pull_off", "pull_off_depth"),
+)
+"""Variables of a whole path that a run is made for, each group in a sentence."""
+_COLUMNS = {"pull_off": "force", "pull_off_depth": "depth"}
+"""The numbers of steps whose unit they share."""
+_SAME = 1e-9
+"""Relative difference up to which numbers count as equal."""
+FEW_CELLS = 12
+"""Contact radius in cells below which force and radius may be off by more than 2 %."""
+STEEP_RIM = 0.3
+"""Slope above which linear elasticity is beyond its range."""
+_FAILURES = {
+    "failed": "failed",
+    "NOT CONVERGED": "did not converge",
+    "not run": "were not finished",
+}
+"""Phrases for messages such as "3 did not converge", by verdict."""
+_BEYOND = "a contact is far beyond the theory or its cells"
+
+
+def sentence_of_step(data: xr.Dataset, index: int) -> str:
+    """Return a sentence like "At depth 3 µm: force 904 nN, contact radius 4.5 µm" for a load step.
+
+    A contact in several parts has its fraction of a periodic domain, or its area on a free one,
+    instead of its radius.
+    """
+    step = data.isel(step=index)
+    heading = f"At {label_of_step(data, index)}"
+    if not np.isfinite(step["force"].item()):
+        return f"{heading}: no result."
+    size = "contact_fraction" if is_periodic(data) else "contact_area"
+    if has_one_shape(data) and "contact_radius" in data:
+        size = "contact_radius"
+    named = prescribed_variable(data)
+    names = [name for name in ("force", "depth", size) if name != named]
+    if named == "depth" or has_times(data):
+        names = [name for name in names if name != "depth"]
+    if step["contact_area"].item() <= 0:
+        names = [name for name in names if name != size]
+    # In the unit of all steps, as the tables and curves.
+    parts = [replace(column_of(data[n]), digits=_DIGITS).text(step[n].item()) for n in names]
+    parts += ["no contact"] if step["contact_area"].item() <= 0 else []
+    marked = "" if step["converged"].item() else " (NOT CONVERGED)"
+    return f"{heading}: {', '.join(parts)}{marked}."
+
+
+def failed_steps(result: Result) -> Iterator[str]:
+    """Yield for each way to fail which steps of a run did not converge, and why the first."""
+    failed: dict[Status, list[tuple[int, str]]] = {}
+    for number, caveat in result.caveats():
+        if not caveat.status.converged:
+            failed.setdefault(caveat.status, []).append((number, caveat.sentence))
+    for group in failed.values():
+        numbers = [number for number, _ in group]
+        ends = ([n for n in numbers if n + by not in numbers] for by in (-1, 1))
+        spans = [str(a) if a == b else f"{a} to {b}" for a, b in zip(*ends, strict=True)]
+        listed = " and ".join(map(str, numbers)) if len(group) == 2 else ", ".join(spans)
+        several = len({message for _, message in group}) > 1
+        first = f"step {group[0][0]}: " if several else ""
+        steps = f"step{'s' * (len(group) > 1)} {listed}"
+        yield f"{steps} did not converge: {first}{group[0][1]}"
+
+
+def status_of_run(result: Result) -> tuple[str, bool | None, list[str]]:
+    """Return what became of a run, whether all is well, None with reservations, and details."""
+    total = result.planned_steps
+    done, failed = result.dataset.sizes["step"], result.failures()
+    sentences = []
+    if done < total:
+        sentences.append(f"The run ended early: {done} of {total} load steps are finished.")
+    count = "The load step" if done == 1 else f"All {done} load steps"
+    bad = f"{len(failed)} of {done} load steps did not converge: do not rely on them."
+    sentences.append(bad if failed else f"{count} converged.")
+    for phrase, steps in by_phrase(result.caveats()).items():
+        sentences.append(f"In {len(steps)} of {done} {phrase}.")
+    sentences += [f"{subject[0].upper()}{subject[1:]}." for subject in result.beyond_theory()]
+    lines = *failed_steps(result), *result.warnings()
+    details = [f"{line[0].upper()}{line[1:]}" for line in lines]
+    is_good = None if details else True
+    return " ".join(sentences), is_good if done == total and not failed else False, details
+
+
+def status_of_study(table: xr.Dataset) -> tuple[str, bool | None, list[str]]:
+    """Return what became of a study, whether all is well, None with reservations, and details."""
+    failed, warnings = failures(table), [*caveats(table)]
+    if failed:
+        return f"{failed[0].upper()}{failed[1:]}.", False, [*reasons(table), *warnings]
+    converged = f"Every step of all {table['run'].size} runs converged."
+    return converged, None if warnings else True, warnings
+
+
+def unfinished(result: Result) -> str:
+    """Return how far an interrupted run came; empty if it is whole."""
+    done, planned = result.dataset.sizes["step"], result.planned_steps
+    return f"interrupted: {done} of {planned} steps are finished; run it again" * (done < planned)
+
+
+def aim_of_path(data: xr.Dataset, summary: Mapping[str, float]) -> str:
+    """Return what a path is made for: complex stiffness, pull-off, the force of a hold; or ""."""
+    sentences = []
+    for names in _AIMS:
+        if all(np.isfinite(summary.get(name, np.nan)) for name in names):
+            texts = [_text_of(name, summary[name], data) for name in names]
+            sentences.append(f"{texts[0][0].upper()}{', '.join(texts)[1:]}.")
+    force, prescribed = data["force"], data[prescribed_variable(data)]
+    is_held = has_times(data) and prescribed.size > 1 and prescribed[-1] == prescribed[-2]
+    if is_held and prescribed.name != "force" and not sentences and not has_interaction(data):
+        peak = int(np.nanargmax(np.append(force.values, -np.inf)))
+        (first, held), shown = force.values[[peak % force.size, -1]], column_of(force)
+        after = [readable(data["time"].values[n].item(), "s", _DIGITS) for n in (peak, -1)]
+        texts = [replace(shown, digits=_DIGITS).text(value) for value in (first, held)]
+        sentences.append(
+            f"F{texts[0][1:]} at its peak, after {after[0]}; "
+            f"{texts[1]} at the end of the hold, after {after[1]}."
+        )
+    return " ".join(sentences)
+
+
+def range_of_path(data: xr.Dataset) -> str:
+    """Return the range of the force over the load steps; empty for one, and with adhesion."""
+    steps = data.sizes["step"]
+    is_one = steps == 1 or has_interaction(data)
+    return "" if is_one else f"Over {steps} load steps: {_range(data['force'])}."
+
+
+def _text_of(name: str, value: float, data: xr.Dataset) -> str:
+    """Return a number of a path in words, in the unit of the column of the steps that has it."""
+    variable = VARIABLES[name]
+    shown = Column(variable.words, [value], variable.unit)
+    if name in _COLUMNS:
+        shown = replace(column_of(data[_COLUMNS[name]]), words=variable.words)
+    return replace(shown, digits=_DIGITS).text(value)
+
+
+def sentence_of_study(table: xr.Dataset, count: int) -> str:
+    """Return the results of a study in its last step; empty if there is none.
+
+    Of force, depth and contact radius, the one that all runs share there, if any, comes first.
+    """
+    axes = [
+        f"{axis.words} {axis.listing}"
+        for axis in (column_of(table[name]) for name in axes_of(table))
+    ]
+    over = f" with {'; '.join(axes)}" if axes else ""
+    end = table.isel(step=-1)
+    names = ["depth", "force", *["contact_radius"] * has_one_shape(table)]
+    known = [name for name in names if name in end and np.isfinite(end[name].values).any()]
+    shared = [name for name in known if _is_one_value(end[name].values)][:1]
+    results = [_values(end[name], count) for name in known if name not in shared][:2]
+    if not results:
+        return ""
+    at = f"at {_values(end[shared[0]], count)}" if shared else "in the last step"
+    return f"{count} runs{over}; {at}: {', '.join(results)}."
+
+
+def _is_one_value(values: Array) -> bool:
+    finite = values[np.isfinite(values)]
+    return bool(np.ptp(finite) <= _SAME * np.abs(finite).max())
+
+
+def _values(variable: xr.DataArray, count: int) -> str:
+    """Return the values of a few runs in their order, the range of many."""
+    values = variable.values.ravel()
+    if count > _FEW or variable.ndim > 1 or not np.isfinite(values).all() or _is_one_value(values):
+        return _range(variable)
+    shown = replace(column_of(variable), digits=_DIGITS)
+    return f"{shown.words} {shown.listing}"
+
+
+def _range(variable: xr.DataArray) -> str:
+    shown = replace(column_of(variable), digits=_DIGITS)
+    finite = variable.values[np.isfinite(variable.values)]
+    if not finite.size:
+        return f"no {shown.words}"
+    low, high = shown.number(finite.min().item()), shown.number(finite.max().item())
+    if low == high:
+        return f"{shown.words} {shown.scale.with_unit(low)}"
+    return f"{shown.words} from {low} to {shown.scale.with_unit(high)}"
+
+
+def run_names(table: xr.Dataset) -> list[str]:
+    """Return the values that distinguish each run, such as "surface tension 30 mN/m"."""
+    axes = {name: column_of(table[name]) for name in axes_of(table)}
+    return [
+        ", ".join(axis.text(run[name].item()) for name, axis in axes.items())
+        for run in runs_of(table)
+    ]
+
+
+def reasons(table: xr.Dataset) -> Iterator[str]:
+    """Yield the runs that did not converge or failed, with the first status of either kind.
+
+    Runs of equal status are one text, which names the first.
+    """
+    groups: dict[str, list[str]] = {}
+    for name, file, run in zip(run_names(table), short_files(table), runs_of(table), strict=True):
+        firsts: dict[str, str] = {}
+        for status, message in zip(statuses_of(run)[0], run["status"].values, strict=False):
+            if not status.converged and status != Status.NOT_RUN:
+                firsts.setdefault(status.verdict, str(message))
+        for message in firsts.values():
+            groups.setdefault(message, []).append(f"{name} (file {file})")
+    for message, runs in groups.items():
+        yield f"{first_of(runs)}: {message}"
+
+
+def failures(table: xr.Dataset) -> str:
+    """Return a phrase on runs that failed, did not converge or were not finished, if any."""
+    verdicts = [{status.verdict for status in statuses} for statuses in statuses_of(table)]
+    counts = {verdict: sum(verdict in run for run in verdicts) for verdict in _FAILURES}
+    phrases = [f"{count} {_FAILURES[verdict]}" for verdict, count in counts.items() if count]
+    return f"of {len(verdicts)} runs {', '.join(phrases)}" if phrases else ""
+
+
+def caveats(table: xr.Dataset) -> Iterator[str]:
+    """Yield a message for each kind of caveat: how many runs have it, and a run and a step that do.
+
+    Of a small domain it is the step that needs the largest one.
+    """
+    texts = by_run(table, CAVEATS)
+    steps = (
+        ((int(run), int(step) + 1), caveat)
+        for run, step in zip(*np.nonzero(texts), strict=True)
+        for caveat in from_text(texts[run, step])
+    )
+    kinds = {
+        phrase: [(run, f"step {step}: {caveat.sentence}") for (run, step), caveat in group]
+        for phrase, group in by_phrase(steps).items()
+    }
+    if BEYOND_THEORY in table:
+        beyond = enumerate(table[BEYOND_THEORY].values.ravel())
+        kinds[_BEYOND] = [(run, text) for run, text in beyond if text]
+    names, files = run_names(table), short_files(table)
+    for phrase, messages in kinds.items():
+        for run, message in messages[:1]:
+            yield (
+                f"of {len(names)} runs, in {len({run for run, _ in messages})} {phrase}; "
+                f"{names[run]} (file {files[run]}), {message}"
+            )
+
+
+def limits_of_curve(
+    missing: list[str], coarse: dict[str, float], steep: dict[str, float], low: float, high: float
+) -> str:
+    """Return which points of an adhesive curve are not known, or not as they should be.
+
+    The path has contact radii from ``low`` to ``high`` [m]; ``coarse`` are radii in cells, and
+    ``steep`` slopes of the indenter at the rim.
+    """
+    cells, slopes = (
+        ", ".join(f"{mark} {value:.{digits}f}" for mark, value in marks.items())
+        for marks, digits in ((coarse, 1), (steep, 2))
+    )
+    range_ = f"not at a contact radius from {low:.3g} to {high:.3g} m, those of the path"
+    remedy = f"from {FEW_CELLS} on force and radius are good to 2 %, so use more points"
+    theory = f"the theory is for small slopes, below about {STEEP_RIM}"
+    problems = [
+        *([f"{', '.join(missing)}: {range_}"] if missing else []),
+        *([f"contact radius in cells: {cells}; {remedy}"] if coarse else []),
+        *([f"slope of the indenter at the rim: {slopes}; {theory}"] if steep else []),
+    ]
+    return "; ".join(problems) or "computed"
+
+
+def caption_of_steps(data: xr.Dataset, fields: Sequence[str], shown: int) -> str:
+    """Return the caption of maps of some fields in as many load steps as are ``shown``."""
+    *first, last = fields
+    names = f"{', '.join(first)} and {last}".capitalize()
+    # Over the range of the last step the first ones would have one colour.
+    colours = ", each in colours over its own range" if shown > 1 else ""
+    words = column_of(data[prescribed_variable(data)]).words
+    steps = _share(shown, data.sizes["step"], "load step")
+    return f"{names} at prescribed {words}, in {steps}{colours}."
+
+
+def caption_of_runs(table: xr.Dataset, shown: int) -> str:
+    """Return the caption of maps of as many runs as are ``shown``."""
+    runs = _share(shown, table["run"].size, "run")
+    return f"The last step in contact of {runs}, each in colours over its own range."
+
+
+def caption_of_setup(configuration: Mapping[str, Any], label: str) -> str:
+    """Return the caption of the indenter over the surface in a load step."""
+    values = {i.name: i.value for i in inputs(configuration, Run)}
+    return f"The {values['indenter']} on the {values['kernel']}, at {label}; heights stretched."
+
+
+def _share(number: int, count: int, noun: str) -> str:
+    """Return how many are shown in words: "each run", "3 of 8 runs"."""
+    return f"each {noun}" if number == count else f"{number} of {count} {noun}s"
+
+
+def outcome_of_cases(cases: Sequence[CheckedCase], kernels: Iterable[str]) -> str:
+    """Return how many cases failed, and the kernels among ``kernels`` that none is about."""
+    failed, count = sum(not checked.passed for checked in cases), len(cases)
+    passed = f"{failed} of {count} cases failed" if failed else f"all {count} cases passed"
+    solved = {checked.case.configuration["kernel"]["type"] for checked in cases}
+    others = ", ".join(sorted({*kernels} - solved))
+    return f"{passed}; no case is about the kernels {others}" if others else passed
+
+
+def done(files: Sequence[Path], resumed: int, whole: str, seconds: float) -> Iterator[str]:
+    """Yield how much was done before, the files that were written, and how long all took."""
+    if resumed:
+        yield f"{resumed} of {whole} were done before (--overwrite starts over)"
+    for path in files:
+        yield f"wrote {path}"
+    yield f"took {decimal(seconds, 2)} s"
+
+
+def shared(runs: int, seconds: float) -> str:
+    """Return that runs that would take long are shared among processes."""
+    return (
+        f"the other {runs} runs would take {seconds:.0f} s here: they go to processes, as many as "
+        "cores and memory allow (study.executor decides otherwise)"
+    )
+
+
+def interrupted(finished: str, folder: Path) -> str:
+    """Return where an interruption left the ``finished`` steps or runs."""
+    return f"interrupted; finished {finished} are in {folder}, and the same command continues"
+
+
+def larger_domain(file: Path, folder: Path) -> str:
+    """Return how to solve a run on a domain that holds its contacts."""
+    return (
+        f"`pellicle check {file}` finds a grid.size that holds the contact of every step; -o DIR "
+        f"solves it in another folder, --overwrite in place of the result in {folder}"
+    )

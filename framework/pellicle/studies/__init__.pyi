@@ -1,0 +1,4 @@
+__all__: list[str]
+
+from .runner import RunTask as RunTask
+from .runner import planned as planned

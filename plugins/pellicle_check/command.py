@@ -1,0 +1,78 @@
+"""``pellicle check``."""
+
+from __future__ import annotations
+
+import warnings
+from contextlib import suppress
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pellicle.cli import NOT_CONVERGED, echo, print_json, print_table
+from pellicle.errors import ConfigError
+
+
+def check(
+    file: Annotated[Path, typer.Argument(help="TOML file of a run or a study.")],
+    set_: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Replace a value of the file."),
+    ] = None,
+    error: Annotated[
+        str,
+        typer.Option(help="Allowed relative error of force and depth: 1% or 0.01."),
+    ] = "1%",
+    json: Annotated[bool, typer.Option("--json", help="Print JSON, in SI.")] = False,
+) -> None:
+    """Check a run or a study, and estimate its errors and memory from coarser grids."""
+    import pellicle as pl
+    from pellicle.schema import overridden, read_toml
+    from pellicle.show import doubts_of_scale
+    from pellicle.studies import planned
+    from pellicle_check import words
+    from pellicle_check.advice import advise
+
+    allowed = _allowed(error.strip())
+    is_study = "study" in overridden(read_toml(file), set_ or ())
+    configuration = (pl.Study if is_study else pl.Run).from_toml(file, set_ or ())
+    for doubt in doubts_of_scale(configuration).values():
+        warnings.warn(doubt, stacklevel=2)
+    checked = []
+    for task in planned(configuration, Path(file.stem)):
+        name = task.name if is_study else ""
+        try:
+            advice = advise(task.run, allowed)
+        except ConfigError as problem:
+            raise ConfigError(f"{problem} (run with {name})") if name else problem from None
+        checked.append(words.Advised(name, task.run, advice, task.memory))
+    if json:
+        data = [
+            of_run._asdict()
+            | {"steps": [step._asdict() for step in of_run.steps], "memory": needed}
+            for _, _, of_run, needed in checked
+        ]
+        of_runs = [{"run": one.name, **row} for one, row in zip(checked, data, strict=True)]
+        print_json({"runs": of_runs} if is_study else data[0])
+    else:
+        table, sentences = (
+            (words.errors_of_runs(checked, allowed), words.advice_on_runs(checked, allowed))
+            if is_study
+            else (words.errors_of_run(checked[0]), words.advice_on_run(checked[0], allowed))
+        )
+        print_table(table)
+        for sentence in (*sentences, *words.contacts_at_edge(checked)):
+            echo(sentence)
+    raise typer.Exit(NOT_CONVERGED if any(one.advice.at_edge for one in checked) else 0)
+
+
+def _allowed(text: str) -> float:
+    """Return the relative error that a share or a percentage states."""
+    with suppress(ValueError):
+        share = float(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
+        if 1e-6 <= share <= 0.5:
+            return share
+    raise ConfigError(
+        f"{text!r} is not allowed; give a percentage from 0.0001% to 50%, or a share such as 0.01",
+        "--error",
+    )
