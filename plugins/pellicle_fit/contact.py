@@ -14,6 +14,8 @@ Area = Callable[[Array, float], Array]
 """F/E* [m²] at depths [m] and an elastocapillary length s = 2τ₀/E* [m]; 0 at depths ≤ 0."""
 _STEP = 1e-4
 """Step of the slope of the force, over the depth."""
+_NODES = 129
+"""Nodes of a tabulated area, evenly spaced in the root of the depth."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +62,24 @@ class Contact:
         """Return the force [N] at depths [m]."""
         length = 2 * self.tension / self.modulus
         return self.modulus * self.area(np.minimum(depth, self.depth_limit), length)
+
+    def tabulated(self, deepest: float) -> Contact:
+        """Return the contact with its area interpolated up to a depth [m], for many calls.
+
+        Over √δ areas of round and of conical bodies are polynomials, under a tension nearly so.
+        """
+        from scipy.interpolate import CubicSpline
+
+        length, bare = 2 * self.tension / self.modulus, self.area
+        root = np.linspace(0.0, np.sqrt(min(max(deepest, 1e-300), self.depth_limit)), _NODES)
+        spline = CubicSpline(root, bare(root**2, length))
+
+        def area(depth: Array, other: float) -> Array:
+            if other != length:
+                return bare(depth, other)
+            return np.where(depth > 0, spline(np.sqrt(np.maximum(depth, 0.0))), 0.0)
+
+        return replace(self, area=area, depth_limit=float(root[-1] ** 2))
 
     def stiffness(self, depth: Array) -> Array:
         """Return ∂F/∂δ [N/m] at depths [m]."""

@@ -35,6 +35,8 @@ _STEPS, _DIFFERENCE = 100, 1e-7
 """Largest number of steps to it, and the step of their slopes over that way."""
 _WIDER = 12
 """How often the bracket of a balance doubles."""
+_DEEPER = 2.0
+"""Depth up to which the force is known while a balance is sought, over the deepest of the path."""
 
 
 class Solid(Fittable):
@@ -137,6 +139,9 @@ class Explanation:
 
         in_series = bool(softness or yields)
         path = depth - give(curve.smoothed) if in_series else depth
+        if in_series:
+            deepest = float(max(np.max(depth), np.max(path)))
+            contact = contact.tabulated(min(_DEEPER * deepest, contact.depth_limit))
         response: Response = contact.force
         balances = False
         for effect in self.of(Responds):

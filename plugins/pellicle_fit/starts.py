@@ -29,11 +29,17 @@ def starts(
     """Return coordinates to start from: of minima of other explanations, and of a scan."""
     found = pooled(objective) if scan else []
     own = list(_own(objective))
-    for other, minimum in known:
+    for other, minimum in _largest(known):
         at = objective.at_values(other.values(minimum.at))
         # Starts that differ in what is known already are one.
         found += [*np.unique([np.where(np.isnan(at), guess, at) for guess in own], axis=0)]
     return found
+
+
+def _largest(known: Sequence[tuple[Objective, Minimum]]) -> list[tuple[Objective, Minimum]]:
+    """Return the minima of the largest parts: a search from a part of a part starts further off."""
+    types = [other.explanation.types for other, _ in known]
+    return [part for part, own in zip(known, types, strict=True) if not any(own < o for o in types)]
 
 
 def _own(objective: Objective) -> Iterator[Array]:
