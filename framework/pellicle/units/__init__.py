@@ -140,11 +140,11 @@ class Quantity:
         except ValueError:
             return False
 
-    def powers(self) -> tuple[int, int]:
-        """Return the powers of Pa and of m in the unit; its power of seconds is ignored."""
+    def powers(self) -> tuple[int, int, int]:
+        """Return the powers of N, m and s in the unit."""
         dimensions = {} if self.unit == "1" else one(self.unit).dimensionality
-        pressure = int(dimensions.get("[mass]", 0))
-        return pressure, int(dimensions.get("[length]", 0)) + pressure
+        mass, length, time = (int(dimensions.get(f"[{d}]", 0)) for d in ("mass", "length", "time"))
+        return mass, length - mass, time + 2 * mass
 
     @cached_property
     def _limits(self) -> list[tuple[str, str, Callable[[float, float], bool], float]]:

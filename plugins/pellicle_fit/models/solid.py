@@ -103,7 +103,7 @@ def lengths(component: Component) -> list[float]:
     return [
         value
         for _, quantity, value in _quantities(component)
-        if quantity is not None and quantity.powers() == (0, 1)
+        if quantity is not None and quantity.powers() == (0, 1, 0)
     ]
 
 
@@ -127,8 +127,8 @@ def scaled(component: Component, unit: float, free: tuple[str, ...] = ()) -> dic
     for path, quantity, value in _quantities(component):
         if quantity is None or path in free:
             continue
-        pressure, length = quantity.powers()
-        if pressure and value:
+        force, length, _ = quantity.powers()
+        if force and value:
             raise ConfigError(
                 f"{shown(value)} {quantity.unit} scales with the modulus, which is not known "
                 "yet; a fit allows only lengths and plain numbers, so leave it out",

@@ -1,0 +1,100 @@
+"""The elastic contact that effects act on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pellicle.arrays import Array
+from pellicle.components import HasContactRadius, HasForceCurve
+
+Area = Callable[[Array, float], Array]
+"""F/E* [m²] at depths [m] and an elastocapillary length s = 2τ₀/E* [m]; 0 at depths ≤ 0."""
+_STEP = 1e-4
+"""Step of the slope of the force, over the depth."""
+_NODES = 129
+"""Nodes of a tabulated area, evenly spaced in the root of the depth."""
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Rigid indenter on an elastic solid under tension: F = E* A(δ, s) with s = 2τ₀/E*.
+
+    That the force over E* is an area that depends on lengths alone follows from dimensional
+    analysis.
+    """
+
+    indenter: HasForceCurve
+    modulus: float
+    """E* [Pa]."""
+    area: Area
+    depth_limit: float
+    """Depth [m] beyond which the area is not known, and is continued as a constant."""
+    tension: float = 0.0
+    """τ₀ [N/m]."""
+    half_space: bool = True
+    """Whether the solid is one, so that half the slope of the area is the contact radius."""
+    error: float = 1e-6
+    """Error of the area over the largest one."""
+
+    @classmethod
+    def on_half_space(cls, indenter: HasForceCurve, modulus: float) -> Contact:
+        """Return the contact of an indenter that has a force curve of its own."""
+
+        def area(depth: Array, length: float) -> Array:
+            return indenter.force_curve(depth, length).force
+
+        return cls(indenter, modulus, area, indenter.depth_limit)
+
+    @property
+    def tip_radius(self) -> float | None:
+        """Radius R of the indenter [m]; None if it has none."""
+        return getattr(self.indenter, "radius", None)
+
+    @property
+    def is_bare_indenter(self) -> bool:
+        """Whether it is the indenter itself on a half-space, with a known contact radius."""
+        return self.half_space and isinstance(self.indenter, HasContactRadius)
+
+    def force(self, depth: Array) -> Array:
+        """Return the force [N] at depths [m]."""
+        length = 2 * self.tension / self.modulus
+        return self.modulus * self.area(np.minimum(depth, self.depth_limit), length)
+
+    def tabulated(self, deepest: float) -> Contact:
+        """Return the contact with its area interpolated up to a depth [m], for many calls.
+
+        Over √δ areas of round and of conical bodies are polynomials, under a tension nearly so.
+        """
+        from scipy.interpolate import CubicSpline
+
+        length, bare = 2 * self.tension / self.modulus, self.area
+        root = np.linspace(0.0, np.sqrt(min(max(deepest, 1e-300), self.depth_limit)), _NODES)
+        spline = CubicSpline(root, bare(root**2, length))
+
+        def area(depth: Array, other: float) -> Array:
+            if other != length:
+                return bare(depth, other)
+            return np.where(depth > 0, spline(np.sqrt(np.maximum(depth, 0.0))), 0.0)
+
+        return replace(self, area=area, depth_limit=float(root[-1] ** 2))
+
+    def stiffness(self, depth: Array) -> Array:
+        """Return ∂F/∂δ [N/m] at depths [m]."""
+        step = _STEP * np.maximum(np.abs(depth), 1e-6 * float(np.max(np.abs(depth))))
+        return (self.force(depth + step) - self.force(depth - step)) / (2 * step)
+
+    def radius(self, depth: Array) -> Array:
+        """Return the contact radius without tension [m], on a half-space: half of ∂(F/E*)/∂δ."""
+        return replace(self, tension=0.0).stiffness(depth) / (2 * self.modulus)
+
+    def punch(self, depth: Array) -> tuple[Array, Array]:
+        """Return radius a [m] and dk/da [Pa] of a bare indenter's contacts of depths > 0 [m].
+
+        The stiffness k is that of a flat punch of the radius: 2E*a without tension.
+        """
+        assert isinstance(self.indenter, HasContactRadius)
+        found = self.indenter.contact_radius(depth, 2 * self.tension / self.modulus)
+        return found.radius, self.modulus * found.stiffness_slope

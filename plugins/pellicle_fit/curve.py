@@ -1,0 +1,173 @@
+"""The record of one measured curve, as fits see it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pellicle.arrays import Array, Mask
+from pellicle.components import HasForceCurve
+from pellicle.errors import ConfigError
+
+_FEWEST = 8
+"""Rows that a curve has to have."""
+_NEIGHBOURS = 4
+"""Rows on each side over which forces are smoothed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Forces on an indenter along its path, rows in order of time, in SI.
+
+    Parameters
+    ----------
+    position
+        Position of the indenter [m], growing into the solid, of shape (n,).
+    force
+        Force [N], positive where the solid pushes.
+    indenter
+        An indenter with a force curve on a half-space under tension.
+    time
+        Time of each row [s]; None if it is not known.
+    unloading
+        Whether a row is taken while the indenter moves out; by default, after the deepest row.
+    stiffness
+        Spring constant of the cantilever [N/m]; None if it is stiff or not known.
+    counts
+        How many measured rows each row is the mean of; None if one.
+    """
+
+    position: Array
+    force: Array
+    indenter: HasForceCurve
+    time: Array | None = None
+    unloading: Mask | None = None
+    stiffness: float | None = None
+    counts: Array | None = None
+
+    def __post_init__(self) -> None:
+        arrays = {"position": self.position, "force": self.force, "time": self.time}
+        for name, values in arrays.items():
+            if values is None:
+                continue
+            if values.shape != self.position.shape or not np.all(np.isfinite(values)):
+                raise ConfigError("needs a finite number in each row", name)
+        if self.position.size < _FEWEST or not np.ptp(self.position) > 0 or not np.ptp(self.force):
+            raise ConfigError(f"needs {_FEWEST} rows in which position and force change", "curve")
+        if self.time is not None and np.any(np.diff(self.time) < 0):
+            raise ConfigError("has to grow from row to row", "time")
+
+    @cached_property
+    def base(self) -> Array:
+        """Position of the cantilever's base [m], which is exact where that of the tip is noisy."""
+        return self.position + self.force / self.stiffness if self.stiffness else self.position
+
+    @property
+    def clock(self) -> Array:
+        """Time of each row [s], for effects that excuse themselves without it."""
+        if self.time is None:
+            raise ConfigError("is missing; give the time of each row, or a speed", "time")
+        return self.time
+
+    @property
+    def duration(self) -> float:
+        """Time from the first row to the last [s]; 1 without times."""
+        return 1.0 if self.time is None else float(np.ptp(self.time))
+
+    @cached_property
+    def loading_time(self) -> float:
+        """Time of the approach [s]; that of the retraction if there is nothing else."""
+        return float(np.ptp(self.clock[self.first_pass])) if self.time is not None else 1.0
+
+    @cached_property
+    def moves_out(self) -> Mask:
+        """Whether a row is taken while the indenter moves out."""
+        if self.unloading is not None:
+            return self.unloading
+        return np.arange(self.position.size) > int(np.argmax(self.position))
+
+    @cached_property
+    def first_pass(self) -> Mask:
+        """Rows of the approach, or of the retraction if there is nothing else."""
+        return ~self.moves_out if not np.all(self.moves_out) else self.moves_out
+
+    @property
+    def has_both_passes(self) -> bool:
+        """Whether there are rows of the approach and of the retraction."""
+        return bool(self.moves_out.any() and not self.moves_out.all())
+
+    @property
+    def passes(self) -> list[NDArray[np.intp]]:
+        """The rows of each pass, that of the approach first."""
+        passes = (np.flatnonzero(~self.moves_out), np.flatnonzero(self.moves_out))
+        return [rows for rows in passes if rows.size]
+
+    @cached_property
+    def velocity(self) -> Array:
+        """Velocity of the base into the solid [m/s], the mean of each pass; 0 without times."""
+        velocity = np.zeros_like(self.base)
+        if self.time is not None:
+            for rows in self.passes:
+                if rows.size > 1 and np.ptp(self.time[rows]) > 0:
+                    velocity[rows] = np.polyfit(self.time[rows], self.base[rows], 1)[0]
+        return velocity
+
+    @cached_property
+    def smoothed(self) -> Array:
+        """Means of the forces of neighbours on one pass [N]."""
+        smoothed = np.empty_like(self.force)
+        for rows in self.passes:
+            sums = np.concatenate([[0.0], np.cumsum(self.force[rows])])
+            row = np.arange(rows.size)
+            # As many on both sides, so that a slope stays.
+            wide = np.minimum(_NEIGHBOURS, np.minimum(row, rows.size - 1 - row))
+            smoothed[rows] = (sums[row + wide + 1] - sums[row - wide]) / (2 * wide + 1)
+        return smoothed
+
+    @property
+    def span(self) -> float:
+        """Range of the positions [m]."""
+        return float(np.ptp(self.position))
+
+    @property
+    def largest(self) -> float:
+        """Range of the forces [N]."""
+        return float(np.ptp(self.force))
+
+    @property
+    def weights(self) -> Array:
+        """Square root of the rows that each row stands for, by which residuals are multiplied."""
+        return np.ones_like(self.force) if self.counts is None else np.sqrt(self.counts)
+
+    def at_the_tip(self) -> Curve:
+        """Return the same curve with its noisy positions taken as they are, for first guesses."""
+        return replace(self, stiffness=None)
+
+    def binned(self, bins: int) -> Curve:
+        """Return the means of neighbours on each pass, at most ``bins`` of them.
+
+        Over so short a way a force without jumps is straight: but for a constant, χ² of the rows is
+        that of the means, weighted by their number.
+        """
+        parts = [np.array_split(rows, min(bins, rows.size)) for rows in self.passes]
+        groups = [part for each in parts for part in each]
+        if len(groups) == self.force.size:
+            return self
+        order = np.concatenate(groups)
+        counts = np.array([part.size for part in groups])
+        starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
+
+        def mean(values: Array) -> Array:
+            return np.asarray(np.add.reduceat(values[order], starts) / counts)
+
+        return replace(
+            self,
+            position=mean(self.position),
+            force=mean(self.force),
+            time=None if self.time is None else mean(self.time),
+            unloading=self.moves_out[order[starts]],
+            counts=counts.astype(float),
+        )

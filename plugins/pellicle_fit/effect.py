@@ -1,0 +1,248 @@
+"""The contract of effects: what a measured curve has beside or instead of an elastic half-space.
+
+An effect is a component in one of five places. What a set of effects makes of a curve is::
+
+    recorded = Records( F ),  F = Responds[Bends(contact)](path, δ) + Σ Adds(δ)
+    δ = base − contact point − Σ Yields(F)
+
+Of a place, effects act in the order of their `rank`; the cantilever is the first that yields.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, ClassVar, NamedTuple, Self
+
+from pydantic import Field, GetCoreSchemaHandler
+from pydantic_core import core_schema
+
+from pellicle.arrays import Array
+from pellicle.components import Component
+from pellicle.units import Quantity, quantity_of
+
+from .contact import Contact
+from .curve import Curve
+
+Values = Mapping[str, float]
+"""Values [SI] of quantities by name."""
+
+
+class Weighed(float):
+    """A quantity that is known from elsewhere, to a standard deviation [SI]: one more datum."""
+
+    deviation: float
+
+    @classmethod
+    def of(cls, value: float, deviation: float) -> Weighed:
+        """Return a value with its deviation."""
+        weighed = cls(value)
+        weighed.deviation = deviation
+        return weighed
+
+
+@dataclass(frozen=True)
+class Fitted(Quantity):
+    """Annotation of a quantity: left out it is fitted, given it is held.
+
+    Given as ``{ value = "3 um", deviation = "0.1 um" }`` it is fitted and weighed.
+
+    Parameters
+    ----------
+    log
+        Whether a search varies its logarithm.
+    shared
+        Whether all curves of a pool have the same value.
+    """
+
+    log: bool = False
+    shared: bool = True
+
+    def given(self, value: object) -> float:
+        """Return a value in SI, `Weighed` if it comes with a deviation."""
+        if isinstance(value, Weighed):
+            return value
+        if not isinstance(value, Mapping):
+            return self(value)
+        if value.keys() != {"value", "deviation"}:
+            raise ValueError(f"{dict(value)} is not of the form {{ value = …, deviation = … }}")
+        return Weighed.of(self(value["value"]), Quantity(self.unit, above=0)(value["deviation"]))
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        return core_schema.no_info_plain_validator_function(
+            self.given,
+            serialization=core_schema.plain_serializer_function_ser_schema(
+                lambda value: (
+                    {"value": float(value), "deviation": value.deviation}
+                    if isinstance(value, Weighed)
+                    else value
+                )
+            ),
+        )
+
+
+def fitted(description: str, examples: list[Any] | None = None) -> Any:
+    """Return the field of a quantity annotated with `Fitted`.
+
+    It is annotated as ``float``: the methods of a component are called with all of them known.
+    """
+    return Field(default=None, description=description, examples=examples)
+
+
+class Fittable(Component):
+    """A component with quantities that a fit determines."""
+
+    @property
+    def open(self) -> Mapping[str, Fitted]:
+        """The quantities that a fit determines, by name."""
+        return {
+            name: quantity
+            for name, quantity in quantities(type(self)).items()
+            if self._is_open(name)
+        }
+
+    def _is_open(self, name: str) -> bool:
+        value = getattr(self, name)
+        return value is None or isinstance(value, Weighed)
+
+    def at(self, values: Values) -> Self:
+        """Return the component with values of its open quantities."""
+        return self.model_copy(update={name: values[name] for name in self.open})
+
+
+@cache
+def quantities(component: type[Component]) -> Mapping[str, Fitted]:
+    """Return the quantities of a component by name."""
+    found = {name: quantity_of(info) for name, info in component.model_fields.items()}
+    return {name: q for name, q in found.items() if isinstance(q, Fitted)}
+
+
+class Sizes(NamedTuple):
+    """Orders of magnitude of a curve, from which searches start."""
+
+    length: float
+    """Range of positions [m]."""
+    force: float
+    """Range of forces [N]."""
+    time: float
+    """Duration [s]; 1 without times."""
+    rows: int
+
+    @classmethod
+    def of_curve(cls, curve: Curve) -> Sizes:
+        """Return those of a curve."""
+        return cls(curve.span, curve.largest, curve.duration, curve.position.size)
+
+    def of(self, unit: str) -> float:
+        """Return the order of magnitude of a quantity with a unit."""
+        newton, metre, second = powers(unit)
+        return self.force**newton * self.length**metre * self.time**second
+
+
+@cache
+def powers(unit: str) -> tuple[int, int, int]:
+    """Return the powers of N, m and s in a unit."""
+    return Quantity(unit).powers()
+
+
+class Effect(Fittable):
+    """What bends a measured curve beside or instead of an elastic half-space."""
+
+    family: ClassVar[str] = "effect"
+    place: ClassVar[str] = "rivals[]"
+    rank: ClassVar[int] = 0
+    """Order in which effects of one place act."""
+    holds_modulus: ClassVar[bool] = True
+    """Whether E* beside it is that of the solid, and not up to an unknown factor."""
+
+    def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
+        """Return why it cannot act on a curve beside effects of some types; empty if it can.
+
+        ``contact`` is the bare indenter's on a half-space of modulus 1 Pa.
+        """
+        return ""
+
+    def starts(self, sizes: Sizes) -> Iterable[Values]:
+        """Yield values of its quantities from which searches start."""
+        yield {name: 0.1 * sizes.of(quantity.unit) for name, quantity in self.open.items()}
+
+    def limits(self, sizes: Sizes) -> Mapping[str, tuple[float, float]]:
+        """Return between which values [SI] such a curve can tell anything of a quantity."""
+        return {}
+
+    def accuracy(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> float:
+        """Return the error of its force over the largest one; intervals are wider by it."""
+        return 0.0
+
+    def searched(self, curve: Curve) -> int:
+        """Return as how many quantities criteria count its discrete choices in a curve."""
+        return 0
+
+
+class Bends(Effect):
+    """Another contact than that of the indenter with a half-space; one in a set per rank.
+
+    The ranks are 0 for a size, 1 for a shape, 2 for a layer, 3 for a skin.
+    """
+
+    @abstractmethod
+    def contact(self, contact: Contact) -> Contact:
+        """Return the contact that takes the place of another."""
+
+
+Response = Callable[[Array], Array]
+"""Force [N] of each row at its depth [m], both of shape (n,), row by row."""
+
+
+class Responds(Effect):
+    """A force from the whole path; at most one in a set, and none is elastic."""
+
+    balances: ClassVar[bool] = False
+    """Whether depths are those of the base, and it finds itself where a cantilever balances."""
+
+    @abstractmethod
+    def response(self, contact: Contact, curve: Curve, path: Array, softness: float) -> Response:
+        """Return the force as a function of the depth, after a path of depths [m], shape (n,).
+
+        The path is that of the measured forces; what depends on it alone is computed once.
+        ``softness`` is that of the cantilever [m/N], for an effect that `balances`.
+        """
+
+    def relaxed(self, time: float) -> float:
+        """Return the modulus after a time [s] over E*."""
+        return 1.0
+
+
+class Adds(Effect):
+    """A force beside that of the solid; any number in a set."""
+
+    @abstractmethod
+    def force(self, contact: Contact, curve: Curve, depth: Array) -> Array:
+        """Return the force [N] of each row at depths [m]."""
+
+
+class Yields(Effect):
+    """A body in series with the solid, as the cantilever is; any number in a set."""
+
+    @abstractmethod
+    def give(self, force: Array) -> Array:
+        """Return by how much it gives way [m] under forces [N].
+
+        With all that yields, the depth of the base has to grow with that of the solid.
+        """
+
+
+class Records(Effect):
+    """What the instrument makes of a force; any number in a set."""
+
+    @abstractmethod
+    def recorded(self, force: Array, curve: Curve) -> Array:
+        """Return the force [N] that is recorded."""
+
+    def stiffness(self, stiffness: float) -> float:
+        """Return the true spring constant [N/m] where the recorded force assumes another."""
+        return stiffness

@@ -1,0 +1,1 @@
+"""The effects that are shipped, one file each."""

@@ -1,0 +1,132 @@
+"""Adhesion in equilibrium, under tension and with a cantilever."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Annotated, ClassVar, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pellicle.arrays import Array, Mask
+from pellicle_fit.contact import Contact
+from pellicle_fit.curve import Curve
+from pellicle_fit.effect import Fitted, Responds, Response, Sizes, Values, fitted
+
+_SEARCHED, _REFINED, _NODES = 61, 4, 120
+"""Contacts among which the end of a branch is sought, and how often; nodes that describe it."""
+_HIGHER = 10.0
+"""How far above the first guess the other end is sought, in logarithms of the depth."""
+_DECADES = 7.0
+"""How far below the largest contact the end is sought."""
+_PENALTY = 30.0
+"""Slope of the force below the end of the branch, over the mean slope of the curve."""
+_CHANGE_POINT = 3
+"""Quantities as which the choice of the rows that touch counts (Ninomiya 2015)."""
+_WIDTH, _JUMP = 3, 6.0
+"""Rows whose means are compared, and standard errors beyond which they show a jump."""
+
+
+class Equilibria(NamedTuple):
+    """Contacts in equilibrium, of shape (n,)."""
+
+    position: Array
+    """Position of the base over the contact point [m]."""
+    force: Array
+    """[N]."""
+
+
+class Adhesion(Responds):
+    """Adhesive contact on its stable branch, which a cantilever ends where dF/dδ = −k.
+
+    With force F₁, depth δ₁, stiffness k₁ and radius a of the contact without adhesion the
+    equilibria are F = F₁ − k₁D, δ = δ₁ − D, D = √(4πa w / (dk₁/da)) (Johnson, Kendall & Roberts
+    1971).  An approach touches at δ = 0; where the curve itself jumps, that decides.
+    """
+
+    type: Literal["adhesion"] = "adhesion"
+    balances: ClassVar[bool] = True
+    work_of_adhesion: Annotated[float, Fitted("J/m2", above=0, log=True)] = fitted(
+        "work of adhesion w"
+    )
+
+    def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
+        """Refuse a contact without a radius."""
+        others = {"layer", "worn_tip", "size", "stiff_surface"}
+        if contact.is_bare_indenter and not beside & others:
+            return ""
+        return "needs an indenter with a contact radius on a half-space"
+
+    def starts(self, sizes: Sizes) -> Iterable[Values]:
+        """Yield little and much adhesion."""
+        for share in (3e-4, 3e-3, 3e-2):
+            yield {"work_of_adhesion": share * sizes.of("J/m2")}
+
+    def searched(self, curve: Curve) -> int:
+        """Return the cost of the rows that touch on passes where no jump tells them."""
+        return _CHANGE_POINT * (len(curve.passes) - len(list(jumps(curve))))
+
+    def response(self, contact: Contact, curve: Curve, path: Array, softness: float) -> Response:
+        """Return the force as a function of the base over the contact point."""
+        from scipy.interpolate import CubicSpline
+
+        branch = self._branch(contact, float(np.max(path + softness * curve.smoothed)), softness)
+        end = branch.position[0]
+        root = np.sqrt(np.maximum(branch.position - end, 0.0))
+        keep = np.append(True, root[1:] > np.maximum.accumulate(root)[:-1])
+        spline = CubicSpline(root[keep], branch.force[keep])
+
+        def response(depth: Array) -> Array:
+            beyond = depth - end
+            touches = np.where(curve.moves_out, beyond >= 0, depth > 0)
+            for rows, touching in jumps(curve):
+                touches[rows] = touching
+            # Below its end the branch goes on steeply, so that rows in contact pull it along.
+            steep = _PENALTY * curve.largest / curve.span * np.minimum(beyond, 0.0)
+            at = np.sqrt(np.clip(beyond, 0.0, root[-1] ** 2))
+            return np.where(touches, spline(at) + steep, 0.0)
+
+        return response
+
+    def _branch(self, contact: Contact, deepest: float, softness: float) -> Equilibria:
+        """Return the stable branch from its end to a position of the base [m]."""
+        scale = max(deepest, self.work_of_adhesion / contact.modulus)
+        top = np.log(scale) + np.arange(0, _HIGHER, 0.5)
+        reaches = self._equilibria(contact, np.exp(top), softness).position >= deepest
+        top = top[int(np.argmax(reaches)) if reaches.any() else -1]
+        grid = np.linspace(top - _DECADES * np.log(10), top, _SEARCHED)
+        for _ in range(_REFINED):
+            least = int(np.argmin(self._equilibria(contact, np.exp(grid), softness).position))
+            low, high = grid[max(least - 1, 0)], grid[min(least + 1, _SEARCHED - 1)]
+            grid = np.linspace(low, high, _SEARCHED)
+        start = grid[_SEARCHED // 2]
+        nodes = np.exp(start + (top - start) * np.linspace(0, 1, _NODES) ** 2)
+        return self._equilibria(contact, nodes, softness)
+
+    def _equilibria(self, contact: Contact, depth: Array, softness: float) -> Equilibria:
+        """Return the equilibria that without adhesion would have depths [m]."""
+        radius, slope = contact.punch(depth)
+        force, stiffness = contact.force(depth), contact.stiffness(depth)
+        retraction = np.sqrt(4 * np.pi * self.work_of_adhesion * radius / slope)
+        force = force - stiffness * retraction
+        return Equilibria(depth - retraction + softness * force, force)
+
+
+def jumps(curve: Curve) -> Iterable[tuple[NDArray[np.intp], Mask]]:
+    """Yield, for each pass on which the force jumps, its rows and which of them touch.
+
+    Deeper by one row, the force falls where the indenter snaps in and where it has not yet snapped
+    off.
+    """
+    for rows in curve.passes:
+        if rows.size < 4 * _WIDTH:
+            continue
+        deeper = rows[np.argsort(curve.base[rows], kind="stable")]
+        force = -curve.force[deeper]
+        noise = 1.4826 / np.sqrt(6) * float(np.median(np.abs(np.diff(force, 2))))
+        means = np.convolve(force, np.ones(_WIDTH) / _WIDTH, mode="valid")
+        rises = means[_WIDTH:] - means[:-_WIDTH]
+        first = int(np.argmax(rises))
+        if rises[first] > max(_JUMP * noise * np.sqrt(2 / _WIDTH), 0.0):
+            last = first + int(np.argmax(np.diff(force[first : first + 2 * _WIDTH])))
+            yield deeper, np.arange(deeper.size) > last

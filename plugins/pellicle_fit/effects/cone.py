@@ -1,0 +1,30 @@
+"""A cone in place of a bead."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal
+
+import numpy as np
+from pydantic import ConfigDict
+
+from pellicle_fit.contact import Contact
+from pellicle_fit.curve import Curve
+
+from .shape import Shape, in_place
+
+
+class Cone(Shape):
+    """A cone in place of a bead, of 45°: its angle cannot be told from the modulus."""
+
+    model_config = ConfigDict(title="a cone instead")
+    type: Literal["cone"] = "cone"
+    holds_modulus: ClassVar[bool] = False
+
+    def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
+        """Refuse a cone."""
+        is_cone = getattr(contact.indenter, "type", "") == "cone"
+        return "the indenter is one" if is_cone else super().excuse(contact, curve, beside)
+
+    def contact(self, contact: Contact) -> Contact:
+        """Return the contact of a cone."""
+        return in_place(contact, "cone", half_angle=float(np.pi / 4))

@@ -1,0 +1,34 @@
+"""A force of the instrument that drifts."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import ConfigDict
+
+from pellicle.arrays import Array
+from pellicle_fit.contact import Contact
+from pellicle_fit.curve import Curve
+from pellicle_fit.effect import Fitted, Records, fitted
+
+
+class Drift(Records):
+    """A force that grows with time."""
+
+    model_config = ConfigDict(title="drift in time")
+    type: Literal["drift"] = "drift"
+    rank: ClassVar[int] = 1
+    drift: Annotated[float, Fitted("N/s", shared=False)] = fitted(
+        "rate of the force without a load"
+    )
+
+    def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
+        """Refuse curves of one pass, on which it is a sloping baseline."""
+        if curve.time is None:
+            return "needs times or a speed"
+        return "" if curve.has_both_passes else "on one pass it is a sloping baseline"
+
+    def recorded(self, force: Array, curve: Curve) -> Array:
+        """Return F + rate × time since the first row [N]."""
+        return np.asarray(force + self.drift * (curve.clock - curve.clock[0]))

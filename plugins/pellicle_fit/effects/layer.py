@@ -1,0 +1,52 @@
+"""A layer on a rigid base."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import ConfigDict, Field
+
+from pellicle.arrays import Array
+from pellicle.components import HasLayerForceCurve
+from pellicle_fit.contact import Contact
+from pellicle_fit.curve import Curve
+from pellicle_fit.effect import Bends, Fitted, Sizes, Values, fitted
+
+_THICKNESSES = (0.5, 2.0, 10.0)
+"""Thicknesses from which searches start, over the range of positions."""
+_ERROR = 1e-4
+"""Of the tables of force curves on layers, over the largest force."""
+
+
+class Layer(Bends):
+    """A layer bonded to a rigid base in place of the half-space."""
+
+    model_config = ConfigDict(title="a thin layer")
+    type: Literal["layer"] = "layer"
+    rank: ClassVar[int] = 2
+    thickness: Annotated[float, Fitted("m", above=0, log=True)] = fitted("thickness h")
+    poissons_ratio: float = Field(default=0.5, ge=0, le=0.5, description="Poisson's ratio ν")
+
+    def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
+        """Refuse an indenter without a curve on layers."""
+        known = isinstance(contact.indenter, HasLayerForceCurve) and contact.half_space
+        if known and "worn_tip" not in beside:
+            return ""
+        return "needs an indenter whose curve on a layer is known"
+
+    def contact(self, contact: Contact) -> Contact:
+        """Return the contact with the layer."""
+        body, thickness, ratio = contact.indenter, self.thickness, self.poissons_ratio
+        assert isinstance(body, HasLayerForceCurve)
+
+        def area(depth: Array, length: float) -> Array:
+            return body.layer_force_curve(depth, length, thickness, ratio).force
+
+        limit = body.layer_depth_limit(thickness, ratio)
+        return replace(contact, area=area, depth_limit=limit, half_space=False, error=_ERROR)
+
+    def starts(self, sizes: Sizes) -> Iterable[Values]:
+        """Yield thin and thick layers."""
+        yield from ({"thickness": share * sizes.length} for share in _THICKNESSES)

@@ -1,0 +1,24 @@
+"""A constant force of the instrument."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import ConfigDict
+
+from pellicle.arrays import Array
+from pellicle_fit.curve import Curve
+from pellicle_fit.effect import Fitted, Records, fitted
+
+
+class Offset(Records):
+    """A constant force."""
+
+    model_config = ConfigDict(title="an offset")
+    type: Literal["offset"] = "offset"
+    rank: ClassVar[int] = 1
+    offset: Annotated[float, Fitted("N", shared=False)] = fitted("force without a load")
+
+    def recorded(self, force: Array, curve: Curve) -> Array:
+        """Return F + F₀ [N]."""
+        return force + self.offset

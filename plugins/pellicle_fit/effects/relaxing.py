@@ -1,0 +1,166 @@
+"""Solids that relax: Lee & Radok (1960) while the contact grows, Ting (1966) while it shrinks."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from pellicle.arrays import Array
+from pellicle_fit.contact import Contact
+from pellicle_fit.curve import Curve
+from pellicle_fit.effect import Responds, Response
+
+_NODES = 97
+"""Nodes of the path while the indenter moves in; as many where it dwells or moves out."""
+_MODULI = 6
+"""Effective moduli between which the force under a tension is interpolated."""
+_BESIDE_TENSION = 0.03
+"""Error of the effective modulus beside a tension, against solutions of the whole problem."""
+_EARLIEST = 1e-4
+"""Least time in contact over that of the loading; before it the response is that of then."""
+Primitive = Callable[[Array], Array]
+"""∫ E(t) dt / E* from 0 to times [s]."""
+
+
+class Course(NamedTuple):
+    """How a solid responds to a path, in each row, of shape (n,)."""
+
+    share: Array
+    """Effective modulus over E*."""
+    depth: Array
+    """Depth [m] at which the contact was as large while it grew."""
+
+
+class Relaxing(Responds):
+    """Solid whose modulus falls; a tension does not, and acts with the effective modulus."""
+
+    @abstractmethod
+    def relaxed(self, time: float) -> float:
+        """Return E(t)/E* after a time [s]."""
+
+    @abstractmethod
+    def primitive(self, time: Array) -> Array:
+        """Return ∫ E(t) dt / E* from 0 to times [s]."""
+
+    def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
+        """Refuse curves without times, and beside a tension those that unload."""
+        if curve.time is None:
+            return "needs times or a speed"
+        if curve.moves_out.all():
+            return "the loading is not in the curve"
+        unloads = "tension" in beside and curve.moves_out.any()
+        return "beside a tension there is no theory of unloading" if unloads else ""
+
+    def accuracy(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> float:
+        """Return the error of the force over the largest one."""
+        return _BESIDE_TENSION if contact.tension else 1e-4
+
+    def response(self, contact: Contact, curve: Curve, path: Array, softness: float) -> Response:
+        """Return the force as a function of the depth."""
+        share, equal = course(replace(contact, tension=0.0), curve, path, self.primitive)
+
+        def response(depth: Array) -> Array:
+            # While the contact shrinks, the path decides.
+            depth = np.where(curve.moves_out, equal, depth)
+            if contact.tension:
+                return self._tensed(contact, share, depth)
+            return share * contact.force(depth)
+
+        return response
+
+    def _tensed(self, contact: Contact, share: Array, depth: Array) -> Array:
+        """Return the force [N] of effective moduli, given over E*, under tension."""
+        # The force over the effective modulus is a polynomial in the logarithm of that.
+        at = np.log(share)
+        middle, half = (at.max() + at.min()) / 2, max(np.ptp(at) / 2, 1e-12)
+        nodes = chebyshev.chebpts1(_MODULI)
+        moduli = np.exp(middle + half * nodes)
+        forces = np.array(
+            [replace(contact, modulus=contact.modulus * m).force(depth) / m for m in moduli]
+        )
+        coefficients = chebyshev.chebfit(nodes, forces, _MODULI - 1)
+        basis = chebyshev.chebvander((at - middle) / half, _MODULI - 1)
+        force: Array = share * np.sum(basis * coefficients.T, axis=1)
+        return force
+
+
+def course(contact: Contact, curve: Curve, depth: Array, primitive: Primitive) -> Course:
+    """Return how a solid responds to depths [m]; the contact is that without tension."""
+    loading = ~curve.moves_out
+    time, z = curve.clock[loading], np.maximum.accumulate(depth[loading])
+    if z[-1] <= 0:
+        return Course(np.ones_like(depth), depth)
+    start = np.interp(0.0, z, time) if z[0] <= 0 else time[0] - z[0] * np.ptp(time) / np.ptp(z)
+    later = time > start
+    times, z = np.append(start, time[later]), np.append(0.0, z[later])
+    nodes = _nodes(times, z)
+    path = np.interp(nodes, times, z)
+    area: Array = contact.area(path, 0.0)
+    weights = _weights(nodes[1:], nodes, primitive)
+    share = (weights @ _rates(nodes, area)) / np.maximum(area[1:], 1e-300)
+    earliest = _EARLIEST * (nodes[-1] - start)
+    at = np.log(np.maximum(curve.clock - start, earliest))
+    shares = np.exp(np.interp(at, np.log(nodes[1:] - start), np.log(np.maximum(share, 1e-12))))
+    if curve.moves_out.any():
+        rows = curve.moves_out
+        depth = depth.copy()
+        shares[rows], depth[rows] = _shrinking(
+            (nodes, path, area), (curve.clock[rows], depth[rows]), primitive
+        )
+    return Course(shares, depth)
+
+
+def _nodes(times: Array, depth: Array) -> Array:
+    """Return the times [s] of nodes: dense after first touch, and after the start of a dwell."""
+    start, top, end = times[0], times[int(np.argmax(depth >= 0.98 * depth[-1]))], times[-1]
+    ramp = np.linspace(0, 1, _NODES)
+    if end - top < 0.1 * (top - start):
+        top = end
+    nodes: Array = start + (top - start) * ramp**2
+    return nodes if top == end else np.append(nodes, top + (end - top) * ramp[1:] ** 2)
+
+
+def _shrinking(
+    grown: tuple[Array, Array, Array], back: tuple[Array, Array], primitive: Primitive
+) -> tuple[Array, Array]:
+    """Return effective modulus over E* and depth of equal contact [m] while the contact shrinks.
+
+    ``grown`` are times [s], depths [m] and F/E* [m²] of the loading, ``back`` times and depths of
+    the rows of unloading.  ∫ E(t − t′) dδ from the time of equal contact on is 0.
+    """
+    t, z, area = grown
+    end = back[0][-1]
+    u = t[-1] + (end - t[-1]) * np.linspace(0, 1, _NODES)[1:] ** 1.5
+    out = np.append(t[-1], u)
+    down = np.interp(out, np.append(t[-1], back[0]), np.append(z[-1], back[1]))
+    weights = _weights(u, t, primitive)
+    unloaded = (_weights(u, out, primitive) * _rates(out, down)).sum(axis=1)
+    to_end = np.cumsum((weights * _rates(t, z))[:, ::-1], axis=1)
+    force = np.cumsum(weights * _rates(t, area), axis=1)
+    equal, share = np.full(out.size, z[-1]), np.empty(out.size)
+    share[0] = (_weights(t[-1:], t, primitive) @ _rates(t, area))[0] / area[-1]
+    for i, tail in enumerate(to_end, start=1):
+        earlier = np.interp(-unloaded[i - 1], np.append(0.0, tail), t[::-1])
+        equal[i] = np.interp(earlier, t, z)
+        total = np.interp(earlier, t, np.append(0.0, force[i - 1]))
+        grown_area = np.interp(earlier, t, area)
+        share[i] = total / grown_area if grown_area > 1e-9 * area[-1] else share[i - 1]
+    return np.interp(back[0], out, share), np.interp(back[0], out, equal)
+
+
+def _weights(at: Array, times: Array, primitive: Primitive) -> Array:
+    """Return ∫ E(t − t′) dt′ / E* [s] over the intervals of times, of shape (at, intervals)."""
+    sums = primitive(np.maximum(at[:, None] - times[None, :], 0.0))
+    weights: Array = sums[:, :-1] - sums[:, 1:]
+    return weights
+
+
+def _rates(times: Array, values: Array) -> Array:
+    """Return slopes between neighbours; 0 where no time passes."""
+    steps = np.diff(times)
+    return np.where(steps > 0, np.diff(values) / np.maximum(steps, 1e-300), 0.0)

@@ -1,0 +1,37 @@
+"""What effects have in common that put another shape in place of the indenter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import ClassVar
+
+from pellicle import indenter
+from pellicle.components import HasForceCurve
+from pellicle_fit.contact import Contact
+from pellicle_fit.curve import Curve
+from pellicle_fit.effect import Bends, Sizes, Values
+
+
+class Shape(Bends):
+    """Another shape in place of the indenter; a tension can make up for it in any one curve."""
+
+    rank: ClassVar[int] = 1
+
+    def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
+        """Refuse a set with a tension, and an indenter without a radius."""
+        if "tension" in beside:
+            return "a tension makes up for any shape"
+        return "" if contact.tip_radius else "needs an indenter with a radius"
+
+    def starts(self, sizes: Sizes) -> Iterable[Values]:
+        """Yield nothing to search."""
+        yield {}
+
+
+def in_place(contact: Contact, name: str, **fields: float | None) -> Contact:
+    """Return the contact of another indenter in place of that of one."""
+    other = indenter(name, **fields)
+    assert isinstance(other, HasForceCurve)
+    bare = Contact.on_half_space(other, contact.modulus)
+    return replace(bare, tension=contact.tension)

@@ -1,0 +1,25 @@
+"""A baseline with a slope."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import ConfigDict
+
+from pellicle.arrays import Array
+from pellicle_fit.curve import Curve
+from pellicle_fit.effect import Fitted, Records, fitted
+
+
+class Slope(Records):
+    """A force that grows with the position of the base, as optical interference makes it."""
+
+    model_config = ConfigDict(title="a sloping baseline")
+    type: Literal["slope"] = "slope"
+    rank: ClassVar[int] = 1
+    slope: Annotated[float, Fitted("N/m", shared=False)] = fitted("slope of the baseline")
+
+    def recorded(self, force: Array, curve: Curve) -> Array:
+        """Return F + slope × way from the first row [N]."""
+        return np.asarray(force + self.slope * (curve.base - curve.base[0]))

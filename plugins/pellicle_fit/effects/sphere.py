@@ -1,0 +1,34 @@
+"""A sphere in place of its shallow limit, and the reverse."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import ConfigDict
+
+from pellicle_fit.contact import Contact
+from pellicle_fit.curve import Curve
+
+from .shape import Shape, in_place
+
+SHALLOW = 0.1
+"""Depth over radius up to which a sphere is a paraboloid."""
+
+
+class Sphere(Shape):
+    """A sphere in place of a paraboloid, or a paraboloid in place of a sphere."""
+
+    model_config = ConfigDict(title="a sphere, or a paraboloid, instead")
+    type: Literal["sphere"] = "sphere"
+
+    def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
+        """Refuse shallow curves too, on which both are one."""
+        if excuse := super().excuse(contact, curve, beside):
+            return excuse
+        deep = curve.span > SHALLOW * (contact.tip_radius or 0.0)
+        return "" if deep else "on a shallow curve sphere and paraboloid are one"
+
+    def contact(self, contact: Contact) -> Contact:
+        """Return the contact of the other shape."""
+        is_sphere = getattr(contact.indenter, "type", "") == "sphere"
+        return in_place(contact, "paraboloid" if is_sphere else "sphere", radius=contact.tip_radius)

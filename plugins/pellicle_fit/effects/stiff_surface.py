@@ -1,0 +1,66 @@
+"""A surface that is stiffer or softer than the solid below."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import ConfigDict
+
+from pellicle.arrays import Array
+from pellicle_fit.contact import Contact
+from pellicle_fit.curve import Curve
+from pellicle_fit.effect import Bends, Fitted, Sizes, Values, fitted
+
+_NODES = 300
+"""Depths between which the area is interpolated."""
+_LEAST = 1e-5
+"""Smallest of them over the largest."""
+
+
+class StiffSurface(Bends):
+    """A stiffness k = 2E*a (1 + g e^(−a/l)) of contacts of radius a: a gradient, or a film.
+
+    With |g| ≤ ½: a surface stiffer than half again mimics any tension, for both are a stiffness
+    over the contact radius.
+    """
+
+    model_config = ConfigDict(title="a surface stiffer or softer than the bulk")
+    type: Literal["stiff_surface"] = "stiff_surface"
+    rank: ClassVar[int] = 2
+    gain: Annotated[float, Fitted("1", at_least=-0.5, at_most=0.5)] = fitted(
+        "relative excess g of the stiffness at the surface"
+    )
+    reach: Annotated[float, Fitted("m", above=0, log=True)] = fitted("length l over which it falls")
+
+    def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
+        """Refuse a set with a tension, and a contact without a radius."""
+        if "tension" in beside:
+            return "a tension makes up for it"
+        return "" if contact.is_bare_indenter else "needs an indenter with a contact radius"
+
+    def contact(self, contact: Contact) -> Contact:
+        """Return A = ∫ (1 + g e^(−a/l)) dA₁ over the contacts of radius a = ½ dA₁/dδ."""
+        bare, gain, reach = contact.area, self.gain, self.reach
+
+        def area(depth: Array, length: float) -> Array:
+            deepest = max(float(np.max(depth)), 1e-300)
+            grid = np.append(0.0, np.geomspace(_LEAST * deepest, deepest, _NODES))
+            force = bare(grid, 0.0)
+            radius = np.diff(force) / np.diff(grid) / 2
+            total = np.cumsum(np.diff(force) * (1 + gain * np.exp(-radius / reach)))
+            return np.asarray(np.interp(np.maximum(depth, 0.0), grid, np.append(0.0, total)))
+
+        return replace(contact, area=area, half_space=False)
+
+    def limits(self, sizes: Sizes) -> dict[str, tuple[float, float]]:
+        """Return lengths that are neither below all contacts nor beyond them."""
+        return {"reach": (0.01 * sizes.length, 100 * sizes.length)}
+
+    def starts(self, sizes: Sizes) -> Iterable[Values]:
+        """Yield stiffer and softer surfaces over short and long ways."""
+        for gain in (0.3, -0.3):
+            for share in (0.3, 1.0, 3.0):
+                yield {"gain": gain, "reach": share * sizes.length}

@@ -1,0 +1,29 @@
+"""The tension of the surface."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Annotated, ClassVar, Literal
+
+from pellicle_fit.contact import Contact
+from pellicle_fit.effect import Bends, Fitted, Sizes, Values, fitted
+
+_SHARES = (0.0, 0.015, 0.15, 1.5)
+"""Tensions from which searches start, over force per length."""
+
+
+class Tension(Bends):
+    """A skin under tension on the solid, as `tensed_membrane` has it."""
+
+    type: Literal["tension"] = "tension"
+    rank: ClassVar[int] = 3
+    tension: Annotated[float, Fitted("N/m", at_least=0)] = fitted("surface tension τ₀")
+
+    def contact(self, contact: Contact) -> Contact:
+        """Return the contact under the tension: E* A(δ, s) with s = 2τ₀/E*."""
+        return replace(contact, tension=self.tension)
+
+    def starts(self, sizes: Sizes) -> Iterable[Values]:
+        """Yield tensions from none to one that dominates."""
+        yield from ({"tension": share * sizes.of("N/m")} for share in _SHARES)

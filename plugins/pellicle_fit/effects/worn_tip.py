@@ -1,0 +1,44 @@
+"""A paraboloid with a worn tip."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from math import inf
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import ConfigDict
+
+from pellicle.arrays import Array
+from pellicle_fit.contact import Contact
+from pellicle_fit.effect import Fitted, Sizes, Values, fitted
+
+from .shape import Shape
+
+
+class WornTip(Shape):
+    """A paraboloid whose tip is worn to a flat of radius b.
+
+    δ = (a/R) √(a² − b²), F = (2 E*/3R) (2a² + b²) √(a² − b²) (Popov, Heß & Willert 2019).
+    """
+
+    model_config = ConfigDict(title="a worn tip")
+    type: Literal["worn_tip"] = "worn_tip"
+    flat_radius: Annotated[float, Fitted("m", at_least=0)] = fitted("radius b of the flat")
+
+    def contact(self, contact: Contact) -> Contact:
+        """Return the contact of the worn tip."""
+        radius, flat = contact.tip_radius or 0.0, self.flat_radius
+
+        def area(depth: Array, _: float) -> Array:
+            deep = np.maximum(depth, 0.0)
+            squared = (flat**2 + np.sqrt(flat**4 + 4 * (radius * deep) ** 2)) / 2
+            rise = np.sqrt(np.maximum(squared - flat**2, 0.0))
+            return 2 / (3 * radius) * (2 * squared + flat**2) * rise
+
+        return replace(contact, area=area, depth_limit=inf)
+
+    def starts(self, sizes: Sizes) -> Iterable[Values]:
+        """Yield flats of a part of the way, and of half of it."""
+        yield from ({"flat_radius": share * sizes.length} for share in (0.1, 0.5))

@@ -1,0 +1,210 @@
+"""What explains a curve: an elastic half-space and a set of effects, and its force."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated, ClassVar, Literal, TypeVar
+
+import numpy as np
+
+from pellicle.arrays import Array
+from pellicle.components.base import words_of_type
+from pellicle.errors import ConvergenceError
+
+from .contact import Contact
+from .curve import Curve
+from .effect import (
+    Adds,
+    Bends,
+    Effect,
+    Fittable,
+    Fitted,
+    Records,
+    Responds,
+    Response,
+    Yields,
+    fitted,
+)
+
+_Kind = TypeVar("_Kind", bound=Effect)
+_BALANCE = 1e-10
+"""Error of a depth in balance over the largest way."""
+_STEPS, _DIFFERENCE = 100, 1e-7
+"""Largest number of steps to it, and the step of their slopes over that way."""
+_WIDER = 12
+"""How often the bracket of a balance doubles."""
+_DEEPER = 2.0
+"""Depth up to which the force is known while a balance is sought, over the deepest of the path."""
+
+
+class Solid(Fittable):
+    """Elastic half-space, and where the indenter touches it first."""
+
+    family: ClassVar[str] = "solid"
+    type: Literal["solid"] = "solid"
+    reduced_modulus: Annotated[float, Fitted("Pa", above=0, log=True)] = fitted(
+        "reduced modulus E*"
+    )
+    contact_point: Annotated[float, Fitted("m", shared=False)] = fitted("position of first touch")
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A solid and a set of effects, one of each type, with open quantities."""
+
+    solid: Solid
+    effects: tuple[Effect, ...] = ()
+
+    @property
+    def parts(self) -> tuple[Fittable, ...]:
+        """The components that have quantities."""
+        return (self.solid, *self.effects)
+
+    @cached_property
+    def types(self) -> frozenset[str]:
+        """Types of the effects."""
+        return frozenset(effect.type_name for effect in self.effects)
+
+    @property
+    def words(self) -> str:
+        """The effects in words."""
+        words = (words_of_type(type(effect), effect.type_name) for effect in self.effects)
+        return " and ".join(words) or "no effect"
+
+    def of(self, kind: type[_Kind]) -> list[_Kind]:
+        """Return the effects in one of the five places, in the order in which they act."""
+        found = [effect for effect in self.effects if isinstance(effect, kind)]
+        return sorted(found, key=lambda effect: (effect.rank, effect.type_name))
+
+    def clash(self) -> str:
+        """Return why the effects are no legal set; empty if they are."""
+        ranks = [effect.rank for effect in self.of(Bends)]
+        responds = self.of(Responds)
+        if len(responds) > 1 or len(ranks) > len(set(ranks)):
+            return "two of them stand in one place"
+        if responds and responds[0].balances and self.of(Yields):
+            return "nothing may be in series with what balances the cantilever itself"
+        return ""
+
+    def contact(self, curve: Curve) -> Contact:
+        """Return the contact of the curve's indenter, of known quantities."""
+        contact = Contact.on_half_space(curve.indenter, self.solid.reduced_modulus)
+        for effect in self.of(Bends):
+            contact = effect.contact(contact)
+        return contact
+
+    def excuse(self, curves: Sequence[Curve]) -> str:
+        """Return why the set cannot act on the curves; empty if it can."""
+        excuses = (
+            effect.excuse(
+                Contact.on_half_space(curve.indenter, 1.0), curve, self.types - {effect.type_name}
+            )
+            for curve in curves
+            for effect in self.effects
+        )
+        return self.clash() or next(filter(None, excuses), "")
+
+    def accuracy(self, curve: Curve) -> float:
+        """Return the error of its force over the largest one."""
+        contact = self.contact(curve)
+        of_effects = (effect.accuracy(contact, curve, self.types) for effect in self.effects)
+        return max(contact.error, *of_effects, 0.0)
+
+    def relaxed(self, time: float) -> float:
+        """Return the modulus after a time [s] over E*."""
+        return next((effect.relaxed(time) for effect in self.of(Responds)), 1.0)
+
+    def force(self, curve: Curve) -> Array:
+        """Return the force [N] that is recorded in each row, of known quantities.
+
+        Raises
+        ------
+        ConvergenceError
+            The solid and what is in series with it do not balance.
+        """
+        force = self._pushed(curve)
+        for effect in self.of(Records):
+            force = effect.recorded(force, curve)
+        return force
+
+    def _pushed(self, curve: Curve) -> Array:
+        """Return the true force [N] in each row."""
+        contact, depth = self.contact(curve), curve.base - self.solid.contact_point
+        softness, adds, yields = self._softness(curve), self.of(Adds), self.of(Yields)
+
+        def give(force: Array) -> Array:
+            return sum((effect.give(force) for effect in yields), start=softness * force)
+
+        in_series = bool(softness or yields)
+        path = depth - give(curve.smoothed) if in_series else depth
+        if in_series:
+            deepest = float(max(np.max(depth), np.max(path)))
+            contact = contact.tabulated(min(_DEEPER * deepest, contact.depth_limit))
+        response: Response = contact.force
+        balances = False
+        for effect in self.of(Responds):
+            response = effect.response(contact, curve, path, softness)
+            balances = effect.balances
+
+        def pushed(depth: Array) -> Array:
+            beside = (add.force(contact, curve, depth) for add in adds)
+            return sum(beside, start=response(depth))
+
+        if balances or not in_series:
+            return pushed(depth)
+        return pushed(balanced(pushed, give, depth, path))
+
+    def _softness(self, curve: Curve) -> float:
+        """Return that of the cantilever [m/N]; 0 if it is stiff."""
+        if curve.stiffness is None:
+            return 0.0
+        stiffness = curve.stiffness
+        for effect in self.of(Records):
+            stiffness = effect.stiffness(stiffness)
+        return 1 / stiffness
+
+
+def balanced(
+    pushed: Callable[[Array], Array], give: Callable[[Array], Array], base: Array, start: Array
+) -> Array:
+    """Return the depth δ [m] at which δ + u(P(δ)) is that of the base, shape (n,).
+
+    The sum grows with δ, so that there is one root: between the base and the base less the give of
+    the force there, or beyond that where the give is negative.
+
+    Raises
+    ------
+    ConvergenceError
+        It does not, or there is none.
+    """
+
+    def excess(depth: Array) -> Array:
+        return depth + give(pushed(depth)) - base
+
+    ends = base, base - give(pushed(base))
+    low, high = np.minimum(*ends), np.maximum(*ends)
+    for _ in range(_WIDER):
+        short, long = excess(high) < 0, excess(low) > 0
+        if not (short.any() or long.any()):
+            break
+        width = high - low
+        high, low = np.where(short, high + width, high), np.where(long, low - width, low)
+    scale = max(float(np.ptp(base)), 1e-300)
+    depth, last = np.clip(start, low, high), high - low
+    for _ in range(_STEPS):
+        above = excess(depth)
+        low, high = np.where(above < 0, depth, low), np.where(above > 0, depth, high)
+        slope = (excess(depth + _DIFFERENCE * scale) - above) / (_DIFFERENCE * scale)
+        new = depth - above / np.maximum(slope, 1e-300)
+        # Where Newton's step leaves the bracket or does not halve the last one, its middle.
+        slow = ~((new >= low) & (new <= high)) | (np.abs(new - depth) > last / 2)
+        new = np.where(slow & (above != 0), (low + high) / 2, np.clip(new, low, high))
+        last = np.abs(new - depth)
+        if np.all(last <= _BALANCE * scale):
+            return new
+        depth = new
+    raise ConvergenceError(
+        "the forces of the cantilever and the solid do not balance; is the spring constant right?"
+    )

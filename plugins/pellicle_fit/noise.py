@@ -1,0 +1,189 @@
+"""The noise of a curve from before the contact, and checks of what a fit leaves over."""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import fdtrc, ndtri
+
+from pellicle.arrays import Array, Mask
+
+from .curve import Curve
+
+CHANCE = 1e-3
+"""Probability that a check flags a curve without fault."""
+_NEAR = 0.01
+"""Distance from contact beyond which a row counts as before it, over the range of positions."""
+_FEWEST = 10
+"""Rows before contact from which the noise is taken."""
+_WINDOWS = (1 / 2, 1 / 4, 1 / 8, 1 / 16, 1 / 32)
+"""Rows next to contact in which a dip is sought, over those before it."""
+_BINS = 8
+_DEPTHS = (1 / 16, 1 / 8, 1 / 4, 1 / 2, 3 / 4)
+"""Edges of bins in contact, over the depth; narrow near first touch, where most models fail."""
+_LEAST = 1e-6
+"""Least noise over the largest force, the accuracy of the force curves."""
+
+
+class Flaw(Enum):
+    """What contradicts an explanation, or only the noise."""
+
+    DIP = "the force dips before contact"
+    OFFSET = "the force before contact is not 0"
+    DRIFT = "the force before contact has a slope"
+    SLOW = "the noise is correlated"
+    MISFIT = "in contact the residuals exceed the noise"
+    PATTERN = "in contact the residuals follow a pattern"
+    TOO_DEEP = "the force of this contact is not known at the largest depth"
+
+
+class Noise(NamedTuple):
+    """An estimate of the noise; of two, that with the larger deviation is the greater."""
+
+    deviation: float
+    """Standard deviation of the force [N]; from sums over bins, that if noise is independent."""
+    freedom: float
+
+    def exceeds(self, other: Noise) -> bool:
+        """Return whether an F-test rejects that both are of the same noise."""
+        ratio = (self.deviation / max(other.deviation, 1e-300)) ** 2
+        return ratio > 1 and bool(fdtrc(self.freedom, other.freedom, ratio) < CHANCE)
+
+
+class Judged(NamedTuple):
+    """The noise of a curve, widened where an explanation fails, and the flaws."""
+
+    noise: Noise
+    flaws: frozenset[Flaw]
+
+    @property
+    def describes(self) -> bool:
+        """Whether no flaw contradicts the explanation."""
+        return self.flaws <= {Flaw.SLOW}
+
+
+def judged(curve: Curve, residuals: Array, jacobian: Array, depth: Array) -> Judged:
+    """Return the noise that an explanation of least χ² leaves in a curve.
+
+    Parameters
+    ----------
+    residuals
+        Recorded force less that of the explanation [N].
+    jacobian
+        Derivatives of the explanation's force by its coordinates, of shape (n, coordinates).
+    depth
+        Position over the contact point [m].
+    """
+    before = (depth < -_NEAR * curve.span) & curve.first_pass
+    least = max(_LEAST * float(np.max(np.abs(curve.force))), _step(curve.force) / np.sqrt(12))
+    if before.sum() < _FEWEST:
+        left = max(residuals.size - jacobian.shape[1], 1)
+        noise = Noise(max(float(np.sqrt(np.sum(residuals**2) / left)), least), left)
+        return Judged(noise, frozenset())
+    # Towards contact, on a retraction too.
+    rows = np.flatnonzero(before)[:: -1 if curve.moves_out[before][0] else 1]
+    flaws, noise, far = _before_contact(residuals[rows], curve.base[rows], least)
+    inside, free = ~before, max(int(np.sum(~before)) - jacobian.shape[1], 1)
+    scatter = Noise(float(np.sqrt(np.sum(residuals[inside] ** 2) / free)), free)
+    usual = noise
+    if scatter.exceeds(noise):
+        flaws.add(Flaw.MISFIT)
+        noise = Noise(scatter.deviation, min(noise.freedom, free))
+    sums = binned(residuals, jacobian, _bins(depth, before, curve.moves_out & curve.first_pass[0]))
+    neighbours = _neighbours(residuals[inside], least)
+    if sums and sums.exceeds(max(neighbours, far)):
+        flaws.add(Flaw.PATTERN)
+        noise = max(noise, Noise(sums.deviation, sums.freedom))
+    elif sums and Flaw.SLOW in flaws:
+        noise = max(noise, usual, sums)
+    return Judged(noise, frozenset(flaws))
+
+
+def _before_contact(force: Array, base: Array, least: float) -> tuple[set[Flaw], Noise, Noise]:
+    """Return flaws before contact, the noise there, and that of sums over bins if it is slow.
+
+    An explanation describes the rows before contact too: what is left is to have no mean, no slope
+    and no dip.
+    """
+    line = np.column_stack([np.ones(force.size), (base - base.mean()) / np.ptp(base)])
+    rest = force - line @ np.linalg.lstsq(line, force, rcond=None)[0]
+    freedom = force.size - 2
+    noise = Noise(max(float(np.sqrt(rest @ rest / freedom)), least), freedom)
+    independent, flaws, slow = _neighbours(force, least), set(), noise
+    sums = binned(rest, line, _equal(force.size))
+    if sums and sums.exceeds(independent):
+        flaws.add(Flaw.SLOW)
+        slow = max(noise, sums)
+        noise = slow
+    unit = line / np.linalg.norm(line, axis=0)
+    limit = -float(ndtri(CHANCE / 2)) * slow.deviation
+    if dips(force, unit[:, :1], slow.deviation) and dips(force, unit, slow.deviation):
+        flaws.add(Flaw.DIP)
+    elif abs(unit[:, 1] @ force) > limit:
+        flaws.add(Flaw.DRIFT)
+    elif abs(unit[:, 0] @ force) > limit:
+        flaws.add(Flaw.OFFSET)
+    return flaws, noise, slow if Flaw.SLOW in flaws else independent
+
+
+def dips(force: Array, trend: Array, deviation: float) -> bool:
+    """Return whether the force falls next to contact by more than noise does, about a trend."""
+    limit = float(ndtri(CHANCE / len(_WINDOWS))) * deviation
+    for share in _WINDOWS:
+        window = np.where(np.arange(force.size) >= force.size * (1 - share), 1.0, 0.0)
+        window -= trend @ (trend.T @ window)
+        if window @ force < limit * np.linalg.norm(window):
+            return True
+    return False
+
+
+def binned(residuals: Array, jacobian: Array, bins: Array) -> Noise | None:
+    """Return the noise from sums over bins; None if no bin is left.
+
+    A fit has made residuals orthogonal to the columns of its Jacobian, so these are projected out
+    of the bins, a column each with 1 in its rows; the sums are then orthogonalised.
+    """
+    norms = np.linalg.norm(jacobian, axis=0)
+    span, _ = np.linalg.qr(jacobian[:, norms > 0] / norms[norms > 0])
+    basis, sizes, _ = np.linalg.svd(bins - span @ (span.T @ bins), full_matrices=False)
+    sums = basis[:, sizes > 1e-6 * np.sqrt(residuals.size)].T @ residuals
+    return Noise(float(np.sqrt(np.mean(sums**2))), sums.size) if sums.size else None
+
+
+def neighbour_noise(force: Array) -> float:
+    """Return the standard deviation of the force [N] from differences of neighbours."""
+    return float(np.sqrt(np.mean(np.diff(force) ** 2) / 2))
+
+
+def _neighbours(force: Array, least: float) -> Noise:
+    """Return that noise, of two thirds as many degrees of freedom (von Neumann et al. 1941)."""
+    return Noise(max(neighbour_noise(force), least), 2 * force.size / 3)
+
+
+def _equal(size: int) -> Array:
+    """Return a column for each of bins of about the same size."""
+    return _columns(np.arange(size) * _BINS // size, _BINS)
+
+
+def _bins(depth: Array, before: Mask, second: Mask) -> Array:
+    """Return a column for each bin in contact; a second pass has bins of its own."""
+    index = np.digitize(depth / depth.max(), _DEPTHS)
+    index = np.where(second, index + len(_DEPTHS) + 1, index)
+    return _columns(np.where(before, -1, index), 2 * (len(_DEPTHS) + 1))
+
+
+def _columns(index: NDArray[np.intp], count: int) -> Array:
+    return np.where(index[:, None] == np.arange(count), 1.0, 0.0)
+
+
+def _step(force: Array) -> float:
+    """Return the step of the detector [N] if all forces are whole numbers of it, else 0."""
+    steps = np.diff(np.unique(force))
+    steps = steps[steps > 1e-9 * np.ptp(force)]
+    if not 0 < steps.size < 0.9 * force.size:
+        return 0.0
+    counts = steps / steps.min()
+    return float(steps.min()) if np.all(np.abs(counts - np.round(counts)) < 0.05) else 0.0

@@ -1,0 +1,232 @@
+"""χ² of one or more curves under an explanation, as a function of its open quantities."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from pellicle.arrays import Array
+
+from .curve import Curve
+from .effect import Fitted, Sizes, Weighed
+from .explanation import Explanation
+
+_STEP = 1e-6
+"""Step of derivatives by differences, in coordinates of the order of 1."""
+_SEARCHES = (("dogbox", 60), ("trf", 400))
+"""Optimisers in the order in which they are tried, and their largest numbers of steps."""
+_TOLERANCE, _ROUGHLY = 1e-9, 1e-5
+_BEFORE = 1.0
+"""How far before the first row a contact may lie, over the range of positions."""
+_DECADES = 6.0
+"""How far a logarithm may go from the size of its quantity."""
+MODULUS, CONTACT_POINT = "reduced_modulus", "contact_point"
+
+
+class Slot(NamedTuple):
+    """A coordinate of a search: an open quantity, of one curve unless it is shared."""
+
+    name: str
+    part: int
+    """Which part of the explanation has it: 0 the solid, then the effects."""
+    curve: int | None
+    quantity: Fitted
+    scale: float
+    """What a coordinate of 1 stands for, or a logarithm of 0, in SI."""
+
+    def value(self, coordinate: float) -> float:
+        """Return the value in SI."""
+        if self.quantity.log:
+            return float(np.exp(coordinate)) * self.scale
+        return float(coordinate) * self.scale
+
+    def coordinate(self, value: float) -> float:
+        """Return the coordinate of a value in SI."""
+        if self.quantity.log:
+            return float(np.log(max(value, 1e-300) / self.scale))
+        return value / self.scale
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Least and greatest value in SI."""
+        q = self.quantity
+        low = q.at_least if q.at_least is not None else q.above
+        high = q.at_most if q.at_most is not None else q.below
+        return -np.inf if low is None else low, np.inf if high is None else high
+
+
+class Minimum(NamedTuple):
+    """A minimum of χ²."""
+
+    at: Array
+    """Coordinates."""
+    chi_squared: float
+    converged: bool = True
+    """Whether the search ended; if not, χ² is an upper bound, in a valley without end."""
+
+
+@dataclass(frozen=True, eq=False)
+class Objective:
+    """χ² = Σ (recorded − measured)²/noise², and a term for each quantity that is weighed.
+
+    The modulus that it varies is the one at the end of the loading, which explanations with and
+    without relaxation share, and not E* of the law of relaxation.
+    """
+
+    explanation: Explanation
+    curves: tuple[Curve, ...]
+    noise: tuple[float, ...]
+    """Standard deviation of the force of each curve [N]."""
+    sizes: Sizes
+    """Orders of magnitude, in which coordinates are counted."""
+    instant: bool = True
+    """Whether the modulus is that at the end of the loading, and not E*."""
+
+    @cached_property
+    def loading_time(self) -> float:
+        """Time of loading [s], the geometric mean over the curves."""
+        return float(np.exp(np.mean([np.log(curve.loading_time) for curve in self.curves])))
+
+    @cached_property
+    def slots(self) -> tuple[Slot, ...]:
+        """The coordinates, in order."""
+        return tuple(
+            Slot(name, part, curve, quantity, self.sizes.of(quantity.unit))
+            for part, component in enumerate(self.explanation.parts)
+            for name, quantity in component.open.items()
+            for curve in ([None] if quantity.shared else range(len(self.curves)))
+        )
+
+    def index(self, name: str) -> int | None:
+        """Return the number of the first coordinate of a quantity; None if it is not open."""
+        return next((k for k, slot in enumerate(self.slots) if slot.name == name), None)
+
+    @cached_property
+    def limits(self) -> tuple[Array, Array]:
+        """Least and greatest coordinates."""
+        known: dict[str, tuple[float, float]] = {}
+        for effect in self.explanation.effects:
+            known |= effect.limits(self.sizes)
+        ends = []
+        for slot in self.slots:
+            reach = 10**_DECADES
+            low, high = slot.bounds
+            if slot.name == CONTACT_POINT and slot.curve is not None:
+                z = self.curves[slot.curve].position
+                low, high = float(z.min() - _BEFORE * np.ptp(z)), float(z.max())
+            elif slot.quantity.log:
+                low, high = slot.scale / reach, slot.scale * reach
+            low, high = known.get(slot.name, (low, high))
+            ends.append((slot.coordinate(low), slot.coordinate(high)))
+        low_ends, high_ends = np.array(ends).reshape(-1, 2).T
+        return low_ends, high_ends
+
+    def known(self, at: Array, curve: int) -> Explanation:
+        """Return the explanation of a curve with values of its open quantities."""
+        values: list[dict[str, float]] = [{} for _ in self.explanation.parts]
+        for slot, coordinate in zip(self.slots, at, strict=True):
+            if slot.curve in (None, curve):
+                values[slot.part][slot.name] = slot.value(coordinate)
+        pairs = zip(self.explanation.effects, values[1:], strict=True)
+        effects = tuple(effect.at(known) for effect, known in pairs)
+        solid = self.explanation.solid.at(values[0])
+        found = Explanation(solid, effects)
+        if self.instant and MODULUS in values[0]:
+            modulus = solid.reduced_modulus / found.relaxed(self.loading_time)
+            found = replace(found, solid=solid.at(values[0] | {MODULUS: modulus}))
+        return found
+
+    def forces(self, at: Array) -> list[Array]:
+        """Return the force [N] of each curve that the explanation records."""
+        return [self.known(at, i).force(curve) for i, curve in enumerate(self.curves)]
+
+    def residuals(self, at: Array) -> Array:
+        """Return (recorded − measured)/noise of all rows, then the terms of what is weighed."""
+        rows = zip(self.forces(at), self.curves, self.noise, strict=True)
+        terms = [curve.weights * (force - curve.force) / noise for force, curve, noise in rows]
+        for slot, coordinate in zip(self.slots, at, strict=True):
+            given = getattr(self.explanation.parts[slot.part], slot.name)
+            if isinstance(given, Weighed):
+                terms.append(np.array([(slot.value(coordinate) - given) / given.deviation]))
+        return np.concatenate(terms)
+
+    def chi_squared(self, at: Array) -> float:
+        """Return χ²."""
+        return float(np.sum(self.residuals(at) ** 2))
+
+    def jacobian(self, at: Array, free: Sequence[int]) -> Array:
+        """Return the derivatives of the residuals by some coordinates, from differences."""
+        here, columns = self.residuals(at), []
+        for k in free:
+            step = _STEP if at[k] + _STEP <= self.limits[1][k] else -_STEP
+            moved = at.copy()
+            moved[k] += step
+            columns.append((self.residuals(moved) - here) / step)
+        return np.column_stack(columns)
+
+    def deviations(self, at: Array) -> Array:
+        """Return the Cramér–Rao bound of each coordinate; infinite if it is not determined."""
+        jacobian = self.jacobian(at, range(at.size))
+        variances = np.diag(np.linalg.pinv(jacobian.T @ jacobian, rcond=1e-14))
+        return np.where(variances > 0, np.sqrt(np.abs(variances)), np.inf)
+
+    def minimise(self, start: Array, held: Sequence[int] = (), *, rough: bool = False) -> Minimum:
+        """Return the minimum of χ² near a start, where the coordinates ``held`` stay."""
+        free = [k for k in range(len(self.slots)) if k not in held]
+        low, high = (ends[free] for ends in self.limits)
+
+        def full(some: Array) -> Array:
+            at = np.array(start, dtype=float)
+            at[free] = some
+            return at
+
+        at = np.clip(np.asarray(start, dtype=float)[free], low, high)
+        if not free:
+            return Minimum(full(at), self.chi_squared(full(at)))
+        tolerance = _ROUGHLY if rough else _TOLERANCE
+        for method, most in _SEARCHES:
+            found = least_squares(
+                lambda some: self.residuals(full(some)),
+                at,
+                lambda some: self.jacobian(full(some), free),
+                (low, high),
+                method=method,
+                max_nfev=20 if rough else most,
+                xtol=tolerance,
+                ftol=tolerance,
+                gtol=tolerance,
+            )
+            at = found.x
+            if found.success or rough:
+                break
+        return Minimum(full(at), 2 * float(found.cost), bool(found.success))
+
+    def best(self, starts: Iterable[Array]) -> Minimum:
+        """Return the least minimum from several starts: all roughly, the best of them in full."""
+        rough = (self.minimise(start, rough=True) for start in starts)
+        return self.minimise(min(rough, key=lambda minimum: minimum.chi_squared).at)
+
+    def with_noise(self, noise: Sequence[float]) -> Objective:
+        """Return χ² of another noise [N] of each curve."""
+        return replace(self, noise=tuple(noise))
+
+    def values(self, at: Array) -> dict[tuple[str, int | None], float]:
+        """Return values in SI by name, and curve of what is not shared."""
+        pairs = zip(self.slots, at, strict=True)
+        return {(slot.name, slot.curve): slot.value(c) for slot, c in pairs}
+
+    def at_values(self, known: dict[tuple[str, int | None], float]) -> Array:
+        """Return coordinates of values, such as those of another explanation; NaN where unknown."""
+        return np.array(
+            [
+                slot.coordinate(known[slot.name, slot.curve])
+                if (slot.name, slot.curve) in known
+                else np.nan
+                for slot in self.slots
+            ]
+        )

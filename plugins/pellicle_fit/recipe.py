@@ -1,0 +1,195 @@
+"""Modulus, tension and contact point of curves, with intervals and a verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .curve import Curve
+from .effect import Effect, Records, quantities
+from .explanation import Solid
+from .intervals import Estimate, estimates, threshold_of
+from .noise import Judged
+from .objective import MODULUS
+from .rivals import (
+    MARGIN,
+    Decision,
+    Explained,
+    Question,
+    Types,
+    Verdict,
+    chosen_of,
+    decided,
+    doubtful,
+    fitted_all,
+    lenders,
+)
+
+TENSION = "tension"
+_SMALL = 0.2
+"""Share of the moduli of all others below which an explanation says that E* is not held."""
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What curves say about a solid, and about rivals of the model."""
+
+    explanations: tuple[Explained, ...]
+    """Best first; estimates of those in `tied`."""
+    question: Question
+    decision: Decision
+    chosen: Explained
+    """The explanation whose estimates count."""
+    tied: tuple[Explained, ...]
+    """What the curves cannot tell from it, itself included."""
+    excused: Mapping[Types, str]
+    """Why explanations could not be compared."""
+    judgements: tuple[Judged, ...]
+    """Noise and flaws of each curve under the best explanation."""
+    threshold: float
+    """Δχ² at the ends of intervals."""
+
+    @property
+    def verdict(self) -> Verdict:
+        """Whether what is asked for is needed."""
+        return self.decision.verdict
+
+    @property
+    def reduced_modulus(self) -> Estimate:
+        """E* at the end of the loading [Pa], over all that is tied."""
+        return self._over_tied(MODULUS)
+
+    @property
+    def tension(self) -> Estimate:
+        """τ₀ [N/m], over all that is tied; without a lower end if one of that has none."""
+        return self._over_tied(TENSION)
+
+    @property
+    def tension_needed(self) -> bool:
+        """Whether the curves need a tension."""
+        return self.question.word == {TENSION} and self.verdict is Verdict.NEEDED
+
+    @property
+    def estimates(self) -> Mapping[str, Estimate]:
+        """All quantities of the chosen explanation."""
+        return self.chosen.estimates
+
+    @property
+    def not_held(self) -> tuple[Explained, ...]:
+        """Tied explanations of so small a modulus that the curves do not hold it."""
+        moduli = {
+            fit: fit.estimates[MODULUS].value for fit in self.tied if MODULUS in fit.estimates
+        }
+        return tuple(
+            fit
+            for fit, modulus in moduli.items()
+            if fit is not self.chosen
+            and modulus < _SMALL * min((m for f, m in moduli.items() if f is not fit), default=0.0)
+        )
+
+    def _over_tied(self, name: str) -> Estimate:
+        """Return the least interval that contains those of all that is tied."""
+        tied = [fit for fit in self.tied if fit not in self.not_held]
+        found = [fit.estimates[name] for fit in tied if name in fit.estimates]
+        if not found:
+            return _held(self.chosen, name)
+        lows = [e.low for e in found if e.low is not None]
+        highs = [e.high for e in found if e.high is not None]
+        own = self.chosen.estimates.get(name)
+        value = own.value if own else _held(self.chosen, name).value
+        low = min(lows) if len(lows) == len(tied) else None
+        return Estimate(value, low, max(highs) if len(highs) == len(found) else None, found[0].unit)
+
+
+def _held(fit: Explained, name: str) -> Estimate:
+    """Return a quantity that an explanation does not fit: as given, or 0 where it has none."""
+    for part in fit.objective.explanation.parts:
+        if (quantity := quantities(type(part)).get(name)) is not None:
+            value = float(getattr(part, name))
+            return Estimate(value, value, value, quantity.unit, held=True)
+    return Estimate(0.0, 0.0, 0.0, "N/m" if name == TENSION else "1", held=True)
+
+
+def answer(
+    curves: Sequence[Curve],
+    model: Sequence[Effect],
+    rivals: Iterable[Sequence[Effect]],
+    *,
+    fix: Mapping[str, float | str] | None = None,
+    uncertainty: Sequence[Effect] = (),
+) -> Answer:
+    """Fit modulus, contact point and a model to curves of one solid, and weigh its rivals.
+
+    Parameters
+    ----------
+    curves
+        One curve, or several whose shared quantities are the same.
+    model
+        The question is whether the first effect that is none of the instrument is needed; the
+        others are kept in all explanations.
+    rivals
+        Sets of effects, each compared alone and beside what is asked for.
+    fix
+        Values of quantities of the solid, in SI or with units.
+    uncertainty
+        Effects whose quantities are weighed; they widen intervals and are in no comparison.
+
+    Raises
+    ------
+    ConfigError
+        A value is not allowed.
+    ConvergenceError
+        The force of a cantilever does not balance that of the solid.
+    """
+    curves = tuple(curves)
+    asked = next((effect for effect in model if not isinstance(effect, Records)), None)
+    kept = tuple(effect for effect in model if effect is not asked)
+    question = Question(
+        Solid.model_validate(dict(fix or {})), asked, kept, tuple(map(tuple, rivals))
+    )
+    fits, excused = fitted_all(question, curves)
+    judgements = min(fits, key=lambda fit: fit.aic).judged()
+    threshold = threshold_of(min(judged.noise.freedom for judged in judgements))
+    margin, word = max(MARGIN, threshold), question.word
+    decision = decided(word, fits, doubted=doubtful(judgements), margin=margin)
+    chosen = chosen_of(word, decision, fits, margin)
+    tied = {
+        fit.types: with_estimates(fit, threshold, uncertainty, everything=fit.types == chosen)
+        for fit in lenders(word, decision, chosen, fits, margin)
+    }
+    ranked = sorted((tied.get(fit.types, fit) for fit in fits), key=lambda fit: fit.aic)
+    return Answer(
+        tuple(ranked),
+        question,
+        decision,
+        tied[chosen],
+        tuple(tied.values()),
+        excused,
+        tuple(judgements),
+        threshold,
+    )
+
+
+def with_estimates(
+    fit: Explained, threshold: float, extra: Sequence[Effect], *, everything: bool
+) -> Explained:
+    """Return an explanation with its estimates: all, or modulus and tension."""
+    objective, minimum = fit.objective, fit.minimum
+    accuracy = max(
+        objective.known(minimum.at, i).accuracy(curve) * curve.largest / noise
+        for i, (curve, noise) in enumerate(zip(objective.curves, objective.noise, strict=True))
+    )
+    if extra:
+        known = objective.explanation
+        objective = replace(objective, explanation=replace(known, effects=(*known.effects, *extra)))
+        at = objective.at_values(fit.objective.values(minimum.at))
+        minimum = objective.minimise(np.where(np.isnan(at), 0.0, at))
+    widened = threshold * max(1.0, accuracy) ** 2
+    minimum, found = estimates(
+        objective, minimum, widened, () if everything else (MODULUS, TENSION)
+    )
+    return (
+        replace(fit, estimates=found) if extra else replace(fit, minimum=minimum, estimates=found)
+    )

@@ -1,0 +1,115 @@
+"""Where searches for the least χ² start."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+
+from pellicle.arrays import Array
+
+from .effect import powers
+from .objective import CONTACT_POINT, MODULUS, Minimum, Objective
+
+_POINTS, _ROWS = 25, 120
+"""Contact points that are scanned, and rows of each pass that a scan sees."""
+_LAST = 0.05
+"""Share of the range at whose end no contact begins."""
+_KEPT = 4
+"""Scans from which searches go on."""
+_GUESS = 0.03
+"""Coordinate of what neither a scan nor an effect says."""
+
+
+def starts(
+    objective: Objective, known: Sequence[tuple[Objective, Minimum]], *, scan: bool
+) -> list[Array]:
+    """Return coordinates to start from: of minima of other explanations, and of a scan."""
+    found = pooled(objective) if scan else []
+    own = list(_own(objective))
+    for other, minimum in _largest(known):
+        at = objective.at_values(other.values(minimum.at))
+        # Starts that differ in what is known already are one.
+        found += [*np.unique([np.where(np.isnan(at), guess, at) for guess in own], axis=0)]
+    return found
+
+
+def _largest(known: Sequence[tuple[Objective, Minimum]]) -> list[tuple[Objective, Minimum]]:
+    """Return the minima of the largest parts: a search from a part of a part starts further off."""
+    types = [other.explanation.types for other, _ in known]
+    return [part for part, own in zip(known, types, strict=True) if not any(own < o for o in types)]
+
+
+def _own(objective: Objective) -> Iterator[Array]:
+    """Yield coordinates of the starts of effects; those of the solid are sizes of the curve."""
+    effects = objective.explanation.effects
+    for choice in product(*(list(effect.starts(objective.sizes)) for effect in effects)):
+        values = {name: value for start in choice for name, value in start.items()}
+        yield np.array(
+            [
+                slot.coordinate(values.get(slot.name, _GUESS * slot.scale))
+                for slot in objective.slots
+            ]
+        )
+
+
+def pooled(objective: Objective) -> list[Array]:
+    """Return the best of scans of each curve: medians of what the curves share."""
+    if len(objective.curves) == 1:
+        return scanned(objective)
+    each = []
+    for curve, noise in zip(objective.curves, objective.noise, strict=True):
+        alone = replace(objective, curves=(curve,), noise=(noise,))
+        minima = [alone.minimise(at, rough=True).at for at in scanned(alone)]
+        each.append(
+            [{name: value for (name, _), value in alone.values(at).items()} for at in minima]
+        )
+
+    def value(name: str, curve: int | None, known: Sequence[dict[str, float]]) -> float:
+        shared = float(np.median([values[name] for values in known]))
+        return shared if curve is None else known[curve][name]
+
+    return [
+        np.array([s.coordinate(value(s.name, s.curve, known)) for s in objective.slots])
+        for known in zip(*each, strict=False)
+    ]
+
+
+def scanned(objective: Objective) -> list[Array]:
+    """Return the best few of a scan of contact points for each start of the effects.
+
+    With all forces of an explanation its recorded force grows: at each point one factor is linear.
+    """
+    (curve,) = objective.curves
+    tips = replace(objective, curves=(curve.at_the_tip().binned(_ROWS),))
+    point, modulus = objective.index(CONTACT_POINT), objective.index(MODULUS)
+    last = curve.position.max() - _LAST * curve.span
+    points = np.linspace(curve.position.min(), last, _POINTS if point is not None else 1)
+    found = []
+    for own in _own(tips):
+        trials = []
+        for z in points:
+            at = own.copy()
+            if modulus is not None:
+                at[modulus] = 0.0
+            if point is not None:
+                at[point] = objective.slots[point].coordinate(z)
+            trials += [trial] if (trial := _scaled(tips, at)) else []
+        found += sorted(trials, key=lambda trial: trial[0])[:1]
+    return [at for _, at in sorted(found, key=lambda trial: trial[0])[:_KEPT]]
+
+
+def _scaled(objective: Objective, at: Array) -> tuple[float, Array] | None:
+    """Return the misfit [N²] of the best multiple of all forces, and its coordinates."""
+    (curve,), (force,) = objective.curves, objective.forces(at)
+    measured, force = curve.weights * curve.force, curve.weights * force
+    norm = float(force @ force)
+    factor = float(force @ measured) / norm if norm else 0.0
+    if factor <= 0:
+        return None
+    for k, slot in enumerate(objective.slots):
+        if powers(slot.quantity.unit)[0] == 1:
+            at[k] = at[k] + np.log(factor) if slot.quantity.log else at[k] * factor
+    return float(np.sum((factor * force - measured) ** 2)), at
