@@ -205,11 +205,11 @@ def _fit(
 
     progress, curves = not quiet and sys.stderr.isatty(), config.files()
     if config.pool:
-        sources = [source for file in curves for source in file.open()]
+        sources = [*SourceStream(curves)]
         return pool_sources(config, sources, progress=progress), "pool", "Pooled fit"
     if [file.path for file in curves] == [config.curves[0]]:
-        opened = curves[0].open()
-        if opened.is_single:
+        labels, opened = curves[0].open()
+        if labels == [""]:
             (source,) = opened
             stem = config.curves[0].stem
             return fit_source(config, source, progress=progress), f"{stem}-fit", stem

@@ -41,7 +41,7 @@ from pellicle.units import PoissonsRatio, Quantity
 from .files.cleaning import LARGEST
 from .files.columns import Calibration
 from .files.measurement import Segment
-from .files.sources import CurveFile, Curves, Source, expanded, gather
+from .files.sources import CurveFile, Curves, Source, SourceStream, expanded, gather
 from .models.force_model import ForceModel, described, tension_model
 from .models.layer import FreeLayerModel, known_layer
 from .models.simulation import GRID_POINTS, Simulation
@@ -348,7 +348,7 @@ class FitConfig(FromFile, Calibration):
 
     def sources(self, curves: Curves | None = None) -> list[Source]:
         """Return ``curves``, or those of the configuration if None, as read from their files."""
-        return [source for file in self.files(curves) for source in file.open()]
+        return [*SourceStream(self.files(curves))]
 
     def force_model(self, fields: Mapping[str, Any]) -> ForceModel | Simulation:
         """Return the model of the force on the indenter, or the simulation that gives one.
