@@ -19,14 +19,10 @@ from .tree import read_hdf5, read_matlab
 TEXT = (".csv", ".tsv", ".txt")
 """Suffixes of tables."""
 _HDF5 = (".h5", ".hdf5", ".nc")
-_MATLAB = (".mat",)
-SUFFIXES = (*TEXT, *_HDF5, *_MATLAB, *afm.SUFFIXES)
+SUFFIXES = (*TEXT, *_HDF5, ".mat", *afm.SUFFIXES)
 """Suffixes of the files of a folder that are read."""
 _MANY = 8
 """Largest number of texts of a line that a message quotes."""
-_TABLES_TOO = (".tab",)
-"""Suffixes of instrument files that are tables."""
-_SPREADSHEETS = (".xlsx", ".xlsm", ".xls", ".ods", ".numbers")
 
 
 class Contents(Mapping[str, Measurement | PellicleError]):
@@ -90,12 +86,13 @@ def _curves(
     """Return what reads each curve of a file, by their labels."""
     suffix = path.suffix.lower()
     mapped = calibration.columns or {}
-    if suffix in _SPREADSHEETS:
+    if suffix in (".xlsx", ".xlsm", ".xls", ".ods", ".numbers"):
         raise StorageError(
             f"{path}: is a spreadsheet; save the sheet of each curve as CSV (in Excel and "
             f"LibreOffice: Save as), with a header such as {EXAMPLE!r}"
         )
-    if suffix in afm.SUFFIXES and not (mapped and suffix in _TABLES_TOO):
+    # The columns of a table can be named though it is an instrument's.
+    if suffix in afm.SUFFIXES and not (mapped and suffix == ".tab"):
         if mapped:
             raise ConfigError(
                 f"{path} is the file of an instrument, which states what its columns are; leave "
@@ -106,7 +103,7 @@ def _curves(
     cells, hint = None, ""
     if suffix in _HDF5:
         tables = read_hdf5(path, mapped)
-    elif suffix in _MATLAB:
+    elif suffix == ".mat":
         tables = read_matlab(path, mapped)
     else:
         cells = read_cells(path, mapped)
@@ -118,7 +115,7 @@ def _curves(
             # Only afmformats can recognise the file of an instrument.
             hint = "" if afm.installed() else f"; if it is an instrument's: {afm.INSTALL}"
             if cells is not None:
-                first = ", ".join(map(shown, cells.first[:_MANY]))
+                first = ", ".join(map(shown, (cells.names or cells.rows[0])[:_MANY]))
                 hint = f"; its first line is {first}, and --columns says what such names are{hint}"
     if not tables:
         raise StorageError(
