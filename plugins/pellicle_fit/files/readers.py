@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from pellicle.errors import ConfigError, PellicleError, StorageError, shown
+from pellicle.errors import ConfigError, StorageError, shown
 
 from . import afm
 from .columns import EXAMPLE, Calibration, Columns, from_columns, is_curve
@@ -25,43 +25,12 @@ _MANY = 8
 """Largest number of texts of a line that a message quotes."""
 
 
-class Contents(Mapping[str, Measurement | PellicleError]):
-    """The curves of a file, or the errors of reading them, by their labels.
+def read(
+    path: Path, calibration: Calibration | None = None, segment: str = "approach"
+) -> dict[str, Callable[[], Measurement]]:
+    """Return functions that read the curves of a file, by their labels.
 
-    The label of a single curve is empty.  A curve is read when its value is taken; file and hash
-    are its origin.
-    """
-
-    def __init__(self, path: Path, calibration: Calibration, segment: str) -> None:
-        self._path, self._state = path, _state(path)
-        self._curves = _curves(path, calibration, segment)
-        self._sha256 = sha256(path)
-        self._check_state()
-
-    def _check_state(self) -> None:
-        if _state(self._path) != self._state:
-            raise StorageError(f"{self._path}: was changed while it was read; read it again")
-
-    def __len__(self) -> int:
-        return len(self._curves)
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._curves)
-
-    def __getitem__(self, label: str) -> Measurement | PellicleError:
-        try:
-            curve = self._curves[label]()
-            self._check_state()
-        except PellicleError as error:
-            return error
-        origin = replace(
-            curve.origin, file=str(self._path), curve=label or None, sha256=self._sha256
-        )
-        return replace(curve, origin=origin)
-
-
-def read(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Contents:
-    """Return the curves of a file, or the errors of reading them, by their labels.
+    The label of a single curve is empty.  The functions raise what this one does.
 
     A table (CSV, TSV, semicolons, spaces) has a header such as ``position [um],force [nN]``; cells
     that hold no number are NaN, columns of other names are ignored, and rows that differ in a
@@ -77,13 +46,27 @@ def read(path: Path, calibration: Calibration | None = None, segment: str = "app
     StorageError
         The file cannot be read, or was replaced while it was read.
     """
-    return Contents(path, calibration or Calibration(), segment)
+
+    def check() -> None:
+        if _state(path) != state:
+            raise StorageError(f"{path}: was changed while it was read; read it again")
+
+    def curve(label: str) -> Measurement:
+        measured = readers[label]()
+        check()
+        origin = replace(measured.origin, file=str(path), curve=label or None, sha256=digest)
+        return replace(measured, origin=origin)
+
+    state = _state(path)
+    readers = _readers(path, calibration or Calibration(), segment)
+    digest = sha256(path)
+    check()
+    return {label: partial(curve, label) for label in readers}
 
 
-def _curves(
+def _readers(
     path: Path, calibration: Calibration, segment: str
 ) -> dict[str, Callable[[], Measurement]]:
-    """Return what reads each curve of a file, by their labels."""
     suffix = path.suffix.lower()
     mapped = calibration.columns or {}
     if suffix in (".xlsx", ".xlsm", ".xls", ".ods", ".numbers"):

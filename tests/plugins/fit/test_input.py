@@ -157,8 +157,7 @@ def test_tables(cli: Cli, header: str, separator: str) -> None:
     """Separators, comments, round brackets and capitals are understood."""
     position, force = _curve()
     _write(position, force, header, separator)
-    measured = read(Path("curve.csv"))[""]
-    assert isinstance(measured, Measurement)
+    measured = read(Path("curve.csv"))[""]()
     assert measured.position == pytest.approx(position)
     assert measured.force == pytest.approx(force, abs=1e-18)
 
@@ -167,8 +166,7 @@ def test_tables(cli: Cli, header: str, separator: str) -> None:
 def test_decimal_commas(cli: Cli) -> None:
     """Between semicolons a comma is decimal."""
     Path("curve.csv").write_text("depth [nm];force [nN]\n1,5;2,25\n2,5;\n", encoding="utf-8")
-    measured = read(Path("curve.csv"))[""]
-    assert isinstance(measured, Measurement)
+    measured = read(Path("curve.csv"))[""]()
     assert measured.is_depth
     assert measured.position == pytest.approx([1.5e-9, 2.5e-9])
     assert measured.force == pytest.approx([2.25e-9, np.nan], nan_ok=True)
