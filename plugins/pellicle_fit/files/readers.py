@@ -69,6 +69,11 @@ def _readers(
 ) -> dict[str, Callable[[], Measurement]]:
     suffix = path.suffix.lower()
     mapped = calibration.columns or {}
+    if suffix in (".xlsx", ".xlsm", ".xls", ".ods", ".numbers"):
+        raise StorageError(
+            f"{path}: is a spreadsheet; save the sheet of each curve as CSV (in Excel and "
+            f"LibreOffice: Save as), with a header such as {EXAMPLE!r}"
+        )
     # The columns of a table can be named though it is an instrument's.
     if suffix in afm.SUFFIXES and not (mapped and suffix == ".tab"):
         if mapped:
@@ -98,7 +103,7 @@ def _readers(
     if not tables:
         raise StorageError(
             f"{path}: is neither text, nor HDF5, nor a readable file of an instrument{hint}; "
-            f"export it as a table, each sheet as CSV, with a header such as {EXAMPLE!r}"
+            f"export it as a table with a header such as {EXAMPLE!r}"
         )
 
     def curve(label: str, columns: Columns) -> Measurement:
