@@ -170,20 +170,6 @@ def test_wild_rows_are_left_out(cli: Cli) -> None:
 
 
 @pytest.mark.usefixtures("no_rivals")
-def test_repeated_positions(cli: Cli) -> None:
-    """Several forces at one position are several measurements."""
-    position, force = _curve(600)
-    paraboloid = Paraboloid(radius=RADIUS)
-    coarse = np.round(position, 7)
-    force = force + MODULUS * (
-        paraboloid.force_curve(coarse - POINT, 2 * TENSION / MODULUS).force
-        - paraboloid.force_curve(position - POINT, 2 * TENSION / MODULUS).force
-    )
-    fit = pl.fit(coarse, force, indenter=paraboloid)
-    assert _holds(fit.tension.to_dict(), TENSION)
-
-
-@pytest.mark.usefixtures("no_rivals")
 def test_ten_points() -> None:
     """Ten points are fitted, with intervals as wide as they must be."""
     position, force = _curve(10)

@@ -58,7 +58,7 @@ def test_formats(tmp_path: Path, recording: instruments.Recording, name: str) ->
     """Approach and retract are told apart, and the bending of the cantilever is subtracted."""
     path = tmp_path / name
     instruments.WRITERS[name](path, recording)
-    calibration = GIVEN if name in instruments.UNCALIBRATED else None
+    calibration = GIVEN if name == "workshop.csv" else None
     position, force = SEEN
     approach = only(path, calibration)
     if name == "curve.ibw":
@@ -96,14 +96,11 @@ def test_maps(tmp_path: Path, recording: instruments.Recording, name: str) -> No
     assert all(is_curve(reader(), *SEEN) for reader in curves.values())
 
 
-@pytest.mark.parametrize("name", instruments.UNCALIBRATED)
-def test_calibration_is_asked_for(
-    tmp_path: Path, recording: instruments.Recording, name: str
-) -> None:
+def test_calibration_is_asked_for(tmp_path: Path, recording: instruments.Recording) -> None:
     """A signal in volts needs spring constant and sensitivity, and the message says so."""
-    instruments.WRITERS[name](tmp_path / name, recording)
+    instruments.workshop(tmp_path / "workshop.csv", recording)
     with pytest.raises(pl.ConfigError, match="--spring-constant and --sensitivity"):
-        read(tmp_path / name)
+        read(tmp_path / "workshop.csv")
 
 
 def test_calibration_is_not_given_twice(tmp_path: Path, recording: instruments.Recording) -> None:
