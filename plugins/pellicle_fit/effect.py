@@ -16,7 +16,8 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any, ClassVar, NamedTuple, Self
 
-from pydantic import Field, GetCoreSchemaHandler
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import core_schema
 
 from pellicle.arrays import Array
@@ -60,9 +61,9 @@ class Fitted(Quantity):
     log: bool = False
     shared: bool = True
 
-    def given(self, value: object) -> float:
-        """Return a value in SI, `Weighed` if it comes with a deviation."""
-        if isinstance(value, Weighed):
+    def given(self, value: object) -> float | None:
+        """Return a value in SI, `Weighed` if it comes with a deviation; None if it is left out."""
+        if value is None or isinstance(value, Weighed):
             return value
         if not isinstance(value, Mapping):
             return self(value)
@@ -83,6 +84,19 @@ class Fitted(Quantity):
                 )
             ),
         )
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        held = super().__get_pydantic_json_schema__(schema, handler)
+        deviation = Quantity(self.unit, above=0).__get_pydantic_json_schema__(schema, handler)
+        weighed = {
+            "type": "object",
+            "properties": {"value": held, "deviation": deviation},
+            "required": ["value", "deviation"],
+            "additionalProperties": False,
+        }
+        return {"anyOf": [held, weighed], "unit": self.unit}
 
 
 def fitted(description: str, examples: list[Any] | None = None) -> Any:
