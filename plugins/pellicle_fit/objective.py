@@ -21,6 +21,10 @@ _STEP = 1e-6
 _SEARCHES = (("dogbox", 60), ("trf", 400))
 """Optimisers in the order in which they are tried, and their largest numbers of steps."""
 _TOLERANCE, _ROUGHLY = 1e-9, 1e-5
+ROUGH = 20
+"""Steps of a search that tells whether a start is worth another."""
+_HALVING = ((4, 3), (12, 1))
+"""Steps from all starts that are left, and how many of the best are kept."""
 _BEFORE = 1.0
 """How far before the first row a contact may lie, over the range of positions."""
 _DECADES = 6.0
@@ -175,8 +179,11 @@ class Objective:
         variances = np.diag(np.linalg.pinv(jacobian.T @ jacobian, rcond=1e-14))
         return np.where(variances > 0, np.sqrt(np.abs(variances)), np.inf)
 
-    def minimise(self, start: Array, held: Sequence[int] = (), *, rough: bool = False) -> Minimum:
-        """Return the minimum of χ² near a start, where the coordinates ``held`` stay."""
+    def minimise(self, start: Array, held: Sequence[int] = (), *, steps: int = 0) -> Minimum:
+        """Return the minimum of χ² near a start, where the coordinates ``held`` stay.
+
+        With a number of ``steps``, roughly.
+        """
         free = [k for k in range(len(self.slots)) if k not in held]
         low, high = (ends[free] for ends in self.limits)
 
@@ -188,7 +195,7 @@ class Objective:
         at = np.clip(np.asarray(start, dtype=float)[free], low, high)
         if not free:
             return Minimum(full(at), self.chi_squared(full(at)))
-        tolerance = _ROUGHLY if rough else _TOLERANCE
+        tolerance = _ROUGHLY if steps else _TOLERANCE
         for method, most in _SEARCHES:
             found = least_squares(
                 lambda some: self.residuals(full(some)),
@@ -196,20 +203,24 @@ class Objective:
                 lambda some: self.jacobian(full(some), free),
                 (low, high),
                 method=method,
-                max_nfev=20 if rough else most,
+                max_nfev=steps or most,
                 xtol=tolerance,
                 ftol=tolerance,
                 gtol=tolerance,
             )
             at = found.x
-            if found.success or rough:
+            if found.success or steps:
                 break
         return Minimum(full(at), 2 * float(found.cost), bool(found.success))
 
     def best(self, starts: Iterable[Array]) -> Minimum:
-        """Return the least minimum from several starts: all roughly, the best of them in full."""
-        rough = (self.minimise(start, rough=True) for start in starts)
-        return self.minimise(min(rough, key=lambda minimum: minimum.chi_squared).at)
+        """Return the least minimum from several starts: few steps of all, more of the best."""
+        left = list(starts)
+        for steps, kept in _HALVING:
+            minima = [self.minimise(start, steps=steps) for start in left]
+            minima.sort(key=lambda minimum: minimum.chi_squared)
+            left = [minimum.at for minimum in minima[:kept]]
+        return self.minimise(left[0])
 
     def with_noise(self, noise: Sequence[float]) -> Objective:
         """Return χ² of another noise [N] of each curve."""
