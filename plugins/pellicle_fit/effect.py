@@ -14,7 +14,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, Literal, NamedTuple, Self
 
 from pydantic import Field, GetCoreSchemaHandler
 from pydantic_core import core_schema
@@ -53,12 +53,13 @@ class Fitted(Quantity):
     ----------
     log
         Whether a search varies its logarithm.
-    shared
-        Whether all curves of a pool have the same value.
+    scope
+        What has a value of its own in a pool: all curves share one, those of each indenter, or each
+        curve has one.
     """
 
     log: bool = False
-    shared: bool = True
+    scope: Literal["all", "indenter", "curve"] = "all"
 
     def given(self, value: object) -> float:
         """Return a value in SI, `Weighed` if it comes with a deviation."""

@@ -51,7 +51,7 @@ class Solid(Fittable):
     reduced_modulus: Annotated[float, Fitted("Pa", above=0, log=True)] = fitted(
         "reduced modulus E*"
     )
-    contact_point: Annotated[float, Fitted("m", shared=False)] = fitted("position of first touch")
+    contact_point: Annotated[float, Fitted("m", scope="curve")] = fitted("position of first touch")
 
 
 @dataclass(frozen=True)

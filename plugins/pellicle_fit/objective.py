@@ -15,6 +15,7 @@ from pellicle.arrays import Array
 from .curve import Curve
 from .effect import Fitted, Sizes, Weighed
 from .explanation import Explanation
+from .long_memory import differenced
 
 _STEP = 1e-6
 """Step of derivatives by differences, in coordinates of the order of 1."""
@@ -39,6 +40,7 @@ class Slot(NamedTuple):
     part: int
     """Which part of the explanation has it: 0 the solid, then the effects."""
     curve: int | None
+    """The first curve that it belongs to; None if all share it."""
     quantity: Fitted
     scale: float
     """What a coordinate of 1 stands for, or a logarithm of 0, in SI."""
@@ -88,6 +90,11 @@ class Objective:
     """Standard deviation of the force of each curve [N]."""
     sizes: Sizes
     """Orders of magnitude, in which coordinates are counted."""
+    memory: tuple[float, ...] = ()
+    """Exponent d of each curve whose noise has a power that falls as f^(−2d); 0 or none if white.
+
+    The noise is then that of fractional differences.
+    """
     instant: bool = True
     """Whether the modulus is that at the end of the loading, and not E*."""
 
@@ -99,12 +106,19 @@ class Objective:
     @cached_property
     def slots(self) -> tuple[Slot, ...]:
         """The coordinates, in order."""
+        owners = {"all": [None], "curve": range(len(self.curves)), "indenter": {*self.beads}}
         return tuple(
             Slot(name, part, curve, quantity, self.sizes.of(quantity.unit))
             for part, component in enumerate(self.explanation.parts)
             for name, quantity in component.open.items()
-            for curve in ([None] if quantity.shared else range(len(self.curves)))
+            for curve in owners[quantity.scope]
         )
+
+    @cached_property
+    def beads(self) -> list[int]:
+        """The first curve with the indenter of each curve."""
+        indenters = [curve.indenter for curve in self.curves]
+        return [indenters.index(indenter) for indenter in indenters]
 
     def index(self, name: str) -> int | None:
         """Return the number of the first coordinate of a quantity; None if it is not open."""
@@ -134,7 +148,8 @@ class Objective:
         """Return the explanation of a curve with values of its open quantities."""
         values: list[dict[str, float]] = [{} for _ in self.explanation.parts]
         for slot, coordinate in zip(self.slots, at, strict=True):
-            if slot.curve in (None, curve):
+            owner = self.beads[curve] if slot.quantity.scope == "indenter" else curve
+            if slot.curve in (None, owner):
                 values[slot.part][slot.name] = slot.value(coordinate)
         pairs = zip(self.explanation.effects, values[1:], strict=True)
         effects = tuple(effect.at(known) for effect, known in pairs)
@@ -153,6 +168,9 @@ class Objective:
         """Return (recorded − measured)/noise of all rows, then the terms of what is weighed."""
         rows = zip(self.forces(at), self.curves, self.noise, strict=True)
         terms = [curve.weights * (force - curve.force) / noise for force, curve, noise in rows]
+        if any(self.memory):
+            pairs = zip(terms, self.memory, strict=True)
+            terms = [differenced(term, d) if d else term for term, d in pairs]
         for slot, coordinate in zip(self.slots, at, strict=True):
             given = getattr(self.explanation.parts[slot.part], slot.name)
             if isinstance(given, Weighed):

@@ -19,7 +19,7 @@ class Drift(Records):
     model_config = ConfigDict(title="drift in time")
     type: Literal["drift"] = "drift"
     rank: ClassVar[int] = 1
-    drift: Annotated[float, Fitted("N/s", shared=False)] = fitted(
+    drift: Annotated[float, Fitted("N/s", scope="curve")] = fitted(
         "rate of the force without a load"
     )
 

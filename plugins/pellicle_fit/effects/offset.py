@@ -17,7 +17,7 @@ class Offset(Records):
     model_config = ConfigDict(title="an offset")
     type: Literal["offset"] = "offset"
     rank: ClassVar[int] = 1
-    offset: Annotated[float, Fitted("N", shared=False)] = fitted("force without a load")
+    offset: Annotated[float, Fitted("N", scope="curve")] = fitted("force without a load")
 
     def recorded(self, force: Array, curve: Curve) -> Array:
         """Return F + F₀ [N]."""

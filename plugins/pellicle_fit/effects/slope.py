@@ -18,7 +18,7 @@ class Slope(Records):
     model_config = ConfigDict(title="a sloping baseline")
     type: Literal["slope"] = "slope"
     rank: ClassVar[int] = 1
-    slope: Annotated[float, Fitted("N/m", shared=False)] = fitted("slope of the baseline")
+    slope: Annotated[float, Fitted("N/m", scope="curve")] = fitted("slope of the baseline")
 
     def recorded(self, force: Array, curve: Curve) -> Array:
         """Return F + slope × way from the first row [N]."""
