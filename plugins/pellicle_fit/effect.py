@@ -14,7 +14,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, Literal, NamedTuple, Self
 
 from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
@@ -54,12 +54,13 @@ class Fitted(Quantity):
     ----------
     log
         Whether a search varies its logarithm.
-    shared
-        Whether all curves of a pool have the same value.
+    scope
+        What has a value of its own in a pool: all curves share one, those of each indenter, or each
+        curve has one.
     """
 
     log: bool = False
-    shared: bool = True
+    scope: Literal["all", "indenter", "curve"] = "all"
 
     def given(self, value: object) -> float | None:
         """Return a value in SI, `Weighed` if it comes with a deviation; None if it is left out."""

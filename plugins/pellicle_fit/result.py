@@ -10,7 +10,7 @@ from pellicle.files import json_text, write_json
 from pellicle.units import decimal, readable
 
 from .config import FitConfig
-from .curves.curve import Note
+from .files.measurement import Note
 from .models.force_model import ForceModel
 from .models.layer import LayerModel
 from .parameters import THICKNESS, Coordinates

@@ -16,7 +16,7 @@ from .effect import Effect, Sizes
 from .explanation import Explanation, Solid
 from .intervals import Estimate
 from .noise import Flaw, Judged, judged, neighbour_noise
-from .objective import Minimum, Objective
+from .objective import ROUGH, Minimum, Objective
 from .starts import starts
 
 MARGIN = 4.0
@@ -253,7 +253,7 @@ def _restarted(fit: Explained, fits: Mapping[Types, Explained]) -> Explained:
     found = [fit.minimum]
     for whole in (other for types, other in fits.items() if fit.types and fit.types < types):
         start = fit.objective.at_values(whole.objective.values(whole.minimum.at))
-        rough = fit.objective.minimise(start, rough=True)
+        rough = fit.objective.minimise(start, steps=ROUGH)
         if rough.chi_squared < fit.minimum.chi_squared - 0.1:
             found.append(fit.objective.minimise(rough.at))
     return replace(fit, minimum=min(found, key=lambda minimum: minimum.chi_squared))

@@ -20,7 +20,7 @@ class Drift(Records):
     type: Literal["drift"] = "drift"
     examples = ({}, {"drift": "10 pN/s"})
     rank: ClassVar[int] = 1
-    drift: Annotated[float, Fitted("N/s", shared=False)] = fitted(
+    drift: Annotated[float, Fitted("N/s", scope="curve")] = fitted(
         "rate of the force without a load [N/s]"
     )
 

@@ -18,7 +18,7 @@ class Offset(Records):
     type: Literal["offset"] = "offset"
     examples = ({}, {"offset": "10 pN"})
     rank: ClassVar[int] = 1
-    offset: Annotated[float, Fitted("N", shared=False)] = fitted("force without a load [N]")
+    offset: Annotated[float, Fitted("N", scope="curve")] = fitted("force without a load [N]")
 
     def recorded(self, force: Array, curve: Curve) -> Array:
         """Return F + F₀ [N]."""
