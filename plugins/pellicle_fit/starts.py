@@ -61,7 +61,7 @@ def pooled(objective: Objective) -> list[Array]:
         return scanned(objective)
     each = []
     for curve, noise in zip(objective.curves, objective.noise, strict=True):
-        alone = replace(objective, curves=(curve,), noise=(noise,))
+        alone = replace(objective, curves=(curve,), noise=(noise,), memory=())
         minima = [alone.minimise(at, steps=ROUGH).at for at in scanned(alone)]
         each.append(
             [{name: value for (name, _), value in alone.values(at).items()} for at in minima]
