@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle_fit.curves.curve import Axis
+from pellicle_fit.files.measurement import Axis
 from pellicle_fit.parameters import CONTACT_POINT, OFFSET, SLOPE
 
 from .judgement import Row

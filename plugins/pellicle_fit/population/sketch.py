@@ -8,7 +8,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.errors import PellicleError
-from pellicle_fit.curves.curve import Curve
+from pellicle_fit.files.measurement import Measurement
 
 _POINTS = 80
 _DIGITS = 5
@@ -38,7 +38,7 @@ def from_json(data: dict[str, Any]) -> Sketch | None:
     return Sketch(position, force, fit)
 
 
-def of_curve(curve: Curve | PellicleError) -> Sketch | None:
+def of_curve(curve: Measurement | PellicleError) -> Sketch | None:
     """Return the sketch of a curve without a fit; None if it has no numbers."""
     if isinstance(curve, PellicleError):
         return None
