@@ -11,6 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import bdtrc
 
+from pellicle.errors import ConfigError
+
 from .curve import Curve
 from .effect import Effect, Sizes
 from .explanation import Explanation, Solid
@@ -231,6 +233,8 @@ def fitted_all(
     for types in simple + [types for types in candidates if types not in simple]:
         explanation = candidates[types]
         if excuse := explanation.excuse(curves):
+            if types in simple:
+                raise ConfigError(f"does not suit: {explanation.words} {excuse}", "model")
             excused[types] = excuse
             continue
         jumps = any(effect.searched(c) for effect in explanation.effects for c in curves)
