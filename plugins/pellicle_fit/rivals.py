@@ -12,6 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import bdtrc
 
+from pellicle.errors import ConfigError
+
 from .curve import Curve
 from .effect import Effect, Responds, Sizes
 from .explanation import Explanation, Solid
@@ -266,6 +268,8 @@ def compared(
         if types in fits:
             continue
         if excuse := explanation.excuse(curves):
+            if types in simple:
+                raise ConfigError(f"does not suit: {explanation.words} {excuse}", "model")
             excused[types] = excuse
             continue
         if types in others:
