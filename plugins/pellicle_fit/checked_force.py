@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.errors import PluginError, shown
 
+Method = Literal["force_curve", "layer_force_curve"]
 
-def checked_force(
-    indenter: object,
-    method: Literal["force_curve", "layer_force_curve"],
-    depth: Array,
-    *solid: float,
-) -> Array:
+
+def checked_force(indenter: object, method: Method, depth: Array, *solid: float) -> Array:
     """Return F/E* [m²] of an indenter at depths of shape (n,) [m], on a solid or on a layer.
 
     Raises
@@ -29,11 +26,11 @@ def checked_force(
     given.flags.writeable = False
     try:
         curve = getattr(indenter, method)(given, *solid)
-        force = getattr(curve, "force", None)
     except Exception as error:
         # The command line prints the note instead of a traceback.
         error.add_note(f"{name} failed in {method}()")
         raise
+    force: Any = getattr(curve, "force", None)
     is_array = type(force) is np.ndarray and force.dtype == np.float64
     if not is_array or force.shape != depth.shape:
         raise PluginError(
@@ -42,4 +39,5 @@ def checked_force(
         )
     if not (np.isfinite(force) | ~np.isfinite(depth)).all():
         raise PluginError(f"{name}: {method}().force has values that are NaN or infinite")
-    return force
+    checked: Array = force
+    return checked

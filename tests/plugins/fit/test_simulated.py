@@ -139,7 +139,7 @@ def test_poissons_ratio_is_the_kernels() -> None:
 def test_a_force_curve_is_taken_as_it_is(exact_nodes: SimulatedCurve) -> None:
     """What has a curve on the solid is not simulated, and allows no other solid."""
     sphere = pl.indenter("sphere", radius=RADIUS)
-    assert sphere == body_of(sphere)
+    assert isinstance(body_of(sphere), type(sphere))
     assert body_of(exact_nodes) is exact_nodes
     assert isinstance(body_of(sphere, "tensed_membrane"), Simulation)
     with pytest.raises(pl.ConfigError, match="kernel: cannot be given with a force curve"):
