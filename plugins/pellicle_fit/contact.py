@@ -21,6 +21,19 @@ _NODES = 129
 
 
 @dataclass(frozen=True)
+class OwnArea:
+    """The area of an indenter with its lengths times a factor: λ² A₁(δ/λ, s/λ)."""
+
+    indenter: HasForceCurve
+    size: float
+
+    def __call__(self, depth: Array, length: float) -> Array:
+        """Return F/E* [m²]."""
+        size = self.size
+        return size**2 * checked_force(self.indenter, "force_curve", depth / size, length / size)
+
+
+@dataclass(frozen=True)
 class Contact:
     """Rigid indenter on an elastic solid under tension: F = E* A(δ, s) with s = 2τ₀/E*.
 
@@ -36,23 +49,22 @@ class Contact:
     """Depth [m] beyond which the area is not known, and is continued as a constant."""
     tension: float = 0.0
     """τ₀ [N/m]."""
+    size: float = 1.0
+    """Factor λ of the indenter's lengths."""
     half_space: bool = True
     """Whether the solid is one, so that half the slope of the area is the contact radius."""
     error: float = 1e-6
     """Error of the area over the largest one."""
 
     @classmethod
-    def on_half_space(cls, indenter: HasForceCurve, modulus: float) -> Contact:
+    def on_half_space(cls, indenter: HasForceCurve, modulus: float, size: float = 1.0) -> Contact:
         """Return the contact of an indenter that has a force curve of its own."""
-
-        def area(depth: Array, length: float) -> Array:
-            return checked_force(indenter, "force_curve", depth, length)
-
         return cls(
             indenter,
             modulus,
-            area,
-            indenter.depth_limit,
+            OwnArea(indenter, size),
+            size * indenter.depth_limit,
+            size=size,
             half_space=getattr(indenter, "half_space", True),
             error=max(1e-6, getattr(indenter, "accuracy", 0.0)),
         )
@@ -60,12 +72,18 @@ class Contact:
     @property
     def tip_radius(self) -> float | None:
         """Radius R of the indenter [m]; None if it has none."""
-        return getattr(self.indenter, "radius", None)
+        radius = getattr(self.indenter, "radius", None)
+        return None if radius is None else self.size * radius
+
+    @property
+    def is_own(self) -> bool:
+        """Whether it is the indenter itself on a half-space, under a tension or not."""
+        return self.half_space and isinstance(self.area, OwnArea)
 
     @property
     def is_bare_indenter(self) -> bool:
         """Whether it is the indenter itself on a half-space, with a known contact radius."""
-        return self.half_space and isinstance(self.indenter, HasContactRadius)
+        return self.is_own and isinstance(self.indenter, HasContactRadius)
 
     def force(self, depth: Array) -> Array:
         """Return the force [N] at depths [m]."""
@@ -105,12 +123,12 @@ class Contact:
         The stiffness at depths > 0 [m] is that of a flat punch of the radius: 2E*a without tension.
         """
         assert isinstance(self.indenter, HasContactRadius)
-        length = 2 * self.tension / self.modulus
-        curve = self.indenter.force_curve(depth, length)
-        found = self.indenter.contact_radius(depth, length)
+        size, length = self.size, 2 * self.tension / self.modulus
+        curve = self.indenter.force_curve(depth / size, length / size)
+        contact = self.indenter.contact_radius(depth / size, length / size)
         return (
-            self.modulus * curve.force,
-            self.modulus * curve.by_depth,
-            found.radius,
-            self.modulus * found.stiffness_slope,
+            self.modulus * size**2 * curve.force,
+            self.modulus * size * curve.by_depth,
+            size * contact.radius,
+            self.modulus * contact.stiffness_slope,
         )

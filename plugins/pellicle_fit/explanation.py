@@ -24,8 +24,10 @@ from .effect import (
     Records,
     Responds,
     Response,
+    Sizes,
     Yields,
     fitted,
+    quantities,
 )
 
 _Kind = TypeVar("_Kind", bound=Effect)
@@ -88,6 +90,9 @@ class Explanation:
         responds = self.of(Responds)
         if len(responds) > 1 or len(ranks) > len(set(ranks)):
             return "two of them stand in one place"
+        names = [name for part in self.parts for name in quantities(type(part))]
+        if len(names) > len(set(names)):
+            return "two of them have a quantity of one name"
         if responds and responds[0].balances and self.of(Yields):
             return "nothing may be in series with what balances the cantilever itself"
         return ""
@@ -101,14 +106,17 @@ class Explanation:
 
     def excuse(self, curves: Sequence[Curve]) -> str:
         """Return why the set cannot act on the curves; empty if it can."""
-        excuses = (
-            effect.excuse(
-                Contact.on_half_space(curve.indenter, 1.0), curve, self.types - {effect.type_name}
-            )
-            for curve in curves
-            for effect in self.effects
-        )
-        return self.clash() or next(filter(None, excuses), "")
+        if clash := self.clash():
+            return clash
+        bends = self.of(Bends)
+        for curve in curves:
+            contact = Contact.on_half_space(curve.indenter, 1.0)
+            for effect in (*bends, *(e for e in self.effects if e not in bends)):
+                if excuse := effect.excuse(contact, curve, self.types - {effect.type_name}):
+                    return excuse
+                if isinstance(effect, Bends):
+                    contact = effect.known(Sizes.of_curve(curve)).contact(contact)
+        return ""
 
     def accuracy(self, curve: Curve) -> float:
         """Return the error of its force over the largest one."""

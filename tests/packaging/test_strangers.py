@@ -15,8 +15,9 @@ import pytest
 
 import pellicle as pl
 from pellicle.cli.new import write_plugin
-from pellicle.components import FAMILIES
+from pellicle.components import FAMILIES as OWN
 
+FAMILIES = *OWN, "effect"
 HERE = Path(__file__).parent
 CELLS = HERE.parent / "data" / "kernel_cells.csv"
 GRADED, GEL, HOTTEST, RETRACT, SQUEEZE = (
@@ -63,6 +64,13 @@ from pellicle.testing import check_prescription
 from pellicle_mean_gap import MeanGap
 for share in (1.0, 0.5):
     check_prescription(MeanGap(share=share))
+""",
+    "effect": """
+from pellicle_charged_gel.attraction import Attraction
+from pellicle_charged_gel.stiffening import Stiffening
+from pellicle_fit.testing import check_effect
+check_effect(Attraction())
+check_effect(Stiffening(power=2))
 """,
 }
 Command = Callable[..., subprocess.CompletedProcess[str]]
@@ -384,9 +392,11 @@ def test_example_of_a_written_package_runs(
     family: str, written: dict[str, Path], pellicle: Command, tmp_path: Path
 ) -> None:
     """It converges, with the component in its place, and no placeholder is left in any file."""
-    pellicle("run", str(written[family] / f"my_{family}.toml"), "-o", str(tmp_path))
+    command = "fit" if family == "effect" else "run"
+    done = pellicle(command, str(written[family] / f"my_{family}.toml"), "-o", str(tmp_path))
     assert any(tmp_path.iterdir())
+    assert command == "run" or "double-layer repulsion" in done.stdout
     files = list(written[family].iterdir())
-    assert len(files) == 5
+    assert len(files) == 5 + (family == "effect")
     for file in files:
         assert "$" not in file.read_text(encoding="utf-8").replace("\n$ ", "\n"), file
