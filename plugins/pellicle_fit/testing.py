@@ -126,14 +126,6 @@ def stands_in_one_place(effect: Effect) -> str:
     return "" if len(found) == 1 else f"it derives from {' and '.join(found) or 'Effect alone'}"
 
 
-def acts_on_a_curve(effect: Effect) -> str:
-    """excuse() returns an empty text for one of the curves of the kit, else why not."""
-    if next(_cases(effect), None):
-        return ""
-    reasons = (effect.excuse(_contact(curve), curve, frozenset()) for _, curve in _curves())
-    return f"on all of them it is excused: {'; '.join(dict.fromkeys(reasons))}"
-
-
 def starts_lie_within_limits(effect: Effect) -> str:
     """starts() and limits() name quantities; limits are a lower and an upper one, starts inside."""
     known = quantities(type(effect))
@@ -156,12 +148,20 @@ def starts_lie_within_limits(effect: Effect) -> str:
     return ""
 
 
+def acts_on_a_curve(effect: Effect) -> str:
+    """excuse() returns an empty text for one of the curves of the kit, else why not."""
+    if next(_cases(effect), None):
+        return ""
+    reasons = (effect.excuse(_contact(curve), curve, frozenset()) for _, curve in _curves())
+    return f"on all of them it is excused: {'; '.join(dict.fromkeys(reasons))}"
+
+
 def returns_a_number_for_each_row(effect: Effect) -> str:
     """It returns float64 of the shape of its argument, which stays, and the same each time."""
     for case in _cases(effect):
         first, second = (case.given(case.rows) for _ in range(2))
         if not isinstance(first, np.ndarray) or first.dtype != np.float64:
-            return f"{case.words}: {first!r}"
+            return f"{case.words}: {first!r}, which is no array of float64"
         if first.shape != case.rows.shape:
             return f"{case.words}: of shape {first.shape} for {case.rows.shape}"
         if not np.array_equal(first, second):
@@ -192,6 +192,27 @@ def each_row_is_its_own(effect: Effect) -> str:
         far = np.abs(half.given(half.rows) - whole[every]) > _LIMIT**2 * np.max(np.abs(whole))
         if not isinstance(effect, Responds) and far.any():
             return f"{case.words}: without every second row the others change"
+    return ""
+
+
+def depths_grow(effect: Effect) -> str:
+    """A bent contact has no force at depths ≤ 0, and one that grows; with what yields, bases sink.
+
+    The depth of the base, δ + u(F), grows with that of the solid.
+    """
+    for case in _cases(effect):
+        contact, deepest = case.contact, 2 * float(_DEPTHS[-1])
+        if isinstance(case.effect, Bends):
+            contact = case.effect.contact(contact)
+            deepest = min(deepest, contact.depth_limit)
+        depth = deepest * np.linspace(-1.0, 1.0, 201)
+        force = contact.force(depth)
+        if np.any(force[:101] != 0) or not np.all(np.diff(force[100:]) > 0):
+            return f"{case.words}: the forces at {depth[95]:g}, …, {depth[-1]:g} m are {force[95:]}"
+        give = case.effect.give(force) if isinstance(case.effect, Yields) else 0.0
+        sinks = np.diff(depth + give) > 0
+        if not sinks[100 : 100 + _DEPTHS.size].all():
+            return f"{case.words}: the base does not from a depth of {depth[:-1][~sinks][0]:g} m on"
     return ""
 
 
@@ -227,27 +248,6 @@ def units_are_right(effect: Effect) -> str:
                     f"{case.words}: with {words} {max(factors):g} times as large the force is off "
                     f"by {far:.2g} N; is the unit of a quantity wrong?"
                 )
-    return ""
-
-
-def depths_grow(effect: Effect) -> str:
-    """A bent contact has no force at depths ≤ 0, and one that grows; with what yields, bases sink.
-
-    The depth of the base, δ + u(F), grows with that of the solid.
-    """
-    for case in _cases(effect):
-        contact, deepest = case.contact, 2 * float(_DEPTHS[-1])
-        if isinstance(case.effect, Bends):
-            contact = case.effect.contact(contact)
-            deepest = min(deepest, contact.depth_limit)
-        depth = deepest * np.linspace(-1.0, 1.0, 201)
-        force = contact.force(depth)
-        if np.any(force[:101] != 0) or not np.all(np.diff(force[100:]) > 0):
-            return f"{case.words}: the forces at {depth[95]:g}, …, {depth[-1]:g} m are {force[95:]}"
-        give = case.effect.give(force) if isinstance(case.effect, Yields) else 0.0
-        sinks = np.diff(depth + give) > 0
-        if not sinks[100 : 100 + _DEPTHS.size].all():
-            return f"{case.words}: the base does not from a depth of {depth[:-1][~sinks][0]:g} m on"
     return ""
 
 
