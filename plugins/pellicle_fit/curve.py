@@ -121,7 +121,7 @@ class Curve:
         """Velocity of the base into the solid [m/s], of shape (n,), the mean of each pass."""
         velocity = np.zeros_like(self.base)
         for rows in (~self.moves_out & ~self.rests, self.moves_out):
-            if np.ptp(self.clock[rows], initial=0.0) > 0:
+            if rows.any() and np.ptp(self.clock[rows]) > 0:
                 velocity[rows] = np.polyfit(self.clock[rows], self.base[rows], 1)[0]
         return velocity
 
