@@ -248,13 +248,8 @@ def _uncertain(config: FitConfig, measured: Measurement, curve: Curve) -> list[E
             value = Quantity(UNCERTAIN[name])(value) / reference
         effect, quantity = {
             "spring_constant": ("spring", "spring_error"),
-            "sensitivity": ("compliance", "compliance"),
+            "sensitivity": ("sensitivity", "sensitivity_error"),
             "radius": ("size", "size_error"),
         }[name]
-        if name == "sensitivity":
-            # Where the sensitivity is off by ε, the tip is not where it seems, by ε F/k.
-            if measured.stiffness is None:
-                raise ConfigError("needs a spring constant", "uncertainty.sensitivity")
-            value /= measured.stiffness
         tables.append({"type": effect, quantity: {"value": 0.0, "deviation": value}})
     return [registry().make(Effect, table) for table in tables]
