@@ -13,7 +13,7 @@ from pellicle_fit.effect import Adds, Fitted, fitted
 class Drag(Adds):
     """Viscous drag η a v on the contact radius a, which is that without tension.
 
-    The velocity v is that of the base.
+    The velocity v is that of the base, the mean of each pass.
     """
 
     type: Literal["drag"] = "drag"
