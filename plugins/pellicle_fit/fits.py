@@ -22,9 +22,10 @@ from .effect import Effect, quantities
 from .files.cleaning import clean
 from .files.measurement import Measurement
 from .files.sources import Curves, Source
-from .recipe import answer, with_estimates
+from .recipe import answer
 from .record import Stopwatch, data_of
 from .result import Fit, Member
+from .sentences import advised
 
 _BASELINES = {"none": (), "offset": ("offset",), "slope": ("offset", "slope")}
 
@@ -173,17 +174,18 @@ def fitted(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fal
     model, kept, rivals = _effects(config)
     solid = {name: fix[name] for name in ("reduced_modulus", "contact_point") if name in fix}
     with status_line("fitting", progress):
-        found = answer(curves, model, rivals, kept=kept, fix=solid, uncertainty=uncertain)
-        if config.compare:
-            found = replace(
-                found,
-                explanations=tuple(
-                    with_estimates(fit, found.threshold, uncertain, everything=True)
-                    for fit in found.explanations
-                ),
-            )
+        found = answer(
+            curves,
+            model,
+            rivals,
+            kept=kept,
+            fix=solid,
+            uncertainty=uncertain,
+            full=config.compare,
+        )
+        advice = advised(found)
     record = watch.record(config, [member.data for member in members])
-    return Fit(found, tuple(members), config.poissons_ratio, config, record)
+    return Fit(found, tuple(members), advice, config.poissons_ratio, config, record)
 
 
 def _curve(measured: Measurement, config: FitConfig, source: Source) -> Curve:

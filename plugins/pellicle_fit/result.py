@@ -44,6 +44,8 @@ class Fit:
     """All explanations that were compared, and the verdict."""
     members: tuple[Member, ...]
     """The curves."""
+    advice: str
+    """What to measure next; empty if nothing would help."""
     poissons_ratio: float | None = None
     """ν, if it was given."""
     config: FitConfig | None = None
@@ -99,11 +101,6 @@ class Fit:
     def comparison(self) -> str:
         """The verdict in words, with its figures."""
         return sentences.comparison(self.answer)
-
-    @property
-    def advice(self) -> str:
-        """What to measure next; empty if nothing is to be told apart."""
-        return sentences.advice(self.answer)
 
     @property
     def sentences(self) -> list[str]:

@@ -268,8 +268,8 @@ def compared(
         if types in fits:
             continue
         if excuse := explanation.excuse(curves):
-            if types in simple:
-                raise ConfigError(f"does not suit: {explanation.words} {excuse}", "model")
+            if not types:
+                raise ConfigError(f"cannot be fitted to this curve: {explanation.words} {excuse}")
             excused[types] = excuse
             continue
         if types in others:
