@@ -10,7 +10,7 @@ from dataclasses import replace
 import pytest
 
 import pellicle as pl
-from pellicle_fit.curves.origin import CurveOrigin
+from pellicle_fit.files.origin import CurveOrigin
 from pellicle_fit.one_curve import fit_problem
 from pellicle_fit.problem import FitProblem
 

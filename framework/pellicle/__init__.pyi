@@ -1,10 +1,10 @@
 __all__: list[str]
 
 from . import analysis as analysis
-from .applications import Curve as Curve
 from .applications import Estimate as Estimate
 from .applications import Fit as Fit
 from .applications import FitConfig as FitConfig
+from .applications import Measurement as Measurement
 from .applications import PooledCurve as PooledCurve
 from .applications import PooledFit as PooledFit
 from .applications import fit as fit

@@ -73,7 +73,7 @@ class ControlRow:
 class Explorer:
     """The content of one visitor's page, and the run behind it, which is solved as it is."""
 
-    def __init__(self, run: pl.Run, measured: pl.Curve | None, target: Document) -> None:
+    def __init__(self, run: pl.Run, measured: pl.Measurement | None, target: Document) -> None:
         self._configuration: Mapping[str, Any] = configuration_of(run)
         self._interaction: Mapping[str, Any] | None = None
         self._frame: Frame | None = None

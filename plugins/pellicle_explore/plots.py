@@ -22,7 +22,7 @@ from .solving import Frame
 _BLUE, _ORANGE, _GREY = "#0072B2", "#D55E00", "#767676"
 
 
-def read_measured(path: Path) -> pl.Curve:
+def read_measured(path: Path) -> pl.Measurement:
     """Return the only force curve of a file, without the rows that lack a number."""
     curve, *others = pl.read_curves(path, segment="approach").values()
     if others:
@@ -33,7 +33,7 @@ def read_measured(path: Path) -> pl.Curve:
     return replace(curve, position=curve.position[rows], force=curve.force[rows])
 
 
-def _touch(curve: pl.Curve) -> float:
+def _touch(curve: pl.Measurement) -> float:
     """Return the share of the positions at which the force has risen by 5 % of its range."""
     position = (curve.position - curve.position.min()) / np.ptp(curve.position)
     start = np.median(curve.force[position <= 0.1])
@@ -44,7 +44,7 @@ def _touch(curve: pl.Curve) -> float:
 class Plots:
     """Figures of profile, pressure and force curve, and the data that they draw."""
 
-    def __init__(self, measured: pl.Curve | None) -> None:
+    def __init__(self, measured: pl.Measurement | None) -> None:
         self._measured = measured
         self.share = _touch(measured) if measured else 0.0
         self._per_depth = self._per_force = 1.0

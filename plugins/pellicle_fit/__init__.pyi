@@ -1,8 +1,8 @@
 __all__: list[str]
 
 from .config import FitConfig as FitConfig
-from .curves.curve import Curve as Curve
-from .curves.sources import read_curves as read_curves
+from .files.measurement import Measurement as Measurement
+from .files.sources import read_curves as read_curves
 from .many import fit_many as fit_many
 from .maps import fit_map as fit_map
 from .one_curve import Fit as Fit

@@ -198,7 +198,7 @@ def _fit(
     config: FitConfig, directory: Path | None, *, quiet: bool
 ) -> tuple[Fit | PooledFit | ManyFits, str, str]:
     """Return the fit of the curves, the name of its files and the title of its page."""
-    from pellicle_fit.curves.sources import SourceStream
+    from pellicle_fit.files.sources import SourceStream
     from pellicle_fit.many import fit_sources
     from pellicle_fit.one_curve import fit_source
     from pellicle_fit.pooled import pool_sources

@@ -38,10 +38,10 @@ from pellicle.schema import (
 )
 from pellicle.units import PoissonsRatio, Quantity
 
-from .curves.cleaning import LARGEST
-from .curves.columns import Calibration
-from .curves.curve import Segment
-from .curves.sources import CurveFile, Curves, Source, expanded, gather
+from .files.cleaning import LARGEST
+from .files.columns import Calibration
+from .files.measurement import Segment
+from .files.sources import CurveFile, Curves, Source, expanded, gather
 from .models.force_model import ForceModel, described, tension_model
 from .models.layer import FreeLayerModel, known_layer
 from .models.simulation import GRID_POINTS, Simulation

@@ -24,7 +24,7 @@ from pellicle.files import atomic_write, check_writable, write_json
 from pellicle.results import header
 
 from .config import FitConfig
-from .curves.sources import Curves, Source, SourceStream
+from .files.sources import Curves, Source, SourceStream
 from .one_curve import fit_problem
 from .population.images import force_maps
 from .population.judgement import Row, group_of, group_pattern, judge, read_names

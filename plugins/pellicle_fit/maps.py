@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from pellicle.errors import ConfigError
 
 from .config import FitConfig
-from .curves.sources import Curves, SourceStream
+from .files.sources import Curves, SourceStream
 from .many import fit_sources
 
 if TYPE_CHECKING:

@@ -17,8 +17,8 @@ from pellicle.units import readable
 
 from .compare import compare
 from .config import FitConfig
-from .curves.curve import Curve
-from .curves.sources import Source
+from .files.measurement import Measurement
+from .files.sources import Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
 from .record import Stopwatch, data_of
@@ -147,9 +147,9 @@ def fit(
     if others:
         count = 1 + len(others)
         raise ConfigError(f"names {count} curves; use fit_many or fit_pooled", "curves")
-    if depth is not None and isinstance(source.curve, Curve):
+    if depth is not None and isinstance(source.curve, Measurement):
         source = source._replace(curve=replace(source.curve, is_depth=True))
-    if time is not None and isinstance(source.curve, Curve):
+    if time is not None and isinstance(source.curve, Measurement):
         # `clean` checks the array.
         source = source._replace(curve=replace(source.curve, time=cast("Array", time)))
     return fit_source(config, source, progress=progress)

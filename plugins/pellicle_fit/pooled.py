@@ -16,8 +16,8 @@ from pellicle.units import decimal
 
 from .compare import compare
 from .config import FitConfig
-from .curves.curve import Note
-from .curves.sources import Curves, Source
+from .files.measurement import Note
+from .files.sources import Curves, Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates, Parameter
 from .problem import FitProblem, problems
 from .record import Stopwatch, data_of

@@ -10,9 +10,9 @@ import numpy as np
 from pellicle.errors import ConfigError, PellicleError
 
 from .config import FIXABLE, FitConfig
-from .curves.cleaning import clean
-from .curves.curve import Curve, Segment
-from .curves.sources import Source
+from .files.cleaning import clean
+from .files.measurement import Measurement, Segment
+from .files.sources import Source
 from .models.force_model import ForceModel
 from .models.simulation import Simulation, simulate
 from .parameters import CONTACT_POINT, OFFSET, SLOPE, Coordinates
@@ -28,7 +28,7 @@ class FitProblem:
 
     name: str
     """File, and label in the file."""
-    curve: Curve
+    curve: Measurement
     model: ForceModel | Simulation
     fixed: Coordinates
     """Parameters that are not fitted."""

@@ -17,8 +17,8 @@ from pellicle.errors import ConfigError, StorageError
 from pellicle.schema import walk
 
 from .config import FitConfig
-from .curves.curve import Curve
-from .curves.origin import sha256
+from .files.measurement import Measurement
+from .files.origin import sha256
 
 _ABOVE = 2
 """Folders above that of a record in which its curves are sought."""
@@ -63,7 +63,7 @@ class Stopwatch:
         )
 
 
-def data_of(curve: Curve, config: FitConfig) -> dict[str, Any]:
+def data_of(curve: Measurement, config: FitConfig) -> dict[str, Any]:
     """Return the origin of a curve, and which part of it is fitted, as JSON data."""
     return {
         **curve.origin.to_dict(),

@@ -24,8 +24,8 @@ from tables import curves_of_kinds, print_head, print_row
 import pellicle as pl
 from pellicle.components import HasForceCurve, HasLayerForceCurve
 from pellicle.units import Quantity
-from pellicle_fit.curves import curve as read_curve
-from pellicle_fit.curves.sources import Source
+from pellicle_fit.files.measurement import Measurement
+from pellicle_fit.files.sources import Source
 from pellicle_fit.models.force_model import tension_model
 from pellicle_fit.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from pellicle_fit.pooled import pool_sources
@@ -507,7 +507,7 @@ def pooled(sample: Sample, curves: Sequence[Curve], **options: Any) -> pl.Pooled
     sources = [
         Source(
             str(n),
-            read_curve.Curve(curve.position, curve.force, time=curve.time),
+            Measurement(curve.position, curve.force, time=curve.time),
             {"radius": curve.radius * RADIUS},
         )
         for n, curve in enumerate(curves)

@@ -24,10 +24,10 @@ import numpy as np
 
 import pellicle as pl
 from pellicle.errors import PellicleError
-from pellicle_fit.curves.cleaning import clean
-from pellicle_fit.curves.columns import Calibration
-from pellicle_fit.curves.curve import Curve
-from pellicle_fit.curves.readers import SUFFIXES, read
+from pellicle_fit.files.cleaning import clean
+from pellicle_fit.files.columns import Calibration
+from pellicle_fit.files.measurement import Measurement
+from pellicle_fit.files.readers import SUFFIXES, read
 
 RADIUS, RATIO = 10e-6, 0.5
 CALIBRATION = Calibration(spring_constant=0.05, sensitivity=50e-9)
@@ -59,7 +59,7 @@ class Outcome:
         return self.modulus / self.nanite - 1
 
 
-def nanite_fit(curve: Curve) -> tuple[float, float]:
+def nanite_fit(curve: Measurement) -> tuple[float, float]:
     """Return Young's modulus [Pa] and sum of squares [N²] of nanite's Hertz fit to all rows."""
     # docs/nanite shares its name, so a plain import would have its type.
     nanite = import_module("nanite")
@@ -111,7 +111,7 @@ def nanite_fit(curve: Curve) -> tuple[float, float]:
     return float(parameters["E"].value), total
 
 
-def outcome(curve: Curve | PellicleError) -> Outcome:
+def outcome(curve: Measurement | PellicleError) -> Outcome:
     """Return what becomes of a curve."""
     began = process_time()
     if isinstance(curve, PellicleError):
@@ -139,7 +139,7 @@ def outcome(curve: Curve | PellicleError) -> Outcome:
     )
 
 
-def curves_of(path: Path) -> dict[str, Curve | PellicleError]:
+def curves_of(path: Path) -> dict[str, Measurement | PellicleError]:
     """Return the curves of a file, with a calibration if it holds none."""
     try:
         curves = dict(read(path))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle_fit.curves.curve import Axis
+from pellicle_fit.files.measurement import Axis
 from pellicle_fit.objective import CONTACT_POINT
 
 from .row import ENDS, Row, is_closed, units_of

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle_fit.curves.curve import Axis, Site
+from pellicle_fit.files.measurement import Axis, Site
 from pellicle_fit.intervals import Estimate
 
 FITTED = "fitted"

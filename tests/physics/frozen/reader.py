@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle_fit.config import FitConfig
-from pellicle_fit.curves.curve import Curve
-from pellicle_fit.curves.sources import Source, SourceStream
+from pellicle_fit.files.measurement import Measurement
+from pellicle_fit.files.sources import Source, SourceStream
 from pellicle_fit.many import fit_sources
 from pellicle_fit.one_curve import fit_source
 from pellicle_fit.parameters import TENSION, Coordinates
@@ -155,7 +155,7 @@ def _sources(config: FitConfig, case: Case) -> list[Source]:
     numbers = {str(n): (curve.position, curve.force) for n, curve in enumerate(case.curves)}
     sources = []
     for source, curve in zip(config.sources(numbers), case.curves, strict=True):
-        assert isinstance(source.curve, Curve)
+        assert isinstance(source.curve, Measurement)
         sources.append(source._replace(curve=replace(source.curve, time=curve.time)))
     return sources
 

@@ -182,7 +182,7 @@ def test_a_contact_that_sticks_is_pulled_off(start: pl.Run) -> None:
 class Page:
     """The page of an explorer without a browser; its callbacks are called one by one."""
 
-    def __init__(self, run: pl.Run, laid_over: pl.Curve | None = None) -> None:
+    def __init__(self, run: pl.Run, laid_over: pl.Measurement | None = None) -> None:
         self.document = Document()
         self.explorer = Explorer(run, laid_over, self.document)
 

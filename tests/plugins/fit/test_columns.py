@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from scipy.io import savemat
 
 import pellicle as pl
-from pellicle_fit.curves.cleaning import clean
-from pellicle_fit.curves.columns import Calibration
-from pellicle_fit.curves.curve import Curve
-from pellicle_fit.curves.readers import read
-from pellicle_fit.curves.roles import column_map
+from pellicle_fit.files.cleaning import clean
+from pellicle_fit.files.columns import Calibration
+from pellicle_fit.files.measurement import Measurement
+from pellicle_fit.files.readers import read
+from pellicle_fit.files.roles import column_map
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
 
@@ -28,17 +28,17 @@ F = np.array([0.25, 0.5, 1.25, 2.0])
 BY_NUMBER = "1 = position um, 2 = force nN"
 
 
-def curves(path: Path, columns: str | None = None, **calibration: str) -> dict[str, Curve]:
+def curves(path: Path, columns: str | None = None, **calibration: str) -> dict[str, Measurement]:
     """Return the curves of a file; an error is raised."""
     contents = read(path, Calibration(columns=columns, **calibration))
     result = {}
     for label, curve in contents.items():
-        assert isinstance(curve, Curve), curve
+        assert isinstance(curve, Measurement), curve
         result[label] = curve
     return result
 
 
-def is_the_curve(curve: Curve) -> bool:
+def is_the_curve(curve: Measurement) -> bool:
     """Whether a curve has the numbers above."""
     return bool(np.allclose(curve.position, 1e-6 * Z) and np.allclose(curve.force, 1e-9 * F))
 
@@ -116,7 +116,7 @@ def test_decimal_commas_between_commas_are_refused(tmp_path: Path) -> None:
         dict(read(path))
     path.write_text("position [um],force [nN]\n1.5,2.7,,a remark\n1.6,2.9\n", encoding="utf-8")
     measured = read(path)[""]
-    assert isinstance(measured, Curve)
+    assert isinstance(measured, Measurement)
     assert measured.force == pytest.approx([2.7e-9, 2.9e-9])
 
 
@@ -296,13 +296,13 @@ def _ramp(pause: str, noise: float) -> tuple[Array, Array]:
 def test_pauses_are_left_out(pause: str, noise: float) -> None:
     """Approach and retract end where the pause between them begins and ends."""
     position, force = _ramp(pause, noise)
-    approach = clean(Curve(position, force))
+    approach = clean(Measurement(position, force))
     assert approach.position.size == pytest.approx(400, abs=10)
     assert any("are the approach" in text for text in approach.messages)
-    retract = clean(Curve(position, force), "retract")
+    retract = clean(Measurement(position, force), "retract")
     assert retract.position.size == pytest.approx(400, abs=10)
     # Without a retract, the pause ends the file.
-    alone = clean(Curve(position[:700], force[:700]))
+    alone = clean(Measurement(position[:700], force[:700]))
     assert alone.position.size == pytest.approx(400, abs=10)
 
 
@@ -311,4 +311,4 @@ def test_a_pass_without_a_pause_is_whole(motion: str) -> None:
     """A steady motion loses no row, and neither does one that slows down as a sine."""
     share = np.linspace(0, 1, 400)
     depth = 3e-6 * (share if motion == "triangle" else (1 - np.cos(np.pi * share)) / 2) - 1e-6
-    assert clean(Curve(depth, np.clip(depth, 0, None) ** 1.5)).position.size == 400
+    assert clean(Measurement(depth, np.clip(depth, 0, None) ** 1.5)).position.size == 400

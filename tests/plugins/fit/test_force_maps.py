@@ -20,7 +20,7 @@ from PIL import Image
 
 import pellicle as pl
 from pellicle.errors import ConfigError
-from pellicle_fit.curves.curve import Axis
+from pellicle_fit.files.measurement import Axis
 from pellicle_fit.population.images import force_maps
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.plugins.fit import instruments

@@ -15,9 +15,9 @@ from click.testing import Result
 from numpy.typing import NDArray
 
 import pellicle as pl
-from pellicle_fit.curves.cleaning import clean
-from pellicle_fit.curves.curve import Curve
-from pellicle_fit.curves.readers import read
+from pellicle_fit.files.cleaning import clean
+from pellicle_fit.files.measurement import Measurement
+from pellicle_fit.files.readers import read
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.pictures import drawn_width
 
@@ -129,8 +129,8 @@ def test_rows_at_the_turn_belong_to_the_pass_that_has_them(dwell: int) -> None:
     relaxed = 0.9 * force[::-1]
     dwelling = np.full(dwell, position[-1]), np.full(dwell, relaxed[0])
     both = np.r_[position, dwelling[0], position[-2::-1]], np.r_[force, dwelling[1], relaxed[1:]]
-    assert np.array_equal(clean(Curve(*both)).force, force)
-    assert np.array_equal(clean(Curve(*both), "retract").force, relaxed[::-1])
+    assert np.array_equal(clean(Measurement(*both)).force, force)
+    assert np.array_equal(clean(Measurement(*both), "retract").force, relaxed[::-1])
 
 
 def test_held_parameters(cli: Cli) -> None:
@@ -158,7 +158,7 @@ def test_tables(cli: Cli, header: str, separator: str) -> None:
     position, force = _curve()
     _write(position, force, header, separator)
     measured = read(Path("curve.csv"))[""]
-    assert isinstance(measured, Curve)
+    assert isinstance(measured, Measurement)
     assert measured.position == pytest.approx(position)
     assert measured.force == pytest.approx(force, abs=1e-18)
 
@@ -168,7 +168,7 @@ def test_decimal_commas(cli: Cli) -> None:
     """Between semicolons a comma is decimal."""
     Path("curve.csv").write_text("depth [nm];force [nN]\n1,5;2,25\n2,5;\n", encoding="utf-8")
     measured = read(Path("curve.csv"))[""]
-    assert isinstance(measured, Curve)
+    assert isinstance(measured, Measurement)
     assert measured.is_depth
     assert measured.position == pytest.approx([1.5e-9, 2.5e-9])
     assert measured.force == pytest.approx([2.25e-9, np.nan], nan_ok=True)

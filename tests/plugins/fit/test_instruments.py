@@ -10,9 +10,9 @@ import pytest
 from numpy.typing import NDArray
 
 import pellicle as pl
-from pellicle_fit.curves.columns import Calibration
-from pellicle_fit.curves.curve import Curve
-from pellicle_fit.curves.readers import read
+from pellicle_fit.files.columns import Calibration
+from pellicle_fit.files.measurement import Measurement
+from pellicle_fit.files.readers import read
 from pellicle_fit.parameters import CONTACT_POINT, OFFSET, SLOPE, TENSION, Coordinates
 from pellicle_fit.parameters import MODULUS as REDUCED_MODULUS
 from pellicle_plugins.indenters.of_revolution import Paraboloid
@@ -40,7 +40,9 @@ def recording() -> instruments.Recording:
     return instruments.record(POSITION, FORCE, NOISE, SPRING)
 
 
-def only(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Curve:
+def only(
+    path: Path, calibration: Calibration | None = None, segment: str = "approach"
+) -> Measurement:
     """Return the only curve of a file."""
     (curve,) = read(path, calibration, segment).values()
     if isinstance(curve, Exception):
@@ -48,7 +50,7 @@ def only(path: Path, calibration: Calibration | None = None, segment: str = "app
     return curve
 
 
-def is_curve(measured: Curve, position: Array, force: Array) -> bool:
+def is_curve(measured: Measurement, position: Array, force: Array) -> bool:
     """Whether a curve is this one, but for where position is 0."""
     moved = measured.position - position
     same = np.ptp(moved) < 1e-6 * np.ptp(position)
@@ -67,7 +69,7 @@ def test_formats(tmp_path: Path, recording: instruments.Recording, name: str) ->
         # The file does not say where the approach ends: that is found from the position.
         assert approach.force.size == 2 * force.size
         first = slice(force.size)
-        approach = Curve(approach.position[first], approach.force[first])
+        approach = Measurement(approach.position[first], approach.force[first])
     else:
         retract = only(path, calibration, "retract").position
         assert retract[0] - retract[-1] == pytest.approx(np.ptp(position), rel=0.03)
@@ -95,7 +97,9 @@ def test_maps(tmp_path: Path, recording: instruments.Recording, name: str) -> No
     instruments.MAPS[name](tmp_path / name, [recording, recording])
     curves = read(tmp_path / name)
     assert list(curves) == ["0", "1"]
-    assert all(isinstance(curve, Curve) and is_curve(curve, *SEEN) for curve in curves.values())
+    assert all(
+        isinstance(curve, Measurement) and is_curve(curve, *SEEN) for curve in curves.values()
+    )
 
 
 @pytest.mark.parametrize("name", instruments.UNCALIBRATED)

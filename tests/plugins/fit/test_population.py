@@ -22,8 +22,8 @@ from pellicle.batch import locked
 from pellicle.cli.app import app
 from pellicle.errors import ConfigError, StorageError
 from pellicle_fit import many
-from pellicle_fit.curves.curve import Curve
-from pellicle_fit.curves.sources import Source
+from pellicle_fit.files.measurement import Measurement
+from pellicle_fit.files.sources import Source
 from pellicle_fit.many import ManyFits, fit_sources
 from pellicle_fit.population.judgement import (
     group_of,
@@ -249,7 +249,7 @@ def test_curves_do_not_pile_up(monkeypatch: pytest.MonkeyPatch) -> None:
             position, force = curve(seed)
             curves.append(weakref.ref(force))
             most = max(most, sum(force() is not None for force in curves))
-            yield Source(str(seed), Curve(position, force), {})
+            yield Source(str(seed), Measurement(position, force), {})
             del position, force
 
     config = pl.FitConfig.merged(indenter="paraboloid", radius="10 um", fix={"tension": 0})

@@ -19,8 +19,8 @@ from click.testing import Result
 from matplotlib import pyplot
 
 import pellicle as pl
-from pellicle_fit.curves.readers import read
-from pellicle_fit.curves.text_table import read_cells
+from pellicle_fit.files.readers import read
+from pellicle_fit.files.text_table import read_cells
 from pellicle_fit.report.page import save_report
 from tests.pictures import drawn_width
 from tests.plugins.fit.conftest import skip_rivals
@@ -222,7 +222,7 @@ def test_file_that_is_replaced_while_it_is_read(
         other.replace(file)
         return cells
 
-    monkeypatch.setattr("pellicle_fit.curves.readers.read_cells", replaced)
+    monkeypatch.setattr("pellicle_fit.files.readers.read_cells", replaced)
     with pytest.raises(pl.StorageError, match="was changed while it was read"):
         read(path)
 

@@ -9,7 +9,7 @@ from pellicle.errors import ConfigError, PellicleError, StorageError, shown
 
 from . import afm
 from .columns import Calibration, Channel, from_columns, is_curve
-from .curve import Curve
+from .measurement import Measurement
 from .origin import Stamped, state
 from .roles import EXAMPLE
 from .text_table import curves_of, read_cells
@@ -30,7 +30,7 @@ _SPREADSHEETS = (".xlsx", ".xlsm", ".xls", ".ods", ".numbers")
 
 def read(
     path: Path, calibration: Calibration | None = None, segment: str = "approach"
-) -> Mapping[str, Curve | PellicleError]:
+) -> Mapping[str, Measurement | PellicleError]:
     """Return the curves of a file, or the errors of reading them, by their labels.
 
     The label of a single curve is empty.  A table (CSV, TSV, semicolons, spaces) has a header such
@@ -54,7 +54,7 @@ def read(
 
 def _read(
     path: Path, calibration: Calibration, segment: str
-) -> Mapping[str, Curve | PellicleError]:
+) -> Mapping[str, Measurement | PellicleError]:
     """Return the curves of a file by their labels, or the error of each that cannot be read."""
     suffix = path.suffix.lower()
     mapped = calibration.columns or {}
@@ -101,7 +101,7 @@ def _read(
 
 def _curve(
     columns: Mapping[str, Channel], calibration: Calibration, name: str, hint: str
-) -> Curve | PellicleError:
+) -> Measurement | PellicleError:
     """Return the curve of a table; an error has its ``name``, and ends with a ``hint``."""
     try:
         return from_columns(columns, calibration)

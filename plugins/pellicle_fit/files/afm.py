@@ -18,7 +18,7 @@ from pellicle.units import Quantity
 
 from .cleaning import grows
 from .columns import Calibration, Channel, unused_time
-from .curve import Axis, Curve, Site
+from .measurement import Axis, Measurement, Site
 from .origin import CurveOrigin
 
 SUFFIXES = (
@@ -43,7 +43,9 @@ def installed() -> bool:
     return find_spec("afmformats") is not None
 
 
-def read(path: Path, calibration: Calibration, segment: str) -> Mapping[str, Curve | PellicleError]:
+def read(
+    path: Path, calibration: Calibration, segment: str
+) -> Mapping[str, Measurement | PellicleError]:
     """Return the ``segment`` of each curve by its number; the label of a single curve is empty.
 
     A curve is read from the file whenever its value is taken, so that a force map does not have to
@@ -82,7 +84,7 @@ def _texts(caught: Sequence[warnings.WarningMessage]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(f"afmformats: {warning.message}" for warning in caught))
 
 
-class _Recordings(Mapping[str, Curve | PellicleError]):
+class _Recordings(Mapping[str, Measurement | PellicleError]):
     """The curves of a file by their numbers, each read whenever it is taken."""
 
     def __init__(
@@ -106,7 +108,7 @@ class _Recordings(Mapping[str, Curve | PellicleError]):
     def __iter__(self) -> Iterator[str]:
         return iter(self._recordings)
 
-    def __getitem__(self, label: str) -> Curve | PellicleError:
+    def __getitem__(self, label: str) -> Measurement | PellicleError:
         recording = self._recordings[label]
         try:
             with warnings.catch_warnings(record=True) as caught, _pellicle_errors(self._path):
@@ -139,7 +141,7 @@ def _pellicle_errors(path: Path) -> Iterator[None]:
 
 def _curve(
     path: Path, recording: Mapping[str, Any], overrides: Mapping[str, float], segment: str
-) -> Curve:
+) -> Measurement:
     """Return one segment of one curve in SI."""
     data, metadata = recording["data"], recording["metadata"]
     for name, value in overrides.items():
@@ -174,7 +176,7 @@ def _curve(
         library="afmformats",
     )
     site = _site(metadata)
-    return Curve(
+    return Measurement(
         -tip[rows],
         force[rows],
         messages=messages,

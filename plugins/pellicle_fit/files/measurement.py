@@ -47,7 +47,7 @@ class Site(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Curve:
+class Measurement:
     """One measured curve: position [m] that grows into the solid and force [N], of shape (n,)."""
 
     position: Array

@@ -11,7 +11,7 @@ from pellicle.arrays import Array, Mask
 from pellicle.errors import ConfigError, shown
 from pellicle.units import readable
 
-from .curve import Curve, Note, Segment
+from .measurement import Measurement, Note, Segment
 
 FEWEST = 8
 """Least number of points of a fit."""
@@ -32,7 +32,7 @@ _SIGNIFICANT = 4.0
 """Standard errors that the rise of the force must exceed."""
 
 
-def clean(curve: Curve, segment: Segment = "approach") -> Curve:
+def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
     """Return the rows of one pass into the solid (or out of it), sorted by position, or of both.
 
     Both passes are in order of time.  A speed is replaced by the time that follows from it.  Where

@@ -14,7 +14,7 @@ from pellicle.schema import Model
 from pellicle.units import Quantity
 
 from .cleaning import grows
-from .curve import Curve, Note
+from .measurement import Measurement, Note
 from .origin import CurveOrigin
 from .roles import EXAMPLE, OF_BASE, POSITIONS, SIGNALS, TIME, ColumnMap, factor, is_voltage
 
@@ -65,7 +65,7 @@ def is_curve(columns: Mapping[str, Channel]) -> bool:
     return bool(SIGNALS & columns.keys()) and bool(POSITIONS.keys() & columns.keys())
 
 
-def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Curve:
+def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Measurement:
     """Return the curve that columns with names from `NAMES` hold.
 
     Force is ``force``, or the spring constant times ``deflection``, which may be in volts if the
@@ -118,7 +118,7 @@ def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Cu
     if TIME in columns and time is None:
         messages = (unused_time(columns[TIME]),)
         columns = {role: channel for role, channel in columns.items() if role != TIME}
-    return Curve(
+    return Measurement(
         position,
         force,
         name == "depth",

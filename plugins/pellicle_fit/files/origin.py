@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from pellicle.errors import PellicleError, StorageError
 
 if TYPE_CHECKING:
-    from .curve import Curve
+    from .measurement import Measurement
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def sha256(path: Path) -> str:
         raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
 
 
-class Stamped(Mapping[str, "Curve | PellicleError"]):
+class Stamped(Mapping[str, "Measurement | PellicleError"]):
     """The curves of a file, each with the file's name and hash as its origin.
 
     Parameters
@@ -70,7 +70,7 @@ class Stamped(Mapping[str, "Curve | PellicleError"]):
 
     def __init__(
         self,
-        contents: Mapping[str, Curve | PellicleError],
+        contents: Mapping[str, Measurement | PellicleError],
         path: Path,
         state: tuple[int, ...],
     ) -> None:
@@ -91,7 +91,7 @@ class Stamped(Mapping[str, "Curve | PellicleError"]):
     def __iter__(self) -> Iterator[str]:
         return iter(self._contents)
 
-    def __getitem__(self, label: str) -> Curve | PellicleError:
+    def __getitem__(self, label: str) -> Measurement | PellicleError:
         curve = self._contents[label]
         if isinstance(curve, PellicleError):
             return curve

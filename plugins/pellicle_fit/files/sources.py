@@ -17,7 +17,7 @@ from pellicle.errors import ConfigError, PellicleError
 from pellicle.units import Quantity
 
 from .columns import Calibration
-from .curve import Curve, Segment, Site
+from .measurement import Measurement, Segment, Site
 from .readers import SUFFIXES, TEXT, read
 from .text_table import FILE, read_cells
 
@@ -32,7 +32,7 @@ class Source(NamedTuple):
 
     name: str
     """File, and label in the file."""
-    curve: Curve | PellicleError
+    curve: Measurement | PellicleError
     fields: Mapping[str, Any]
     """Fields of the indenter that this curve alone has."""
     file: str = ""
@@ -73,7 +73,7 @@ class CurveFile:
         own, fields = Calibration.model_fields, dict(self.fields)
         settings = {name: getattr(self.calibration, name) for name in own}
         settings |= {name: fields.pop(name) for name in own if name in fields}
-        contents: Mapping[str, Curve | PellicleError]
+        contents: Mapping[str, Measurement | PellicleError]
         try:
             site = _site(fields)
             calibration = Calibration(**settings)
@@ -81,7 +81,7 @@ class CurveFile:
                 # `clean` checks the arrays.
                 position, force = (cast("Array", values) for values in self.numbers)
                 stiffness, speed = calibration.spring_constant, calibration.speed
-                contents = {"": Curve(position, force, stiffness=stiffness, speed=speed)}
+                contents = {"": Measurement(position, force, stiffness=stiffness, speed=speed)}
             else:
                 contents = read(self.path, calibration, self.segment)
         except PellicleError as error:
@@ -95,7 +95,7 @@ class Sources:
 
     file: CurveFile
     fields: Mapping[str, Any]
-    contents: Mapping[str, Curve | PellicleError]
+    contents: Mapping[str, Measurement | PellicleError]
     site: Site | None
     """Where on the sample the file was recorded, if a table of files says so."""
 
@@ -112,7 +112,7 @@ class Sources:
         for label, curve in self.contents.items():
             name = f"{path}:{label}" if label else str(path)
             whole = str(path)
-            if self.site is not None and isinstance(curve, Curve):
+            if self.site is not None and isinstance(curve, Measurement):
                 curve, whole = replace(curve, site=self.site), str(self.file.table or path)
             yield Source(name, curve, self.fields, str(path), self.file.group, whole)
 
@@ -244,10 +244,10 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
 
 def read_curves(
     path: str | Path, *, segment: Segment = "both", **calibration: Any
-) -> dict[str, Curve]:
+) -> dict[str, Measurement]:
     """Return the curves of a file, a folder, a pattern or a table of files by their names.
 
-    Position, force and time are in SI; a curve draws itself with `Curve.plot`.
+    Position, force and time are in SI; a curve draws itself with `Measurement.plot`.
 
     Parameters
     ----------
@@ -261,7 +261,7 @@ def read_curves(
 
     Returns
     -------
-    dict[str, Curve]
+    dict[str, Measurement]
         In order; a curve that cannot be read is left out with a warning.
 
     Raises
@@ -271,10 +271,10 @@ def read_curves(
     StorageError
         A folder or a list of files cannot be read.
     """
-    curves: dict[str, Curve] = {}
+    curves: dict[str, Measurement] = {}
     errors: list[PellicleError] = []
     for source in SourceStream(gather(path, segment, Calibration(**calibration), {})):
-        if isinstance(source.curve, Curve):
+        if isinstance(source.curve, Measurement):
             curves[source.name] = source.curve
         else:
             errors.append(source.named(ConfigError(source.reason(source.curve))))
