@@ -90,11 +90,18 @@ class Contact:
         """Return the contact radius without tension [m], on a half-space: half of ∂(F/E*)/∂δ."""
         return replace(self, tension=0.0).stiffness(depth) / (2 * self.modulus)
 
-    def punch(self, depth: Array) -> tuple[Array, Array]:
-        """Return radius a [m] and dk/da [Pa] of a bare indenter's contacts of depths > 0 [m].
+    def punch(self, depth: Array) -> tuple[Array, Array, Array, Array]:
+        """Return force [N], stiffness k [N/m], radius a [m] and dk/da [Pa] of a bare indenter.
 
-        The stiffness k is that of a flat punch of the radius: 2E*a without tension.
+        The stiffness at depths > 0 [m] is that of a flat punch of the radius: 2E*a without tension.
         """
         assert isinstance(self.indenter, HasContactRadius)
-        found = self.indenter.contact_radius(depth, 2 * self.tension / self.modulus)
-        return found.radius, self.modulus * found.stiffness_slope
+        length = 2 * self.tension / self.modulus
+        curve = self.indenter.force_curve(depth, length)
+        found = self.indenter.contact_radius(depth, length)
+        return (
+            self.modulus * curve.force,
+            self.modulus * curve.by_depth,
+            found.radius,
+            self.modulus * found.stiffness_slope,
+        )

@@ -33,8 +33,12 @@ _BALANCE = 1e-10
 """Error of a depth in balance over the largest way."""
 _STEPS, _DIFFERENCE = 100, 1e-7
 """Largest number of steps to it, and the step of their slopes over that way."""
+_AT_ONCE = 6
+"""Steps of Newton's method without a bracket."""
 _WIDER = 12
 """How often the bracket of a balance doubles."""
+_NODES = 200
+"""Nodes of the table from which searches for a balance start."""
 _DEEPER = 2.0
 """Depth up to which the force is known while a balance is sought, over the deepest of the path."""
 
@@ -47,7 +51,7 @@ class Solid(Fittable):
     reduced_modulus: Annotated[float, Fitted("Pa", above=0, log=True)] = fitted(
         "reduced modulus E*"
     )
-    contact_point: Annotated[float, Fitted("m", shared=False)] = fitted("position of first touch")
+    contact_point: Annotated[float, Fitted("m", scope="curve")] = fitted("position of first touch")
 
 
 @dataclass(frozen=True)
@@ -154,7 +158,10 @@ class Explanation:
 
         if balances or not in_series:
             return pushed(depth)
-        return pushed(balanced(pushed, give, depth, path))
+        # Without memory and additions the depths in balance are those of a table.
+        root = np.sqrt(contact.depth_limit) * np.linspace(0.0, 1.0, _NODES)
+        start = np.interp(depth, root**2 + give(contact.force(root**2)), root) ** 2
+        return pushed(balanced(pushed, give, depth, np.where(depth > 0, start, depth)))
 
     def _softness(self, curve: Curve) -> float:
         """Return that of the cantilever [m/N]; 0 if it is stiff."""
@@ -171,18 +178,30 @@ def balanced(
 ) -> Array:
     """Return the depth δ [m] at which δ + u(P(δ)) is that of the base, shape (n,).
 
-    The sum grows with δ, so that there is one root: between the base and the base less the give of
-    the force there, or beyond that where the give is negative.
+    The sum grows with δ, so that there is one root.  Newton's method finds it from a good start;
+    else it is bracketed by the base and the base less the give of the force there, or by what lies
+    beyond that where the give is negative.
 
     Raises
     ------
     ConvergenceError
-        It does not, or there is none.
+        The sum does not grow, or there is no root.
     """
+    scale = max(float(np.ptp(base)), 1e-300)
 
     def excess(depth: Array) -> Array:
         return depth + give(pushed(depth)) - base
 
+    def newton(depth: Array, above: Array) -> Array:
+        slope = (excess(depth + _DIFFERENCE * scale) - above) / (_DIFFERENCE * scale)
+        return depth - above / np.maximum(slope, 1e-300)
+
+    depth = start
+    for _ in range(_AT_ONCE):
+        new = newton(depth, excess(depth))
+        if np.max(np.abs(new - depth)) <= _BALANCE * scale:
+            return new
+        depth = new
     ends = base, base - give(pushed(base))
     low, high = np.minimum(*ends), np.maximum(*ends)
     for _ in range(_WIDER):
@@ -191,13 +210,11 @@ def balanced(
             break
         width = high - low
         high, low = np.where(short, high + width, high), np.where(long, low - width, low)
-    scale = max(float(np.ptp(base)), 1e-300)
     depth, last = np.clip(start, low, high), high - low
     for _ in range(_STEPS):
         above = excess(depth)
         low, high = np.where(above < 0, depth, low), np.where(above > 0, depth, high)
-        slope = (excess(depth + _DIFFERENCE * scale) - above) / (_DIFFERENCE * scale)
-        new = depth - above / np.maximum(slope, 1e-300)
+        new = newton(depth, above)
         # Where Newton's step leaves the bracket or does not halve the last one, its middle.
         slow = ~((new >= low) & (new <= high)) | (np.abs(new - depth) > last / 2)
         new = np.where(slow & (above != 0), (low + high) / 2, np.clip(new, low, high))

@@ -17,9 +17,12 @@ class Brush(Yields):
 
     model_config = ConfigDict(title="a brush")
     type: Literal["brush"] = "brush"
-    brush_length: Annotated[float, Fitted("m", above=0, log=True)] = fitted("length L of the brush")
+    examples = ({}, {"brush_length": "100 nm", "brush_force": "50 pN"})
+    brush_length: Annotated[float, Fitted("m", above=0, log=True)] = fitted(
+        "length L of the brush [m]"
+    )
     brush_force: Annotated[float, Fitted("N", above=0, log=True)] = fitted(
-        "force F₁ that compresses it by L ln 2/2π"
+        "force F₁ that compresses it by L ln 2/2π [N]"
     )
 
     def give(self, force: Array) -> Array:

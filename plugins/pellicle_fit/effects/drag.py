@@ -14,7 +14,8 @@ class Drag(Adds):
     """A drag η a dδ/dt on the contact radius a, that without tension."""
 
     type: Literal["drag"] = "drag"
-    drag: Annotated[float, Fitted("Pa*s", at_least=0)] = fitted("viscosity η")
+    examples = ({}, {"drag": "1 Pa*s"})
+    drag: Annotated[float, Fitted("Pa*s", at_least=0)] = fitted("viscosity η [Pa*s]")
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Refuse curves without times, and contacts without a radius."""

@@ -18,9 +18,10 @@ class Drift(Records):
 
     model_config = ConfigDict(title="drift in time")
     type: Literal["drift"] = "drift"
+    examples = ({}, {"drift": "10 pN/s"})
     rank: ClassVar[int] = 1
-    drift: Annotated[float, Fitted("N/s", shared=False)] = fitted(
-        "rate of the force without a load"
+    drift: Annotated[float, Fitted("N/s", scope="curve")] = fitted(
+        "rate of the force without a load [N/s]"
     )
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:

@@ -10,6 +10,7 @@ from pydantic import ConfigDict, Field
 
 from pellicle.arrays import Array
 from pellicle.components import HasLayerForceCurve
+from pellicle.units import Quantity
 from pellicle_fit.contact import Contact
 from pellicle_fit.curve import Curve
 from pellicle_fit.effect import Bends, Fitted, Sizes, Values, fitted
@@ -25,9 +26,12 @@ class Layer(Bends):
 
     model_config = ConfigDict(title="a thin layer")
     type: Literal["layer"] = "layer"
+    examples = ({}, {"thickness": "10 um", "poissons_ratio": 0.4})
     rank: ClassVar[int] = 2
-    thickness: Annotated[float, Fitted("m", above=0, log=True)] = fitted("thickness h")
-    poissons_ratio: float = Field(default=0.5, ge=0, le=0.5, description="Poisson's ratio ν")
+    thickness: Annotated[float, Fitted("m", above=0, log=True)] = fitted("thickness h [m]")
+    poissons_ratio: Annotated[
+        float, Quantity("1", at_least=0, at_most=0.5), Field(description="Poisson's ratio ν")
+    ] = 0.5
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Refuse an indenter without a curve on layers."""

@@ -16,8 +16,9 @@ class Offset(Records):
 
     model_config = ConfigDict(title="an offset")
     type: Literal["offset"] = "offset"
+    examples = ({}, {"offset": "10 pN"})
     rank: ClassVar[int] = 1
-    offset: Annotated[float, Fitted("N", shared=False)] = fitted("force without a load")
+    offset: Annotated[float, Fitted("N", scope="curve")] = fitted("force without a load [N]")
 
     def recorded(self, force: Array, curve: Curve) -> Array:
         """Return F + F₀ [N]."""

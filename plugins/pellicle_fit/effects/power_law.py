@@ -18,6 +18,7 @@ class PowerLaw(Relaxing):
 
     model_config = ConfigDict(title="power-law relaxation")
     type: Literal["power_law"] = "power_law"
+    examples = ({}, {"relaxation_exponent": 0.2})
     relaxation_exponent: Annotated[float, Fitted("1", at_least=0, at_most=0.95)] = fitted(
         "exponent α"
     )

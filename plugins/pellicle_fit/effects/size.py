@@ -20,7 +20,9 @@ class Size(Bends):
     type: Literal["size"] = "size"
     examples = ({"size_error": {"value": 0, "deviation": 0.03}},)
     rank: ClassVar[int] = 0
-    size_error: Annotated[float, Fitted("1", above=-0.9)] = fitted("ε of the indenter's lengths")
+    size_error: Annotated[float, Fitted("1", above=-0.9, scope="indenter")] = fitted(
+        "ε of the indenter's lengths"
+    )
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Refuse a free size, which scales the modulus."""

@@ -19,11 +19,12 @@ class StandardLinear(Relaxing):
 
     model_config = ConfigDict(title="standard linear relaxation")
     type: Literal["standard_linear"] = "standard_linear"
+    examples = ({}, {"relaxed_share": 0.3, "relaxation_time": "1 s"})
     relaxed_share: Annotated[float, Fitted("1", at_least=0, at_most=0.99)] = fitted(
         "share g that relaxes"
     )
     relaxation_time: Annotated[float, Fitted("s", above=0, log=True)] = fitted(
-        "time T in which it relaxes"
+        "time T in which it relaxes [s]"
     )
 
     def relaxed(self, time: float) -> float:

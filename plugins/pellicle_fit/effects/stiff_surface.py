@@ -29,11 +29,14 @@ class StiffSurface(Bends):
 
     model_config = ConfigDict(title="a surface stiffer or softer than the bulk")
     type: Literal["stiff_surface"] = "stiff_surface"
+    examples = ({}, {"gain": 0.3, "reach": "1 um"})
     rank: ClassVar[int] = 2
     gain: Annotated[float, Fitted("1", at_least=-0.5, at_most=0.5)] = fitted(
         "relative excess g of the stiffness at the surface"
     )
-    reach: Annotated[float, Fitted("m", above=0, log=True)] = fitted("length l over which it falls")
+    reach: Annotated[float, Fitted("m", above=0, log=True)] = fitted(
+        "length l over which it falls [m]"
+    )
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Refuse a set with a tension, and a contact without a radius."""

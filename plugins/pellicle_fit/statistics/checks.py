@@ -20,7 +20,7 @@ from pellicle_fit.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates
 from .chi_squared import ChiSquared, Minimum, best_minimum
 from .initial_guess import initial_guesses
 from .likelihood import Likelihood
-from .long_memory import exponent_of
+from pellicle_fit.long_memory import exponent_of
 from .noise import FailedCheck, Noise, NoiseEstimate, Residuals, check_baseline
 from .profile import CONFIDENCE, Estimate
 

@@ -18,7 +18,7 @@ from pellicle_fit.parameters import CONTACT_POINT, OFFSET, SLOPE, Coordinates, P
 
 from .chi_squared import ChiSquared, Range
 from .condensed import Condensation, Rows
-from .long_memory import differenced
+from pellicle_fit.long_memory import differenced
 
 _Value = TypeVar("_Value")
 
