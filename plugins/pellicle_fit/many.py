@@ -17,14 +17,14 @@ import numpy as np
 
 from pellicle import registry, results
 from pellicle.batch import BatchProgress, locked, mapped
-from pellicle.components import Component, Say
+from pellicle.components import Component, Executor, Say
 from pellicle.errors import PellicleError
 from pellicle.files import atomic_write, check_writable, write_json
 from pellicle.results import header
 
 from .config import FitConfig
 from .files.sources import Curves, Source, SourceStream
-from .fits import Problem, fitted, problem
+from .fits import fitted
 from .population.images import force_maps
 from .population.judgement import group_of, group_pattern, judge, read_names
 from .population.row import FAILED, Row, Sketch
@@ -49,6 +49,8 @@ _WITHOUT_EFFECT = {
     "group_by",
 }
 """Fields of a configuration that do not change the fit of a curve."""
+_OF_ALL = {"configuration", "versions", "date", "wall_time"}
+"""What the JSON of a population has once."""
 _BYTES_PER_POINT = 2000
 """Memory of a fit, approximately."""
 _BATCH = 4_000_000
@@ -60,7 +62,8 @@ class FitTask:
     """The fit of one curve; it pickles to workers."""
 
     row: Row
-    problem: Problem
+    config: FitConfig
+    source: Source
     path: Path | None
     """File that keeps the fit."""
 
@@ -72,7 +75,8 @@ class FitTask:
     @property
     def memory(self) -> int:
         """Estimated peak memory of the fit [bytes]."""
-        return _BYTES_PER_POINT * sum(m.curve.force.size for m in self.problem.members)
+        curve = self.source.curve
+        return 0 if isinstance(curve, PellicleError) else _BYTES_PER_POINT * np.size(curve.force)
 
 
 @dataclass
@@ -177,7 +181,7 @@ def fit_sources(
         try:
             with BatchProgress(length_hint(sources), 0, progress) as bar:
                 for batch in _batches(sources):
-                    _fit_batch(config, batch, directory, fits, bar, length_hint(sources), progress)
+                    _fit_batch(config, batch, directory, fits, bar, length_hint(sources))
         except BaseException:
             # A table without any fit would replace an earlier one.
             if directory is not None and any(row.is_fitted for row in fits.rows):
@@ -215,10 +219,11 @@ def _fit_batch(
     fits: ManyFits,
     bar: BatchProgress,
     total: int,
-    progress: bool,
 ) -> None:
     """Fit each curve of a batch that is not fitted yet, and add a row for each."""
     pattern, tasks = group_pattern(config.group_by), list[FitTask]()
+    # An executor need not pickle.
+    own = config.model_copy(update={"executor": registry().make(Executor, {"type": "serial"})})
     for source in sources:
         row = Row(source.name, group_of(pattern, source.file, source.group))
         fits.rows.append(row)
@@ -235,7 +240,7 @@ def _fit_batch(
                     row.keep(earlier)
                     fits.resumed += 1
                     continue
-            tasks.append(FitTask(row, problem(config, [source], progress=progress), path))
+            tasks.append(FitTask(row, own, source, path))
         except PellicleError as error:
             row.status = _failure(error, row.name)
 
@@ -255,11 +260,12 @@ def _fit_batch(
 
 def work(task: FitTask, say: Say) -> dict[str, Any]:
     """Fit a curve in a worker, and return JSON data of the fit, with what a population adds."""
-    fit = fitted(task.problem)
+    fit = fitted(task.config, [task.source])
     (member,), (force,) = fit.members, fit.forces()
     measured, position = member.curve.force, member.curve.position
     scatter = measured - np.mean(measured)
-    return fit.to_dict() | {
+    kept = {name: value for name, value in fit.to_dict().items() if name not in _OF_ALL}
+    return kept | {
         "r_squared": 1 - float(np.sum((force - measured) ** 2) / np.sum(scatter**2)),
         "indentation": float(np.max(position)) - fit.contact_point.value,
         "largest_force": float(np.max(force)),

@@ -64,7 +64,7 @@ def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None, si: bool 
         print_table(tables.rows(fits.rows, si=si), si=si)
     else:
         echo(f"{len(fits.rows)} curves: see {directory / 'fits.csv'}")
-    if len(fits.rows) > 1:
+    if len(fits.rows) > 1 and any(row.accepted for row in fits.rows):
         print_table(tables.groups(fits.rows, si=si), si=si)
 
 

@@ -95,7 +95,7 @@ def rows(of: Sequence[Row], *, si: bool = False) -> Table:
 
 
 def groups(of: Sequence[Row], *, si: bool = False) -> Table:
-    """Return a row for each parameter of each group of curves; no columns without any."""
+    """Return a row for each parameter of each group of curves."""
     parts, cells = summary(of), []
     for part in parts:
         # The groups of one parameter share their unit.
@@ -106,7 +106,7 @@ def groups(of: Sequence[Row], *, si: bool = False) -> Table:
         name = f"{words(part.parameter)} [{unit.unit}]"
         cells.append((part.group, name, *counts, unit.number(part.median), f"{low} to {high}"))
     heads = "group", "parameter", "accepted", "open", "outliers", "median", "quartiles"
-    return Table.of_rows(heads if cells else (), cells, "The accepted curves.")
+    return Table.of_rows(heads, cells, "The accepted curves.")
 
 
 def _quantity(name: str, estimates: Sequence[Estimate | None], si: bool) -> list[Column]:
