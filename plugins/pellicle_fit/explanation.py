@@ -10,7 +10,7 @@ from typing import Annotated, ClassVar, Literal, TypeVar
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.components.base import words_of_type
+from pellicle.components import words_of_type
 from pellicle.errors import ConvergenceError
 
 from .contact import Contact

@@ -175,6 +175,7 @@ def answer(
     model: Sequence[Effect],
     rivals: Iterable[Sequence[Effect]],
     *,
+    kept: Sequence[Effect] = (),
     fix: Mapping[str, float | str] | None = None,
     uncertainty: Sequence[Effect] = (),
     full: bool = False,
@@ -188,6 +189,8 @@ def answer(
     model
         The question is whether the first effect that is none of the instrument is needed; the
         others are kept in all explanations.
+    kept
+        Effects that all explanations have.
     rivals
         Sets of effects, each compared alone and beside what is asked for.
     fix
@@ -206,7 +209,7 @@ def answer(
     """
     curves = timed(curves)
     asked = next((effect for effect in model if not isinstance(effect, Records)), None)
-    kept = tuple(effect for effect in model if effect is not asked)
+    kept = (*kept, *(effect for effect in model if effect is not asked))
     question = Question(
         Solid.model_validate(dict(fix or {})), asked, kept, tuple(map(tuple, rivals))
     )

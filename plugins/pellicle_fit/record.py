@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 
 from pellicle import registry
 from pellicle.components import Component
-from pellicle.config.provenance import versions
 from pellicle.errors import ConfigError, StorageError
 from pellicle.schema import walk
 
@@ -26,10 +25,8 @@ _ABOVE = 2
 
 @dataclass(frozen=True)
 class Record:
-    """When a fit was made, with which versions, from which data."""
+    """When a fit was made, and with which versions."""
 
-    data: tuple[dict[str, Any], ...]
-    """File, hash, columns, calibration, segment and baseline of each curve."""
     versions: Mapping[str, str]
     """Version of each package that the fit used."""
     date: str
@@ -37,12 +34,8 @@ class Record:
     """[s]"""
 
     def to_dict(self) -> dict[str, Any]:
-        """Return versions, date and time as JSON data; each curve holds its own ``data``."""
-        return {
-            "versions": dict(self.versions),
-            "date": self.date,
-            "wall_time": self.wall_time,
-        }
+        """Return versions, date and time as JSON data."""
+        return vars(self) | {"versions": dict(self.versions)}
 
 
 class Stopwatch:
@@ -53,11 +46,9 @@ class Stopwatch:
 
     def record(self, config: FitConfig, data: Iterable[dict[str, Any]]) -> Record:
         """Return the record of a fit of curves with these `data_of`, which ends now."""
-        entries = tuple(data)
-        libraries = {entry["library"] for entry in entries if entry["library"]}
+        libraries = {entry["library"] for entry in data if entry["library"]}
         return Record(
-            entries,
-            versions(components_of(config), libraries),
+            registry().all_versions(components_of(config), libraries),
             datetime.now(UTC).isoformat(timespec="seconds"),
             round(perf_counter() - self._began, 3),
         )

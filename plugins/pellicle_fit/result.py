@@ -13,8 +13,8 @@ from pellicle.files import json_text, write_json
 from . import sentences
 from .config import FitConfig, described
 from .curve import Curve
-from .curves.curve import Note
 from .effect import quantities
+from .files.measurement import Note
 from .intervals import CONFIDENCE, Estimate
 from .recipe import Answer
 from .record import Record
@@ -108,7 +108,15 @@ class Fit:
     @property
     def sentences(self) -> list[str]:
         """The data, the verdict and the advice in words."""
-        return [*filter(None, [sentences.data(self.answer), self.comparison, self.advice])]
+        return [
+            *filter(
+                None, [sentences.data(self.answer, self._uncertainty), self.comparison, self.advice]
+            )
+        ]
+
+    @property
+    def _uncertainty(self) -> Mapping[str, float | str]:
+        return self.config.uncertainty if self.config else {}
 
     @property
     def messages(self) -> list[str]:
@@ -159,7 +167,7 @@ class Fit:
             "tension_needed": self.tension_needed,
             "advice": self.advice,
             "confidence": CONFIDENCE,
-            "calibration": sentences.calibration(answer),
+            "calibration": sentences.calibration(self._uncertainty),
             "chi_squared": self.chi_squared,
             "threshold": answer.threshold,
             "margin": max(MARGIN, answer.threshold),

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.special import bdtrc
 
 from pellicle.arrays import Array
+from pellicle.errors import ConfigError
 
 from .curve import Curve
 from .effect import Effect, Responds, Sizes
@@ -272,6 +273,8 @@ def compared(
         if types in fits:
             continue
         if excuse := explanation.excuse(curves):
+            if types in simple:
+                raise ConfigError(f"does not suit: {explanation.words} {excuse}", "model")
             excused[types] = excuse
             continue
         if types in others:

@@ -96,7 +96,9 @@ def _page(rows: Sequence[Row], caption: str, figure: FigureBase) -> None:
             Line2D([], [], color="0.6", marker=".", linestyle="", label="data"),
             Line2D([], [], color="C0", label="fit"),
             *(
-                Line2D([], [], color=c, marker="s", mfc="none", linestyle="", label=f"frame: {state}")
+                Line2D(
+                    [], [], color=c, marker="s", mfc="none", linestyle="", label=f"frame: {state}"
+                )
                 for state, c in _COLOURS.items()
             ),
         ],

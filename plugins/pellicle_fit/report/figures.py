@@ -66,11 +66,15 @@ def panels(fit: Fit | ManyFits) -> list[Panel]:
     if len(fit.members) > 1:
         data = "Data and fit of each curve, relative to largest depth and force; below, residuals."
         shared = [k for k, slot in enumerate(chosen.objective.slots) if slot.curve is None]
-        caption = "The rise of the least χ² with a quantity fixed; dotted, the ends of its interval."
+        caption = (
+            "The rise of the least χ² with a quantity fixed; dotted, the ends of its interval."
+        )
         profiles = partial(_profiles, fit, shared)
         return [Panel(partial(_pool, fit), data), *([Panel(profiles, caption)] if shared else [])]
     other = _other(fit)
-    caption = f"Data, the fit, by {words_of(chosen)}, and {words_of(other)}; below, their residuals."
+    caption = (
+        f"Data, the fit, by {words_of(chosen)}, and {words_of(other)}; below, their residuals."
+    )
     drawings = [Panel(partial(_curve, fit, other), caption)]
     tensed = fit.explained(TENSION)
     if tensed is not None and tensed.objective.index(MODULUS) is not None:

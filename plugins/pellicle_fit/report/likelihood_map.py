@@ -30,7 +30,10 @@ def likelihood_map(explained: Explained, figure: FigureBase) -> None:
     """Draw √Δχ² over modulus and tension of an explanation, minimised over the rest."""
     moduli, tensions, rises = _grid(explained)
     estimates, axes = parameters_of(explained), figure.add_subplot()
-    (pascal, modulus_unit), (newton, tension_unit) = axis_unit(moduli, "Pa"), axis_unit(tensions, "N/m")
+    (pascal, modulus_unit), (newton, tension_unit) = (
+        axis_unit(moduli, "Pa"),
+        axis_unit(tensions, "N/m"),
+    )
     x, y = moduli * pascal, tensions * newton
     levels = np.linspace(0, 4, 17)
     filled = axes.contourf(x, y, np.sqrt(np.maximum(rises, 0)), levels, cmap="Blues_r")

@@ -25,7 +25,9 @@ def sentence_of_fit(fit: Fit, *, si: bool = False) -> str:
     others = [name for effect in own for name in effect.open if name not in _NAMES]
     hidden = "reduced_modulus" if "youngs_modulus" in estimates else ""
     absent = fit.tension.held and not fit.tension.value
-    names = [n for n in _NAMES if n in estimates and n != hidden and not (n == "tension" and absent)]
+    names = [
+        n for n in _NAMES if n in estimates and n != hidden and not (n == "tension" and absent)
+    ]
     names += [*others, *(["contact_point"] if len(fit.members) == 1 else [])]
     parts = [f"{words(name)} {in_words(estimates[name], si=si)}" for name in names]
     text = f"{', '.join(parts[:-1])} and {parts[-1]}" if len(parts) > 1 else parts[0]
