@@ -91,6 +91,7 @@ class ManyFits:
     """Notes on the population: rejected curves, outliers, lists with wrong names."""
     maps: dict[str, xr.Dataset] = field(default_factory=dict)
     """Images of each force map, by its file."""
+    config: FitConfig | None = None
 
     @property
     def failed(self) -> int:
@@ -173,7 +174,7 @@ def fit_sources(
     from .report.population import save_population
 
     lists = read_names(config.accepted), read_names(config.rejected)
-    fits, watch = ManyFits([]), Stopwatch()
+    fits, watch = ManyFits([], config=config), Stopwatch()
     with nullcontext() if directory is None else locked(directory, "fits"):
         if directory is not None:
             check_writable(directory / "fits.h5")

@@ -78,7 +78,7 @@ def _images(
 
 def _numbers(row: Row) -> dict[str, float]:
     """Return the numbers of a fit that have an image, by name."""
-    known, numbers = row.values(), {}
+    known, numbers = row.values(), dict[str, float]()
     for name, estimate in row.estimates.items():
         if estimate.held or name in _OF_BASELINE:
             continue

@@ -45,11 +45,11 @@ class Sketch(NamedTuple):
     @classmethod
     def of(cls, position: Array, force: Array, fit: Array | None = None) -> Self:
         """Return evenly chosen rows, with the first and the last, as many as a small figure has."""
-        given = [None if v is None else np.asarray(v, dtype=float) for v in (position, force, fit)]
-        known = np.all([np.isfinite(values) for values in given if values is not None], axis=0)
-        rows = np.flatnonzero(known)
-        chosen = np.linspace(0, rows.size - 1, min(rows.size, _POINTS)).round().astype(int)
-        return cls(*(None if v is None else v[rows[chosen]].astype("f4") for v in given))
+        z, f = (np.asarray(values, dtype=float) for values in (position, force))
+        rows = np.flatnonzero(np.isfinite(z) & np.isfinite(f))
+        rows = rows[np.linspace(0, rows.size - 1, min(rows.size, _POINTS)).round().astype(int)]
+        model = None if fit is None else np.asarray(fit)[rows].astype("f4")
+        return cls(z[rows].astype("f4"), f[rows].astype("f4"), model)
 
     def to_dict(self) -> dict[str, list[float]]:
         """Return it as JSON data, rounded."""
@@ -110,12 +110,12 @@ class Row:
 
     def values(self) -> dict[str, float]:
         """Return all numbers in SI by name, ends of intervals too; an open end is NaN."""
-        values = dict(self.numbers)
+        values: dict[str, float] = {}
         for name, estimate in self.estimates.items():
             numbers = estimate.value, estimate.low, estimate.high
             names = (f"{name}{end}" for end in ENDS)
             values |= dict(zip(names, map(_number, numbers), strict=True))
-        return values
+        return values | self.numbers
 
     @property
     def model(self) -> str:
@@ -136,6 +136,11 @@ class Row:
     def data(self) -> dict[str, Any]:
         """Origin of the curve, and which part of it was fitted; empty without a fit."""
         return next((dict(entry["data"]) for entry in self._curves), {})
+
+    @property
+    def radius(self) -> float | str:
+        """Radius of the indenter [m]; an empty text if it has none, or without a fit."""
+        return next((entry["indenter"].get("radius", "") for entry in self._curves), "")
 
     @property
     def _curves(self) -> list[dict[str, Any]]:

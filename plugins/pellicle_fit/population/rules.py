@@ -37,7 +37,7 @@ def units() -> dict[str, str]:
     components = [Solid, *(effect.component for effect in effects)]
     names = {"youngs_modulus": "Pa"}
     for component in components:
-        if issubclass(component, Fittable):
+        if isinstance(component, type) and issubclass(component, Fittable):
             names |= {name: quantity.unit for name, quantity in quantities(component).items()}
     ends = {f"{name}{end}": unit for name, unit in names.items() for end in ENDS}
     return ends | NUMBERS

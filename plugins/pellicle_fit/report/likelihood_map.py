@@ -61,24 +61,26 @@ def _grid(explained: Explained) -> tuple[Array, Array, Array]:
     objective, best = explained.objective, explained.minimum
     names = [slot.name for slot in objective.slots]
     e, t = names.index(MODULUS), names.index(TENSION)
-    deviation = min(_HALF_WIDTH * objective.deviations(best.at)[e], _FURTHEST)
-    coordinates = best.at[e] + np.linspace(-deviation, deviation, _MODULI)
-    others = [k for k in range(len(names)) if k != e]
+    rest = [k for k in range(len(names)) if k not in (e, t)]
+    half_width = min(_HALF_WIDTH * objective.deviations(best.at)[e], _FURTHEST)
+    coordinates = best.at[e] + np.linspace(-half_width, half_width, _MODULI)
     tensions = np.empty((_MODULI, _TENSIONS))
     rises = np.empty_like(tensions)
-    ridge = best.at
     for row, modulus in enumerate(coordinates):
         start = np.array(best.at)
         start[e] = modulus
         ridge = objective.minimise(start, (e,)).at
-        jacobian = objective.jacobian(ridge, others)
-        covariance = np.linalg.pinv(jacobian.T @ jacobian, rcond=1e-14)
-        half = _HALF_WIDTH * np.sqrt(covariance[others.index(t), others.index(t)])
+        # Away from the ridge the rest moves, to first order, as this makes χ² least.
+        by_tension = objective.jacobian(ridge, (t,))[:, 0]
+        by_rest = objective.jacobian(ridge, rest) if rest else np.empty((by_tension.size, 0))
+        along = -np.linalg.lstsq(by_rest, by_tension, rcond=1e-12)[0]
+        half = _HALF_WIDTH / np.linalg.norm(by_tension + by_rest @ along)
         tensions[row] = np.linspace(max(ridge[t] - half, 0.0), ridge[t] + half, _TENSIONS)
         for column, tension in enumerate(tensions[row]):
-            start = np.array(ridge)
-            start[t] = tension
-            rises[row, column] = objective.minimise(start, (e, t)).chi_squared - best.chi_squared
+            at = np.array(ridge)
+            at[t] = tension
+            at[rest] += along * (tension - ridge[t])
+            rises[row, column] = objective.chi_squared(at) - best.chi_squared
     moduli = [objective.slots[e].value(modulus) for modulus in coordinates]
     in_si = [[objective.slots[t].value(tension) for tension in row] for row in tensions]
     return np.repeat(np.array(moduli)[:, None], _TENSIONS, axis=1), np.array(in_si), rises

@@ -28,6 +28,8 @@ _PAGES = 6
 """Pages of the contact sheet on the page, which a browser has to load at once."""
 _LONGEST = 2_000_000
 """Letters of JSON that the page repeats."""
+_ELSEWHERE = {"curves", "per_file", "rivals", "pool", "compare", "executor", "cache"}
+"""Fields of a configuration that say nothing of the solid, or stand in the tables."""
 _UNDECIDED = Verdict.CANNOT_TELL, Verdict.UNDESCRIBED
 
 
@@ -54,12 +56,14 @@ def save_report(fit: Fit | ManyFits, path: Path, title: str) -> Path:
     code: Block = Code(content, "All numbers, in SI.", f"{path.stem}.json")
     if len(content) > _LONGEST:
         code = Text("With this number of curves the page does not repeat the tables of --output.")
-    inputs = input_table(fit.config.to_dict(), FitConfig) if fit.config else None
+    given = fit.config.to_dict() if fit.config else {}
+    known = {name: value for name, value in given.items() if name not in _ELSEWHERE}
+    inputs = input_table(known, FitConfig, "The indenter, and what was given or chosen.")
     sections = [
         Section("Result", results),
         Section("Figures", figures),
         Section("More informative experiments", [Text(_sentence(advice))] if advice else []),
-        Section("Inputs", [inputs] if inputs else []),
+        Section("Inputs", [inputs] if known else []),
         Section("Data", [] if isinstance(fit, ManyFits) else _record(fit)),
         Section("As JSON", [code]),
     ]

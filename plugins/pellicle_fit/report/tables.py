@@ -7,8 +7,10 @@ from collections.abc import Sequence
 from pellicle.components import Column, Table
 from pellicle.units import Scale
 from pellicle_fit.intervals import CONFIDENCE, Estimate
+from pellicle_fit.objective import MODULUS
 from pellicle_fit.population.row import FITTED, Row
 from pellicle_fit.population.summary import summary
+from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import Fit, name_of, parameters_of
 from pellicle_fit.rivals import MARGIN
 from pellicle_fit.sentences import failed_checks
@@ -17,14 +19,18 @@ from pellicle_fit.wording import column_scale, interval, interval_text, scale, w
 
 _INTERVAL = f"{100 * CONFIDENCE:.0f} % interval"
 _MEANING = "values that describe the data nearly as well"
-_SHOWN = "reduced_modulus", "tension", "work_of_adhesion", "thickness", "contact_point"
-"""Quantities of which a table of many curves has columns, if one of them has it."""
+_SHOWN = MODULUS, TENSION, "work_of_adhesion", "thickness"
+"""Quantities whose intervals a table of many curves has, if one of them has it."""
 
 
 def estimates(fit: Fit, *, si: bool = False) -> Table:
-    """Return a row for each quantity of a fit, in units with prefixes unless ``si``."""
-    rows = []
+    """Return a row for each quantity of a fit, of several curves those that they share."""
+    several, rows = len(fit.members) > 1, []
+    slots = fit.answer.chosen.objective.slots
+    of_one = {name_of(slot.name, slot.curve) for slot in slots if slot.curve is not None}
     for name, estimate in fit.estimates().items():
+        if several and name in of_one:
+            continue
         unit = scale(estimate, si=si)
         ends = interval(estimate, si=si)
         rows.append((words(name), unit.number(estimate.value), ends, unit.unit))
@@ -37,17 +43,21 @@ def estimates(fit: Fit, *, si: bool = False) -> Table:
 
 def explanations(fit: Fit, *, si: bool = False) -> Table:
     """Return a row for each explanation of the data that was compared, best first."""
-    answer, least = fit.answer, fit.answer.explanations[0].aic
+    answer, compared = fit.answer, fit.answer.explanations
     tied = {other.types for other in answer.tied}
-    known = [parameters_of(one) for one in answer.explanations]
     columns = [
-        Column("explanation", [words_of(one) for one in answer.explanations]),
-        Column("χ²", [one.chi_squared for one in answer.explanations], digits=5),
-        Column("ΔAIC", [one.aic - least for one in answer.explanations], digits=3),
-        Column("tied", ["yes" if one.types in tied else "" for one in answer.explanations]),
+        Column("explanation", [words_of(one) for one in compared]),
+        Column("χ²", [one.chi_squared for one in compared], digits=5),
+        Column("ΔAIC", [one.aic - compared[0].aic for one in compared], digits=3),
+        Column("tied", ["yes" if one.types in tied else "" for one in compared]),
     ]
-    for name in ("reduced_modulus", "tension"):
-        columns += _quantity(name, [estimates.get(name) for estimates in known], si)
+    for name in (MODULUS, TENSION):
+        values = [parameters_of(one).get(name) for one in compared]
+        # Of the others no interval is sought.
+        sought = [
+            v if name in one.estimates else None for v, one in zip(values, compared, strict=True)
+        ]
+        columns += _quantity(name, values, si, sought)
     margin = max(MARGIN, answer.threshold)
     caption = f"What describes the data, best first; below ΔAIC = {margin:.3g} it is a tie."
     return Table(columns, caption)
@@ -72,12 +82,17 @@ def curves(fit: Fit, *, si: bool = False) -> Table:
 
 def rows(of: Sequence[Row], *, si: bool = False) -> Table:
     """Return a row for each curve of a population."""
-    columns = [Column("curve", [row.name for row in of])]
+    columns, radii = [Column("curve", [row.name for row in of])], [row.radius for row in of]
     if any(row.group for row in of):
         columns.append(Column("group", [row.group for row in of]))
+    if len({radius for radius in radii if radius != ""}) > 1:
+        columns.append(Column("radius", radii, "m"))
     columns.append(Column("model", [row.model for row in of]))
     for name in _SHOWN:
         columns += _quantity(name, [row.estimates.get(name) for row in of], si)
+    columns += _quantity("contact_point", [row.estimates.get("contact_point") for row in of], si)[
+        :1
+    ]
     columns.append(Column("R²", [row.numbers.get("r_squared", "") for row in of], digits=5))
     columns.append(Column("failed checks", [", ".join(row.failed_checks) for row in of]))
     columns.append(Column("notes", [str(len(row.messages)) for row in of]))
@@ -109,14 +124,22 @@ def groups(of: Sequence[Row], *, si: bool = False) -> Table:
     return Table.of_rows(heads, cells, "The accepted curves.")
 
 
-def _quantity(name: str, estimates: Sequence[Estimate | None], si: bool) -> list[Column]:
-    """Return the columns of values and intervals of a quantity; none if no curve has it."""
+def _quantity(
+    name: str,
+    estimates: Sequence[Estimate | None],
+    si: bool,
+    sought: Sequence[Estimate | None] | None = None,
+) -> list[Column]:
+    """Return the columns of values and intervals of a quantity; none if no curve has it.
+
+    Intervals are those of the estimates that were ``sought``, by default all.
+    """
     if not any(e is not None and not (e.held and not e.value) for e in estimates):
         return []
     unit = next(e.unit for e in estimates if e is not None)
     values = Column(words(name), ["" if e is None else e.value for e in estimates], unit)
     scale, _ = values.unit_and_digits(si=si)
-    texts = ["" if e is None else _ends(e, scale) for e in estimates]
+    texts = ["" if e is None else _ends(e, scale) for e in sought or estimates]
     return [values, Column(f"95 % of {words(name)}", texts, meaning=_MEANING)]
 
 
