@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -17,9 +16,8 @@ from pellicle.errors import ConfigError
 if TYPE_CHECKING:
     from pellicle_fit.config import FitConfig
     from pellicle_fit.many import ManyFits
-    from pellicle_fit.one_curve import Fit
-    from pellicle_fit.pooled import PooledFit
     from pellicle_fit.record import Repetition
+    from pellicle_fit.result import Fit
 
 
 def fit(
@@ -57,9 +55,34 @@ def fit(
             "--poissons-ratio."
         ),
     ] = None,
+    model: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Effect whose need is asked (default tension), then those that are certain; none "
+            "for an elastic half-space. See pellicle plugins.",
+        ),
+    ] = None,
+    rivals: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Effect to compare, or several that act together: offset,slope; repeat it. none "
+            "for no comparison; by default all that bend curves as a tension does.",
+        ),
+    ] = None,
     fix: Annotated[
         list[str] | None,
-        typer.Option(help='Fix a parameter: --fix tension=0, --fix reduced_modulus="10 kPa".'),
+        typer.Option(
+            metavar="NAME=VALUE",
+            help='Fix a quantity: --fix tension=0, --fix reduced_modulus="10 kPa".',
+        ),
+    ] = None,
+    uncertainty: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=VALUE",
+            help="Standard deviation of spring_constant, sensitivity or radius: "
+            '--uncertainty spring_constant="10 %".',
+        ),
     ] = None,
     baseline: Annotated[
         str | None,
@@ -89,7 +112,7 @@ def fit(
         bool, typer.Option("--pool", help="Fit one modulus and one tension to all curves.")
     ] = False,
     compare: Annotated[
-        bool, typer.Option("--compare", help="Compare what else can bend the curve, in full.")
+        bool, typer.Option("--compare", help="Print all explanations, with their intervals.")
     ] = False,
     set_: Annotated[
         list[str] | None,
@@ -144,13 +167,19 @@ def fit(
         raise ConfigError(f"{configs[0]}: --again has a configuration of its own; leave one out")
     config = FitConfig.merged(
         configs[0] if configs else repeated and repeated.config,
-        [*map(_override, fix or ()), *(set_ or ())],
+        [
+            *(_override("fix", text) for text in fix or ()),
+            *(_override("uncertainty", text) for text in uncertainty or ()),
+            *(set_ or ()),
+        ],
         curves=tuple(path for path in files if path not in configs) or None,
         indenter=indenter,
         radius=radius[0] if radius and len(radius) == 1 else radius or None,
         half_angle=half_angle,
         poissons_ratio=poissons_ratio,
         thickness=thickness,
+        model=model and [name for names in _sets(model) for name in names],
+        rivals=rivals and _sets(rivals),
         baseline=baseline,
         segment=segment,
         spring_constant=spring_constant,
@@ -168,7 +197,7 @@ def fit(
         print_notes(result)
     else:
         print_fit(result, si=si)
-    for difference in _differences(repeated, result) if repeated else ():
+    if repeated and (difference := _difference(repeated, result)):
         echo(f"warning: {difference}", err=True)
     written = _write(result, name, title, directory, report=report)
     if not quiet:
@@ -196,23 +225,20 @@ def _show(directory: Path, si: bool, json: bool) -> bool:
 
 def _fit(
     config: FitConfig, directory: Path | None, *, quiet: bool
-) -> tuple[Fit | PooledFit | ManyFits, str, str]:
+) -> tuple[Fit | ManyFits, str, str]:
     """Return the fit of the curves, the name of its files and the title of its page."""
     from pellicle_fit.files.sources import SourceStream
+    from pellicle_fit.fits import fitted
     from pellicle_fit.many import fit_sources
-    from pellicle_fit.one_curve import fit_source
-    from pellicle_fit.pooled import pool_sources
 
     progress, curves = not quiet and sys.stderr.isatty(), config.files()
     if config.pool:
-        sources = [source for file in curves for source in file.open()]
-        return pool_sources(config, sources, progress=progress), "pool", "Pooled fit"
+        return fitted(config, config.sources(), progress=progress), "pool", "Pooled fit"
     if [file.path for file in curves] == [config.curves[0]]:
         opened = curves[0].open()
         if opened.is_single:
-            (source,) = opened
             stem = config.curves[0].stem
-            return fit_source(config, source, progress=progress), f"{stem}-fit", stem
+            return fitted(config, list(opened), progress=progress), f"{stem}-fit", stem
     try:
         fits = fit_sources(config, SourceStream(curves), directory, progress=not quiet)
     except KeyboardInterrupt:
@@ -222,17 +248,17 @@ def _fit(
     return fits, "fits", f"Fits of {len(fits.rows)} curves"
 
 
-def _differences(repeated: Repetition, result: Fit | PooledFit | ManyFits) -> Iterator[str]:
-    """Yield how data and versions differ from those of the fit that is repeated."""
+def _difference(repeated: Repetition, result: Fit | ManyFits) -> str:
+    """Return how data and versions differ from those of the fit that is repeated."""
     from pellicle_fit.many import ManyFits
 
     if isinstance(result, ManyFits):
-        return repeated.differences([row["data"] for row in result.rows if "data" in row], None)
-    return repeated.differences(result.record.data if result.record else [], result.record)
+        return repeated.difference([row.data for row in result.rows if row.data], None)
+    return repeated.difference([member.data for member in result.members], result.record)
 
 
 def _write(
-    result: Fit | PooledFit | ManyFits,
+    result: Fit | ManyFits,
     name: str,
     title: str,
     directory: Path | None,
@@ -255,11 +281,16 @@ def _write(
     return written
 
 
-def _override(text: str) -> str:
-    """Return ``name=value`` of ``--fix`` in the form of ``--set``; a bare number is in SI."""
+def _override(key: str, text: str) -> str:
+    """Return ``name=value`` of an option in the form of ``--set``; a bare number is in SI."""
     name, equals, value = text.partition("=")
     if not equals:
-        raise ConfigError(f"{text!r} is not of the form name=value, e.g. tension=0", "fix")
+        raise ConfigError(f"{text!r} is not of the form name=value", key)
     with suppress(ValueError):
         value = repr(float(value))
-    return f"fix.{name.strip()}={value.strip()}"
+    return f"{key}.{name.strip()}={value.strip()}"
+
+
+def _sets(texts: list[str]) -> list[list[str]]:
+    """Return the sets of effects that an option names, each with commas; "none" is no set."""
+    return [[name.strip() for name in text.split(",")] for text in texts if text != "none"]

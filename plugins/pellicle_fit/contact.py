@@ -10,6 +10,8 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.components import HasContactRadius, HasForceCurve
 
+from .checked_force import checked_force
+
 Area = Callable[[Array, float], Array]
 """F/E* [m²] at depths [m] and an elastocapillary length s = 2τ₀/E* [m]; 0 at depths ≤ 0."""
 _STEP = 1e-4
@@ -44,9 +46,16 @@ class Contact:
         """Return the contact of an indenter that has a force curve of its own."""
 
         def area(depth: Array, length: float) -> Array:
-            return indenter.force_curve(depth, length).force
+            return checked_force(indenter, "force_curve", depth, length)
 
-        return cls(indenter, modulus, area, indenter.depth_limit)
+        return cls(
+            indenter,
+            modulus,
+            area,
+            indenter.depth_limit,
+            half_space=getattr(indenter, "half_space", True),
+            error=max(1e-6, getattr(indenter, "accuracy", 0.0)),
+        )
 
     @property
     def tip_radius(self) -> float | None:

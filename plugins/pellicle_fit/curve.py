@@ -14,6 +14,8 @@ from pellicle.errors import ConfigError
 
 _FEWEST = 8
 """Rows that a curve has to have."""
+_GROUPS = 20
+"""Parts of a pass that have a velocity of their own."""
 _NEIGHBOURS = 4
 """Rows on each side over which forces are smoothed."""
 
@@ -107,12 +109,12 @@ class Curve:
 
     @cached_property
     def velocity(self) -> Array:
-        """Velocity of the base into the solid [m/s], the mean of each pass; 0 without times."""
+        """Velocity of the base into the solid [m/s], of shape (n,), that of groups of neighbours."""
         velocity = np.zeros_like(self.base)
-        if self.time is not None:
-            for rows in self.passes:
-                if rows.size > 1 and np.ptp(self.time[rows]) > 0:
-                    velocity[rows] = np.polyfit(self.time[rows], self.base[rows], 1)[0]
+        for rows in self.passes:
+            for group in np.array_split(rows, min(_GROUPS, max(rows.size // 4, 1))):
+                time, base = (values[group] - np.mean(values[group]) for values in (self.clock, self.base))
+                velocity[group] = time @ base / max(float(time @ time), 1e-300)
         return velocity
 
     @cached_property

@@ -19,12 +19,14 @@ from pellicle.units import Quantity
 from .config import FREE, TENSION, UNCERTAIN, FitConfig
 from .curve import Curve
 from .effect import Effect, quantities
+from .explanation import Solid
 from .files.cleaning import clean
 from .files.measurement import Measurement
 from .files.sources import Curves, Source
-from .recipe import answer, with_estimates
+from .recipe import answer
 from .record import Stopwatch, data_of
 from .result import Fit, Member
+from .sentences import advised
 
 _BASELINES = {"none": (), "offset": ("offset",), "slope": ("offset", "slope")}
 
@@ -98,9 +100,9 @@ def fit(
         raise ConfigError(f"names {count} curves; use fit_many or fit_pooled", "curves")
     if isinstance(source.curve, Measurement):
         # `clean` checks the array.
-        own = {} if time is None else {"time": cast("Array", time)}
+        clock = source.curve.time if time is None else cast("Array", time)
         is_depth = source.curve.is_depth or depth is not None
-        source = source._replace(curve=replace(source.curve, is_depth=is_depth, **own))
+        source = source._replace(curve=replace(source.curve, is_depth=is_depth, time=clock))
     return fitted(config, [source], progress=progress)
 
 
@@ -133,10 +135,7 @@ def fit_pooled(
         A folder cannot be read.
     """
     config = FitConfig.merged(config, pool=True, **options)
-    sources = config.sources(curves)
-    if len(sources) < 2:
-        raise ConfigError("holds one curve, and a pool needs two; use fit", "curves")
-    return fitted(config, sources, progress=progress)
+    return fitted(config, config.sources(curves), progress=progress)
 
 
 def fitted(config: FitConfig, sources: Sequence[Source], *, progress: bool = False) -> Fit:
@@ -147,6 +146,8 @@ def fitted(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fal
     ConfigError, PluginError, ConvergenceError, StorageError
         As for `fit`.
     """
+    if config.pool and len(sources) < 2:
+        raise ConfigError("holds one curve, and a pool needs two; use fit", "curves")
     watch, members, cleaned = Stopwatch(), [], []
     for source in sources:
         try:
@@ -171,19 +172,20 @@ def fitted(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fal
         )
     uncertain = _uncertain(config, cleaned[0], curves[0])
     model, kept, rivals = _effects(config)
-    solid = {name: fix[name] for name in ("reduced_modulus", "contact_point") if name in fix}
+    solid: dict[str, float | str] = {k: fix[k] for k in quantities(Solid).keys() & fix.keys()}
     with status_line("fitting", progress):
-        found = answer(curves, model, rivals, kept=kept, fix=solid, uncertainty=uncertain)
-        if config.compare:
-            found = replace(
-                found,
-                explanations=tuple(
-                    with_estimates(fit, found.threshold, uncertain, everything=True)
-                    for fit in found.explanations
-                ),
-            )
+        found = answer(
+            curves,
+            model,
+            rivals,
+            kept=kept,
+            fix=solid,
+            uncertainty=uncertain,
+            full=config.compare,
+        )
+        advice = advised(found)
     record = watch.record(config, [member.data for member in members])
-    return Fit(found, tuple(members), config.poissons_ratio, config, record)
+    return Fit(found, tuple(members), advice, config.poissons_ratio, config, record)
 
 
 def _curve(measured: Measurement, config: FitConfig, source: Source) -> Curve:

@@ -18,7 +18,7 @@ import numpy as np
 from pellicle import registry, results
 from pellicle.batch import BatchProgress, locked, mapped
 from pellicle.components import Component, Executor, Say
-from pellicle.errors import PellicleError
+from pellicle.errors import ConfigError, PellicleError
 from pellicle.files import atomic_write, check_writable, write_json
 from pellicle.results import header
 
@@ -228,6 +228,10 @@ def _fit_batch(
     for source in sources:
         row = Row(source.name, group_of(pattern, source.file, source.group))
         fits.rows.append(row)
+        try:
+            config.body(source.fields)
+        except ConfigError as error:
+            raise source.named(error) from None
         try:
             if isinstance(source.curve, PellicleError):
                 raise source.curve

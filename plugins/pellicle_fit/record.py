@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -87,36 +87,29 @@ class Repetition(NamedTuple):
     """Hash of each file that was fitted, by its path as it was given."""
     versions: Mapping[str, str]
 
-    def differences(
-        self, data: Iterable[Mapping[str, Any]], record: Record | None
-    ) -> Iterator[str]:
-        """Yield in words which files and versions differ from those of the first fit.
+    def difference(self, data: Iterable[Mapping[str, Any]], record: Record | None) -> str:
+        """Return which files and versions differ from those of the first fit; empty if none do.
 
-        Parameters
-        ----------
-        data
-            `data_of` each curve that is fitted now.
-        record
-            Record of the fit, with its versions, if it has one.
+        ``data`` are `data_of` each curve that is fitted now; ``record`` is that of the fit.
         """
-        hashes = {entry["file"]: entry["sha256"] for entry in data}
-        for file, digest in hashes.items():
-            if file not in self.sha256:
-                yield f"{file}: was not among the curves that were fitted then"
-            elif self.sha256[file] != digest:
-                yield (
-                    f"{file}: is not the file that was fitted then: its SHA-256 is {digest}, and "
-                    f"was {self.sha256[file]}"
-                )
-        for file in self.sha256.keys() - hashes.keys():
-            yield f"{file}: was fitted then, and is not read now"
-        for name, version in (record.versions if record else {}).items():
-            if self.versions.get(name) not in (None, version):
-                yield f"{name} is version {version}, and was {self.versions[name]}"
+        now = {str(entry["file"]): str(entry["sha256"]) for entry in data}
+        files = [
+            file
+            for file in sorted(now.keys() | self.sha256.keys())
+            if now.get(file) != self.sha256.get(file)
+        ]
+        versions = record.versions if record else {}
+        names = [
+            f"{name} {version} (was {self.versions[name]})"
+            for name, version in versions.items()
+            if self.versions.get(name) not in (None, version)
+        ]
+        differs = ", ".join([*files, *names])
+        return differs and f"differs from what was fitted then: {differs}"
 
 
 def repetition(path: Path) -> Repetition:
-    """Return what the JSON file of a fit, of a pooled fit or of many fits says was fitted.
+    """Return what the JSON file of a fit, of a pool or of many fits says was fitted.
 
     Its curves are sought from the current folder, from that of the file, and from those above it;
     those whose hashes are the recorded ones are preferred.
@@ -129,13 +122,9 @@ def repetition(path: Path) -> Repetition:
         The file cannot be read.
     """
     content = content_of(path)
-    rows = content.get("curves", [content])
-    entries = [row.get("data") for row in rows if isinstance(row, dict)]
-    hashes = {
-        str(data["file"]): str(data.get("sha256"))
-        for data in entries
-        if isinstance(data, dict) and data.get("file")
-    }
+    rows = content.get("curves", ())
+    entries = [row.get("data") or {} for row in rows if isinstance(row, dict)]
+    hashes = {str(data["file"]): str(data.get("sha256")) for data in entries if data.get("file")}
     if not hashes:
         raise ConfigError(
             f"{path}: holds no fit of a file; numbers that were given in Python have to be given "
@@ -146,8 +135,7 @@ def repetition(path: Path) -> Repetition:
     if folder != Path():
         hashes = {str(folder / file): digest for file, digest in hashes.items()}
         config = FitConfig.merged(config, curves=tuple(folder / curve for curve in config.curves))
-    recorded = content.get("versions")
-    return Repetition(config, hashes, recorded if isinstance(recorded, dict) else {})
+    return Repetition(config, hashes, content.get("versions", {}))
 
 
 def content_of(path: Path) -> dict[str, Any]:

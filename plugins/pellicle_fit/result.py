@@ -44,6 +44,8 @@ class Fit:
     """All explanations that were compared, and the verdict."""
     members: tuple[Member, ...]
     """The curves."""
+    advice: str
+    """What to measure next; empty if nothing would help."""
     poissons_ratio: float | None = None
     """ν, if it was given."""
     config: FitConfig | None = None
@@ -101,11 +103,6 @@ class Fit:
         return sentences.comparison(self.answer)
 
     @property
-    def advice(self) -> str:
-        """What to measure next; empty if nothing is to be told apart."""
-        return sentences.advice(self.answer)
-
-    @property
     def sentences(self) -> list[str]:
         """The data, the verdict and the advice in words."""
         return [
@@ -144,8 +141,7 @@ class Fit:
 
     def forces(self) -> list[Array]:
         """Return the force [N] of the chosen explanation at the rows of each curve."""
-        chosen = self.answer.chosen
-        return replace(chosen.objective, curves=chosen.whole).forces(chosen.minimum.at)
+        return self.answer.chosen.forces()
 
     def explained(self, *types: str) -> Explained | None:
         """Return an explanation by the types of its effects; None if it was not compared."""

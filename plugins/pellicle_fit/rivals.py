@@ -13,7 +13,6 @@ import numpy as np
 from scipy.special import bdtrc
 
 from pellicle.arrays import Array
-from pellicle.errors import ConfigError
 
 from .curve import Curve
 from .effect import Effect, Responds, Sizes
@@ -214,9 +213,13 @@ def chosen_of(word: Types, decision: Decision, fits: Sequence[Explained], margin
 def lenders(
     word: Types, decision: Decision, chosen: Types, fits: Sequence[Explained], margin: float
 ) -> list[Explained]:
-    """Return the explanations that the curves cannot tell from the best and that lend values."""
+    """Return the explanations that the curves cannot tell from the best and that lend values.
+
+    The best is one of those that the verdict weighs: a pair that is little better than its parts
+    does not push out what ties with them.
+    """
     aic = {fit.types: fit.aic for fit in fits}
-    least = min(aic.values())
+    least = min(aic[decision.asked], aic[decision.other])
 
     def lends(fit: Explained) -> bool:
         effects = fit.objective.explanation.effects
@@ -273,8 +276,6 @@ def compared(
         if types in fits:
             continue
         if excuse := explanation.excuse(curves):
-            if types in simple:
-                raise ConfigError(f"does not suit: {explanation.words} {excuse}", "model")
             excused[types] = excuse
             continue
         if types in others:

@@ -8,6 +8,7 @@ from pellicle.components import words_of_type
 from pellicle.units import decimal, readable
 
 from .files.measurement import Note
+from .forecast import telling, tightening
 from .noise import Flaw, Judged
 from .objective import MODULUS
 from .recipe import TENSION, Answer
@@ -18,6 +19,8 @@ _CHECKS = {
     Flaw.OFFSET: "the force before contact is not 0: fit the baseline (baseline = offset)",
     Flaw.DRIFT: "the force before contact has a slope: fit the baseline (baseline = slope)",
     Flaw.SLOW: "the noise before contact is correlated, so the intervals are those of sums of it",
+    Flaw.SPIKES: "single rows lie far from their neighbours: leave them out",
+    Flaw.STEPS: "the steps of the detector are coarser than the noise",
     Flaw.MISFIT: "in contact the residuals exceed the noise before it",
     Flaw.PATTERN: "in contact the residuals follow a pattern",
     Flaw.TOO_DEEP: "the force of this contact is not known at the largest depth, and is "
@@ -104,9 +107,31 @@ def comparison(answer: Answer) -> str:
     return f"{curves} {do} not show tension ({figures}); {bound}"
 
 
-def advice(answer: Answer) -> str:
-    """Return what to measure next; empty if nothing is to be told apart."""
-    return ""
+def advised(answer: Answer) -> str:
+    """Return what to measure next; empty if nothing is open, or nothing would help."""
+    if answer.verdict is Verdict.CANNOT_TELL:
+        asked, word = answer.decision.asked, answer.question.word
+        fits = {fit.types: fit for fit in answer.explanations}
+        margin = max(MARGIN, answer.threshold)
+        others = [
+            fit
+            for fit in answer.explanations
+            if not word <= fit.types and abs(fit.aic - fits[asked].aic) < margin
+        ]
+        advice, what = telling(fits[asked], others), "tell them apart"
+        nothing = "no other speed, dwell, pass, depth or radius would tell them apart at this noise"
+    else:
+        open_ends = [
+            name
+            for name in (MODULUS, TENSION)
+            if (found := answer.estimates.get(name)) and found.high is None
+        ]
+        advice, nothing = tightening(answer.chosen, open_ends), ""
+        what = f"determine the {_listed([name.replace('_', ' ') for name in open_ends], 'and')}"
+    if not advice.words:
+        return nothing
+    count = f"{advice.count} curves of this kind" if advice.count > 1 else "this"
+    return f"{count} would {what}: {advice.words}"
 
 
 def failed_checks(judged: Judged) -> list[tuple[str, str]]:
@@ -146,4 +171,4 @@ def _names(answer: Answer, types: Types) -> str:
 
 
 def _listed(names: Sequence[str], last: str) -> str:
-    return f" {last} ".join(filter(None, [", ".join(names[:-1]), names[-1]]))
+    return f" {last} ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))

@@ -11,6 +11,7 @@ from pydantic import ConfigDict, Field
 from pellicle.arrays import Array
 from pellicle.components import HasLayerForceCurve
 from pellicle.units import Quantity
+from pellicle_fit.checked_force import checked_force
 from pellicle_fit.contact import Contact
 from pellicle_fit.curve import Curve
 from pellicle_fit.effect import Bends, Fitted, Sizes, Values, fitted
@@ -46,7 +47,7 @@ class Layer(Bends):
         assert isinstance(body, HasLayerForceCurve)
 
         def area(depth: Array, length: float) -> Array:
-            return body.layer_force_curve(depth, length, thickness, ratio).force
+            return checked_force(body, "layer_force_curve", depth, length, thickness, ratio)
 
         limit = body.layer_depth_limit(thickness, ratio)
         return replace(contact, area=area, depth_limit=limit, half_space=False, error=_ERROR)

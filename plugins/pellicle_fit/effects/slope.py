@@ -22,5 +22,5 @@ class Slope(Records):
     slope: Annotated[float, Fitted("N/m", scope="curve")] = fitted("slope of the baseline [N/m]")
 
     def recorded(self, force: Array, curve: Curve) -> Array:
-        """Return F + slope × way from the first row [N]."""
-        return np.asarray(force + self.slope * (curve.base - curve.base[0]))
+        """Return F + slope × way from the first position [N]."""
+        return np.asarray(force + self.slope * (curve.base - curve.base.min()))

@@ -23,8 +23,9 @@ from .text_table import FILE, read_cells
 
 _PATTERN = re.compile(r"[*?[]")
 
-Curves = str | Path | Sequence[str | Path] | Mapping[str, tuple[ArrayLike, ArrayLike]]
-"""A folder, a file, a table that lists files, several of these; or position and force by name."""
+Curves = str | Path | Sequence[str | Path] | Mapping[str, Sequence[ArrayLike]]
+"""A folder, a file, a table that lists files, several of these; or arrays of curves by name:
+position, force and perhaps time."""
 
 
 class Source(NamedTuple):
@@ -57,8 +58,8 @@ class CurveFile:
 
     path: Any
     """The file, or the name of the curve."""
-    numbers: tuple[ArrayLike, ArrayLike] | None
-    """Position [m] and force [N] of a curve that is given by its numbers."""
+    numbers: Sequence[ArrayLike] | None
+    """Position [m], force [N] and perhaps time [s] of a curve that is given by its numbers."""
     fields: Mapping[str, Any]
     """Calibration, fields of the indenter, x and y that belong to this file alone."""
     group: str
@@ -79,9 +80,10 @@ class CurveFile:
             calibration = Calibration(**settings)
             if self.numbers is not None:
                 # `clean` checks the arrays.
-                position, force = (cast("Array", values) for values in self.numbers)
+                position, force, *time = (cast("Array", values) for values in self.numbers)
                 stiffness, speed = calibration.spring_constant, calibration.speed
-                contents = {"": Measurement(position, force, stiffness=stiffness, speed=speed)}
+                own = {"stiffness": stiffness, "speed": speed, "time": time[0] if time else None}
+                contents = {"": Measurement(position, force, **own)}
             else:
                 contents = read(self.path, calibration, self.segment)
         except PellicleError as error:
