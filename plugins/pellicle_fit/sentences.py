@@ -97,7 +97,9 @@ def comparison(answer: Answer) -> str:
         ]
         return f"{curves} cannot tell {words(asked)} from {_listed(tied, 'or')}"
     if not word:
-        best = min((fit for fit in answer.explanations if fit.types), key=lambda fit: fit.aic)
+        best = next((fit for fit in answer.explanations if fit.types), None)
+        if best is None:
+            return f"{subject} was compared with nothing"
         lead = decimal(none.aic - best.aic, 3)
         return f"{curves} {do} not show more than {subject} (ΔAIC = {lead} of {words(best)})"
     if word != {TENSION}:

@@ -57,7 +57,7 @@ class Sketch(NamedTuple):
         return {name: [float(f"{v:.{_DIGITS}g}") for v in values] for name, values in lists.items()}
 
 
-@dataclass
+@dataclass(eq=False)
 class Row:
     """One curve of a population."""
 

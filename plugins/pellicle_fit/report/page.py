@@ -16,6 +16,7 @@ from pellicle_fit.config import FitConfig
 from pellicle_fit.many import ManyFits
 from pellicle_fit.result import Fit
 from pellicle_fit.rivals import Verdict
+from pellicle_fit.wording import words
 
 from . import tables
 from .contact_sheet import PAGE, sheets
@@ -142,8 +143,8 @@ def _record(fit: Fit) -> list[Block]:
         "SHA-256": [entry["sha256"] or "" for entry in data],
     }
     for name, unit in (("spring_constant", "N/m"), ("sensitivity", "m/V")):
-        values = [entry[name] for entry in data]
-        heads[name.replace("_", " ")] = [v and readable(v, unit) or "" for v in values]
+        values = (entry[name] for entry in data)
+        heads[words(name)] = ["" if value is None else readable(value, unit) for value in values]
     columns = [Column(head, texts) for head, texts in heads.items() if any(texts)]
     blocks: list[Block] = [Table(columns, "The data, and how they were read.")]
     if fit.record is not None:

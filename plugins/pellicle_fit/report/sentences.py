@@ -44,7 +44,7 @@ def sentences_of_population(fits: ManyFits) -> str:
     followed by the quartiles. The modulus is Young's where Poisson's ratio is known.
     """
     rows, parts = fits.rows, summary(fits.rows)
-    fitted, accepted = (sum(of) for of in zip(*((r.is_fitted, r.accepted) for r in rows)))
+    fitted, accepted = sum(row.is_fitted for row in rows), sum(row.accepted for row in rows)
     outliers = sum(row.outlier for row in rows)
     counts = f"{fitted} of {len(rows)} curves were fitted"
     if accepted != fitted:
