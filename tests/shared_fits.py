@@ -10,7 +10,7 @@ from dataclasses import replace
 import pytest
 
 import pellicle as pl
-from pellicle_fit.files.origin import CurveOrigin
+from pellicle_fit.files.measurement import Origin
 from pellicle_fit.one_curve import fit_problem
 from pellicle_fit.problem import FitProblem
 
@@ -29,7 +29,7 @@ def share_fits(monkeypatch: pytest.MonkeyPatch) -> None:
         pickler = pickle.Pickler(key)
         # References to the same object would make the bytes of equal problems differ.
         pickler.fast = True
-        curve = replace(problem.curve, origin=CurveOrigin(), site=None)
+        curve = replace(problem.curve, origin=Origin(), site=None)
         pickler.dump(replace(problem, name="", curve=curve))
         if key.getvalue() not in fits:
             fits[key.getvalue()] = fit_problem(problem, report)

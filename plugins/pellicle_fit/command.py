@@ -233,10 +233,10 @@ def _fit(
 
     progress, curves = not quiet and sys.stderr.isatty(), config.files()
     if config.pool:
-        return fitted(config, config.sources(), progress=progress), "pool", "Pooled fit"
+        return fitted(config, [*SourceStream(curves)], progress=progress), "pool", "Pooled fit"
     if [file.path for file in curves] == [config.curves[0]]:
-        opened = curves[0].open()
-        if opened.is_single:
+        labels, opened = curves[0].open()
+        if labels == [""]:
             stem = config.curves[0].stem
             return fitted(config, list(opened), progress=progress), f"{stem}-fit", stem
     try:

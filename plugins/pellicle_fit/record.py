@@ -17,7 +17,7 @@ from pellicle.schema import walk
 
 from .config import FitConfig
 from .files.measurement import Measurement
-from .files.origin import sha256
+from .files.readers import sha256
 
 _ABOVE = 2
 """Folders above that of a record in which its curves are sought."""

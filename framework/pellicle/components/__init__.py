@@ -15,7 +15,6 @@ from pellicle.variables import Variable as Variable
 
 from .base import Component as Component
 from .base import FromRegistry as FromRegistry
-from .base import words_of_type as words_of_type
 from .base import role_of as role_of
 from .base import words_of_type as words_of_type
 from .charts import Axis as Axis
