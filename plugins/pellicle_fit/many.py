@@ -7,7 +7,7 @@ import json
 import pickle
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import nullcontext, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib.metadata import version
 from operator import length_hint
 from pathlib import Path
@@ -24,7 +24,7 @@ from pellicle.results import header
 
 from .config import FitConfig
 from .files.sources import Curves, Source, SourceStream
-from .fits import fitted
+from .fits import Problem, problem
 from .population.images import force_maps
 from .population.judgement import group_of, group_pattern, judge, read_names
 from .population.row import FAILED, Row, Sketch
@@ -62,8 +62,7 @@ class FitTask:
     """The fit of one curve; it pickles to workers."""
 
     row: Row
-    config: FitConfig
-    source: Source
+    problem: Problem
     path: Path | None
     """File that keeps the fit."""
 
@@ -75,8 +74,7 @@ class FitTask:
     @property
     def memory(self) -> int:
         """Estimated peak memory of the fit [bytes]."""
-        curve = self.source.curve
-        return 0 if isinstance(curve, PellicleError) else _BYTES_PER_POINT * np.size(curve.force)
+        return _BYTES_PER_POINT * sum(m.curve.force.size for m in self.problem.members)
 
 
 @dataclass
@@ -182,7 +180,7 @@ def fit_sources(
         try:
             with BatchProgress(length_hint(sources), 0, progress) as bar:
                 for batch in _batches(sources):
-                    _fit_batch(config, batch, directory, fits, bar, length_hint(sources))
+                    _fit_batch(config, batch, directory, fits, bar, length_hint(sources), progress)
         except BaseException:
             # A table without any fit would replace an earlier one.
             if directory is not None and any(row.is_fitted for row in fits.rows):
@@ -220,6 +218,7 @@ def _fit_batch(
     fits: ManyFits,
     bar: BatchProgress,
     total: int,
+    progress: bool,
 ) -> None:
     """Fit each curve of a batch that is not fitted yet, and add a row for each."""
     pattern, tasks = group_pattern(config.group_by), list[FitTask]()
@@ -229,7 +228,7 @@ def _fit_batch(
         row = Row(source.name, group_of(pattern, source.file, source.group))
         fits.rows.append(row)
         try:
-            config.body(source.fields)
+            config.indenter_with(source.fields)
         except ConfigError as error:
             raise source.named(error) from None
         try:
@@ -245,7 +244,8 @@ def _fit_batch(
                     row.keep(earlier)
                     fits.resumed += 1
                     continue
-            tasks.append(FitTask(row, own, source, path))
+            ready = problem(config, [source], progress=progress)
+            tasks.append(FitTask(row, replace(ready, config=own), path))
         except PellicleError as error:
             row.status = _failure(error, row.name)
 
@@ -265,7 +265,7 @@ def _fit_batch(
 
 def work(task: FitTask, say: Say) -> dict[str, Any]:
     """Fit a curve in a worker, and return JSON data of the fit, with what a population adds."""
-    fit = fitted(task.config, [task.source])
+    fit = task.problem.fit()
     (member,), (force,) = fit.members, fit.forces()
     measured, position = member.curve.force, member.curve.position
     scatter = measured - np.mean(measured)

@@ -97,9 +97,10 @@ def comparison(answer: Answer) -> str:
         ]
         return f"{curves} cannot tell {words(asked)} from {_listed(tied, 'or')}"
     if not word:
-        best = next((fit for fit in answer.explanations if fit.types), None)
-        if best is None:
+        others = [fit for fit in answer.explanations if fit.types]
+        if not others:
             return f"{subject} was compared with nothing"
+        best = others[0]
         lead = decimal(none.aic - best.aic, 3)
         return f"{curves} {do} not show more than {subject} (ΔAIC = {lead} of {words(best)})"
     if word != {TENSION}:

@@ -19,6 +19,7 @@ import pellicle as pl
 from pellicle.components import AnyTask, Executor, Outcome, Report, Say
 from pellicle.plugins import Registry
 from pellicle_fit.many import fit_sources
+from pellicle_fit.simulated.simulation import Simulation
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 Array = NDArray[np.float64]
@@ -238,6 +239,22 @@ def test_tasks_travel(tmp_path: Path) -> None:
     """Curves, questions and answers pickle, and rows keep their order."""
     curves = {str(seed): curve(seed) for seed in range(3)}
     copy, here = (pl.fit_many(curves, **HERTZ | own) for own in ({"executor": Keeps()}, {}))
+    xr.testing.assert_identical(copy, here)
+
+
+def test_simulated_before_the_fits(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What has to be simulated is so by the executor of the fits, which take it along."""
+    executors = []
+
+    def simulated(simulation: Simulation, reach: float, **settings: Any) -> pl.Indenter:
+        executors.append(settings["executor"])
+        return simulation.indenter
+
+    monkeypatch.setattr(Simulation, "curve", simulated)
+    curves = {str(seed): curve(seed) for seed in range(2)}
+    solid = {"kernel": "tensed_membrane", "executor": Keeps()}
+    copy, here = (pl.fit_many(curves, **HERTZ | own) for own in (solid, {}))
+    assert executors == [Keeps(), Keeps()]
     xr.testing.assert_identical(copy, here)
 
 
