@@ -113,7 +113,9 @@ class Curve:
         velocity = np.zeros_like(self.base)
         for rows in self.passes:
             for group in np.array_split(rows, min(_GROUPS, max(rows.size // 4, 1))):
-                time, base = (values[group] - np.mean(values[group]) for values in (self.clock, self.base))
+                time, base = (
+                    values[group] - np.mean(values[group]) for values in (self.clock, self.base)
+                )
                 velocity[group] = time @ base / max(float(time @ time), 1e-300)
         return velocity
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -147,8 +147,49 @@ def fit_pooled(
     return fitted(config, config.sources(curves), progress=progress)
 
 
+@dataclass(frozen=True)
+class Problem:
+    """Curves of one solid that are ready to fit; it pickles to workers."""
+
+    config: FitConfig
+    members: tuple[Member, ...]
+    fix: Mapping[str, float]
+    layers: tuple[Effect, ...]
+    uncertainty: tuple[Effect, ...]
+    poissons_ratio: float | None
+    watch: Stopwatch
+
+    def fit(self, *, progress: bool = False) -> Fit:
+        """Return the fit of the curves: one modulus, and what else they share.
+
+        Raises
+        ------
+        ConfigError, PluginError, ConvergenceError
+            As for `fit`.
+        """
+        model, kept, rivals = _effects(self.config, self.poissons_ratio)
+        with status_line("fitting", progress):
+            found = answer(
+                [member.curve for member in self.members],
+                model,
+                rivals,
+                kept=(*kept, *self.layers),
+                fix={name: self.fix[name] for name in quantities(Solid).keys() & self.fix.keys()},
+                uncertainty=self.uncertainty,
+                full=self.config.compare,
+            )
+            advice = advised(found)
+        record = self.watch.record(self.config, [member.data for member in self.members])
+        return Fit(found, self.members, advice, self.poissons_ratio, self.config, record)
+
+
 def fitted(config: FitConfig, sources: Sequence[Source], *, progress: bool = False) -> Fit:
-    """Return the fit of the curves of one solid: one modulus, and what else they share.
+    """Return the fit of the curves of one solid; it raises what `fit` does."""
+    return problem(config, sources, progress=progress).fit(progress=progress)
+
+
+def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = False) -> Problem:
+    """Return cleaned curves with their indenters, whose forces are simulated if need be.
 
     Raises
     ------
@@ -185,20 +226,8 @@ def fitted(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fal
         )
         for source, one, body in zip(sources, measured, bodies, strict=True)
     )
-    model, kept, rivals = _effects(config, ratio)
-    with status_line("fitting", progress):
-        found = answer(
-            [member.curve for member in members],
-            model,
-            rivals,
-            kept=(*kept, *layers),
-            fix={name: fix[name] for name in quantities(Solid).keys() & fix.keys()},
-            uncertainty=_uncertain(config, measured, indenters),
-            full=config.compare,
-        )
-        advice = advised(found)
-    record = watch.record(config, [member.data for member in members])
-    return Fit(found, members, advice, ratio, config, record)
+    uncertain = tuple(_uncertain(config, measured, indenters))
+    return Problem(config, members, fix, tuple(layers), uncertain, ratio, watch)
 
 
 def _on_solid(

@@ -143,8 +143,7 @@ class Fit:
 
     def forces(self) -> list[Array]:
         """Return the force [N] of the chosen explanation at the rows of each curve."""
-        chosen = self.answer.chosen
-        return replace(chosen.objective, curves=chosen.whole).forces(chosen.minimum.at)
+        return self.answer.chosen.forces()
 
     def explained(self, *types: str) -> Explained | None:
         """Return an explanation by the types of its effects; None if it was not compared."""

@@ -98,6 +98,8 @@ def comparison(answer: Answer) -> str:
         ]
         return f"{curves} cannot tell {words(asked)} from {_listed(tied, 'or')}"
     if not word:
+        if len(fits) == 1:
+            return f"{subject} was compared with nothing"
         return f"{curves} {do} not show more than {subject}"
     text = f"{curves} {do} not show {subject} ({figures})"
     if word != {TENSION}:
