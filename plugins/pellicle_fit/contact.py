@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -16,6 +17,8 @@ Area = Callable[[Array, float], Array]
 """F/E* [m²] at depths [m] and an elastocapillary length s = 2τ₀/E* [m]; 0 at depths ≤ 0."""
 _STEP = 1e-4
 """Step of the slope of the force, over the depth."""
+_RATIO = 1.1
+"""Ratio of the depths to which areas are tabulated."""
 _NODES = 129
 """Nodes of a tabulated area, evenly spaced in the root of the depth."""
 
@@ -31,6 +34,16 @@ class OwnArea:
         """Return F/E* [m²]."""
         size = self.size
         return size**2 * checked_force(self.indenter, "force_curve", depth / size, length / size)
+
+
+@lru_cache(maxsize=64)
+def _spline(area: Area, length: float, deepest: float) -> Callable[[Array], Array]:
+    """Return an area at a length as a function of √δ."""
+    from scipy.interpolate import CubicSpline
+
+    root = np.linspace(0.0, np.sqrt(deepest), _NODES)
+    spline: Callable[[Array], Array] = CubicSpline(root, area(root**2, length))
+    return spline
 
 
 @dataclass(frozen=True)
@@ -95,18 +108,18 @@ class Contact:
 
         Over √δ areas of round and of conical bodies are polynomials, under a tension nearly so.
         """
-        from scipy.interpolate import CubicSpline
-
         length, bare = 2 * self.tension / self.modulus, self.area
-        root = np.linspace(0.0, np.sqrt(min(max(deepest, 1e-300), self.depth_limit)), _NODES)
-        spline = CubicSpline(root, bare(root**2, length))
+        # Rounded up, so that the table serves the next contact point too.
+        deepest = _RATIO ** np.ceil(np.log(max(deepest, 1e-300)) / np.log(_RATIO))
+        limit = min(float(deepest), self.depth_limit)
+        spline = _spline(bare, length, limit)
 
         def area(depth: Array, other: float) -> Array:
             if other != length:
                 return bare(depth, other)
             return np.where(depth > 0, spline(np.sqrt(np.maximum(depth, 0.0))), 0.0)
 
-        return replace(self, area=area, depth_limit=float(root[-1] ** 2))
+        return replace(self, area=area, depth_limit=limit)
 
     def stiffness(self, depth: Array) -> Array:
         """Return ∂F/∂δ [N/m] at depths [m]."""
