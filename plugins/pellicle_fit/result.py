@@ -105,11 +105,13 @@ class Fit:
     @property
     def sentences(self) -> list[str]:
         """The data, the verdict and the advice in words."""
-        return [
-            *filter(
-                None, [sentences.data(self.answer, self._uncertainty), self.comparison, self.advice]
-            )
-        ]
+        found = sentences.data(self.answer, self._uncertainty), self.comparison, self.agreement
+        return [*filter(None, [*found, self.advice])]
+
+    @property
+    def agreement(self) -> str:
+        """Whether several curves agree on what they share, in words; empty for one."""
+        return sentences.agreement(self.answer, [member.name for member in self.members])
 
     @property
     def _uncertainty(self) -> Mapping[str, float | str]:
@@ -161,6 +163,7 @@ class Fit:
             "verdict": self.verdict.value,
             "comparison": self.comparison,
             "tension_needed": self.tension_needed,
+            "agreement": self.agreement,
             "advice": self.advice,
             "confidence": CONFIDENCE,
             "calibration": sentences.calibration(self._uncertainty),

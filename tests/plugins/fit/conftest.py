@@ -10,6 +10,7 @@ from typer.testing import CliRunner, Result
 
 import pellicle as pl
 from pellicle.cli.app import app
+from tests.shared_fits import share_fits, skip_rivals
 
 
 @pytest.fixture
@@ -24,6 +25,18 @@ def cli(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Result
         return result
 
     return call
+
+
+@pytest.fixture
+def no_rivals(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let fits of a test skip rivals."""
+    skip_rivals(monkeypatch)
+
+
+@pytest.fixture
+def shared_fits(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let fits of a test have the result of an earlier one of an equal problem."""
+    share_fits(monkeypatch)
 
 
 def ends_of(estimate: pl.Estimate | None) -> tuple[float, float]:
