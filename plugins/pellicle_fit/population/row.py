@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle_fit.files.measurement import Axis, Site
+from pellicle_fit.files.measurement import Site
 from pellicle_fit.intervals import Estimate
 
 FITTED = "fitted"
@@ -88,7 +88,7 @@ class Row:
             self.keep(self.fit)
 
     def keep(self, fit: dict[str, Any]) -> None:
-        """Take the JSON data of a fit, which may hold a sketch, as `fitted_row` returns them."""
+        """Take the JSON data of a fit, which may hold a sketch, as workers return them."""
         self.fit = {name: value for name, value in fit.items() if name != "sketch"}
         if "sketch" in fit:
             self.sketch = Sketch.of(**fit["sketch"])
@@ -128,23 +128,24 @@ class Row:
         return list(self.fit.get("messages", ()))
 
     @property
+    def _curve(self) -> dict[str, Any]:
+        return dict(next(iter(self.fit.get("curves", ())), {}))
+
+    @property
     def failed_checks(self) -> list[str]:
         """Codes of the checks that its residuals fail."""
-        return [check["code"] for entry in self._curves for check in entry["failed_checks"]]
+        return [check["code"] for check in self._curve.get("failed_checks", ())]
 
     @property
     def data(self) -> dict[str, Any]:
         """Origin of the curve, and which part of it was fitted; empty without a fit."""
-        return next((dict(entry["data"]) for entry in self._curves), {})
+        return dict(self._curve.get("data", {}))
 
     @property
     def radius(self) -> float | str:
         """Radius of the indenter [m]; an empty text if it has none, or without a fit."""
-        return next((entry["indenter"].get("radius", "") for entry in self._curves), "")
-
-    @property
-    def _curves(self) -> list[dict[str, Any]]:
-        return list(self.fit.get("curves", ()))
+        radius: float | str = self._curve.get("indenter", {}).get("radius", "")
+        return radius
 
     def to_dict(self) -> dict[str, Any]:
         """Return the row as JSON data, without the sketch."""
@@ -156,14 +157,11 @@ class Row:
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Self:
-        """Return the row that JSON data hold."""
-        fit = dict(data)
-        own = {name: fit.pop(name) for name in ("status", "group", "accepted", "reason", "outlier")}
-        row, place = cls(fit.pop("curve"), fit=fit, **own), fit.pop("site", None)
-        if place is not None:
-            grid = place["grid"] and tuple(Axis(*axis) for axis in place["grid"])
-            row.map, row.site = place["map"], Site(place["x"], place["y"], grid)
-        return row
+        """Return the row that JSON data hold, without its place on a map."""
+        fit = {name: value for name, value in data.items() if name != "site"}
+        name, group, status = (fit.pop(key) for key in ("curve", "group", "status"))
+        own = {key: fit.pop(key) for key in ("accepted", "reason", "outlier")}
+        return cls(name, group, status=status, fit=fit, **own)
 
 
 def is_closed(estimate: Estimate) -> bool:

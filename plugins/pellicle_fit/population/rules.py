@@ -5,8 +5,6 @@ from __future__ import annotations
 import operator
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -19,7 +17,7 @@ from pellicle_fit.explanation import Solid
 
 from .row import ENDS, NUMBERS, Row
 
-_COMPARISONS: dict[str, Callable[[float, float], bool]] = {
+_SIGNS: dict[str, Callable[[float, float], bool]] = {
     "<=": operator.le,
     ">=": operator.ge,
     "==": operator.eq,
@@ -27,7 +25,7 @@ _COMPARISONS: dict[str, Callable[[float, float], bool]] = {
     "<": operator.lt,
     ">": operator.gt,
 }
-_COMPARISON = re.compile("|".join(_COMPARISONS))
+_COMPARISON = re.compile(f"({'|'.join(_SIGNS)})")
 _EXAMPLE = "write one such as 'r_squared > 0.95' or '1 kPa < reduced_modulus < 1 MPa'"
 
 
@@ -43,40 +41,28 @@ def units() -> dict[str, str]:
     return ends | NUMBERS
 
 
-@dataclass(frozen=True)
 class Rule:
-    """One or two comparisons of expressions and quantities."""
+    """One or two comparisons of expressions and quantities.
 
-    text: str
+    Raises
+    ------
+    ConfigError
+        The text is not a comparison, names something unknown, or compares different dimensions.
+    """
 
-    @cached_property
-    def _sides(self) -> list[str]:
-        return [side.strip() for side in _COMPARISON.split(self.text)]
-
-    @cached_property
-    def _signs(self) -> list[str]:
-        return _COMPARISON.findall(self.text)
-
-    @cached_property
-    def names(self) -> list[str]:
-        """The names in the rule."""
-        return sorted(set().union(*(names_in(s) for s in self._sides if not _quantity(s))))
-
-    def check(self) -> None:
-        """Check that the rule compares values of one dimension.
-
-        Raises
-        ------
-        ConfigError
-            It does not, or names something unknown.
-        """
-        rule, unit_of = shown(self.text), units()
-        if len(self._sides) not in (2, 3) or not all(self._sides) or not self.names:
+    def __init__(self, text: str) -> None:
+        self.text, rule, unit_of = text, shown(text), units()
+        parts = [part.strip() for part in _COMPARISON.split(text)]
+        self._sides, self._signs = parts[::2], parts[1::2]
+        sides = [side for side in self._sides if not _quantity(side)]
+        self._names = sorted(set().union(*map(names_in, sides)))
+        if len(self._sides) not in (2, 3) or not all(self._sides) or not self._names:
             raise ConfigError(f"{rule} does not compare a number of the fit; {_EXAMPLE}")
-        for name in self.names:
+        for name in self._names:
             if name not in unit_of:
                 raise ConfigError(f"{shown(name)} in {rule}: {nearest(name, unit_of)}")
-        ones = {name: one(unit_of[name]) if unit_of[name] != "1" else 1.0 for name in self.names}
+        self._units = {name: unit_of[name] for name in self._names}
+        ones = {name: 1.0 if unit == "1" else one(unit) for name, unit in self._units.items()}
         dimensions = {}
         for side in self._sides:
             number = _quantity(side)
@@ -90,19 +76,19 @@ class Rule:
             if number or names_in(side):
                 dimensions[str(getattr(value, "dimensionality", "dimensionless"))] = side
         if len(dimensions) > 1:
-            sides = " with ".join(f"{side} ({name})" for name, side in dimensions.items())
-            raise ConfigError(f"{rule} compares {sides}; {_EXAMPLE}")
+            texts = " with ".join(f"{side} ({name})" for name, side in dimensions.items())
+            raise ConfigError(f"{rule} compares {texts}; {_EXAMPLE}")
 
     def objection(self, row: Row) -> str:
         """Return why a fit breaks the rule; empty if it does not."""
-        unit_of, known = units(), row.values()
-        numbers = {name: known.get(name, np.nan) for name in self.names}
+        known = row.values()
+        numbers = {name: known.get(name, np.nan) for name in self._names}
         sides = [_value(side, numbers) for side in self._sides]
         pairs = zip(sides[:-1], self._signs, sides[1:], strict=True)
-        if not any(map(np.isnan, sides)) and all(_COMPARISONS[s](a, b) for a, s, b in pairs):
+        if not any(map(np.isnan, sides)) and all(_SIGNS[sign](a, b) for a, sign, b in pairs):
             return ""
         texts = (
-            f"{name} is {'unknown' if np.isnan(v) else readable(v, unit_of[name], 4)}"
+            f"{name} is {'unknown' if np.isnan(v) else readable(v, self._units[name], 4)}"
             for name, v in numbers.items()
         )
         return f"{', '.join(texts)}, against {self.text}"
@@ -121,13 +107,7 @@ def _value(side: str, numbers: Mapping[str, float]) -> float:
 
 
 def rules(texts: tuple[str, ...]) -> tuple[str, ...]:
-    """Return rules that are valid.
-
-    Raises
-    ------
-    ConfigError
-        A rule is not a comparison, or names something unknown, or compares different dimensions.
-    """
+    """Return the texts of rules; it raises what `Rule` does."""
     for text in texts:
-        Rule(text).check()
+        Rule(text)
     return texts
