@@ -25,6 +25,7 @@ _HEADINGS = {
     "output": "Outputs",
     "executor": "Executors",
     "prescription": "Prescriptions",
+    "effect": "Effects of fits",
 }
 
 

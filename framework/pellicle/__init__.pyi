@@ -5,8 +5,6 @@ from .applications import Estimate as Estimate
 from .applications import Fit as Fit
 from .applications import FitConfig as FitConfig
 from .applications import Measurement as Measurement
-from .applications import PooledCurve as PooledCurve
-from .applications import PooledFit as PooledFit
 from .applications import fit as fit
 from .applications import fit_many as fit_many
 from .applications import fit_map as fit_map

@@ -2,8 +2,6 @@ from pellicle_fit import Estimate as Estimate
 from pellicle_fit import Fit as Fit
 from pellicle_fit import FitConfig as FitConfig
 from pellicle_fit import Measurement as Measurement
-from pellicle_fit import PooledCurve as PooledCurve
-from pellicle_fit import PooledFit as PooledFit
 from pellicle_fit import fit as fit
 from pellicle_fit import fit_many as fit_many
 from pellicle_fit import fit_map as fit_map

@@ -10,9 +10,10 @@ from __future__ import annotations
 import inspect
 import os
 from collections.abc import Callable, Collection, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache, partial
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, version
 from typing import Any, Literal, TypeVar, get_args, get_origin
 
 from . import hookspecs
@@ -106,6 +107,18 @@ class Registry:
             for registered in family.values()
             if registered.component in used
         }
+
+    def all_versions(
+        self, used: Collection[type[Component]], others: Iterable[str] = ()
+    ) -> dict[str, str]:
+        """Return the version of pellicle, of the owners of components, and of libraries."""
+        numbers = {name: version(name) for name in ("pellicle", "numpy", "scipy")}
+        numbers |= self.versions(used)
+        for name in sorted({*others, *(name for one in used for name in one.libraries)}):
+            # A worker may receive data that a library has read without having the library itself.
+            with suppress(PackageNotFoundError):
+                numbers[name] = version(name)
+        return numbers
 
     def make(self, base: type[AnyComponent], value: object) -> AnyComponent:
         """Return the component of ``base``'s family that ``value`` describes.

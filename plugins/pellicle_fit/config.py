@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
+from itertools import chain
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -14,18 +15,13 @@ from pydantic import (
     Field,
     PlainSerializer,
     PlainValidator,
-    PrivateAttr,
+    ValidationInfo,
+    field_validator,
     model_validator,
 )
 
 from pellicle import registry
-from pellicle.components import (
-    Executor,
-    FromRegistry,
-    HasForceCurve,
-    HasLayerForceCurve,
-    Indenter,
-)
+from pellicle.components import Component, Executor, FromRegistry, HasForceCurve, Indenter
 from pellicle.errors import ConfigError, problems_within, shown
 from pellicle.schema import (
     FromFile,
@@ -38,22 +34,38 @@ from pellicle.schema import (
 )
 from pellicle.units import PoissonsRatio, Quantity
 
-from .files.cleaning import LARGEST
+from .effect import Effect, Fitted, quantities
+from .explanation import Solid
 from .files.columns import Calibration
 from .files.measurement import Segment
 from .files.sources import CurveFile, Curves, Source, SourceStream, expanded, gather
-from .models.force_model import ForceModel, described, tension_model
-from .models.layer import FreeLayerModel, known_layer
-from .models.simulation import GRID_POINTS, Simulation
-from .models.solid import DEFAULT_KERNEL, Solid, layer_table, solid
-from .parameters import CONTACT_POINT, MODULUS, TENSION
 from .population.judgement import group_pattern
 from .population.rules import rules
+from .simulated.simulation import GRID_POINTS
+from .simulated.solid import solid
 
 Baseline = Literal["none", "offset", "slope"]
 
-FIXABLE = {parameter.name: parameter for parameter in (CONTACT_POINT, MODULUS, TENSION)}
-"""Parameters that can be fixed, by their names."""
+DEFAULT_RIVALS: tuple[str | list[str], ...] = (
+    ["offset", "slope"],
+    ["offset", "drift"],
+    "drag",
+    "power_law",
+    "standard_linear",
+    "adhesion",
+    "layer",
+    "sphere",
+    "cone",
+    "worn_tip",
+    "brush",
+    "compliance",
+    "stiff_surface",
+    "rough_toe",
+)
+"""What bends a curve as a tension does, and is compared unless a configuration says otherwise."""
+UNCERTAIN = {"spring_constant": "N/m", "sensitivity": "m/V", "radius": "m"}
+"""What may be known to an uncertainty, and its unit."""
+MODULUS, TENSION = "reduced_modulus", "tension"
 FREE = "free"
 """Thickness that the fit determines."""
 _COMPONENTS = ("indenter", "kernel", "executor")
@@ -62,6 +74,9 @@ _COMPONENTS = ("indenter", "kernel", "executor")
 def _component(value: object) -> object:
     """Return the type of a component as its table; any other value unchanged."""
     return {"type": value} if isinstance(value, str) else value
+
+
+_OneEffect = Annotated[Effect, FromRegistry(), BeforeValidator(_component)]
 
 
 def _indenter(value: object) -> Any:
@@ -80,23 +95,37 @@ def _indenter(value: object) -> Any:
         return dict(table)
 
 
-def _fixed(value: object) -> dict[str, float]:
-    """Return the values of fixed parameters in SI."""
+def described(indenter: object) -> dict[str, Any]:
+    """Return an indenter, or the fields of one, as JSON data."""
+    if isinstance(indenter, Component):
+        return indenter.model_dump(mode="json", exclude_none=True)
+    return dict(indenter) if isinstance(indenter, Mapping) else {"type": type(indenter).__name__}
+
+
+def _as_list(value: object) -> Any:
+    """Return a value that may stand for a list of one as that list."""
+    return value if isinstance(value, (list, tuple)) else [value]
+
+
+def _uncertain(value: object) -> dict[str, float | str]:
+    """Return shares as numbers, and quantities as they are written, once they are checked."""
     if not isinstance(value, Mapping):
-        raise ConfigError(f"{shown(value)} is not a table; give one such as {{tension = 0}}")
-    values = {}
+        raise ConfigError(f'{shown(value)} is not a table; give {{ spring_constant = "10 %" }}')
+    found: dict[str, float | str] = {}
     for name, entry in value.items():
-        if name not in FIXABLE:
-            raise ConfigError(f"is not a parameter; {nearest(name, FIXABLE)}", str(name))
-        parameter = FIXABLE[name]
-        least = 1 / LARGEST if parameter.logarithmic else max(parameter.minimum, -LARGEST)
+        if name not in UNCERTAIN:
+            raise ConfigError(f"is not one of {', '.join(UNCERTAIN)}", str(name))
+        share = isinstance(entry, str) and entry.strip().endswith("%")
         try:
-            values[name] = Quantity(parameter.unit, at_least=least, at_most=LARGEST)(entry)
+            if share or not isinstance(entry, str):
+                number = Quantity("1", above=0)(entry.strip()[:-1] if share else entry)
+                found[name] = number / 100 if share else number
+            else:
+                Quantity(UNCERTAIN[name], above=0)(entry)
+                found[name] = entry
         except ValueError as error:
-            raise ConfigError(str(error), name) from None
-    if {MODULUS.name, TENSION.name} <= values.keys():
-        raise ConfigError("fixes both modulus and tension; leave one of them to the fit")
-    return values
+            raise ConfigError(f'{error}; or a share such as "5 %"', name) from None
+    return found
 
 
 def _thickness(value: object) -> float | str:
@@ -104,7 +133,7 @@ def _thickness(value: object) -> float | str:
     if value == FREE:
         return FREE
     try:
-        return Quantity("m", at_least=1 / LARGEST, at_most=LARGEST)(value)
+        return Quantity("m", above=0)(value)
     except ValueError as error:
         raise ConfigError(f'{error}; or "{FREE}"') from None
 
@@ -168,10 +197,36 @@ class FitConfig(FromFile, Calibration):
             f'"{FREE}" fits it. It needs poissons_ratio'
         ),
     ] = None
-    fix: Annotated[
-        dict[str, float],
-        BeforeValidator(_fixed, json_schema_input_type=dict[str, float | str]),
-        Field(description=f"values of parameters that are not fitted: {', '.join(FIXABLE)}"),
+    model: Annotated[
+        tuple[_OneEffect, ...],
+        BeforeValidator(_as_list),
+        Field(
+            description="effects that the force has; whether the first is needed is the question. "
+            "Without any, whether a curve shows more than an elastic half-space",
+            validate_default=True,
+        ),
+    ] = ("tension",)  # type: ignore[assignment]
+    rivals: Annotated[
+        tuple[Annotated[tuple[_OneEffect, ...], BeforeValidator(_as_list)], ...],
+        BeforeValidator(_as_list),
+        Field(
+            description="effects, or lists of effects that act together, that are compared with "
+            "the model, each alone and beside it",
+            validate_default=True,
+        ),
+    ] = DEFAULT_RIVALS  # type: ignore[assignment]
+    fix: dict[str, float] = Field(
+        default_factory=dict,
+        description="values of quantities of the solid, of the model and of rivals that are not "
+        "fitted, such as tension = 0",
+    )
+    uncertainty: Annotated[
+        dict[str, float | str],
+        BeforeValidator(_uncertain),
+        Field(
+            description="standard deviations of spring_constant, sensitivity and radius, each a "
+            "share such as 5 % or a quantity; without any, the calibration counts as exact"
+        ),
     ] = Field(default_factory=dict)
     baseline: Baseline = Field(
         "none", description="force before contact that is fitted: offset, or offset and slope"
@@ -184,10 +239,7 @@ class FitConfig(FromFile, Calibration):
     )
     pool: bool = Field(False, description="whether all curves share one modulus and one tension")
     compare: bool = Field(
-        False, description="whether rivals of a tension are compared in full, with intervals"
-    )
-    contact_points: bool = Field(
-        False, description="whether a pool gives the interval of each contact point too"
+        False, description="whether all explanations get intervals, and are printed"
     )
     accept: Annotated[
         tuple[str, ...],
@@ -218,42 +270,45 @@ class FitConfig(FromFile, Calibration):
     grid_points: int = Field(
         GRID_POINTS, description="cells along each edge of the grids of a simulation"
     )
-    _solid: Solid | None = PrivateAttr(None)
+
+    @field_validator("fix", mode="before")
+    @classmethod
+    def _fixed(cls, value: object, info: ValidationInfo) -> dict[str, float]:
+        """Return values in SI of quantities of the solid, of the model and of rivals."""
+        if not isinstance(value, Mapping):
+            raise ConfigError(f"{shown(value)} is not a table; give one such as {{tension = 0}}")
+        effects = [*info.data.get("model", ()), *chain(*info.data.get("rivals", ()))]
+        known: dict[str, Fitted] = {}
+        for component in (Solid, *map(type, effects)):
+            known |= quantities(component)
+        values: dict[str, float] = {}
+        for name, entry in value.items():
+            if name not in known:
+                raise ConfigError(
+                    f"is no quantity of the model or of a rival; {nearest(name, known)}", str(name)
+                )
+            try:
+                values[name] = known[name](entry)
+            except ValueError as error:
+                raise ConfigError(str(error), name) from None
+        if {MODULUS, TENSION} <= values.keys():
+            raise ConfigError("fixes both modulus and tension; leave one of them to the fit")
+        return values
 
     @model_validator(mode="after")
     def _check(self) -> Self:
         group_pattern(self.group_by)
-        if self.contact_points and not self.pool:
-            raise ConfigError(
-                "needs pool = true; fits of single curves always have these intervals",
-                "contact_points",
-            )
-        if self.compare and TENSION.name in self.fix:
-            raise ConfigError(
-                "weighs a tension that is fitted against its rivals, and fix.tension fixes it; "
-                "leave out compare or fix.tension (--compare or --fix tension in a shell)",
-                "compare",
-            )
-        if self.thickness is not None:
-            self._solid = self._layer()
-        if self.kernel is not None:
-            self._solid = solid(self.kernel, self.poissons_ratio)
-        return self
-
-    def _layer(self) -> Solid | None:
-        """Return the solid of a layer whose thickness is given."""
-        if self.kernel is not None:
+        if self.thickness is not None and self.kernel is not None:
             raise ConfigError("cannot be given with a kernel; leave out one of them", "thickness")
-        if self.poissons_ratio is None:
+        if self.thickness is not None and self.poissons_ratio is None:
             raise ConfigError(
                 "is missing: the force on a layer depends on it as well as on the thickness; give "
                 "it, such as 0.5 for a gel",
                 "poissons_ratio",
             )
-        if isinstance(self.thickness, str):
-            return None
-        assert self.thickness is not None
-        return solid(layer_table(self.poissons_ratio, thickness=self.thickness))
+        if self.kernel is not None:
+            solid(self.kernel, self.poissons_ratio)
+        return self
 
     @classmethod
     def from_toml(cls, path: str | Path, overrides: Iterable[str] = ()) -> Self:
@@ -350,15 +405,13 @@ class FitConfig(FromFile, Calibration):
         """Return ``curves``, or those of the configuration if None, as read from their files."""
         return [*SourceStream(self.files(curves))]
 
-    def force_model(self, fields: Mapping[str, Any]) -> ForceModel | Simulation:
-        """Return the model of the force on the indenter, or the simulation that gives one.
-
-        ``fields`` are those of the indenter that one curve alone has.
+    def indenter_with(self, fields: Mapping[str, Any]) -> Indenter | HasForceCurve:
+        """Return the indenter of one curve, with the fields that this curve alone has.
 
         Raises
         ------
         ConfigError
-            The indenter cannot have these fields, or needs others, or allows no kernel.
+            The indenter cannot have these fields, or needs others.
         """
         indenter: Any = self.indenter
         if fields and not isinstance(indenter, (Indenter, Mapping)):
@@ -367,27 +420,7 @@ class FitConfig(FromFile, Calibration):
             )
         for name, value in fields.items():
             indenter = replaced(indenter, name, value)
-        if not isinstance(indenter, HasForceCurve):
-            with problems_within("indenter"):
-                indenter = registry().make(Indenter, indenter)
-        if self.thickness == FREE:
-            return self._free_layer(indenter)
-        if self._solid is None and isinstance(indenter, HasForceCurve):
-            return tension_model(indenter)
-        if not isinstance(indenter, Indenter):
-            name = "kernel" if self.thickness is None else "thickness"
-            raise ConfigError("cannot be given with a force curve, which includes its solid", name)
-        elastic_solid = self._solid or solid(DEFAULT_KERNEL, self.poissons_ratio)
-        return known_layer(indenter, elastic_solid) or Simulation(indenter, elastic_solid)
-
-    def _free_layer(self, indenter: object) -> FreeLayerModel:
-        assert self.poissons_ratio is not None
-        if isinstance(indenter, HasLayerForceCurve) and self.poissons_ratio >= 0:
-            return FreeLayerModel(indenter, self.poissons_ratio)
-        name = described(indenter).get("type")
-        raise ConfigError(
-            f"cannot be free with the indenter {name!r} and ν = {self.poissons_ratio:g}, only for "
-            "a paraboloid, a sphere, a cone and a flat punch, and for 0 ≤ ν ≤ 0.5; give it, then "
-            "the force is simulated",
-            "thickness",
-        )
+        if isinstance(indenter, HasForceCurve):
+            return indenter
+        with problems_within("indenter"):
+            return registry().make(Indenter, indenter)

@@ -14,9 +14,10 @@ from abc import abstractmethod
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, Literal, NamedTuple, Self
 
-from pydantic import Field, GetCoreSchemaHandler
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import core_schema
 
 from pellicle.arrays import Array
@@ -53,16 +54,17 @@ class Fitted(Quantity):
     ----------
     log
         Whether a search varies its logarithm.
-    shared
-        Whether all curves of a pool have the same value.
+    scope
+        What has a value of its own in a pool: all curves share one, those of each indenter, or each
+        curve has one.
     """
 
     log: bool = False
-    shared: bool = True
+    scope: Literal["all", "indenter", "curve"] = "all"
 
-    def given(self, value: object) -> float:
-        """Return a value in SI, `Weighed` if it comes with a deviation."""
-        if isinstance(value, Weighed):
+    def given(self, value: object) -> float | None:
+        """Return a value in SI, `Weighed` if it comes with a deviation; None if it is left out."""
+        if value is None or isinstance(value, Weighed):
             return value
         if not isinstance(value, Mapping):
             return self(value)
@@ -83,6 +85,19 @@ class Fitted(Quantity):
                 )
             ),
         )
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        held = super().__get_pydantic_json_schema__(schema, handler)
+        deviation = Quantity(self.unit, above=0).__get_pydantic_json_schema__(schema, handler)
+        weighed = {
+            "type": "object",
+            "properties": {"value": held, "deviation": deviation},
+            "required": ["value", "deviation"],
+            "additionalProperties": False,
+        }
+        return {"anyOf": [held, weighed], "unit": self.unit}
 
 
 def fitted(description: str, examples: list[Any] | None = None) -> Any:
@@ -162,13 +177,18 @@ class Effect(Fittable):
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Return why it cannot act on a curve beside effects of some types; empty if it can.
 
-        ``contact`` is the bare indenter's on a half-space of modulus 1 Pa.
+        ``contact`` is what it acts on, of modulus 1 Pa: bent by those that bend it before.
         """
         return ""
 
     def starts(self, sizes: Sizes) -> Iterable[Values]:
         """Yield values of its quantities from which searches start."""
         yield {name: 0.1 * sizes.of(quantity.unit) for name, quantity in self.open.items()}
+
+    def known(self, sizes: Sizes) -> Self:
+        """Return it with its open quantities at the first of its starts."""
+        usual = {name: 0.1 * sizes.of(quantity.unit) for name, quantity in self.open.items()}
+        return self.at({**usual, **next(iter(self.starts(sizes)), {})})
 
     def limits(self, sizes: Sizes) -> Mapping[str, tuple[float, float]]:
         """Return between which values [SI] such a curve can tell anything of a quantity."""

@@ -111,6 +111,8 @@ def _end(
     rise: float,
 ) -> float | None:
     """Return one end of an interval."""
+    if not np.isfinite(threshold):
+        return None
     best, slot = minimum.at[k], objective.slots[k]
     wall = abs(objective.limits[(sign + 1) // 2][k] - best)
     far = _REACH if slot.quantity.log else _FAR * max(abs(best), 1.0)

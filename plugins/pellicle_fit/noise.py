@@ -12,6 +12,7 @@ from scipy.special import fdtrc, ndtri
 from pellicle.arrays import Array, Mask
 
 from .curve import Curve
+from .long_memory import differenced, exponent_of
 
 CHANCE = 1e-3
 """Probability that a check flags a curve without fault."""
@@ -24,6 +25,12 @@ _WINDOWS = (1 / 2, 1 / 4, 1 / 8, 1 / 16, 1 / 32)
 _BINS = 8
 _DEPTHS = (1 / 16, 1 / 8, 1 / 4, 1 / 2, 3 / 4)
 """Edges of bins in contact, over the depth; narrow near first touch, where most models fail."""
+_WILD = 7.0
+"""Standard deviations from the mean of its neighbours beyond which a row is a spike."""
+_NORMAL = 1.4826
+"""Standard deviation of normal numbers over their median absolute deviation."""
+_COARSE = 2.0
+"""Step of the detector, over the noise, beyond which what lies between two steps is lost."""
 _LEAST = 1e-6
 """Least noise over the largest force, the accuracy of the force curves."""
 
@@ -35,6 +42,8 @@ class Flaw(Enum):
     OFFSET = "the force before contact is not 0"
     DRIFT = "the force before contact has a slope"
     SLOW = "the noise is correlated"
+    SPIKES = "single rows lie far from their neighbours"
+    STEPS = "the detector's steps are coarser than the noise"
     MISFIT = "in contact the residuals exceed the noise"
     PATTERN = "in contact the residuals follow a pattern"
     TOO_DEEP = "the force of this contact is not known at the largest depth"
@@ -62,11 +71,15 @@ class Judged(NamedTuple):
     @property
     def describes(self) -> bool:
         """Whether no flaw contradicts the explanation."""
-        return self.flaws <= {Flaw.SLOW}
+        return self.flaws <= {Flaw.SLOW, Flaw.SPIKES, Flaw.STEPS}
 
 
-def judged(curve: Curve, residuals: Array, jacobian: Array, depth: Array) -> Judged:
+def judged(
+    curve: Curve, residuals: Array, jacobian: Array, depth: Array, memory: float = 0.0
+) -> Judged:
     """Return the noise that an explanation of least χ² leaves in a curve.
+
+    Of noise with a memory d, that of its fractional differences.
 
     Parameters
     ----------
@@ -77,15 +90,21 @@ def judged(curve: Curve, residuals: Array, jacobian: Array, depth: Array) -> Jud
     depth
         Position over the contact point [m].
     """
+    if memory:
+        residuals, jacobian = differenced(residuals, memory), differenced(jacobian, memory)
     before = (depth < -_NEAR * curve.span) & curve.first_pass
     least = max(_LEAST * float(np.max(np.abs(curve.force))), _step(curve.force) / np.sqrt(12))
+    flaws = {Flaw.SPIKES} if has_spikes(residuals, least) else set()
     if before.sum() < _FEWEST:
         left = max(residuals.size - jacobian.shape[1], 1)
         noise = Noise(max(float(np.sqrt(np.sum(residuals**2) / left)), least), left)
-        return Judged(noise, frozenset())
+        return Judged(noise, frozenset(flaws))
     # Towards contact, on a retraction too.
     rows = np.flatnonzero(before)[:: -1 if curve.moves_out[before][0] else 1]
-    flaws, noise, far = _before_contact(residuals[rows], curve.base[rows], least)
+    found, noise, far = _before_contact(residuals[rows], curve.base[rows], least)
+    flaws |= found
+    if _step(curve.force) > _COARSE * neighbour_noise(residuals[rows]):
+        flaws.add(Flaw.STEPS)
     inside, free = ~before, max(int(np.sum(~before)) - jacobian.shape[1], 1)
     scatter = Noise(float(np.sqrt(np.sum(residuals[inside] ** 2) / free)), free)
     usual = noise
@@ -100,6 +119,12 @@ def judged(curve: Curve, residuals: Array, jacobian: Array, depth: Array) -> Jud
     elif sums and Flaw.SLOW in flaws:
         noise = max(noise, usual, sums)
     return Judged(noise, frozenset(flaws))
+
+
+def memory_of(curve: Curve, residuals: Array, depth: Array, flaws: frozenset[Flaw]) -> float:
+    """Return the exponent of correlated noise before contact; 0 if it is not of that kind."""
+    before = (depth < -_NEAR * curve.span) & curve.first_pass
+    return exponent_of(residuals[before]) if Flaw.SLOW in flaws else 0.0
 
 
 def _before_contact(force: Array, base: Array, least: float) -> tuple[set[Flaw], Noise, Noise]:
@@ -151,6 +176,13 @@ def binned(residuals: Array, jacobian: Array, bins: Array) -> Noise | None:
     basis, sizes, _ = np.linalg.svd(bins - span @ (span.T @ bins), full_matrices=False)
     sums = basis[:, sizes > 1e-6 * np.sqrt(residuals.size)].T @ residuals
     return Noise(float(np.sqrt(np.mean(sums**2))), sums.size) if sums.size else None
+
+
+def has_spikes(residuals: Array, least: float) -> bool:
+    """Return whether rows lie further from the mean of their neighbours than any noise does."""
+    off = residuals[1:-1] - (residuals[2:] + residuals[:-2]) / 2
+    spread = _NORMAL * float(np.median(np.abs(off - np.median(off))))
+    return bool(np.any(np.abs(off) > _WILD * max(spread, least)))
 
 
 def neighbour_noise(force: Array) -> float:

@@ -15,12 +15,17 @@ from pellicle.arrays import Array
 from .curve import Curve
 from .effect import Fitted, Sizes, Weighed
 from .explanation import Explanation
+from .long_memory import differenced
 
 _STEP = 1e-6
 """Step of derivatives by differences, in coordinates of the order of 1."""
 _SEARCHES = (("dogbox", 60), ("trf", 400))
 """Optimisers in the order in which they are tried, and their largest numbers of steps."""
-_TOLERANCE, _ROUGHLY = 1e-9, 1e-5
+_TOLERANCE, _ROUGHLY = 1e-8, 1e-4
+ROUGH = 20
+"""Steps of a search that tells whether a start is worth another."""
+_HALVING = ((4, 2), (16, 1))
+"""Steps from all starts that are left, and how many of the best are kept."""
 _BEFORE = 1.0
 """How far before the first row a contact may lie, over the range of positions."""
 _DECADES = 6.0
@@ -35,6 +40,7 @@ class Slot(NamedTuple):
     part: int
     """Which part of the explanation has it: 0 the solid, then the effects."""
     curve: int | None
+    """The first curve that it belongs to; None if all share it."""
     quantity: Fitted
     scale: float
     """What a coordinate of 1 stands for, or a logarithm of 0, in SI."""
@@ -84,6 +90,11 @@ class Objective:
     """Standard deviation of the force of each curve [N]."""
     sizes: Sizes
     """Orders of magnitude, in which coordinates are counted."""
+    memory: tuple[float, ...] = ()
+    """Exponent d of each curve whose noise has a power that falls as f^(−2d); 0 or none if white.
+
+    The noise is then that of fractional differences.
+    """
     instant: bool = True
     """Whether the modulus is that at the end of the loading, and not E*."""
 
@@ -95,12 +106,19 @@ class Objective:
     @cached_property
     def slots(self) -> tuple[Slot, ...]:
         """The coordinates, in order."""
+        owners = {"all": [None], "curve": range(len(self.curves)), "indenter": {*self.beads}}
         return tuple(
             Slot(name, part, curve, quantity, self.sizes.of(quantity.unit))
             for part, component in enumerate(self.explanation.parts)
             for name, quantity in component.open.items()
-            for curve in ([None] if quantity.shared else range(len(self.curves)))
+            for curve in owners[quantity.scope]
         )
+
+    @cached_property
+    def beads(self) -> list[int]:
+        """The first curve with the indenter of each curve."""
+        indenters = [curve.indenter for curve in self.curves]
+        return [indenters.index(indenter) for indenter in indenters]
 
     def index(self, name: str) -> int | None:
         """Return the number of the first coordinate of a quantity; None if it is not open."""
@@ -130,7 +148,8 @@ class Objective:
         """Return the explanation of a curve with values of its open quantities."""
         values: list[dict[str, float]] = [{} for _ in self.explanation.parts]
         for slot, coordinate in zip(self.slots, at, strict=True):
-            if slot.curve in (None, curve):
+            owner = self.beads[curve] if slot.quantity.scope == "indenter" else curve
+            if slot.curve in (None, owner):
                 values[slot.part][slot.name] = slot.value(coordinate)
         pairs = zip(self.explanation.effects, values[1:], strict=True)
         effects = tuple(effect.at(known) for effect, known in pairs)
@@ -149,6 +168,9 @@ class Objective:
         """Return (recorded − measured)/noise of all rows, then the terms of what is weighed."""
         rows = zip(self.forces(at), self.curves, self.noise, strict=True)
         terms = [curve.weights * (force - curve.force) / noise for force, curve, noise in rows]
+        if any(self.memory):
+            pairs = zip(terms, self.memory, strict=True)
+            terms = [differenced(term, d) if d else term for term, d in pairs]
         for slot, coordinate in zip(self.slots, at, strict=True):
             given = getattr(self.explanation.parts[slot.part], slot.name)
             if isinstance(given, Weighed):
@@ -175,8 +197,11 @@ class Objective:
         variances = np.diag(np.linalg.pinv(jacobian.T @ jacobian, rcond=1e-14))
         return np.where(variances > 0, np.sqrt(np.abs(variances)), np.inf)
 
-    def minimise(self, start: Array, held: Sequence[int] = (), *, rough: bool = False) -> Minimum:
-        """Return the minimum of χ² near a start, where the coordinates ``held`` stay."""
+    def minimise(self, start: Array, held: Sequence[int] = (), *, steps: int = 0) -> Minimum:
+        """Return the minimum of χ² near a start, where the coordinates ``held`` stay.
+
+        With a number of ``steps``, roughly.
+        """
         free = [k for k in range(len(self.slots)) if k not in held]
         low, high = (ends[free] for ends in self.limits)
 
@@ -188,7 +213,7 @@ class Objective:
         at = np.clip(np.asarray(start, dtype=float)[free], low, high)
         if not free:
             return Minimum(full(at), self.chi_squared(full(at)))
-        tolerance = _ROUGHLY if rough else _TOLERANCE
+        tolerance = _ROUGHLY if steps else _TOLERANCE
         for method, most in _SEARCHES:
             found = least_squares(
                 lambda some: self.residuals(full(some)),
@@ -196,20 +221,28 @@ class Objective:
                 lambda some: self.jacobian(full(some), free),
                 (low, high),
                 method=method,
-                max_nfev=20 if rough else most,
+                max_nfev=steps or most,
                 xtol=tolerance,
                 ftol=tolerance,
                 gtol=tolerance,
             )
             at = found.x
-            if found.success or rough:
+            if found.success or steps:
                 break
         return Minimum(full(at), 2 * float(found.cost), bool(found.success))
 
-    def best(self, starts: Iterable[Array]) -> Minimum:
-        """Return the least minimum from several starts: all roughly, the best of them in full."""
-        rough = (self.minimise(start, rough=True) for start in starts)
-        return self.minimise(min(rough, key=lambda minimum: minimum.chi_squared).at)
+    def best(self, starts: Iterable[Array], idle: tuple[float, float]) -> Minimum:
+        """Return the least minimum from several starts: few steps of all, more of the best.
+
+        One whose χ² is then in an ``idle`` range is not sought to the end.
+        """
+        left = list(starts)
+        for steps, kept in _HALVING:
+            minima = [self.minimise(start, steps=steps) for start in left]
+            minima.sort(key=lambda minimum: minimum.chi_squared)
+            left = [minimum.at for minimum in minima[:kept]]
+        low, high = idle
+        return minima[0] if low < minima[0].chi_squared < high else self.minimise(left[0])
 
     def with_noise(self, noise: Sequence[float]) -> Objective:
         """Return χ² of another noise [N] of each curve."""

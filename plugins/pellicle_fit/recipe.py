@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
+from scipy.special import chdtrc
+
+from pellicle.errors import ConfigError
 
 from .curve import Curve
 from .effect import Effect, Records, quantities
 from .explanation import Solid
 from .intervals import Estimate, estimates, threshold_of
-from .noise import Judged
+from .noise import CHANCE, Judged
 from .objective import MODULUS
 from .rivals import (
     MARGIN,
@@ -49,7 +53,11 @@ class Answer:
     judgements: tuple[Judged, ...]
     """Noise and flaws of each curve under the best explanation."""
     threshold: float
-    """Δχ² at the ends of intervals."""
+    """Δχ² at the ends of intervals, which a disagreement of curves widens."""
+    agreement: Agreement
+    """Whether several curves agree on what they share."""
+    untried: tuple[Types, ...]
+    """Responses that act alone and whose force beside what is asked is not known."""
 
     @property
     def verdict(self) -> Verdict:
@@ -103,6 +111,56 @@ class Answer:
         return Estimate(value, low, max(highs) if len(highs) == len(found) else None, found[0].unit)
 
 
+class Agreement(NamedTuple):
+    """Rise of χ² where curves share quantities, over that of each curve on its own."""
+
+    chi_squared: float
+    degrees: int
+    worst: int
+    """The curve that agrees least."""
+
+    @property
+    def factor(self) -> float:
+        """The factor by which it widens a rise of χ² (Birge 1932), 1 if it is within chance."""
+        if not self.degrees or chdtrc(self.degrees, self.chi_squared) >= CHANCE:
+            return 1.0
+        return max(self.chi_squared / self.degrees, 1.0)
+
+
+def agreement_of(fit: Explained) -> Agreement:
+    """Return whether curves agree on the quantities that they share."""
+    objective, count = replace(fit.objective, curves=fit.whole), len(fit.whole)
+    shared = sum(slot.curve is None for slot in objective.slots)
+    if count == 1 or not shared:
+        return Agreement(0.0, 0, 0)
+    values, rises = objective.values(fit.minimum.at), []
+    for i in range(count):
+        memory = objective.memory[i : i + 1]
+        one = replace(
+            objective,
+            curves=objective.curves[i : i + 1],
+            noise=objective.noise[i : i + 1],
+            memory=memory,
+        )
+        own = {(n, None if c is None else 0): v for (n, c), v in values.items() if c in (None, i)}
+        start = one.at_values(own)
+        rises.append(one.chi_squared(start) - one.minimise(start).chi_squared)
+    return Agreement(max(sum(rises), 0.0), shared * (count - 1), int(np.argmax(rises)))
+
+
+def timed(curves: Sequence[Curve]) -> tuple[Curve, ...]:
+    """Return curves with times.
+
+    Those whose times are not known have one speed, at which the longest takes 1 s.
+    """
+    ways = [np.append(0.0, np.cumsum(np.abs(np.diff(curve.base)))) for curve in curves]
+    longest = max(way[-1] for way in ways)
+    return tuple(
+        curve if curve.time is not None else replace(curve, time=way / longest)
+        for curve, way in zip(curves, ways, strict=True)
+    )
+
+
 def _held(fit: Explained, name: str) -> Estimate:
     """Return a quantity that an explanation does not fit: as given, or 0 where it has none."""
     for part in fit.objective.explanation.parts:
@@ -117,8 +175,10 @@ def answer(
     model: Sequence[Effect],
     rivals: Iterable[Sequence[Effect]],
     *,
+    kept: Sequence[Effect] = (),
     fix: Mapping[str, float | str] | None = None,
     uncertainty: Sequence[Effect] = (),
+    full: bool = False,
 ) -> Answer:
     """Fit modulus, contact point and a model to curves of one solid, and weigh its rivals.
 
@@ -129,12 +189,16 @@ def answer(
     model
         The question is whether the first effect that is none of the instrument is needed; the
         others are kept in all explanations.
+    kept
+        Effects that all explanations have.
     rivals
         Sets of effects, each compared alone and beside what is asked for.
     fix
         Values of quantities of the solid, in SI or with units.
     uncertainty
         Effects whose quantities are weighed; they widen intervals and are in no comparison.
+    full
+        Whether every explanation has all its intervals.
 
     Raises
     ------
@@ -143,37 +207,54 @@ def answer(
     ConvergenceError
         The force of a cantilever does not balance that of the solid.
     """
-    curves = tuple(curves)
+    curves = timed(curves)
     asked = next((effect for effect in model if not isinstance(effect, Records)), None)
-    kept = tuple(effect for effect in model if effect is not asked)
+    kept = (*kept, *(effect for effect in model if effect is not asked))
     question = Question(
         Solid.model_validate(dict(fix or {})), asked, kept, tuple(map(tuple, rivals))
     )
     fits, excused = fitted_all(question, curves)
-    judgements = min(fits, key=lambda fit: fit.aic).judged()
-    threshold = threshold_of(min(judged.noise.freedom for judged in judgements))
+    if question.word in excused:
+        raise ConfigError(f"cannot be fitted to this curve: it {excused[question.word]}", "model")
+    best = min(fits, key=lambda fit: fit.aic)
+    threshold = threshold_of(min(judged.noise.freedom for judged in best.judgements))
     margin, word = max(MARGIN, threshold), question.word
-    decision = decided(word, fits, doubted=doubtful(judgements), margin=margin)
+    decision = decided(word, fits, doubted=doubtful(best.judgements), margin=margin)
     chosen = chosen_of(word, decision, fits, margin)
-    tied = {
-        fit.types: with_estimates(fit, threshold, uncertainty, everything=fit.types == chosen)
-        for fit in lenders(word, decision, chosen, fits, margin)
+    agreement = agreement_of(next(fit for fit in fits if fit.types == chosen))
+    threshold *= agreement.factor
+    untried = tuple(
+        types
+        for types in excused
+        if word < types and types - word not in excused and question.responds(types - word)
+    )
+    # What may be right and has no model leaves nothing to bound.
+    ends = not (untried and decision.verdict is Verdict.UNDESCRIBED)
+    tied = [fit.types for fit in lenders(word, decision, chosen, fits, margin)]
+    found = {
+        fit.types: with_estimates(
+            fit, threshold if ends else np.inf, uncertainty, full or fit.types == chosen
+        )
+        for fit in fits
+        if full or fit.types in tied
     }
-    ranked = sorted((tied.get(fit.types, fit) for fit in fits), key=lambda fit: fit.aic)
+    ranked = sorted((found.get(fit.types, fit) for fit in fits), key=lambda fit: fit.aic)
     return Answer(
         tuple(ranked),
         question,
         decision,
-        tied[chosen],
-        tuple(tied.values()),
+        found[chosen],
+        tuple(found[types] for types in tied),
         excused,
-        tuple(judgements),
+        tuple(best.judgements),
         threshold,
+        agreement,
+        untried,
     )
 
 
 def with_estimates(
-    fit: Explained, threshold: float, extra: Sequence[Effect], *, everything: bool
+    fit: Explained, threshold: float, extra: Sequence[Effect], everything: bool
 ) -> Explained:
     """Return an explanation with its estimates: all, or modulus and tension."""
     objective, minimum = fit.objective, fit.minimum

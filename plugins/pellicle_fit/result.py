@@ -1,215 +1,222 @@
-"""The common part of the fit of one curve and the pooled fit of several."""
+"""The fit of one curve or of several: modulus and tension, and what else the curves say."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from pellicle.arrays import Array
 from pellicle.files import json_text, write_json
-from pellicle.units import decimal, readable
 
-from .config import FitConfig
+from . import sentences
+from .config import FitConfig, described
+from .curve import Curve
+from .effect import quantities
 from .files.measurement import Note
-from .models.force_model import ForceModel
-from .models.layer import LayerModel
-from .parameters import THICKNESS, Coordinates
-from .statistics.noise import FailedCheck
-from .statistics.profile import CONFIDENCE, Estimate, ProfileResult
-from .wording import interval, scale
+from .intervals import CONFIDENCE, Estimate
+from .recipe import Answer
+from .record import Record
+from .rivals import MARGIN, Explained, Verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from .comparison import Comparison, RivalFit
-    from .record import Record
 
+class Member(NamedTuple):
+    """One curve of a fit."""
 
-def thickness_of(model: ForceModel, profile: ProfileResult) -> Estimate | None:
-    """Return the thickness of a layer, fitted or given; None for another solid."""
-    if isinstance(model, LayerModel):
-        h = model.thickness
-        return Estimate(h, h, h, THICKNESS.unit, 0.0, held=True)
-    return profile.estimate(THICKNESS) if THICKNESS in model.parameters else None
+    name: str
+    """File, and label in it."""
+    curve: Curve
+    messages: tuple[str, ...]
+    """Of reading and cleaning; each is a `Note` or a warning."""
+    data: dict[str, Any]
+    """Origin, and the part that is fitted, as JSON data."""
 
 
 @dataclass(frozen=True, repr=False)
-class FitResult:
-    """Modulus and tension, and how well they describe the measured force."""
+class Fit:
+    """Modulus and tension of one curve, or of several curves of one solid, with 95 % intervals."""
 
-    _subject: ClassVar[str] = "this curve does"
-    reduced_modulus: Estimate
-    """E* [Pa]."""
-    tension: Estimate
-    """τ₀ [N/m]."""
-    poissons_ratio: float | None
-    """ν, if it was given."""
-    chi_squared: float
-    """Least sum of squared residuals over the noise."""
-    chi_squared_without_tension: float
-    """The same with the tension fixed at 0."""
+    answer: Answer
+    """All explanations that were compared, and the verdict."""
+    members: tuple[Member, ...]
+    """The curves."""
     advice: str
-    """The Cramér–Rao bound, and the experiment that would tighten it."""
-    messages: tuple[str, ...]
-    """Warnings, and notes of what was done."""
-    parameters: Coordinates
-    """Best coordinates: the value of each `Parameter`, for the modulus its natural logarithm."""
-    parameters_without_tension: Coordinates
-    """The same with the tension fixed at 0 (Hertz, for a paraboloid)."""
-    rise: float
-    """Δχ² threshold, reached at the ends of the intervals."""
-    failed_checks: tuple[FailedCheck, ...]
-    """Checks that the residuals fail; their sentences are among the messages."""
-    thickness: Estimate | None = field(default=None, kw_only=True)
-    """h [m], if the solid is a bonded layer with a force curve."""
-    config: FitConfig | None = field(default=None, kw_only=True)
+    """What to measure next; empty if nothing would help."""
+    poissons_ratio: float | None = None
+    """ν, if it was given."""
+    config: FitConfig | None = None
     """The configuration of the fit."""
-    rivals: Comparison | None = field(default=None, kw_only=True)
-    """Other explanations of the curves, if there is a tension to doubt or they were requested."""
-    record: Record | None = field(default=None, kw_only=True)
-    """Files with their hashes, versions, date and wall time."""
+    record: Record | None = None
+    """Versions, date and wall time."""
+
+    @property
+    def reduced_modulus(self) -> Estimate:
+        """E* [Pa], with an interval over all that the curves cannot tell apart."""
+        return self.answer.reduced_modulus
 
     @property
     def youngs_modulus(self) -> Estimate | None:
         """E = (1 − ν²) E* [Pa], if Poisson's ratio was given."""
-        ratio = self.poissons_ratio
-        return None if ratio is None else self.reduced_modulus.times(1 - ratio**2)
+        if self.poissons_ratio is None:
+            return None
+        modulus, factor = self.reduced_modulus, 1 - self.poissons_ratio**2
+        low, high = (end and end * factor for end in (modulus.low, modulus.high))
+        return replace(modulus, value=modulus.value * factor, low=low, high=high)
 
     @property
-    def chosen(self) -> RivalFit | None:
-        """The model whose estimates count, if it is not an elastic solid under tension."""
-        return None if self.rivals is None else self.rivals.chosen
+    def tension(self) -> Estimate:
+        """τ₀ [N/m], with an interval over all that the curves cannot tell apart."""
+        return self.answer.tension
 
-    def chosen_estimates(self) -> dict[str, Estimate]:
-        """Return the parameters of the chosen model by name."""
-        if self.chosen is None:
-            return self.estimates()
-        estimates, ratio = dict(self.chosen.estimates), self.poissons_ratio
-        if ratio is not None:
-            estimates["youngs_modulus"] = estimates["reduced_modulus"].times(1 - ratio**2)
-        return estimates
+    @property
+    def contact_point(self) -> Estimate:
+        """Position of first touch [m], of the first curve."""
+        return parameters_of(self.answer.chosen)["contact_point"]
+
+    def estimates(self) -> dict[str, Estimate]:
+        """Return modulus and tension, and the other quantities of the chosen explanation by name.
+
+        Those of further curves have their number behind the name, as ``contact_point_1``.
+        """
+        found = {"reduced_modulus": self.reduced_modulus, "tension": self.tension}
+        if youngs := self.youngs_modulus:
+            found["youngs_modulus"] = youngs
+        return {**parameters_of(self.answer.chosen), **found}
+
+    @property
+    def verdict(self) -> Verdict:
+        """Whether what was asked for, a tension by default, is needed."""
+        return self.answer.verdict
 
     @property
     def tension_needed(self) -> bool:
-        """Whether a model with tension beats all its rivals and passes the checks of its residuals.
-
-        Without a comparison with rivals there is nothing that needs a tension.
-        """
-        return self.rivals is not None and self.rivals.verdict == "needed"
+        """Whether tension beats all rivals, and what has it passes the checks of residuals."""
+        return self.answer.tension_needed
 
     @property
     def comparison(self) -> str:
-        """Whether tension is needed, in words."""
-        tension, (gain, lead) = self.tension, self._gains
-        figures = f"Δχ² = {decimal(gain, 3)}, ΔAIC = {decimal(lead, 3)}"
-        if tension.held and not tension.value:
-            return "tension is fixed at 0, so whether it is needed was not tested"
-        if tension.held:
-            return (
-                f"tension is fixed at {readable(tension.value, 'N/m', 4)} ({figures} against none)"
-            )
-        if self.rivals is not None and self.rivals.verdict != "not shown":
-            return "; ".join(filter(None, [self.rivals.sentence, self.rivals.advice]))
-        if tension.high is not None:
-            bound = f"it is below {readable(tension.high, 'N/m', 3)}"
-            return f"{self._subject} not show tension ({figures}); {bound}"
-        return f"{self._subject} not show tension ({figures}), nor set a bound on it"
-
-    @property
-    def _gains(self) -> tuple[float, float]:
-        """Decrease of χ² and of AIC by the tension, which is no parameter where it is held."""
-        gain = self.chi_squared_without_tension - self.chi_squared
-        return gain, gain if self.tension.held else gain - 2
+        """The verdict in words, with its figures."""
+        return sentences.comparison(self.answer)
 
     @property
     def sentences(self) -> list[str]:
-        """The verdicts of the fit in words."""
-        pull_off = "" if self.rivals is None else self.rivals.pull_off
-        return list(filter(None, [self.comparison, pull_off, self.advice]))
-
-    def range_of_models(self, *, si: bool = False) -> str:
-        """Return the modulus over all explanations that the curves cannot tell apart, in words.
-
-        It is Young's where Poisson's ratio is known, followed by the tension if one is needed, and
-        empty if one explanation stands alone.
-        """
-        if self.rivals is None or self.rivals.modulus is None:
-            return ""
-        name, modulus = "the reduced modulus", self.rivals.modulus
-        if self.poissons_ratio is not None:
-            name, modulus = "Young's modulus", modulus.times(1 - self.poissons_ratio**2)
-        ranges = f"{name} is {_range(modulus, si)}"
-        if self.rivals.tension is not None:
-            ranges += f" and the tension {_range(self.rivals.tension, si)}"
-        count = len(self.rivals.alternatives)
-        return f"over {count} models that the data cannot tell apart, {ranges}"
+        """The data, the verdict and the advice in words."""
+        found = sentences.data(self.answer, self._uncertainty), self.comparison, self.agreement
+        return [*filter(None, [*found, self.advice])]
 
     @property
-    def all_messages(self) -> list[str]:
-        """Warnings and notes, those of single curves with their names."""
-        return list(self.messages)
+    def agreement(self) -> str:
+        """Whether several curves agree on what they share, in words; empty for one."""
+        return sentences.agreement(self.answer, [member.name for member in self.members])
+
+    @property
+    def _uncertainty(self) -> Mapping[str, float | str]:
+        return self.config.uncertainty if self.config else {}
+
+    @property
+    def messages(self) -> list[str]:
+        """Warnings, and notes of what was done; those of one of several curves with its name."""
+        several, found = len(self.members) > 1, []
+        for member, judged in zip(self.members, self.answer.judgements, strict=True):
+            own = [*member.messages, *(text for _, text in sentences.failed_checks(judged))]
+            found += [type(text)(f"{member.name}: {text}") if several else text for text in own]
+        return [*found, *sentences.remarks(self.answer)]
 
     @property
     def warnings(self) -> list[str]:
         """Messages that call for care."""
-        return [text for text in self.all_messages if not isinstance(text, Note)]
+        return [text for text in self.messages if not isinstance(text, Note)]
 
     @property
     def notes(self) -> list[str]:
         """Messages that say what was done."""
-        return [text for text in self.all_messages if isinstance(text, Note)]
+        return [text for text in self.messages if isinstance(text, Note)]
 
-    def estimates(self) -> dict[str, Estimate]:
-        """Return the parameters by name; baseline and Young's modulus only if requested."""
-        estimates = {
-            name: value
-            for name, value in vars(self).items()
-            if isinstance(value, Estimate) and not (value.held and name in ("offset", "slope"))
-        }
-        youngs = self.youngs_modulus
-        return estimates if youngs is None else estimates | {"youngs_modulus": youngs}
+    @property
+    def chi_squared(self) -> float:
+        """Sum of squared residuals over the noise, of the chosen explanation."""
+        return self.answer.chosen.chi_squared
 
-    def curve_rows(self, *, si: bool = False) -> list[dict[str, str]]:
-        """Return a line of a table for each curve of a pool; none for a single curve.
+    def forces(self) -> list[Array]:
+        """Return the force [N] of the chosen explanation at the rows of each curve."""
+        return self.answer.chosen.forces()
 
-        Units have prefixes unless ``si``.
-        """
-        return []
+    def explained(self, *types: str) -> Explained | None:
+        """Return an explanation by the types of its effects; None if it was not compared."""
+        found = (fit for fit in self.answer.explanations if fit.types == frozenset(types))
+        return next(found, None)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as JSON data."""
-        gain, lead = self._gains
-        result = {name: value.to_dict() for name, value in self.estimates().items()} | {
-            "chosen": self._chosen_block(),
-            "confidence": CONFIDENCE,
-            "chi_squared": self.chi_squared,
-            "without_tension": {"delta_chi_squared": gain, "delta_aic": lead},
-            "tension_needed": self.tension_needed,
-            "comparison": self.comparison,
-            "advice": self.advice,
-            "failed_checks": [check._asdict() for check in self.failed_checks],
-            "messages": list(self.messages),
-            "notes": [text for text in self.messages if isinstance(text, Note)],
+        answer, chosen = self.answer, self.answer.chosen
+        own, names = parameters_of(chosen), ("reduced_modulus", "tension", "youngs_modulus")
+        result: dict[str, Any] = {
+            name: vars(estimate) for name, estimate in self.estimates().items() if name in names
         }
-        if self.rivals is not None:
-            result["rivals"] = self.rivals.to_dict()
+        result |= {
+            "parameters": {name: vars(estimate) for name, estimate in own.items()},
+            "model": {"effects": sorted(chosen.types), "words": sentences.words(chosen)},
+            "verdict": self.verdict.value,
+            "comparison": self.comparison,
+            "tension_needed": self.tension_needed,
+            "agreement": self.agreement,
+            "advice": self.advice,
+            "confidence": CONFIDENCE,
+            "calibration": sentences.calibration(self._uncertainty),
+            "chi_squared": self.chi_squared,
+            "threshold": answer.threshold,
+            "margin": max(MARGIN, answer.threshold),
+            "lead": answer.decision.lead,
+            "explanations": [self._explanation(fit) for fit in answer.explanations],
+            "excused": [
+                {"effects": sorted(types), "reason": reason}
+                for types, reason in answer.excused.items()
+            ],
+            "curves": [self._curve(i, own) for i in range(len(self.members))],
+            "messages": self.messages,
+            "notes": self.notes,
+        }
         if self.config is not None:
             result["configuration"] = self.config.to_dict()
-        if self.record is not None:
-            result |= self.record.to_dict()
-        return result
+        return result | (self.record.to_dict() if self.record else {})
 
-    def _chosen_block(self) -> dict[str, Any]:
-        """Return the code of the chosen model and its estimates as JSON data."""
-        rivals = self.rivals
-        if self.chosen is not None:
-            model = self.chosen.rival.code
-        else:
-            model = "none" if self.tension.held and not self.tension.value else "tension"
+    def _explanation(self, fit: Explained) -> dict[str, Any]:
+        """Return one of the explanations; quantities whose intervals were not sought lack ends."""
+        best = self.answer.explanations[0]
+        ends = fit.estimates
         return {
-            "model": model,
-            "settled": not rivals or (rivals.modulus is None and rivals.is_decided),
-            "parameters": {k: value.to_dict() for k, value in self.chosen_estimates().items()},
+            "effects": sorted(fit.types),
+            "words": sentences.words(fit),
+            "chi_squared": fit.chi_squared,
+            "delta_aic": fit.aic - best.aic,
+            "tied": fit.types in {tied.types for tied in self.answer.tied},
+            "holds_modulus": fit.types not in {other.types for other in self.answer.not_held},
+            "parameters": {
+                name: vars(value)
+                if name in ends or value.held
+                else {"value": value.value, "unit": value.unit}
+                for name, value in parameters_of(fit).items()
+            },
+        }
+
+    def _curve(self, i: int, parameters: Mapping[str, Estimate]) -> dict[str, Any]:
+        """Return one of the curves, with what the chosen explanation says of it alone."""
+        member, judged = self.members[i], self.answer.judgements[i]
+        slots = [slot for slot in self.answer.chosen.objective.slots if slot.curve == i]
+        checks = sentences.failed_checks(judged)
+        return {
+            "name": member.name,
+            "indenter": described(member.curve.indenter),
+            "points": member.curve.position.size,
+            "noise": {"value": judged.noise.deviation, "unit": "N"},
+            "failed_checks": [{"code": code, "message": text} for code, text in checks],
+            "messages": list(member.messages),
+            **{slot.name: vars(parameters[name_of(slot.name, i)]) for slot in slots},
+            "data": member.data,
         }
 
     def __repr__(self) -> str:
@@ -245,7 +252,23 @@ class FitResult:
         return write_json(self.to_dict(), Path(path))
 
 
-def _range(estimate: Estimate, si: bool) -> str:
-    """Return an interval with its unit."""
-    text = interval(estimate, si=si)
-    return scale(estimate, si=si).with_unit(text) if text != "open" else "not determined"
+def name_of(name: str, curve: int | None) -> str:
+    """Return the name of a quantity of one of several curves: that of the first has no number."""
+    return f"{name}_{curve}" if curve else name
+
+
+def parameters_of(fit: Explained) -> dict[str, Estimate]:
+    """Return all quantities of an explanation, fitted and given, by name.
+
+    Those whose intervals were not sought have no ends.
+    """
+    found, objective = {}, fit.objective
+    for slot, at in zip(objective.slots, fit.minimum.at, strict=True):
+        name = name_of(slot.name, slot.curve)
+        bare = Estimate(slot.value(at), None, None, slot.quantity.unit)
+        found[name] = fit.estimates.get(name, bare)
+    for part in objective.explanation.parts:
+        for name in quantities(type(part)).keys() - part.open.keys():
+            value, unit = float(getattr(part, name)), quantities(type(part))[name].unit
+            found[name] = Estimate(value, value, value, unit, held=True)
+    return found

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 from scipy.special import bdtrc
 
+from pellicle.arrays import Array
+
 from .curve import Curve
-from .effect import Effect, Sizes
+from .effect import Effect, Responds, Sizes
 from .explanation import Explanation, Solid
 from .intervals import Estimate
-from .noise import Flaw, Judged, judged, neighbour_noise
-from .objective import Minimum, Objective
+from .noise import Flaw, Judged, judged, memory_of, neighbour_noise
+from .objective import ROUGH, Minimum, Objective
 from .starts import starts
 
 MARGIN = 4.0
@@ -31,6 +34,8 @@ _FAILING = 0.01
 """Probability that a curve without fault fails some check."""
 _RARE = 0.05
 """Probability below which the number of failing curves is not attributed to chance."""
+_FAR = 40.0
+"""Difference of AIC beyond which an explanation is not sought to the end."""
 _ROWS = 250
 """Means that stand for the rows of each pass, where the force has no jumps."""
 Types = frozenset[str]
@@ -69,14 +74,16 @@ class Explained:
     @property
     def aic(self) -> float:
         """Akaike's criterion, less a constant of the curves."""
-        effects, curves = self.objective.explanation.effects, self.objective.curves
-        searched = sum(effect.searched(curve) for effect in effects for curve in curves)
-        return self.chi_squared + 2 * (len(self.objective.slots) + searched)
+        return criterion(self.objective, self.chi_squared)
 
     @cached_property
     def chi_squared(self) -> float:
         """χ² of all rows."""
         return replace(self.objective, curves=self.whole).chi_squared(self.minimum.at)
+
+    def forces(self) -> list[Array]:
+        """Return the force [N] at all rows of each curve."""
+        return replace(self.objective, curves=self.whole).forces(self.minimum.at)
 
     def at_noise(self, noise: Sequence[float]) -> Explained:
         """Return the same at another noise [N] of each curve."""
@@ -84,10 +91,11 @@ class Explained:
         minimum = self.minimum._replace(chi_squared=objective.chi_squared(self.minimum.at))
         return replace(self, objective=objective, minimum=minimum)
 
-    def judged(self) -> list[Judged]:
-        """Return noise and flaws of each curve under it, from all rows."""
-        at = self.minimum.at
-        objective = replace(self.objective, curves=self.whole)
+    @cached_property
+    def judgements(self) -> list[Judged]:
+        """Noise and flaws of each curve under it, from all rows."""
+        at, memory = self.minimum.at, self.objective.memory
+        objective = replace(self.objective, curves=self.whole, memory=())
         forces = objective.forces(at)
         jacobian = objective.jacobian(at, range(at.size))
         # A coordinate at its limit is none that the fit could use.
@@ -99,7 +107,8 @@ class Explained:
             rows = slice(row, row + force.size)
             known = objective.known(at, i)
             depth = curve.base - known.solid.contact_point
-            one = judged(curve, curve.force - force, jacobian[rows] * noise, depth)
+            d = memory[i] if memory else 0.0
+            one = judged(curve, curve.force - force, jacobian[rows] * noise, depth, d)
             if (
                 np.max(curve.position) - known.solid.contact_point
                 > known.contact(curve).depth_limit
@@ -125,6 +134,11 @@ class Question:
     def word(self) -> Types:
         """The set of what is asked for."""
         return frozenset({self.asked.type_name}) if self.asked else NONE
+
+    def responds(self, types: Types) -> bool:
+        """Return whether effects of some types are a response of the solid."""
+        effects = (effect for rival in self.rivals for effect in rival)
+        return any(isinstance(e, Responds) and e.type_name in types for e in effects)
 
     def candidates(self) -> dict[Types, Explanation]:
         """Return the explanations that are compared, by their types."""
@@ -199,9 +213,13 @@ def chosen_of(word: Types, decision: Decision, fits: Sequence[Explained], margin
 def lenders(
     word: Types, decision: Decision, chosen: Types, fits: Sequence[Explained], margin: float
 ) -> list[Explained]:
-    """Return the explanations that the curves cannot tell from the best and that lend values."""
+    """Return the explanations that the curves cannot tell from the best and that lend values.
+
+    The best is one of those that the verdict weighs: a pair that is little better than its parts
+    does not push out what ties with them.
+    """
     aic = {fit.types: fit.aic for fit in fits}
-    least = min(aic.values())
+    least = min(aic[decision.asked], aic[decision.other])
 
     def lends(fit: Explained) -> bool:
         effects = fit.objective.explanation.effects
@@ -219,33 +237,124 @@ def fitted_all(
 ) -> tuple[list[Explained], dict[Types, str]]:
     """Return all explanations at their least χ², at the noise of the best, and the excused.
 
-    The noise is first that of the model, which only scales χ²; then that of the best explanation.
+    Noise that is correlated counts as such, unless the best explanation then fails: a bent baseline
+    is no noise, and differences of it would remove the contact.
     """
-    fits: dict[Types, Explained] = {}
+    white = (0.0,) * len(curves)
+    simple, _ = compared(question, curves, white, simple=True)
+    memory = _memory_of(min(simple, key=lambda fit: fit.aic))
+    if any(memory):
+        fits, excused = compared(question, curves, memory)
+        if all(judged.describes for judged in min(fits, key=lambda fit: fit.aic).judgements):
+            return fits, excused
+    return compared(question, curves, white, {fit.types: fit for fit in simple})
+
+
+def compared(
+    question: Question,
+    curves: tuple[Curve, ...],
+    memory: tuple[float, ...],
+    known: Mapping[Types, Explained] = MappingProxyType({}),
+    *,
+    simple: bool = False,
+) -> tuple[list[Explained], dict[Types, str]]:
+    """Return explanations, only those without rivals if ``simple``, and the excused.
+
+    Some may be ``known`` already.  The noise is first that of neighbours, then that of the best of
+    the simple ones, which only scales χ², and at last that of the best.
+    """
+    fits, word = dict(known), question.word
     excused: dict[Types, str] = {}
-    noise: Sequence[float] = [neighbour_noise(curve.force) for curve in curves]
-    candidates, word = question.candidates(), question.word
-    simple = [types for types in candidates if types in (NONE, word)]
+    candidates = question.candidates()
+    first = [types for types in candidates if types in (NONE, word)]
+    others = [types for types in candidates if types not in first]
+    noise = [neighbour_noise(curve.force) for curve in curves]
     sizes = Sizes.of_curve(curves[0])
-    means = tuple(curve.binned(_ROWS) for curve in curves)
-    for types in simple + [types for types in candidates if types not in simple]:
+    means = curves if any(memory) else tuple(curve.binned(_ROWS) for curve in curves)
+    for types in first if simple else first + others:
         explanation = candidates[types]
+        if types in fits:
+            continue
         if excuse := explanation.excuse(curves):
             excused[types] = excuse
             continue
+        if types in others:
+            noise = list(min(fits.values(), key=lambda fit: fit.aic).objective.noise)
         jumps = any(effect.searched(c) for effect in explanation.effects for c in curves)
-        objective = Objective(explanation, curves if jumps else means, tuple(noise), sizes)
-        known = [(fit.objective, fit.minimum) for part, fit in fits.items() if part < types]
+        rows = curves if jumps else means
+        objective = Objective(explanation, rows, tuple(noise), sizes, memory)
+        parts = [(fit.objective, fit.minimum) for part, fit in fits.items() if part < types]
         # A pair starts from its parts.
         scan = not word < types or not word
-        minimum = objective.best(starts(objective, known, scan=scan))
+        idle = (np.inf, np.inf)
+        if types in others:
+            idle = _idle(types, word, objective, fits, jumps=jumps)
+        minimum = objective.best(starts(objective, parts, scan=scan), idle)
         fits[types] = Explained(types, objective, minimum, curves)
-        if len(fits) == len(simple):
-            noise = noise_of(min(fits.values(), key=lambda fit: fit.aic))
-            fits = {types: fit.at_noise(noise) for types, fit in fits.items()}
+        if len(fits) == len(first):
+            fits = at_common_noise(fits.values())
+    if simple:
+        return list(fits.values()), excused
     better = [_restarted(fit, fits) for fit in fits.values()]
-    noise = noise_of(min(better, key=lambda fit: fit.aic))
-    return [fit.at_noise(noise) for fit in better], excused
+    return list(at_common_noise(better).values()), excused
+
+
+def _idle(
+    types: Types,
+    word: Types,
+    objective: Objective,
+    fits: Mapping[Types, Explained],
+    *,
+    jumps: bool,
+) -> tuple[float, float]:
+    """Return between which χ² an explanation decides nothing.
+
+    It is then far behind the best, or behind one of its parts; worse than nothing at all it cannot
+    be, which it mostly contains.
+    """
+    low, high = min(fit.aic for fit in fits.values()) + _FAR, fits[NONE].aic
+    if word < types:
+        own = [fits[part].aic for part in (word, types - word) if part in fits]
+        low, high = min(low, *(aic + 1 for aic in own)), max(own)
+    # Of means, χ² lacks the scatter of the rows about them.
+    scatter = 0.0 if jumps else fits[word].chi_squared - fits[word].minimum.chi_squared
+    lacks = criterion(objective, 0.0) + scatter
+    return low - lacks, high - lacks + 2 * len(objective.slots)
+
+
+def criterion(objective: Objective, chi_squared: float) -> float:
+    """Return Akaike's criterion, less a constant of the curves."""
+    effects, curves = objective.explanation.effects, objective.curves
+    searched = sum(effect.searched(curve) for effect in effects for curve in curves)
+    return chi_squared + 2 * (len(objective.slots) + searched)
+
+
+def at_common_noise(fits: Collection[Explained]) -> dict[Types, Explained]:
+    """Return explanations at the noise of the best that passes its checks.
+
+    If none does, at that of the best, which is widened where it fails.
+    """
+    noise: list[float] = []
+    for fit in sorted(fits, key=lambda fit: fit.aic):
+        judgements = fit.judgements
+        passes = all(judgement.describes for judgement in judgements)
+        if passes or not noise:
+            noise = [judgement.noise.deviation for judgement in judgements]
+        if passes:
+            break
+    return {fit.types: fit.at_noise(noise) for fit in fits}
+
+
+def _memory_of(fit: Explained) -> tuple[float, ...]:
+    """Return the exponent of the noise of each curve before contact."""
+    forces = replace(fit.objective, curves=fit.whole).forces(fit.minimum.at)
+    found = []
+    for i, (curve, force, judgement) in enumerate(
+        zip(fit.whole, forces, fit.judgements, strict=True)
+    ):
+        depth = curve.base - fit.objective.known(fit.minimum.at, i).solid.contact_point
+        found.append(memory_of(curve, curve.force - force, depth, judgement.flaws))
+    return tuple(found)
 
 
 def _restarted(fit: Explained, fits: Mapping[Types, Explained]) -> Explained:
@@ -253,15 +362,10 @@ def _restarted(fit: Explained, fits: Mapping[Types, Explained]) -> Explained:
     found = [fit.minimum]
     for whole in (other for types, other in fits.items() if fit.types and fit.types < types):
         start = fit.objective.at_values(whole.objective.values(whole.minimum.at))
-        rough = fit.objective.minimise(start, rough=True)
+        rough = fit.objective.minimise(start, steps=ROUGH)
         if rough.chi_squared < fit.minimum.chi_squared - 0.1:
             found.append(fit.objective.minimise(rough.at))
     return replace(fit, minimum=min(found, key=lambda minimum: minimum.chi_squared))
-
-
-def noise_of(fit: Explained) -> list[float]:
-    """Return the noise of each curve [N] under an explanation."""
-    return [curve.noise.deviation for curve in fit.judged()]
 
 
 def doubtful(judgements: Sequence[Judged]) -> bool:

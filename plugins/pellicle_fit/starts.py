@@ -11,7 +11,7 @@ import numpy as np
 from pellicle.arrays import Array
 
 from .effect import powers
-from .objective import CONTACT_POINT, MODULUS, Minimum, Objective
+from .objective import CONTACT_POINT, MODULUS, ROUGH, Minimum, Objective
 
 _POINTS, _ROWS = 25, 120
 """Contact points that are scanned, and rows of each pass that a scan sees."""
@@ -61,8 +61,8 @@ def pooled(objective: Objective) -> list[Array]:
         return scanned(objective)
     each = []
     for curve, noise in zip(objective.curves, objective.noise, strict=True):
-        alone = replace(objective, curves=(curve,), noise=(noise,))
-        minima = [alone.minimise(at, rough=True).at for at in scanned(alone)]
+        alone = replace(objective, curves=(curve,), noise=(noise,), memory=())
+        minima = [alone.minimise(at, steps=ROUGH).at for at in scanned(alone)]
         each.append(
             [{name: value for (name, _), value in alone.values(at).items()} for at in minima]
         )

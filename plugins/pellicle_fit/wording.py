@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from pellicle.units import Scale, axis_unit, printed
 
+from .intervals import Estimate
 from .population.summary import Quartiles
-from .statistics.profile import Estimate
 
 _WORDS = {
     "youngs_modulus": "Young's modulus",

@@ -50,7 +50,7 @@ def _make(request: pytest.FixtureRequest) -> Component:
     if type_ == "dask":
         fields = fields | {"address": request.getfixturevalue("dask_address")}
     with paths_relative_to(DATA):
-        return registry().make(FAMILIES[family], {"type": type_, **fields})
+        return registry().make(registry().families[family], {"type": type_, **fields})
 
 
 for _name in ("component", *FAMILIES):

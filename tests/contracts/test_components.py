@@ -6,7 +6,7 @@ import jsonschema
 import pytest
 from pydantic import create_model
 
-from pellicle.components import FAMILIES, Component, FromRegistry
+from pellicle.components import Component, FromRegistry
 from pellicle.config.json_schema import model_schema
 from pellicle.plugins import registry
 
@@ -21,7 +21,7 @@ def schemas() -> dict[str, jsonschema.Draft202012Validator]:
 
     return {
         family: validator(family, base)
-        for family, base in FAMILIES.items()
+        for family, base in registry().families.items()
         if registry().components[family]
     }
 

@@ -7,18 +7,22 @@ import pytest
 import pellicle as pl
 from pellicle import testing
 from pellicle.components import FAMILIES, Component
-from pellicle.testing.component import require_close
+from pellicle.plugins import family_of, registry
+from pellicle.testing.component import kit_of, require_close
 
 
 def test_keeps_its_contract(component: Component) -> None:
     """One call checks all that is asked of a component."""
-    getattr(testing, f"check_{component.family}")(component)
+    check = kit_of(family_of(type(component)))
+    assert check is not None
+    check(component)
 
 
 def test_each_family_has_a_check() -> None:
     """The kit has a function for each family, named after it, and no others."""
     named = {name for name in vars(testing) if name.startswith("check_")}
     assert named == {f"check_{family}" for family in FAMILIES}
+    assert all(map(kit_of, registry().families.values()))
 
 
 def test_a_skin_of_little_tension_keeps_the_contract() -> None:

@@ -20,6 +20,7 @@ from pellicle.components import FAMILIES
 from pellicle.config.explain import explanations, words_by_kind
 from pellicle.config.json_schema import model_schema
 from pellicle.plugins import GROUP, Origin, Registry, load, registry
+from pellicle_fit.effect import Effect
 from tests.installed import Installed, entry_point
 
 BUILT_INS = tuple(entry_points(group=GROUP, name="kernel.half_space"))
@@ -152,20 +153,20 @@ def test_an_entry_point_that_names_no_component_is_broken(
     assert list(plugins.components["kernel"]) == ["half_space"]
 
 
-EFFECT = '''
+ARTEFACT = '''
 from typing import Annotated, Literal
 from pydantic import Field
 from pellicle.components import Component, FromRegistry
 from pellicle.schema import Model
 from pellicle.units import Quantity
 
-class Effect(Component):
+class Artefact(Component):
     """What bends a curve."""
 
-    family = "effect"
+    family = "artefact"
     place = "rivals[]"
 
-class Drift(Effect):
+class Drift(Artefact):
     """Drift of the base."""
 
     type: Literal["drift"] = "drift"
@@ -175,7 +176,7 @@ class Drift(Effect):
 class Fit(Model):
     """A file of a stranger."""
 
-    rivals: tuple[Annotated[Effect, FromRegistry()], ...]
+    rivals: tuple[Annotated[Artefact, FromRegistry()], ...]
 '''
 
 
@@ -194,41 +195,42 @@ def install(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Registry]:
 
 def test_a_plugin_may_bring_a_family(plugin: Plugin, install: Callable[..., Registry]) -> None:
     """By a base class alone: fields hold its components, schemas and explanations have them."""
-    entry = plugin(EFFECT, name="effect.drift", class_="Drift")
+    entry = plugin(ARTEFACT, name="artefact.drift", class_="Drift")
     installed = install(entry)
     stranger = import_module(entry.module)
-    assert [*installed.families.items()] == [*FAMILIES.items(), ("effect", stranger.Effect)]
+    families = {**FAMILIES, "artefact": stranger.Artefact, "effect": Effect}
+    assert installed.families == families
     (drift,) = stranger.Fit(rivals=[{"type": "drift", "rate": "1 nm/s"}]).rivals
     assert (type(drift), drift.rate) == (stranger.Drift, 1e-9)
     with pytest.raises(ConfigError) as raised:
         stranger.Fit(rivals=[{"type": "drif"}])
     assert str(raised.value) == (
-        "rivals.0.type: 'drif' is not an effect; did you mean 'drift'? Known: drift"
+        "rivals.0.type: 'drif' is not an artefact; did you mean 'drift'? Known: drift"
     )
     schema = model_schema(stranger.Fit)
     Draft202012Validator(schema).validate({"rivals": [{"type": "drift", "rate": "1 nm/s"}]})
     assert not Draft202012Validator(schema).is_valid({"rivals": [{"type": "drift"}]})
     assert schema["$defs"].keys() == {"Drift"}
     assert "Drift" not in model_schema(Run)["$defs"]
-    assert words_by_kind({})["effect"] == ["drift"]
-    (family,) = explanations("effects", {})
+    assert words_by_kind({})["artefact"] == ["drift"]
+    (family,) = explanations("artefacts", {})
     assert (family.text, [row.name for row in family.fields]) == ("What bends a curve.", ["drift"])
-    (explanation,) = explanations("effect.drift", {})
+    (explanation,) = explanations("artefact.drift", {})
     assert explanation.example.startswith("[[rivals]]\n")
     assert stranger.Fit(**tomllib.loads(explanation.example)).rivals[0].rate == 1e-9
 
 
 def test_a_family_has_one_base(plugin: Plugin, install: Callable[..., Registry]) -> None:
     """Of two bases of one name the later plugin is broken; ours cannot be taken."""
-    first, later = (plugin(EFFECT, name=f"effect.{n}", class_="Drift") for n in "ab")
-    thief = plugin(EFFECT.replace('"effect"', '"kernel"'), name="a", class_="Drift")
+    first, later = (plugin(ARTEFACT, name=f"artefact.{n}", class_="Drift") for n in "ab")
+    thief = plugin(ARTEFACT.replace('"artefact"', '"kernel"'), name="a", class_="Drift")
     installed = install(first, later, thief)
     errors = {broken.origin.entry_point: broken.error for broken in installed.broken}
-    assert errors.keys() == {"a", "effect.b"}
-    assert f"{later.module}.Effect and {first.module}.Effect both" in errors["effect.b"]
-    assert f"{thief.module}.Effect and pellicle.components.kernel.Kernel both" in errors["a"]
-    assert installed.find("effect", "drift").__module__ == first.module
-    with pytest.raises(ConfigError, match=f"is a {first.module}.Drift, not a {later.module}.Ef"):
+    assert errors.keys() == {"a", "artefact.b"}
+    assert f"{later.module}.Artefact and {first.module}.Artefact both" in errors["artefact.b"]
+    assert f"{thief.module}.Artefact and pellicle.components.kernel.Kernel both" in errors["a"]
+    assert installed.find("artefact", "drift").__module__ == first.module
+    with pytest.raises(ConfigError, match=f"is a {first.module}.Drift, not a {later.module}.Ar"):
         import_module(later.module).Fit(rivals=[{"type": "drift", "rate": 1}])
 
 
@@ -236,20 +238,22 @@ def test_a_family_whose_application_is_not_installed(
     plugin: Plugin, install: Callable[..., Registry]
 ) -> None:
     """A field and a search say so; that the plugin is broken or switched off comes first."""
-    entry = plugin(EFFECT, name="effect.drift", class_="Drift")
+    entry = plugin(ARTEFACT, name="artefact.drift", class_="Drift")
     stranger = entry.load().__module__
     install()
     for table in ({"type": "drift"}, {}):
-        with pytest.raises(PluginError, match="no installed plugin brings the family 'effect'; Kn"):
+        with pytest.raises(
+            PluginError, match="no installed plugin brings the family 'artefact'; Kn"
+        ):
             import_module(stranger).Fit(rivals=[table])
     with pytest.raises(
-        ConfigError, match="'effect' is neither a type, a family nor a table of what is"
+        ConfigError, match="'artefact' is neither a type, a family nor a table of what is"
     ):
-        explanations("effect", {})
-    with pytest.raises(PluginError, match="effect 'drift' is broken"):
-        load([plugin("raise OSError", name="effect.drift")]).find("effect", "drift")
+        explanations("artefact", {})
+    with pytest.raises(PluginError, match="artefact 'drift' is broken"):
+        load([plugin("raise OSError", name="artefact.drift")]).find("artefact", "drift")
     with pytest.raises(PluginError, match="switched off"):
-        load([entry], disable="stranger").find("effect", "drift")
+        load([entry], disable="stranger").find("artefact", "drift")
 
 
 def test_commands_are_not_loaded_with_components(plugin: Plugin) -> None:

@@ -16,6 +16,7 @@ from pellicle.variables import Variable as Variable
 from .base import Component as Component
 from .base import FromRegistry as FromRegistry
 from .base import role_of as role_of
+from .base import words_of_type as words_of_type
 from .charts import Axis as Axis
 from .charts import Chart as Chart
 from .charts import Column as Column

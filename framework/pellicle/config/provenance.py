@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
-from contextlib import suppress
+from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
-from pellicle.components import Component
 from pellicle.files import for_document
 from pellicle.plugins import registry
 
@@ -45,20 +42,8 @@ def facts_of(runs: Sequence[Run]) -> dict[str, Any]:
 def now_with(runs: Iterable[Run]) -> dict[str, str]:
     """Return the date, and the versions of the packages that solve ``runs``, as attributes."""
     used = components_in(part for run in runs for part in (run, run.loading.prescription))
-    numbers = versions({*map(type, used)})
+    numbers = registry().all_versions({*map(type, used)})
     return {
         "versions": ", ".join(f"{name} {number}" for name, number in numbers.items()),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
     }
-
-
-def versions(used: Collection[type[Component]], others: Iterable[str] = ()) -> dict[str, str]:
-    """Return the version of pellicle, of the owners of components, of their and other libraries."""
-    libraries = sorted({*others, *(name for component in used for name in component.libraries)})
-    numbers = {name: version(name) for name in ("pellicle", "numpy", "scipy")}
-    numbers |= registry().versions(used)
-    for name in libraries:
-        # A worker may receive data that a library has read without having the library itself.
-        with suppress(PackageNotFoundError):
-            numbers[name] = version(name)
-    return numbers

@@ -6,8 +6,12 @@ a test framework; under pytest a plain function is enough::
 
     def test_contract():
         check_kernel(Graded(reduced_modulus="10 kPa", length="0.1 mm", exponent=0.5))
+
+A family that a plugin brings has its check in the package of its base class, made of `check`.
 """
 
+from .component import check as check
+from .component import rules_of as rules_of
 from .corrections import check_correction as check_correction
 from .executors import check_executor as check_executor
 from .indenters import check_indenter as check_indenter

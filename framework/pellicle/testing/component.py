@@ -9,13 +9,14 @@ import pickle
 import tomllib
 from collections.abc import Callable, Iterable
 from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
 import tomli_w
 from numpy.typing import ArrayLike
 
-from pellicle.components import FAMILIES, Component
+from pellicle.components import Component
 from pellicle.components.rules import CHEAP, Case, required
 from pellicle.components.rules.rule import difference
 from pellicle.components.rules.rule import rules_of as rules_of
@@ -61,30 +62,34 @@ def require_close(actual: ArrayLike, expected: ArrayLike, name: str, **allowed: 
 
 
 def check(
-    component: object, family: str, rules: list[Rule], *arguments: Any, cases: Iterable[Case] = ()
+    component: object,
+    base: type[Component],
+    rules: list[Rule],
+    *arguments: Any,
+    cases: Iterable[Case] = (),
 ) -> None:
-    """Check the rules of all components, then those of the family.
+    """Check the rules of all components, then those of the family of a base class.
 
     Of these, the rules that need no run are asked in each of the ``cases``, the others with
     ``arguments``. Rules that need an installed plugin come last, so that the others can be checked
     without it.
     """
-    keep([is_an_instance], component, family)
+    keep([is_an_instance], component, base)
     keep(RULES, component)
     for case in cases:
-        keep(CHEAP[family], component, case)
+        keep(CHEAP[base.family], component, case)
     keep(rules, component, *arguments)
     keep([is_registered, goes_through_the_registry], component)
 
 
-def is_an_instance(component: object, family: str) -> None:
+def is_an_instance(component: object, base: type[Component]) -> None:
     """The check of a family takes an instance of a component of that family."""
-    base = FAMILIES[family]
     if isinstance(component, type):
         raise AssertionError(
             f"{component.__name__} is a class; pass an instance: {component.__name__}(…)"
         )
-    require(isinstance(component, base), f"{component!r}, which is not a pellicle.{base.__name__}")
+    name = f"{base.__module__.partition('.')[0]}.{base.__name__}"
+    require(isinstance(component, base), f"{component!r}, which is not a {name}")
 
 
 def class_can_be_registered(component: Component) -> None:
@@ -198,15 +203,22 @@ RULES: list[Rule] = [
 ]
 
 
+def kit_of(base: type[Component]) -> Callable[[Component], None] | None:
+    """Return ``check_FAMILY`` of the package of a family's base class; None if it has none."""
+    name = f"{base.__module__.partition('.')[0]}.testing"
+    module = importlib.import_module(name) if find_spec(name) else None
+    return getattr(module, f"check_{base.family}", None)
+
+
 def verdict_on_examples(registered: Registered) -> tuple[bool, str]:
     """Return whether the examples of a component keep its contract, and in words how far.
 
     Without examples only what registration requires of the class has been checked.
     """
-    family = registered.component.family
-    kit = getattr(importlib.import_module(__package__), f"check_{family}", None)
+    base = family_of(registered.component)
+    kit = kit_of(base)
     if kit is None or not registered.examples:
-        lack = "examples" if kit else f"checks of the family {family!r}"
+        lack = "examples" if kit else f"checks of the family {base.family!r}"
         return True, f"class rules only: there are no {lack}"
     for number, example in enumerate(registered.examples, start=1):
         try:

@@ -25,7 +25,7 @@ def check_correction(correction: AreaCorrection) -> None:
     ``periodic_area`` does not depend on where the edge of the domain lies; and the area goes into
     the result of a run.
     """
-    check(correction, "correction", rules_of(__name__))
+    check(correction, AreaCorrection, rules_of(__name__))
 
 
 def _islands() -> Mask:

@@ -32,7 +32,7 @@ def check_executor(executor: Executor) -> None:
     ``report`` receives the messages of the work with their task, in the calling thread; and if the
     iterator is closed early, no task continues.
     """
-    check(executor, "executor", rules_of(__name__))
+    check(executor, Executor, rules_of(__name__))
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ def check_indenter(indenter: Indenter, grid: Grid | None = None) -> None:
     """
     check(
         indenter,
-        "indenter",
+        Indenter,
         rules_of(__name__),
         grid or Grid(points=[13, 11], size=["1.3 mm", "1.1 mm"]),
     )

@@ -28,7 +28,7 @@ def check_interaction(interaction: Interaction) -> None:
     adhesion w on every grid; and a small run under a pulling force converges, for which
     ``active_set`` asks that the attraction is strongest at a closed gap and falls from there.
     """
-    check(interaction, "interaction", rules_of(__name__), cases=_cases(interaction))
+    check(interaction, Interaction, rules_of(__name__), cases=_cases(interaction))
 
 
 def run_under_a_pull_converges(interaction: Interaction) -> None:

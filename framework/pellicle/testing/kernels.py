@@ -33,7 +33,7 @@ def check_kernel(kernel: Kernel) -> None:
     ``scaled`` kernels are those of a stiffer or softer solid under the same skin; the indentation
     is then that of ``scaled(1)``.
     """
-    check(kernel, "kernel", rules_of(__name__), cases=_CASES)
+    check(kernel, Kernel, rules_of(__name__), cases=_CASES)
 
 
 def runs_converge(kernel: Kernel) -> None:

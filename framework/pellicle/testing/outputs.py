@@ -46,7 +46,7 @@ def check_output(output: Output) -> None:
     its `suffixes`, also if a run is interrupted and repeated; an output of scope ``"run"`` shows
     every step; and it works in the runs and studies of its scope.
     """
-    check(output, "output", rules_of(__name__))
+    check(output, Output, rules_of(__name__))
 
 
 @cache

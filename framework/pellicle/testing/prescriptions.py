@@ -37,7 +37,7 @@ def check_prescription(prescription: Prescription, values: Sequence[float] = ())
     under these two forces. They can be left out if a result has a variable named like the
     prescription's type, for example from ``report``.
     """
-    check(prescription, "prescription", rules_of(__name__), tuple(values))
+    check(prescription, Prescription, rules_of(__name__), tuple(values))
 
 
 @cache

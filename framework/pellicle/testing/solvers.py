@@ -53,7 +53,7 @@ def check_solver(solver: Solver) -> None:
     step before nor the unit of stiffness; the monitor is called; and ``response`` is that of a
     flat punch.
     """
-    check(solver, "solver", rules_of(__name__))
+    check(solver, Solver, rules_of(__name__))
 
 
 def _solve(problem: dict[str, Any], solver: Solver, prescribed: str, *values: float) -> xr.Dataset:

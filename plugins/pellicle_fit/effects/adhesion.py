@@ -13,7 +13,7 @@ from pellicle_fit.contact import Contact
 from pellicle_fit.curve import Curve
 from pellicle_fit.effect import Fitted, Responds, Response, Sizes, Values, fitted
 
-_SEARCHED, _REFINED, _NODES = 61, 4, 120
+_SEARCHED, _REFINED, _NODES = 61, 3, 120
 """Contacts among which the end of a branch is sought, and how often; nodes that describe it."""
 _HIGHER = 10.0
 """How far above the first guess the other end is sought, in logarithms of the depth."""
@@ -45,17 +45,16 @@ class Adhesion(Responds):
     """
 
     type: Literal["adhesion"] = "adhesion"
+    examples = ({}, {"work_of_adhesion": "10 uJ/m^2"})
     balances: ClassVar[bool] = True
     work_of_adhesion: Annotated[float, Fitted("J/m2", above=0, log=True)] = fitted(
-        "work of adhesion w"
+        "work of adhesion w [J/m2]"
     )
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Refuse a contact without a radius."""
-        others = {"layer", "worn_tip", "size", "stiff_surface"}
-        if contact.is_bare_indenter and not beside & others:
-            return ""
-        return "needs an indenter with a contact radius on a half-space"
+        known = contact.is_bare_indenter
+        return "" if known else "needs an indenter with a contact radius on a half-space"
 
     def starts(self, sizes: Sizes) -> Iterable[Values]:
         """Yield little and much adhesion."""
@@ -105,8 +104,7 @@ class Adhesion(Responds):
 
     def _equilibria(self, contact: Contact, depth: Array, softness: float) -> Equilibria:
         """Return the equilibria that without adhesion would have depths [m]."""
-        radius, slope = contact.punch(depth)
-        force, stiffness = contact.force(depth), contact.stiffness(depth)
+        force, stiffness, radius, slope = contact.punch(depth)
         retraction = np.sqrt(4 * np.pi * self.work_of_adhesion * radius / slope)
         force = force - stiffness * retraction
         return Equilibria(depth - retraction + softness * force, force)

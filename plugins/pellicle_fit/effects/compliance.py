@@ -22,7 +22,8 @@ class Compliance(Yields):
 
     model_config = ConfigDict(title="a compliance in series, such as a sensitivity that is off")
     type: Literal["compliance"] = "compliance"
-    compliance: Annotated[float, Fitted("m/N")] = fitted("compliance c")
+    examples = ({}, {"compliance": "2 m/N"})
+    compliance: Annotated[float, Fitted("m/N")] = fitted("compliance c [m/N]")
 
     def give(self, force: Array) -> Array:
         """Return cF [m]."""

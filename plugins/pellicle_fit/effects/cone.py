@@ -18,6 +18,7 @@ class Cone(Shape):
 
     model_config = ConfigDict(title="a cone instead")
     type: Literal["cone"] = "cone"
+    examples = ({},)
     holds_modulus: ClassVar[bool] = False
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:

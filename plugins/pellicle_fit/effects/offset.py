@@ -12,12 +12,13 @@ from pellicle_fit.effect import Fitted, Records, fitted
 
 
 class Offset(Records):
-    """A constant force."""
+    """Constant force of the instrument."""
 
     model_config = ConfigDict(title="an offset")
     type: Literal["offset"] = "offset"
+    examples = ({}, {"offset": "10 pN"})
     rank: ClassVar[int] = 1
-    offset: Annotated[float, Fitted("N", shared=False)] = fitted("force without a load")
+    offset: Annotated[float, Fitted("N", scope="curve")] = fitted("force without a load [N]")
 
     def recorded(self, force: Array, curve: Curve) -> Array:
         """Return F + F₀ [N]."""

@@ -14,10 +14,11 @@ from .relaxing import Relaxing
 
 
 class PowerLaw(Relaxing):
-    """E(t) = E* (t / 1 s)^−α."""
+    """Solid that relaxes by a power law, E(t) = E* (t / 1 s)^−α."""
 
     model_config = ConfigDict(title="power-law relaxation")
     type: Literal["power_law"] = "power_law"
+    examples = ({}, {"relaxation_exponent": 0.2})
     relaxation_exponent: Annotated[float, Fitted("1", at_least=0, at_most=0.95)] = fitted(
         "exponent α"
     )

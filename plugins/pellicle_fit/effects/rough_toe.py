@@ -24,9 +24,10 @@ class RoughToe(Yields):
 
     model_config = ConfigDict(title="a rough surface")
     type: Literal["rough_toe"] = "rough_toe"
-    height: Annotated[float, Fitted("m", above=0, log=True)] = fitted("scale λ of the heights")
+    examples = ({}, {"height": "20 nm", "toe_force": "10 pN"})
+    height: Annotated[float, Fitted("m", above=0, log=True)] = fitted("scale λ of the heights [m]")
     toe_force: Annotated[float, Fitted("N", above=0, log=True)] = fitted(
-        "force F₁ at which they are flattened by λ ln 2"
+        "force F₁ at which they are flattened by λ ln 2 [N]"
     )
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:

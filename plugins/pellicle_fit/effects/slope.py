@@ -17,9 +17,10 @@ class Slope(Records):
 
     model_config = ConfigDict(title="a sloping baseline")
     type: Literal["slope"] = "slope"
+    examples = ({}, {"slope": "10 uN/m"})
     rank: ClassVar[int] = 1
-    slope: Annotated[float, Fitted("N/m", shared=False)] = fitted("slope of the baseline")
+    slope: Annotated[float, Fitted("N/m", scope="curve")] = fitted("slope of the baseline [N/m]")
 
     def recorded(self, force: Array, curve: Curve) -> Array:
-        """Return F + slope × way from the first row [N]."""
-        return np.asarray(force + self.slope * (curve.base - curve.base[0]))
+        """Return F + slope × way from the first position [N]."""
+        return np.asarray(force + self.slope * (curve.base - curve.base.min()))

@@ -20,6 +20,7 @@ class Sphere(Shape):
 
     model_config = ConfigDict(title="a sphere, or a paraboloid, instead")
     type: Literal["sphere"] = "sphere"
+    examples = ({},)
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Refuse shallow curves too, on which both are one."""

@@ -15,15 +15,16 @@ from .relaxing import Relaxing
 
 
 class StandardLinear(Relaxing):
-    """E(t) = E* (1 − g + g e^(−t/T)), with E* that of fast loading."""
+    """Standard linear solid, E(t) = E* (1 − g + g e^(−t/T)), with E* that of fast loading."""
 
     model_config = ConfigDict(title="standard linear relaxation")
     type: Literal["standard_linear"] = "standard_linear"
+    examples = ({}, {"relaxed_share": 0.3, "relaxation_time": "1 s"})
     relaxed_share: Annotated[float, Fitted("1", at_least=0, at_most=0.99)] = fitted(
         "share g that relaxes"
     )
     relaxation_time: Annotated[float, Fitted("s", above=0, log=True)] = fitted(
-        "time T in which it relaxes"
+        "time T in which it relaxes [s]"
     )
 
     def relaxed(self, time: float) -> float:
@@ -41,5 +42,6 @@ class StandardLinear(Relaxing):
 
     def starts(self, sizes: Sizes) -> Iterable[Values]:
         """Yield relaxation within a small part of the path, a third of it and all of it."""
+        least, _ = self.limits(sizes)["relaxation_time"]
         for share in (0.05, 0.3, 2.0):
-            yield {"relaxed_share": 0.3, "relaxation_time": share * sizes.time}
+            yield {"relaxed_share": 0.3, "relaxation_time": max(share * sizes.time, least)}

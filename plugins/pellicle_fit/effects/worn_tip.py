@@ -25,7 +25,8 @@ class WornTip(Shape):
 
     model_config = ConfigDict(title="a worn tip")
     type: Literal["worn_tip"] = "worn_tip"
-    flat_radius: Annotated[float, Fitted("m", at_least=0)] = fitted("radius b of the flat")
+    examples = ({}, {"flat_radius": "0.5 um"})
+    flat_radius: Annotated[float, Fitted("m", at_least=0)] = fitted("radius b of the flat [m]")
 
     def contact(self, contact: Contact) -> Contact:
         """Return the contact of the worn tip."""

@@ -23,8 +23,9 @@ from .text_table import FILE, read_cells
 
 _PATTERN = re.compile(r"[*?[]")
 
-Curves = str | Path | Sequence[str | Path] | Mapping[str, tuple[ArrayLike, ArrayLike]]
-"""A folder, a file, a table that lists files, several of these; or position and force by name."""
+Curves = str | Path | Sequence[str | Path] | Mapping[str, Sequence[ArrayLike]]
+"""A folder, a file, a table that lists files, several of these; or arrays of curves by name:
+position, force and perhaps time."""
 
 
 class Source(NamedTuple):
@@ -57,8 +58,8 @@ class CurveFile:
 
     path: Any
     """The file, or the name of the curve."""
-    numbers: tuple[ArrayLike, ArrayLike] | None
-    """Position [m] and force [N] of a curve that is given by its numbers."""
+    numbers: Sequence[ArrayLike] | None
+    """Position [m], force [N] and perhaps time [s] of a curve that is given by its numbers."""
     fields: Mapping[str, Any]
     """Calibration, fields of the indenter, x and y that belong to this file alone."""
     group: str
@@ -87,9 +88,15 @@ class CurveFile:
                 readers = read(self.path, calibration, self.segment)
             else:
                 # `clean` checks the arrays.
-                position, force = (cast("Array", values) for values in self.numbers)
-                stiffness, speed = calibration.spring_constant, calibration.speed
-                readers[""] = lambda: Measurement(position, force, stiffness=stiffness, speed=speed)
+                position, force, *time = (cast("Array", values) for values in self.numbers)
+                measured = Measurement(
+                    position,
+                    force,
+                    stiffness=calibration.spring_constant,
+                    speed=calibration.speed,
+                    time=time[0] if time else None,
+                )
+                readers[""] = lambda: measured
         except PellicleError as error:
             failure = error
 

@@ -22,28 +22,30 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import pellicle as pl
-from pellicle_fit.config import FitConfig
-from pellicle_fit.files.measurement import Measurement
-from pellicle_fit.files.sources import Source, SourceStream
-from pellicle_fit.many import fit_sources
-from pellicle_fit.one_curve import fit_source
-from pellicle_fit.parameters import TENSION, Coordinates
-from pellicle_fit.pooled import pool_sources
-from pellicle_fit.population.table import table
-from pellicle_fit.problem import FitProblem, problems
-from pellicle_fit.statistics.checks import judged
-from pellicle_fit.statistics.likelihood import Likelihood
-from pellicle_fit.statistics.pooled_likelihood import Pool
-from pellicle_fit.statistics.rivals import rivals, sloped
+from pellicle_fit.curve import Curve
+from pellicle_fit.effect import Effect, Sizes
+from pellicle_fit.explanation import Explanation, Solid
+from pellicle_fit.intervals import Estimate
+from pellicle_fit.objective import Minimum, Objective
+from pellicle_fit.recipe import answer
+from pellicle_fit.rivals import Explained
 from tests import adhesive_paths
 from tests.physics.frozen.fit_curves import RADIUS, Case
 from tests.physics.frozen.not_frozen import VARIABLES
 
 Array = NDArray[np.float64]
-_CODES = {"slope": "baseline_slope", "layer": "thickness"}
-"""Names of effects in the program, where they differ."""
-_NAMES = {code: name for name, code in _CODES.items()}
-
+RIVALS = (
+    ("offset", "slope"),
+    ("offset", "drift"),
+    *(
+        (name,)
+        for name in (
+            "drag power_law standard_linear adhesion layer sphere cone worn_tip brush compliance "
+            "stiff_surface rough_toe"
+        ).split()
+    ),
+)
+"""Sets of effects that are compared with a tension."""
 
 @contextmanager
 def _caveats_hidden() -> Iterator[None]:
@@ -135,79 +137,88 @@ def adhesive_applications(case: str, tension: float, points: int) -> int:
 # --- Fits ------------------------------------------------------------------------------------
 
 
-def _effects(code: str) -> list[str]:
-    """Return the effects of an explanation."""
-    return sorted(_NAMES.get(part, part) for part in code.split("+") if part != "none")
+def _effect(name: str, **fields: Any) -> Effect:
+    return pl.registry().make(Effect, {"type": name, **fields})
 
 
-def _key(code: str) -> str:
-    """Return the effects of an explanation as one word."""
-    return " + ".join(_effects(code)) or "none"
+def _given(case: Case) -> list[Effect]:
+    """Return what all explanations of a case have: baseline and layer."""
+    options = case.options
+    baseline = options.get("baseline", "none")
+    found = [_effect(n) for n in ("offset", "slope")[: ("none", "offset", "slope").index(baseline)]]
+    if "thickness" in options:
+        known = {} if options["thickness"] == "free" else {"thickness": options["thickness"]}
+        found.append(_effect("layer", poissons_ratio=options["poissons_ratio"], **known))
+    return found
 
 
-def _config(case: Case, **options: Any) -> FitConfig:
-    given = {"indenter": "paraboloid", "radius": RADIUS, **case.options, **options}
-    return FitConfig.merged(None, **given)
+def _curves(case: Case) -> tuple[Curve, ...]:
+    """Return the curves of a case as fits see them."""
+    options = {"indenter": "paraboloid", "radius": RADIUS, **case.options}
+    shape = {k: options[k] for k in ("radius", "half_angle") if options.get(k) is not None}
+    body = pl.indenter(options["indenter"], **shape)
+    segment = options.get("segment", "approach")
+    curves = []
+    for curve in case.curves:
+        deepest = curve.position >= curve.position.max() * (1 - 1e-9)
+        turn = int(np.flatnonzero(deepest)[-1])
+        first = int(np.flatnonzero(deepest)[0])
+        rows = np.arange(curve.force.size)
+        # An approach ends where a dwell begins.
+        kept = rows <= first if segment == "approach" else rows >= 0
+        out = rows > turn if segment == "both" else np.full(rows.size, segment == "retract")
+        arrays = (a[kept] for a in (curve.position, curve.force, curve.time, out))
+        position, force, time, unloading = arrays
+        stiffness = options.get("spring_constant")
+        curves.append(Curve(position, force, body, time, unloading, stiffness))
+    return tuple(curves)
 
 
-def _sources(config: FitConfig, case: Case) -> list[Source]:
-    """Return the curves of a case as the program reads them."""
-    numbers = {str(n): (curve.position, curve.force) for n, curve in enumerate(case.curves)}
-    sources = []
-    for source, curve in zip(config.sources(numbers), case.curves, strict=True):
-        assert isinstance(source.curve, Measurement)
-        sources.append(source._replace(curve=replace(source.curve, time=curve.time)))
-    return sources
+def _explanation(case: Case, effects: Collection[str]) -> Explanation:
+    """Return an explanation of a case, with a baseline and with all its quantities open."""
+    wanted = {*effects, "offset", "slope"}
+    given = _given(case)
+    taken = {effect.type_name for effect in given}
+    return Explanation(Solid(), (*given, *(_effect(name) for name in sorted(wanted - taken))))
 
 
-def _likelihoods(
-    case: Case, effects: Collection[str], values: Mapping[str, float]
-) -> list[tuple[Likelihood, Coordinates]]:
-    """Return the likelihood of each curve under an explanation, and the coordinates of values."""
-    pairs = []
-    config = _config(case)
-    for problem in problems(config, _sources(config, case)):
-        assert isinstance(problem, FitProblem)
-        member = replace(problem.likelihood(), noise=case.noise)
-        if TENSION not in member.free:
-            member = replace(member, free=(*member.free, TENSION))
-        known = {p: p.coordinate(values.get(p.name, 0.0)) for p in member.parameters}
-        explanations = {_key(r.code): r for r in rivals(member, known)}
-        wanted = {*effects} - {"slope"}
-        explanation = explanations[" + ".join(sorted(wanted)) or "none"]
-        if "slope" in effects:
-            explanation = sloped(explanation)
-        member = explanation.of_curve(member)
-        given = {p: values.get(p.name, 0.0) for p in member.parameters}
-        without = {} if "tension" in effects else {TENSION: 0.0}
-        coordinates = {p: p.coordinate(v) for p, v in (given | without).items()}
-        pairs.append((member, coordinates))
-    return pairs
+def _objective(
+    case: Case, effects: Collection[str], values: Mapping[str, float], memory: float = 0.0
+) -> tuple[Objective, Any]:
+    """Return χ² of a case under an explanation, and the coordinates of values."""
+    curves = _curves(case)
+    objective = Objective(
+        _explanation(case, effects),
+        curves,
+        (case.noise,) * len(curves),
+        Sizes.of_curve(curves[0]),
+        (memory,) * len(curves),
+        instant=False,
+    )
+    return objective, np.array([s.coordinate(values.get(s.name, 0.0)) for s in objective.slots])
+
+
+def _sorted(case: Case) -> bool:
+    """Return whether the stored forces of a case are in the order of positions."""
+    return case.options.get("segment", "approach") == "retract"
 
 
 def forces(case: Case, effects: Collection[str], values: Mapping[str, float]) -> Array:
     """Return the force [N] of a model at the rows of a curve, baseline included."""
-    ((member, coordinates),) = _likelihoods(case, effects, values)
-    return np.asarray(member.force + member.misfit(coordinates))
+    objective, at = _objective(case, effects, values)
+    (force,) = objective.forces(at)
+    return force[np.argsort(objective.curves[0].base, kind="stable")] if _sorted(case) else force
 
 
 def chi_squared(
-    case: Case,
-    effects: Collection[str],
-    values: Mapping[str, float],
-    memory: float = 0.0,
-    condensed: bool = False,
+    case: Case, effects: Collection[str], values: Mapping[str, float], memory: float = 0.0
 ) -> float:
     """Return χ² of curves at given values and the true noise.
 
-    With a memory d, noise has a power that falls as f^(−2d); a condensed χ² is that of searches.
+    With a memory d, noise has a power that falls as f^(−2d).
     """
-    pairs = _likelihoods(case, effects, values)
-    pool = Pool.of([replace(member, memory=memory) for member, _ in pairs])
-    coordinates = pool.joined([part for _, part in pairs])
-    whole = pool.condensed(coordinates, 0.1) if condensed else pool
-    assert condensed == (whole is not pool)
-    return float(whole.chi_squared(coordinates))
+    objective, at = _objective(case, effects, values, memory)
+    return objective.chi_squared(at)
 
 
 def noise(case: Case, effects: Collection[str], values: Mapping[str, float]) -> dict[str, Any]:
@@ -215,110 +226,55 @@ def noise(case: Case, effects: Collection[str], values: Mapping[str, float]) -> 
 
     They are about a model at given values.
     """
-    estimate, _ = judged(*_likelihoods(case, effects, values)[0])
+    objective, at = _objective(case, effects, values)
+    fit = Explained(frozenset(effects), objective, Minimum(at, 0.0), objective.curves)
+    judged = fit.judgements[0]
     return {
-        "deviation": estimate.noise.deviation,
-        "freedom": estimate.noise.freedom,
-        "failed": sorted(check.code for check in estimate.failed),
+        "deviation": judged.noise.deviation,
+        "freedom": judged.noise.freedom,
+        "failed": sorted(flaw.name.lower() for flaw in judged.flaws),
     }
 
 
 def fit(case: Case) -> dict[str, Any]:
-    """Return what a fit of curves answers.
-
-    ``headline`` is the elastic solid under tension, its intervals left out where those of the
-    comparison are of another noise; ΔAIC are over the explanation without any effect.
-    """
-    config = _config(case, compare=case.full, pool=len(case.curves) > 1)
-    sources = _sources(config, case)
-    if config.pool:
-        result: Any = pool_sources(config, sources, progress=False)
-        noises = [curve.noise for curve in result.curves]
-        failed = {check.code for curve in result.curves for check in curve.failed_checks}
-    else:
-        result = fit_source(config, sources[0], progress=False)
-        noises, failed = [result.noise], {check.code for check in result.failed_checks}
-    headline = {k: v for k, v in result.estimates().items() if k != "youngs_modulus"}
-    answer: dict[str, Any] = {
-        "noise": noises,
-        "failed": sorted(failed),
-        "threshold": result.rise,
-        "chi_squared": [result.chi_squared, result.chi_squared_without_tension],
-        "headline": {name: _estimate(value) for name, value in headline.items()},
-    }
-    found = result.rivals
-    if found is None:
-        return answer
-    aic = {rival.rival.code: rival.aic for rival in found.fits}
-    least = next(r.chi_squared for r in found.fits if r.rival.code == "tension")
-    if abs(result.chi_squared / least - 1) > 1e-3:
-        for values in answer["headline"].values():
-            values[1:] = ["another noise", "another noise", values[3]]
-    return answer | {
-        "verdict": found.verdict,
-        "margin": found.margin,
-        "chosen": _key("tension" if found.chosen is None else found.chosen.rival.code),
-        "tied": sorted(_key(rival.rival.code) for rival in found.tied),
-        "alternatives": sorted(_key(rival.rival.code) for rival in found.alternatives),
-        "over_alternatives": {
-            name: None if value is None else [value.low, value.high]
-            for name, value in (("reduced_modulus", found.modulus), ("tension", found.tension))
+    """Return what a fit of curves answers; ΔAIC are over the explanation without any effect."""
+    fixed = dict(case.options.get("fix", {}))
+    known = {"tension": fixed.pop("tension")} if "tension" in fixed else {}
+    found = answer(
+        _curves(case),
+        [_effect("tension", **known), *_given(case)],
+        [[_effect(name) for name in rival] for rival in RIVALS],
+        fix=fixed,
+        full=case.full,
+    )
+    none = next(fit.aic for fit in found.explanations if not fit.types)
+    return {
+        "noise": [judged.noise.deviation for judged in found.judgements],
+        "failed": sorted({f.name.lower() for judged in found.judgements for f in judged.flaws}),
+        "threshold": found.threshold,
+        "verdict": found.verdict.value,
+        "chosen": _key(found.chosen.types),
+        "tied": sorted(_key(fit.types) for fit in found.tied),
+        "over_tied": {
+            "reduced_modulus": _estimate(found.reduced_modulus),
+            "tension": _estimate(found.tension),
         },
         "explanations": {
-            _key(rival.rival.code): {
-                "chi_squared": rival.chi_squared,
-                "delta_aic": rival.aic - aic["none"],
-                "parameters": {
-                    name: _estimate(e)
-                    for name, e in rival.estimates.items()
-                    if rival.intervals != "curvature"
-                },
+            _key(fit.types): {
+                "chi_squared": fit.chi_squared,
+                "delta_aic": fit.aic - none,
+                "parameters": {name: _estimate(e) for name, e in fit.estimates.items()},
             }
-            for rival in found.fits
+            for fit in found.explanations
         },
     }
 
 
-def _estimate(estimate: pl.Estimate) -> list[Any]:
-    """Return value, both ends of the interval and the Cramér–Rao bound; None for what is open."""
-    bound = estimate.bound if np.isfinite(estimate.bound) else None
-    return [estimate.value, estimate.low, estimate.high, bound]
+def _key(types: Collection[str]) -> str:
+    """Return the effects of an explanation as one word."""
+    return " + ".join(sorted(types)) or "none"
 
 
-def tables(cases: list[list[Case]]) -> dict[str, dict[str, Any]]:
-    """Return the columns of a population, and the images of the force map that its curves are.
-
-    Curves are at the places of a lattice; of a column of texts only the name is told.
-    """
-    with tempfile.TemporaryDirectory() as name:
-        folder, lines = Path(name), ["file,x [um],y [um]"]
-        for y, row in enumerate(cases):
-            for x, case in enumerate(row):
-                (curve,) = case.curves
-                np.savetxt(
-                    folder / f"{x}{y}.csv",
-                    np.column_stack([curve.position, curve.force]),
-                    delimiter=",",
-                    header="position [m],force [N]",
-                    comments="",
-                )
-                lines.append(f"{x}{y}.csv,{x},{y}")
-        (folder / "map.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
-        config = _config(cases[0][0], curves=folder / "map.csv")
-        fits = fit_sources(config, SourceStream(config.files()), None, progress=False)
-    (images,) = fits.maps.values()
-    return {"population": _columns(table(fits.rows)), "map": _columns(images)}
-
-
-def _columns(dataset: Any) -> dict[str, Any]:
-    return {
-        str(name): {"unit": values.attrs.get("units", ""), "values": _numbers(values.values)}
-        for name, values in dataset.variables.items()
-    }
-
-
-def _numbers(values: Any) -> list[Any] | None:
-    """Return numbers in a list, None for NaN; None for texts."""
-    if values.dtype.kind not in "fib":
-        return None
-    return [None if np.isnan(value) else float(value) for value in values.ravel()]
+def _estimate(estimate: Estimate) -> list[float | None]:
+    """Return value and both ends of the interval; None for what is open."""
+    return [estimate.value, estimate.low, estimate.high]

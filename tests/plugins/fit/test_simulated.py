@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,13 +9,16 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle_fit.models import simulation
-from pellicle_fit.models.interpolated import SimulatedCurve
-from pellicle_fit.models.simulation import Plan, plan, simulate
-from pellicle_fit.models.solid import scaled, solid
-from tests.plugins.fit.conftest import ends_of
-
-pytestmark = pytest.mark.usefixtures("no_rivals")
+from pellicle_fit.contact import Contact
+from pellicle_fit.curve import Curve
+from pellicle_fit.effects.layer import Layer
+from pellicle_fit.effects.tension import Tension
+from pellicle_fit.recipe import answer
+from pellicle_fit.simulated import simulation
+from pellicle_fit.simulated.body import body_of, layer_of, layer_table
+from pellicle_fit.simulated.interpolated import SimulatedCurve
+from pellicle_fit.simulated.simulation import Plan, Simulation, plan
+from pellicle_fit.simulated.solid import scaled, solid
 
 LAYER = {"type": "bonded_layer", "thickness": "4 um"}
 RADIUS = 2e-6
@@ -34,8 +36,7 @@ def exact_nodes() -> SimulatedCurve:
     """Return a curve through exact forces of a sphere, at the nodes of its plan."""
     sphere = pl.indenter("sphere", radius=1.0)
     assert isinstance(sphere, pl.HasForceCurve)
-    material = solid("tensed_membrane")
-    planned = plan(sphere, material, 0.4)
+    planned = plan(sphere, solid("tensed_membrane"), 0.4)
     slope, intercept = planned.width
     widths = np.exp(intercept + slope * np.log(planned.depths))
     forces = np.array(
@@ -44,15 +45,8 @@ def exact_nodes() -> SimulatedCurve:
             for depth, width in zip(planned.depths, widths, strict=True)
         ]
     )
-    return SimulatedCurve(
-        sphere,
-        material.table,
-        planned.depths,
-        simulation._RATIOS,
-        np.log(forces),
-        planned.width,
-        RADIUS,
-    )
+    nodes = planned.depths, simulation._RATIOS, np.log(forces)
+    return SimulatedCurve(*nodes, planned.width, RADIUS, accuracy=0.01, half_space=False)
 
 
 @pytest.mark.parametrize("ratio", [0.0, 1e-3, 0.03, 0.5, 8.0])
@@ -63,6 +57,14 @@ def test_between_the_nodes(exact_nodes: SimulatedCurve, ratio: float) -> None:
     depth = RADIUS * np.geomspace(0.01, 0.4, 50)
     here = exact_nodes.force_curve(depth, ratio * RADIUS).force
     assert here == pytest.approx(exact.force_curve(depth, ratio * RADIUS).force, rel=3e-4)
+
+
+def test_the_contact_knows_how_well_it_is_known(exact_nodes: SimulatedCurve) -> None:
+    """Its error widens intervals; without a half-space there is no contact radius."""
+    contact = Contact.on_half_space(exact_nodes, 1e3)
+    assert (contact.error, contact.half_space) == (0.01, False)
+    assert not contact.is_bare_indenter
+    assert contact.depth_limit == pytest.approx(RADIUS * 2**-1)
 
 
 @pytest.mark.slow
@@ -82,37 +84,22 @@ def test_quadric_is_simulated_once(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     depth = np.concatenate([np.linspace(-0.2e-6, -0.01e-6, 60), np.repeat(depths, 40)])
     force = np.concatenate([np.zeros(60), np.repeat(forces, 40)])
     force = force + 0.003 * force.max() * np.random.default_rng(3).standard_normal(force.size)
-    options: dict[str, Any] = {"indenter": "quadric", "cache": tmp_path, "grid_points": 24}
-    fit = pl.fit(depth, force, fix={"contact_point": 0}, **fields, **options)
-    for estimate, truth in ((fit.reduced_modulus, modulus), (fit.tension, tension)):
-        low, high = ends_of(estimate)
-        assert low <= truth <= high < 1.5 * low
-    assert "the force curve is simulated" in fit.messages[-1]
-    assert fit.to_dict()["model"]["kernel"] == {"type": "tensed_membrane"}
+
+    def fit(size: float, **radii: Any) -> Any:
+        body = body_of(pl.indenter("quadric", **radii))
+        assert isinstance(body, Simulation)
+        simulated = body.curve(size * 0.8e-6, cache=tmp_path, grid_points=24)
+        assert simulated.half_space
+        assert 0 < simulated.accuracy < 0.1
+        curve = Curve(size * depth, size**2 * force, simulated)
+        return answer([curve], [Tension()], [], fix={"contact_point": 0.0})
+
+    found = fit(1.0, **fields)
+    for estimate, truth in ((found.reduced_modulus, modulus), (found.tension, tension)):
+        assert estimate.low <= truth <= estimate.high < 1.5 * estimate.low
     monkeypatch.setattr(simulation, "run_study", None)
-    again = pl.fit(
-        depth * 1e3,
-        force * 1e6,
-        fix={"contact_point": 0},
-        radius_x="3 mm",
-        radius_y="7 mm",
-        **options,
-    )
-    assert again.tension.value == pytest.approx(1e3 * fit.tension.value, rel=1e-3)
-
-
-def test_simulated_curve_is_an_indenter(exact_nodes: SimulatedCurve) -> None:
-    """A curve that was made before is fitted with as it is, in a wider interval if it is rough."""
-    depth = np.linspace(-0.2e-6, 0.6e-6, 300)
-    exact = pl.indenter("sphere", radius=RADIUS)
-    assert isinstance(exact, pl.HasForceCurve)
-    force = 5e3 * exact.force_curve(depth, 0.5e-6).force
-    force = force + 0.005 * force.max() * np.random.default_rng(1).standard_normal(300)
-    fine = pl.fit(depth, force, indenter=exact_nodes)
-    true = pl.fit(depth, force, indenter=exact)
-    assert fine.tension.value == pytest.approx(true.tension.value, rel=0.01)
-    with pytest.raises(pl.ConfigError, match="with a force curve"):
-        pl.fit(depth, force, indenter=exact_nodes, kernel="tensed_membrane")
+    again = fit(1e3, radius_x="3 mm", radius_y="7 mm")
+    assert again.tension.value == pytest.approx(1e3 * found.tension.value, rel=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -149,6 +136,35 @@ def test_poissons_ratio_is_the_kernels() -> None:
     assert solid("tensed_membrane", 0.2).poissons_ratio == 0.2
 
 
+def test_a_force_curve_is_taken_as_it_is(exact_nodes: SimulatedCurve) -> None:
+    """What has a curve on the solid is not simulated, and allows no other solid."""
+    sphere = pl.indenter("sphere", radius=RADIUS)
+    assert isinstance(body_of(sphere), type(sphere))
+    assert body_of(exact_nodes) is exact_nodes
+    assert isinstance(body_of(sphere, "tensed_membrane"), Simulation)
+    with pytest.raises(pl.ConfigError, match="kernel: cannot be given with a force curve"):
+        body_of(exact_nodes, "tensed_membrane")
+
+
+def test_a_bonded_layer_is_an_effect() -> None:
+    """Other shapes, negative ratios, and punches too wide for the table need a study."""
+    sphere, thick = pl.indenter("sphere", radius=RADIUS), 4e-6
+    expected = Layer(thickness=thick, poissons_ratio=0.3)
+    assert layer_of(sphere, layer_table(0.3, thick)) == expected
+    assert layer_of(sphere, {"type": "coated", "substrate": LAYER}, 0.3) == expected
+    assert layer_of(pl.indenter("flat_punch", radius=9 * thick), layer_table(0.3, thick))
+    assert layer_of(pl.indenter("flat_punch", radius=11 * thick), layer_table(0.3, thick)) is None
+    quadric = pl.indenter("quadric", radius_x=RADIUS, radius_y=2 * RADIUS)
+    assert layer_of(quadric, layer_table(0.3, thick)) is None
+    assert layer_of(sphere, layer_table(-0.1, thick)) is None
+    assert layer_of(sphere, "tensed_membrane") is None
+    bent = layer_table(0.3, thick) | {"bending": 1e-18}
+    assert layer_of(sphere, bent) is None
+    body = body_of(quadric, layer_table(0.3, thick))
+    assert isinstance(body, Simulation)
+    assert not body.solid.is_half_space
+
+
 def test_what_counts_against_the_modulus_is_refused() -> None:
     """A bending stiffness has no meaning while the modulus is not known."""
     material = solid({"type": "bending_skin", "bending": "1 pN*m"})
@@ -164,21 +180,16 @@ def test_a_study_that_fails_is_no_force_curve(
 
     def hasty(*arguments: Any) -> Plan:
         planned = plan(*arguments)
-        return replace(
-            planned, table=planned.table | {"solver": {"type": "active_set", "max_iterations": 1}}
-        )
+        solver = {"type": "active_set", "max_iterations": 1}
+        return planned._replace(table=planned.table | {"solver": solver})
 
     monkeypatch.setattr(simulation, "_OCTAVES", 1)
     monkeypatch.setattr(simulation, "_RATIOS", simulation._RATIOS[:2])
     monkeypatch.setattr(simulation, "plan", hasty)
     for _ in range(2):
         with pytest.raises(pl.ConvergenceError, match="of 8 runs 8 did not converge") as error:
-            simulate(
-                pl.indenter("paraboloid", radius=1e-6),
-                solid("tensed_membrane"),
-                1e-6,
-                cache=tmp_path,
-                grid_points=16,
+            Simulation(pl.indenter("paraboloid", radius=1e-6), solid("tensed_membrane")).curve(
+                1e-6, cache=tmp_path, grid_points=16
             )
     (folder,) = (tmp_path / "force-curves").iterdir()
     assert str(folder) in str(error.value)
@@ -202,4 +213,4 @@ def test_what_cannot_be_simulated(
     fields = indenter | ({"cutoff_wavelength": 1e-6} if indenter["type"] == "self_affine" else {})
     body = pl.indenter(fields.pop("type"), **fields)
     with pytest.raises(pl.ConfigError, match=words):
-        simulate(body, solid("tensed_membrane"), 1e-6, cache=tmp_path, grid_points=points)
+        Simulation(body, solid("tensed_membrane")).curve(1e-6, cache=tmp_path, grid_points=points)

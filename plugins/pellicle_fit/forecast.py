@@ -1,0 +1,195 @@
+"""What to measure next: forecasts of curves by the explanations that are compared."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from pellicle.arrays import Array, Mask
+from pellicle.errors import PellicleError
+from pellicle.units import readable
+
+from .curve import Curve
+from .objective import CONTACT_POINT, ROUGH
+from .rivals import Explained
+
+_ROWS = 150
+"""Rows of each pass of a forecast."""
+_NEEDED = 12.0
+"""Expected Δχ² at which a measurement tells explanations apart in nine of ten cases."""
+_USELESS = 1.0
+"""Expected Δχ² below which a measurement is not proposed."""
+_DEEPEST = 0.5
+"""Largest depth over radius that is proposed, roughly the limit of linear elasticity."""
+_MANY = 30
+"""Largest number of curves that is proposed."""
+_GAIN = 1.3
+"""Least factor by which a measurement that is proposed has a smaller bound."""
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """A curve that could be measured."""
+
+    words: str
+    base: Array
+    """Position of the base over the contact point [m], in order of time."""
+    time: Array
+    out: Mask
+    """Rows while the indenter moves out."""
+    radius: float = 1.0
+    """Radius of the indenter over that of the curve."""
+
+
+@dataclass(frozen=True)
+class Advice:
+    """A measurement that would help."""
+
+    words: str
+    """The measurement; empty if none would."""
+    worth: float = 0.0
+    """Expected Δχ² between explanations, or by how much it tightens their quantities."""
+    count: int = 1
+    """How many curves of this kind it takes."""
+
+
+def telling(asked: Explained, others: Sequence[Explained]) -> Advice:
+    """Return the measurement that tells an explanation from others that are as good now.
+
+    Each explanation makes the measurement that it predicts, without noise, and the rest are fitted
+    to this and to the curve itself; the least χ² is what a measurement is worth.
+    """
+    best = Advice("")
+    pairs = [(a, b) for other in others for a, b in ((asked, other), (other, asked))]
+    for measurement in measurements(asked):
+        worth = np.inf
+        for truth, guess in pairs:
+            worth = min(worth, _separation(measurement, truth, guess))
+            if worth < _USELESS:
+                break
+        if worth > best.worth:
+            best = Advice(measurement.words, worth, int(np.ceil(_NEEDED / worth)))
+        if worth >= _NEEDED:
+            break
+    return best if best.count <= _MANY else Advice("")
+
+
+def tightening(fit: Explained, names: Sequence[str]) -> Advice:
+    """Return the measurement after which some quantities have smaller errors.
+
+    What counts is the greatest of their Cramér–Rao bounds, each over that of the curve alone.
+    """
+    if not names:
+        return Advice("")
+    now, best = _bounds(fit, [_predicted(fit, _again(fit))], names), Advice("")
+    for measurement in measurements(fit):
+        with suppress(PellicleError):
+            both = [_predicted(fit, _again(fit)), _predicted(fit, measurement)]
+            gain = float(np.min(now / _bounds(fit, both, names)))
+            # Two curves of one kind would bring √2.
+            if gain > max(best.worth, _GAIN * np.sqrt(2)):
+                best = Advice(measurement.words, gain)
+    return best
+
+
+def measurements(fit: Explained) -> Iterator[Measurement]:
+    """Yield measurements, the easiest first, that go beyond the first curve."""
+    curve, point = fit.whole[0], _point(fit)
+    low, high = float(curve.base.min()) - point, float(curve.base.max()) - point
+    down = np.linspace(low, high, _ROWS)
+    duration = curve.loading_time
+    speed, forth = (high - low) / duration, np.linspace(0, duration, _ROWS)
+    inward, out = np.zeros(_ROWS, dtype=bool), np.repeat([False, True], _ROWS)
+    twice = np.append(forth, duration + forth)
+    if not curve.moves_out.any():
+        yield Measurement("the retraction", np.append(down, down[::-1]), twice, out)
+    dwell = np.append(down, np.full(_ROWS, high))
+    words = f"a dwell of {readable(duration, 's', 2)} at the largest depth"
+    yield Measurement(words, dwell, twice, np.zeros_like(out))
+    for factor in (0.1, 10.0):
+        words = f"a second speed of {readable(factor * speed, 'm/s', 2)}"
+        yield Measurement(words, down, forth / factor, inward)
+    radius: float | None = getattr(curve.indenter, "radius", None)
+    for factor in (1 / 3, 3.0):
+        if high > 0 and (radius is None or factor * high <= _DEEPEST * radius):
+            kind = "shallower" if factor < 1 else "deeper"
+            words = f"a {kind} curve, to {readable(factor * high, 'm', 2)}"
+            yield Measurement(words, factor * down, factor * forth, inward)
+    for factor in (1 / 3, 3.0):
+        if radius is not None and high <= _DEEPEST * factor * radius:
+            words = f"a second radius, {readable(factor * radius, 'm', 2)}"
+            yield Measurement(words, down, forth, inward, factor)
+
+
+def _point(fit: Explained) -> float:
+    """Return the contact point of the first curve [m]."""
+    return fit.objective.known(fit.minimum.at, 0).solid.contact_point
+
+
+def _again(fit: Explained) -> Measurement:
+    """Return the measurement that the first curve is."""
+    curve = fit.whole[0].binned(_ROWS)
+    return Measurement("", curve.base - _point(fit), curve.clock, curve.moves_out)
+
+
+def _predicted(fit: Explained, measurement: Measurement) -> Curve:
+    """Return the curve that an explanation predicts, of contact point 0 and without noise."""
+    curve, known = fit.whole[0], fit.objective.known(fit.minimum.at, 0)
+    known = replace(known, solid=known.solid.model_copy(update={CONTACT_POINT: 0.0}))
+    indenter: Any = curve.indenter
+    if measurement.radius != 1:
+        indenter = indenter.model_copy(update={"radius": measurement.radius * indenter.radius})
+    force = curve.largest * np.maximum(measurement.base / np.max(measurement.base), 0.0)
+    # A memory sees the path that its own force leaves.
+    for _ in range(2):
+        position = measurement.base - (force / curve.stiffness if curve.stiffness else 0.0)
+        planned = Curve(
+            position, force, indenter, measurement.time, measurement.out, curve.stiffness
+        )
+        force = known.force(planned)
+    position = measurement.base - (force / curve.stiffness if curve.stiffness else 0.0)
+    return replace(planned, force=force, position=position)
+
+
+def _noise(fit: Explained) -> float:
+    """Return the noise of a mean of rows of the first curve [N]."""
+    return fit.objective.noise[0] * np.sqrt(_ROWS / fit.whole[0].passes[0].size)
+
+
+def _separation(measurement: Measurement, truth: Explained, guess: Explained) -> float:
+    """Return the least χ² of an explanation on curves that another predicts.
+
+    A measurement that cannot be predicted, as by a cantilever that jumps, is worth nothing.
+    """
+    with suppress(PellicleError):
+        curves = _predicted(truth, _again(truth)), _predicted(truth, measurement)
+        objective = replace(guess.objective, curves=curves, noise=(_noise(truth),) * 2, memory=())
+        return objective.minimise(_start(guess, objective.slots), steps=ROUGH).chi_squared
+    return 0.0
+
+
+def _bounds(fit: Explained, curves: Sequence[Curve], names: Sequence[str]) -> Array:
+    """Return the Cramér–Rao bounds of quantities from curves of one noise."""
+    noise = (_noise(fit),) * len(curves)
+    objective = replace(fit.objective, curves=tuple(curves), noise=noise, memory=())
+    bounds = objective.deviations(_start(fit, objective.slots))
+    return np.array([bounds[k] for k, slot in enumerate(objective.slots) if slot.name in names])
+
+
+def _start(fit: Explained, slots: Sequence[Any]) -> Array:
+    """Return the coordinates of the first curve for all curves, which touch at 0."""
+    values = fit.objective.values(fit.minimum.at)
+    return np.array(
+        [
+            slot.coordinate(
+                0.0
+                if slot.name == CONTACT_POINT
+                else values.get((slot.name, None), values.get((slot.name, 0), 0.0))
+            )
+            for slot in slots
+        ]
+    )

@@ -1,0 +1,1 @@
+"""Force curves of indenters and solids that have none of their own, from studies."""

@@ -1,0 +1,218 @@
+"""Plan, run and cache the study behind the force curve of any indenter on any solid."""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import platformdirs
+
+from pellicle import Grid, Study, registry, results, run_study
+from pellicle.arrays import Array
+from pellicle.components import Executor, Indenter
+from pellicle.errors import ConfigError, ConvergenceError, ConvergenceWarning, problems_within
+from pellicle.units import readable
+
+from .interpolated import SCALE, SimulatedCurve, stretched
+from .solid import Solid, scaled, values_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+GRID_POINTS = 64
+_FEWEST = 16
+_OCTAVES = 6
+"""Number of factors of 2 between the deepest and the shallowest node."""
+_RATIOS: Array = SCALE * np.expm1(np.linspace(0, stretched(np.array([30.0]))[0], 11))
+"""Nodes s/w; the spline between them has a relative error of about 1e-4."""
+_MARGIN = 1.08
+_MARGIN_OF_LAYERS = 1.9
+"""Edge of the grid over the width of the indenter: an incompressible thin layer bulges beside the
+contact, which is then up to √3 times as wide."""
+_CELLS = 129
+"""Samples of the indenter along each axis when its width is measured."""
+_CLOSE = 0.95
+"""Least width of the indenter over that of the sampled domain."""
+_WIDEST = 1e9
+
+
+class Simulation(NamedTuple):
+    """An indenter and a solid whose force curve has to be simulated before a fit."""
+
+    indenter: Indenter
+    solid: Solid
+
+    def curve(
+        self,
+        deepest: float,
+        *,
+        cache: str | Path | None = None,
+        executor: str | Mapping[str, Any] | Executor = "serial",
+        grid_points: int = GRID_POINTS,
+        progress: bool = False,
+    ) -> SimulatedCurve:
+        """Return the force curve down to a depth [m], from a study that is cached or run here.
+
+        The study has a reduced modulus of 1 Pa and lengths relative to a length of the problem, so
+        that one study serves every indenter and solid of the same proportions.  ``cache`` is the
+        folder that keeps studies, the user's own if None; ``grid_points`` are the cells of each
+        grid along x and y.
+
+        Raises
+        ------
+        ConfigError
+            The indenter ends where the grid does, or a field of the solid scales with the modulus.
+        ConvergenceError
+            A run of the study failed; its table says which and why.
+        StorageError
+            The folder cannot be used, or is locked by another process.
+        """
+        planned = plan(self.indenter, self.solid, deepest, grid_points)
+        if isinstance(executor, str):
+            executor = {"type": executor}
+        # Each contact on a grid of its own, and on one of half the cells.
+        study = planned.table | {"study": planned.table["study"] | {"executor": executor}}
+        folder = Path(cache) if cache else platformdirs.user_cache_path("pellicle")
+        table = _table(Study.from_mapping(study), folder / "force-curves", progress)
+        forces = table["force"].values.reshape(2, planned.depths.size, _RATIOS.size)
+        if not (forces > 0).all():
+            raise ConvergenceError(
+                "some contacts of the study carry no force; give more grid points"
+            )
+        return SimulatedCurve(
+            planned.depths,
+            _RATIOS,
+            np.log(forces[0]),
+            planned.width,
+            planned.unit,
+            accuracy=float(np.max(np.abs(forces[1] / forces[0] - 1))),
+            half_space=self.solid.is_half_space,
+        )
+
+
+class Plan(NamedTuple):
+    """The contacts from which a force curve is interpolated, in lengths over `unit`."""
+
+    unit: float
+    """[m]"""
+    depths: Array
+    """Nodes δ, of shape (m,)."""
+    width: tuple[float, float]
+    """Slope of log w over log δ, and its value at δ = 1."""
+    table: dict[str, Any]
+    """Configuration of the study without its executor."""
+
+
+def plan(indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GRID_POINTS) -> Plan:
+    """Return the contacts that the force curve of an indenter needs down to a depth [m].
+
+    Raises
+    ------
+    ConfigError
+        As for `Simulation.curve`.
+    """
+    if indenter.footprint != "unbounded":
+        raise ConfigError(
+            "ends where the grid does, so it has no force curve of its own; give one whose shape "
+            "does not depend on the grid",
+            "indenter",
+        )
+    if grid_points < _FEWEST or grid_points % 2:
+        raise ConfigError(
+            f"{grid_points} is not allowed; give an even number ≥ {_FEWEST}", "grid_points"
+        )
+    values = [(q, v) for part in (indenter, solid.kernel) for _, q, v in values_of(part)]
+    lengths = [value for quantity, value in values if quantity and quantity.unit == "m"]
+    # A number without a unit may be a length.
+    scales = all(quantity or isinstance(value, (str, int)) for quantity, value in values)
+    unit = next(value for value in (*lengths, deepest) if value > 0) if scales else 1.0
+    with problems_within("kernel"):
+        kernel = scaled(solid.kernel, unit, (solid.modulus, solid.tension))
+    shape = scaled(indenter, unit)
+    # Rounded up, so that curves of about the same depth share a study.
+    top = int(np.ceil(np.log2(deepest / unit) - 1e-9))
+    depths: Array = 2.0 ** np.arange(top - _OCTAVES, top + 1, dtype=np.float64)
+    body = registry().make(Indenter, shape)
+    halves = np.array([half_widths(body, depth) for depth in depths])
+    slope, intercept = np.polyfit(np.log(depths), np.log(halves.prod(axis=1)) / 2, 1)
+    widths = np.exp(intercept + slope * np.log(depths))
+    is_layered = any(q and q.unit == "m" for _, q, _ in values_of(solid.kernel))
+    boxes = 2 * (_MARGIN_OF_LAYERS if is_layered else _MARGIN) * halves
+    contacts = {
+        "loading.depth": np.repeat(depths, _RATIOS.size).tolist(),
+        f"kernel.{solid.tension}": np.outer(widths, _RATIOS / 2).ravel().tolist(),
+        "grid.size": np.repeat(boxes, _RATIOS.size, axis=0).tolist(),
+    }
+    table: dict[str, Any] = {
+        "title": f"force curve of {shape['type']} on {kernel['type']}",
+        "grid": {"points": grid_points, "size": 1.0},
+        "kernel": kernel,
+        "indenter": shape,
+        "loading": {"depth": 1.0},
+        "outputs": [],
+        "study": {"vary": {"grid.points": [grid_points, grid_points // 2]}, "zip": [contacts]},
+    }
+    return Plan(unit, depths, (float(slope), float(intercept)), table)
+
+
+def half_widths(indenter: Indenter, depth: float) -> tuple[float, float]:
+    """Return half the width [m] along x and y of the indenter below the undeformed surface.
+
+    On any kernel whose Green's function is positive the contact lies inside that part of the
+    indenter.
+
+    Raises
+    ------
+    ConfigError
+        The width exceeds 10⁹ times the depth.
+    """
+    half = np.array([depth, depth])
+    while True:
+        axes = Grid(points=_CELLS, size=tuple((2 * half).tolist())).coordinates()
+        below = np.asarray(indenter.profile(*axes)) >= -depth
+        reach = np.array(
+            [np.max(np.abs(np.broadcast_to(x, below.shape)[below]), initial=0.0) for x in axes]
+        )
+        outside = reach >= [np.max(np.abs(x)) for x in axes]
+        if outside.any():
+            half = np.where(outside, 2 * half, half)
+            if half.max() > _WIDEST * depth:
+                raise ConfigError(
+                    f"is less than {readable(depth, 'm')} high out to "
+                    f"{readable(half.max(), 'm', 2)}; give one whose "
+                    "contact ends",
+                    "indenter",
+                )
+            continue
+        fitted = reach + half / _CELLS
+        if (fitted >= _CLOSE * half).all():
+            return float(fitted[0]), float(fitted[1])
+        # At least one cell, so that the domain cannot shrink past the shape in one step.
+        half = np.maximum(1.02 * fitted, 2 * half / _CELLS)
+
+
+def _table(study: Study, cache: Path, progress: bool) -> xr.Dataset:
+    """Return the table of a study, run unless it is cached.
+
+    Once all runs have converged they are deleted, so a table without them is whole.
+    """
+    runs = [point.run.identity for point in study.points]
+    folder = cache / hashlib.sha256("".join(runs).encode()).hexdigest()[:16]
+    if (folder / "study.h5").exists() and not (folder / "runs").exists():
+        return results.table(folder / "study.h5")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", ConvergenceWarning)
+            table = run_study(study, folder, progress=progress)
+    except ConvergenceWarning as warning:
+        raise ConvergenceError(
+            f"the force curve needs the study in {folder}: {warning}; another number of grid "
+            "points may help"
+        ) from None
+    shutil.rmtree(folder / "runs")
+    return table

@@ -1,0 +1,118 @@
+"""The solid of a fit: a kernel without reduced modulus and tension, which the fit determines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from pydantic.fields import FieldInfo
+
+from pellicle import registry
+from pellicle.components import Component, Kernel
+from pellicle.errors import ConfigError, problems_within, shown
+from pellicle.schema import Model, get, replaced, walk
+from pellicle.units import Quantity, quantity_of
+
+_DIGITS = 12
+"""Digits of a scaled length, so that problems of equal proportions share a study."""
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A kernel with E* = 1 Pa and no tension, and the paths of these two fields."""
+
+    kernel: Kernel
+    modulus: str
+    """Dotted path of the reduced modulus in the kernel."""
+    tension: str
+    """Dotted path of the tension in the kernel."""
+    poissons_ratio: float | None
+
+    @property
+    def is_half_space(self) -> bool:
+        """Whether the kernel without tension is G(q) = 2/q m/Pa."""
+        q = np.geomspace(1e-3, 1e9, 13)
+        return bool(np.allclose(q * self.kernel.compliance(q), 2.0, rtol=1e-9, atol=0))
+
+
+def solid(spec: str | Mapping[str, Any], poissons_ratio: float | None = None) -> Solid:
+    """Return the solid that the type or the table of a kernel describes.
+
+    ``poissons_ratio`` is used if the kernel needs one and its table has none.
+
+    Raises
+    ------
+    ConfigError, PluginError
+        The kernel is not valid, has no field for the reduced modulus or the tension, has a value
+        for one of them, or another Poisson's ratio.
+    """
+    table: Any = {"type": spec} if isinstance(spec, str) else dict(spec)
+    with problems_within("kernel"):
+        modulus, _ = _field(table, "reduced_modulus")
+        tension, _ = _field(table, "tension")
+        for path in (modulus, tension, f"{modulus.rpartition('.')[0]}.youngs_modulus".lstrip(".")):
+            if get(table, path) is not None:
+                raise ConfigError(
+                    "is determined by the fit; leave it out of the kernel, or fix it with fix", path
+                )
+        path, info = _field(table, "poissons_ratio")
+        ratio = get(table, path)
+        if ratio is None and poissons_ratio is not None and info.is_required():
+            ratio, table = poissons_ratio, replaced(table, path, poissons_ratio)
+        kernel = registry().make(Kernel, replaced(replaced(table, modulus, 1.0), tension, 0.0))
+        own = get(kernel.model_dump(), path)
+        if None not in (own, poissons_ratio) and own != poissons_ratio:
+            raise ConfigError(
+                f"is {own:g}, and poissons_ratio of the fit is {poissons_ratio:g}; give it once",
+                path,
+            )
+    return Solid(kernel, modulus, tension, poissons_ratio if ratio is None else ratio)
+
+
+def _field(table: Mapping[str, Any], name: str) -> tuple[str, FieldInfo]:
+    """Return path and definition of the first field ``name`` in a kernel or a kernel inside it."""
+    for path, inner, _ in [("", table, None), *walk(table)]:
+        # A table without a type is not a component, such as one of the layers of a kernel.
+        if isinstance(inner, Mapping) and (not path or "type" in inner):
+            fields = registry().find("kernel", inner.get("type")).model_fields
+            if name in fields:
+                return f"{path}.{name}".lstrip("."), fields[name]
+    remedy = (
+        '; put it under a skin: type = "coated", with this kernel as its substrate'
+        if name == "tension"
+        else "; a fit needs one that has it"
+    )
+    raise ConfigError(f"{table.get('type')!r} has no field {name}{remedy}")
+
+
+def scaled(component: Component, unit: float, free: tuple[str, ...] = ()) -> dict[str, Any]:
+    """Return the table of a component with every length divided by ``unit`` [m].
+
+    Raises
+    ------
+    ConfigError
+        A field at a path not in ``free`` scales with the modulus, which is not known.
+    """
+    table: dict[str, Any] = component.model_dump(exclude_none=True)
+    for path, quantity, value in values_of(component):
+        if quantity is None or path in free:
+            continue
+        force, length, _ = quantity.powers()
+        if force and value:
+            raise ConfigError(
+                f"{shown(value)} {quantity.unit} scales with the modulus, which is not known "
+                "yet; a fit allows only lengths and plain numbers, so leave it out",
+                path,
+            )
+        table = replaced(table, path, float(f"{value / unit**length:.{_DIGITS}g}"))
+    return table
+
+
+def values_of(component: Component) -> Iterator[tuple[str, Quantity | None, Any]]:
+    """Yield path, quantity and value of each field that has a value, except the type."""
+    for path, value, info in walk(component):
+        is_type = path.rpartition(".")[2] == "type"
+        if info is not None and value is not None and not isinstance(value, Model) and not is_type:
+            yield path, quantity_of(info) if isinstance(value, float) else None, value
