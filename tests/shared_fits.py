@@ -1,39 +1,42 @@
-"""Lets the tests of several ways to one fit do it once."""
+"""Lets the tests of several ways to one fit do it once, or without rivals."""
 
 from __future__ import annotations
 
-import io
-import pickle
-from collections.abc import Callable
-from dataclasses import replace
+from typing import Any
 
 import pytest
 
-import pellicle as pl
-from pellicle_fit.files.origin import CurveOrigin
-from pellicle_fit.one_curve import fit_problem
-from pellicle_fit.problem import FitProblem
+from pellicle_fit.recipe import Answer, answer
+
+ANSWER = "pellicle_fit.fits.answer"
 
 
 def share_fits(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let fits of this process have the result of an earlier one of an equal problem.
+    """Let fits of this process have the answer of an earlier one to an equal question.
 
-    A problem holds all rows and options that a fit knows, so a way to it that changes one is still
-    seen; that equal problems have equal results is tested without this.
+    The arguments hold all that an answer depends on, so a way to them that changes one is still
+    seen; that equal arguments have equal answers is tested without this.
     """
-    fits: dict[bytes, pl.Fit] = {}
+    answers: dict[str, Answer] = {}
 
-    def shared(problem: FitProblem, report: Callable[[str], None] = lambda stage: None) -> pl.Fit:
-        """Return the fit of a problem, whatever its file and its place."""
-        key = io.BytesIO()
-        pickler = pickle.Pickler(key)
-        # References to the same object would make the bytes of equal problems differ.
-        pickler.fast = True
-        curve = replace(problem.curve, origin=CurveOrigin(), site=None)
-        pickler.dump(replace(problem, name="", curve=curve))
-        if key.getvalue() not in fits:
-            fits[key.getvalue()] = fit_problem(problem, report)
-        return fits[key.getvalue()]
+    def shared(curves: list[Any], *effects: Any, **options: Any) -> Answer:
+        """Return the answer to equal arguments, if there is one."""
+        arrays = [(c.position, c.force, c.time, c.unloading) for c in curves]
+        rows = [[a if a is None else a.tolist() for a in columns] for columns in arrays]
+        bodies = [(curve.indenter, curve.stiffness) for curve in curves]
+        key = repr((rows, bodies, effects, options))
+        if key not in answers:
+            answers[key] = answer(curves, *effects, **options)
+        return answers[key]
 
-    for module in ("one_curve", "many"):
-        monkeypatch.setattr(f"pellicle_fit.{module}.fit_problem", shared)
+    monkeypatch.setattr(ANSWER, shared)
+
+
+def skip_rivals(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let fits of this process skip rivals: most of their time, and tested elsewhere."""
+
+    def alone(curves: list[Any], model: Any, rivals: Any, **options: Any) -> Answer:
+        """Compare the model with nothing."""
+        return answer(curves, model, (), **options)
+
+    monkeypatch.setattr(ANSWER, alone)

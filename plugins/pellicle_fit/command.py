@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -17,9 +16,7 @@ from pellicle.errors import ConfigError
 if TYPE_CHECKING:
     from pellicle_fit.config import FitConfig
     from pellicle_fit.many import ManyFits
-    from pellicle_fit.one_curve import Fit
-    from pellicle_fit.pooled import PooledFit
-    from pellicle_fit.record import Repetition
+    from pellicle_fit.result import Fit
 
 
 def fit(
@@ -34,11 +31,7 @@ def fit(
     ] = None,
     indenter: Annotated[
         str | None,
-        typer.Option(
-            "--indenter",
-            "-i",
-            help="Type: sphere (a bead), paraboloid (Hertz, to 0.1 R), cone, flat_punch, …",
-        ),
+        typer.Option("-i", "--indenter", help="sphere (a bead), paraboloid (Hertz), cone, …"),
     ] = None,
     radius: Annotated[
         list[str] | None,
@@ -52,20 +45,33 @@ def fit(
     ] = None,
     thickness: Annotated[
         str | None,
+        typer.Option(help="Thickness of a layer on a rigid base, or free; with --poissons-ratio."),
+    ] = None,
+    model: Annotated[
+        list[str] | None,
+        typer.Option(help="Effect whose need is asked: tension (default), …, or none of them."),
+    ] = None,
+    rivals: Annotated[
+        list[str] | None,
         typer.Option(
-            help='Thickness of a layer on a rigid base: "50 um", or free to fit it; with '
-            "--poissons-ratio."
+            help="Effect to compare, or several that act together (offset,slope); repeat it. none "
+            "for no comparison; by default all that bend curves as a tension does."
         ),
     ] = None,
     fix: Annotated[
         list[str] | None,
-        typer.Option(help='Fix a parameter: --fix tension=0, --fix reduced_modulus="10 kPa".'),
+        typer.Option(metavar="NAME=VALUE", help="Fix a quantity: --fix tension=0."),
+    ] = None,
+    uncertainty: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=VALUE",
+            help='Standard deviation of spring_constant, sensitivity or radius: "radius=5 %".',
+        ),
     ] = None,
     baseline: Annotated[
         str | None,
-        typer.Option(
-            help="Part of the force before contact to fit: none (default), offset, slope."
-        ),
+        typer.Option(help="Force before contact to fit: none (default), offset, slope."),
     ] = None,
     segment: Annotated[
         str | None, typer.Option(help="Pass to fit: approach (default), retract, both.")
@@ -89,7 +95,7 @@ def fit(
         bool, typer.Option("--pool", help="Fit one modulus and one tension to all curves.")
     ] = False,
     compare: Annotated[
-        bool, typer.Option("--compare", help="Compare what else can bend the curve, in full.")
+        bool, typer.Option("--compare", help="Print all explanations, with their intervals.")
     ] = False,
     set_: Annotated[
         list[str] | None,
@@ -105,10 +111,7 @@ def fit(
         typer.Option("-o", "--output", metavar="DIR", help="Folder for JSON, table and figure."),
     ] = None,
     report: Annotated[
-        bool,
-        typer.Option(
-            "--report", help="Write a web page, to the folder of --output or the current one."
-        ),
+        bool, typer.Option("--report", help="Write a web page, to that folder or the current one.")
     ] = False,
     again: Annotated[
         Path | None,
@@ -131,6 +134,8 @@ def fit(
     from pellicle_fit.many import ManyFits
     from pellicle_fit.print_fits import print_fit, print_fits, print_notes
     from pellicle_fit.record import repetition
+    from pellicle_fit.report.figures import save_figure
+    from pellicle_fit.report.page import save_report
 
     files = files or []
     configs = [path for path in files if path.suffix.lower() == ".toml"]
@@ -142,15 +147,21 @@ def fit(
     repeated = None if again is None else repetition(again)
     if repeated is not None and configs:
         raise ConfigError(f"{configs[0]}: --again has a configuration of its own; leave one out")
+    tables = {"fix": fix, "uncertainty": uncertainty}
     config = FitConfig.merged(
         configs[0] if configs else repeated and repeated.config,
-        [*map(_override, fix or ()), *(set_ or ())],
+        [
+            *(_override(k, text) for k, texts in tables.items() for text in texts or ()),
+            *(set_ or ()),
+        ],
         curves=tuple(path for path in files if path not in configs) or None,
         indenter=indenter,
         radius=radius[0] if radius and len(radius) == 1 else radius or None,
         half_angle=half_angle,
         poissons_ratio=poissons_ratio,
         thickness=thickness,
+        model=model and [name for names in _sets(model) for name in names],
+        rivals=rivals and _sets(rivals),
         baseline=baseline,
         segment=segment,
         spring_constant=spring_constant,
@@ -160,6 +171,7 @@ def fit(
         compare=compare or None,
     )
     result, name, title = _fit(config, directory, quiet=quiet)
+    many = result if isinstance(result, ManyFits) else None
     if json:
         print_json(result.to_dict())
     elif isinstance(result, ManyFits):
@@ -168,16 +180,20 @@ def fit(
         print_notes(result)
     else:
         print_fit(result, si=si)
-    for difference in _differences(repeated, result) if repeated else ():
+    if repeated and (difference := repeated.difference(result.to_dict())):
         echo(f"warning: {difference}", err=True)
-    written = _write(result, name, title, directory, report=report)
-    if not quiet:
-        if isinstance(result, ManyFits) and result.resumed:
-            echo(f"{result.resumed} of {len(result.rows)} fits were done before")
-        for path in written:
-            echo(f"wrote {path}")
-    if isinstance(result, ManyFits) and result.failed:
-        echo(f"{result.failed} of {len(result.rows)} curves could not be fitted", err=True)
+    written = [*many.files] if many else []
+    if directory is not None and not isinstance(result, ManyFits):
+        written.append(result.save(directory / f"{name}.json"))
+        written.append(save_figure(result, directory / f"{name}.png"))
+    if report:
+        written.append(save_report(result, (directory or Path()) / f"{name}.html", title))
+    if many and many.resumed and not quiet:
+        echo(f"{many.resumed} of {len(many.rows)} fits were done before")
+    for path in () if quiet else written:
+        echo(f"wrote {path}")
+    if many and many.failed:
+        echo(f"{many.failed} of {len(many.rows)} curves could not be fitted", err=True)
         raise typer.Exit(NOT_CONVERGED)
 
 
@@ -196,23 +212,20 @@ def _show(directory: Path, si: bool, json: bool) -> bool:
 
 def _fit(
     config: FitConfig, directory: Path | None, *, quiet: bool
-) -> tuple[Fit | PooledFit | ManyFits, str, str]:
+) -> tuple[Fit | ManyFits, str, str]:
     """Return the fit of the curves, the name of its files and the title of its page."""
     from pellicle_fit.files.sources import SourceStream
+    from pellicle_fit.fits import fitted
     from pellicle_fit.many import fit_sources
-    from pellicle_fit.one_curve import fit_source
-    from pellicle_fit.pooled import pool_sources
 
     progress, curves = not quiet and sys.stderr.isatty(), config.files()
     if config.pool:
-        sources = [source for file in curves for source in file.open()]
-        return pool_sources(config, sources, progress=progress), "pool", "Pooled fit"
+        return fitted(config, [*SourceStream(curves)], progress=progress), "pool", "Pooled fit"
     if [file.path for file in curves] == [config.curves[0]]:
-        opened = curves[0].open()
-        if opened.is_single:
-            (source,) = opened
+        labels, opened = curves[0].open()
+        if labels == [""]:
             stem = config.curves[0].stem
-            return fit_source(config, source, progress=progress), f"{stem}-fit", stem
+            return fitted(config, list(opened), progress=progress), f"{stem}-fit", stem
     try:
         fits = fit_sources(config, SourceStream(curves), directory, progress=not quiet)
     except KeyboardInterrupt:
@@ -222,44 +235,16 @@ def _fit(
     return fits, "fits", f"Fits of {len(fits.rows)} curves"
 
 
-def _differences(repeated: Repetition, result: Fit | PooledFit | ManyFits) -> Iterator[str]:
-    """Yield how data and versions differ from those of the fit that is repeated."""
-    from pellicle_fit.many import ManyFits
-
-    if isinstance(result, ManyFits):
-        return repeated.differences([row["data"] for row in result.rows if "data" in row], None)
-    return repeated.differences(result.record.data if result.record else [], result.record)
-
-
-def _write(
-    result: Fit | PooledFit | ManyFits,
-    name: str,
-    title: str,
-    directory: Path | None,
-    *,
-    report: bool,
-) -> list[Path]:
-    """Write the page, JSON and figure unless `fit_sources` did; return the paths of all files."""
-    from pellicle_fit.many import ManyFits
-    from pellicle_fit.report.figures import save_figure
-    from pellicle_fit.report.page import save_report
-
-    written: list[Path] = []
-    if isinstance(result, ManyFits):
-        written += result.files
-    elif directory is not None:
-        written.append(result.save(directory / f"{name}.json"))
-        written.append(save_figure(result, directory / f"{name}.png"))
-    if report:
-        written.append(save_report(result, (directory or Path()) / f"{name}.html", title))
-    return written
-
-
-def _override(text: str) -> str:
-    """Return ``name=value`` of ``--fix`` in the form of ``--set``; a bare number is in SI."""
+def _override(key: str, text: str) -> str:
+    """Return ``name=value`` of an option in the form of ``--set``; a bare number is in SI."""
     name, equals, value = text.partition("=")
     if not equals:
-        raise ConfigError(f"{text!r} is not of the form name=value, e.g. tension=0", "fix")
+        raise ConfigError(f"{text!r} is not of the form name=value", key)
     with suppress(ValueError):
         value = repr(float(value))
-    return f"fix.{name.strip()}={value.strip()}"
+    return f"{key}.{name.strip()}={value.strip()}"
+
+
+def _sets(texts: list[str]) -> list[list[str]]:
+    """Return the sets of effects that an option names, each with commas; "none" is no set."""
+    return [[name.strip() for name in text.split(",")] for text in texts if text != "none"]

@@ -38,10 +38,11 @@ from .effect import Effect, Fitted, quantities
 from .explanation import Solid
 from .files.columns import Calibration
 from .files.measurement import Segment
-from .files.sources import CurveFile, Curves, Source, expanded, gather
-from .models.simulation import GRID_POINTS
+from .files.sources import CurveFile, Curves, Source, SourceStream, expanded, gather
 from .population.judgement import group_pattern
 from .population.rules import rules
+from .simulated.simulation import GRID_POINTS
+from .simulated.solid import solid
 
 Baseline = Literal["none", "offset", "slope"]
 
@@ -305,6 +306,8 @@ class FitConfig(FromFile, Calibration):
                 "it, such as 0.5 for a gel",
                 "poissons_ratio",
             )
+        if self.kernel is not None:
+            solid(self.kernel, self.poissons_ratio)
         return self
 
     @classmethod
@@ -400,15 +403,15 @@ class FitConfig(FromFile, Calibration):
 
     def sources(self, curves: Curves | None = None) -> list[Source]:
         """Return ``curves``, or those of the configuration if None, as read from their files."""
-        return [source for file in self.files(curves) for source in file.open()]
+        return [*SourceStream(self.files(curves))]
 
-    def body(self, fields: Mapping[str, Any]) -> HasForceCurve:
+    def indenter_with(self, fields: Mapping[str, Any]) -> Indenter | HasForceCurve:
         """Return the indenter of one curve, with the fields that this curve alone has.
 
         Raises
         ------
         ConfigError
-            The indenter cannot have these fields, or needs others, or allows no kernel.
+            The indenter cannot have these fields, or needs others.
         """
         indenter: Any = self.indenter
         if fields and not isinstance(indenter, (Indenter, Mapping)):
@@ -417,9 +420,7 @@ class FitConfig(FromFile, Calibration):
             )
         for name, value in fields.items():
             indenter = replaced(indenter, name, value)
-        if not isinstance(indenter, HasForceCurve):
-            with problems_within("indenter"):
-                indenter = registry().make(Indenter, indenter)
-        if self.kernel is not None or not isinstance(indenter, HasForceCurve):
-            raise ConfigError("has no force curve of its own", "indenter")
-        return indenter
+        if isinstance(indenter, HasForceCurve):
+            return indenter
+        with problems_within("indenter"):
+            return registry().make(Indenter, indenter)

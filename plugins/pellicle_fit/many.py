@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
 import json
 import pickle
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import nullcontext
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import nullcontext, suppress
+from dataclasses import dataclass, field, replace
 from importlib.metadata import version
 from operator import length_hint
 from pathlib import Path
@@ -18,30 +17,24 @@ import numpy as np
 
 from pellicle import registry, results
 from pellicle.batch import BatchProgress, locked, mapped
-from pellicle.components import Component, Say
-from pellicle.errors import PellicleError
+from pellicle.components import Component, Executor, Say
+from pellicle.errors import ConfigError, PellicleError
 from pellicle.files import atomic_write, check_writable, write_json
 from pellicle.results import header
 
 from .config import FitConfig
 from .files.sources import Curves, Source, SourceStream
-from .one_curve import fit_problem
+from .fits import Problem, problem
 from .population.images import force_maps
-from .population.judgement import Row, group_of, group_pattern, judge, read_names
-from .population.sketch import Sketch, from_json, of_curve, to_json
-from .population.summary import Quartiles, summary
+from .population.judgement import group_of, group_pattern, judge, read_names
+from .population.row import FAILED, Row, Sketch
+from .population.summary import summary
 from .population.table import table
-from .problem import FitProblem, problems
-from .record import Stopwatch, components_of, data_of
-from .statistics.chi_squared import Minimum
-from .statistics.profile import curvature_interval, estimate_of
+from .record import Stopwatch, components_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
-FITTED = "fitted"
-FAILED = "failed: "
-_NOT_RUN = "not run"
 _JOURNAL = "curves"
 _WITHOUT_EFFECT = {
     "curves",
@@ -56,6 +49,8 @@ _WITHOUT_EFFECT = {
     "group_by",
 }
 """Fields of a configuration that do not change the fit of a curve."""
+_OF_ALL = {"configuration", "versions", "date", "wall_time"}
+"""What the JSON of a population has once."""
 _BYTES_PER_POINT = 2000
 """Memory of a fit, approximately."""
 _BATCH = 4_000_000
@@ -66,20 +61,20 @@ _BATCH = 4_000_000
 class FitTask:
     """The fit of one curve; it pickles to workers."""
 
-    row: int
-    problem: FitProblem
+    row: Row
+    problem: Problem
     path: Path | None
     """File that keeps the fit."""
 
     @property
     def name(self) -> str:
         """Name in a progress bar."""
-        return self.problem.name
+        return self.row.name
 
     @property
     def memory(self) -> int:
         """Estimated peak memory of the fit [bytes]."""
-        return _BYTES_PER_POINT * self.problem.curve.force.size
+        return _BYTES_PER_POINT * sum(m.curve.force.size for m in self.problem.members)
 
 
 @dataclass
@@ -92,19 +87,14 @@ class ManyFits:
     """Number of fits that an earlier call had finished."""
     notes: list[str] = field(default_factory=list)
     """Notes on the population: rejected curves, outliers, lists with wrong names."""
-    sketches: dict[int, Sketch] = field(default_factory=dict)
-    """Some points of each curve, by its row."""
     maps: dict[str, xr.Dataset] = field(default_factory=dict)
     """Images of each force map, by its file."""
+    config: FitConfig | None = None
 
     @property
     def failed(self) -> int:
         """Number of curves that could not be fitted."""
-        return sum(row["status"].startswith(FAILED) for row in self.rows)
-
-    def summary(self) -> list[Quartiles]:
-        """Return median and quartiles of each parameter in each group."""
-        return summary(self.rows)
+        return sum(row.status.startswith(FAILED) for row in self.rows)
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: sentences, the quartiles of each group, a picture."""
@@ -114,8 +104,9 @@ class ManyFits:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fits as JSON data."""
-        groups = [part._asdict() for part in self.summary()]
-        return {"curves": self.rows, "groups": groups, "notes": self.notes}
+        curves = [row.to_dict() for row in self.rows]
+        groups = [part._asdict() for part in summary(self.rows)]
+        return {"curves": curves, "groups": groups, "notes": self.notes}
 
 
 def fit_many(
@@ -149,8 +140,8 @@ def fit_many(
     Returns
     -------
     xarray.Dataset
-        Over ``curve``: each parameter as value, ``_low``, ``_high`` (NaN: open) and ``_bound``,
-        with noise, χ² and the messages. ``status`` is ``fitted``, or why there is no fit.
+        Over ``curve``: each quantity as value, ``_low`` and ``_high`` (NaN: open), with noise, χ²,
+        the verdict and the messages. ``status`` is ``fitted``, or why there is no fit.
 
     Raises
     ------
@@ -181,7 +172,7 @@ def fit_sources(
     from .report.population import save_population
 
     lists = read_names(config.accepted), read_names(config.rejected)
-    fits, watch = ManyFits([]), Stopwatch()
+    fits, watch = ManyFits([], config=config), Stopwatch()
     with nullcontext() if directory is None else locked(directory, "fits"):
         if directory is not None:
             check_writable(directory / "fits.h5")
@@ -192,7 +183,7 @@ def fit_sources(
                     _fit_batch(config, batch, directory, fits, bar, length_hint(sources), progress)
         except BaseException:
             # A table without any fit would replace an earlier one.
-            if directory is not None and any(row["status"] == FITTED for row in fits.rows):
+            if directory is not None and any(row.is_fitted for row in fits.rows):
                 judge(fits.rows, config.accept, *lists)
                 _write(fits, config, watch, directory)
             raise
@@ -230,102 +221,80 @@ def _fit_batch(
     progress: bool,
 ) -> None:
     """Fit each curve of a batch that is not fitted yet, and add a row for each."""
-    rows, first, pattern = fits.rows, len(fits.rows), group_pattern(config.group_by)
+    pattern, tasks = group_pattern(config.group_by), list[FitTask]()
+    # An executor need not pickle.
+    own = config.model_copy(update={"executor": registry().make(Executor, {"type": "serial"})})
     for source in sources:
-        group = group_of(pattern, source.file, source.group)
-        row: Row = {"curve": source.name, "status": _NOT_RUN, "group": group}
-        if not isinstance(source.curve, PellicleError) and source.curve.site is not None:
-            x, y, grid = source.curve.site
-            row["site"] = {"map": source.map, "x": x, "y": y, "grid": grid}
-        rows.append(row)
-    tasks: list[FitTask] = []
-    for number, problem in enumerate(problems(config, sources), first):
-        source = sources[number - first]
-        if (sketch := of_curve(source.curve)) is not None:
-            fits.sketches[number] = sketch
+        row = Row(source.name, group_of(pattern, source.file, source.group))
+        fits.rows.append(row)
         try:
-            if isinstance(problem, PellicleError):
-                raise problem
-            rows[number]["data"] = data_of(problem.curve, config)
+            config.indenter_with(source.fields)
+        except ConfigError as error:
+            raise source.named(error) from None
+        try:
+            if isinstance(source.curve, PellicleError):
+                raise source.curve
+            row.map, row.site = source.map, source.curve.site
+            with suppress(TypeError, ValueError):
+                row.sketch = Sketch.of(source.curve.position, source.curve.force)
             path = None
             if directory is not None:
-                name = f"{_identity(config, source, problem)[:16]}.json"
-                path = directory / _JOURNAL / name
+                path = directory / _JOURNAL / f"{_identity(config, source)[:16]}.json"
                 if (earlier := _read(path)) is not None:
-                    _keep(fits, number, earlier)
+                    row.keep(earlier)
                     fits.resumed += 1
                     continue
-            tasks.append(FitTask(number, problem.simulated(config, progress=progress), path))
+            ready = problem(config, [source], progress=progress)
+            tasks.append(FitTask(row, replace(ready, config=own), path))
         except PellicleError as error:
-            rows[number]["status"] = _failure(error, source)
+            row.status = _failure(error, row.name)
 
     def keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool]:
+        row = task.row
         if isinstance(outcome, Exception):
-            rows[task.row]["status"] = _failure(outcome, sources[task.row - first])
+            row.status = _failure(outcome, row.name)
         else:
             if task.path is not None:
                 write_json(outcome, task.path)
-            _keep(fits, task.row, outcome)
-        status = str(rows[task.row]["status"])
-        return status, status != FITTED
+            row.keep(outcome)
+        return row.status, not row.is_fitted
 
     bar.expect(total, len(sources) - len(tasks))
     mapped(config.executor, work, tasks, dict, keep, bar)
 
 
-def _keep(fits: ManyFits, number: int, outcome: dict[str, Any]) -> None:
-    """Put the fit of a curve into its row, and its points beside the rows."""
-    sketch = from_json(outcome.get("sketch", {}))
-    if sketch is not None:
-        fits.sketches[number] = sketch
-    fits.rows[number] |= {k: v for k, v in outcome.items() if k != "sketch"} | {"status": FITTED}
-
-
 def work(task: FitTask, say: Say) -> dict[str, Any]:
-    """Fit a curve in a worker, and return its row: the chosen model, and the verdict on a tension.
-
-    Where that is not an elastic solid under tension, the estimates of one are under ``elastic``.
-    """
-    fit = fit_problem(task.problem)
-    row, likelihood, best = fit.to_dict(), fit.likelihood, fit.parameters
-    if fit.chosen is not None:
-        likelihood, best = fit.chosen.rival.of_curve(likelihood), fit.chosen.parameters
-        row["elastic"] = {name: row[name] for name in fit.estimates()}
-        row["chi_squared"] = likelihood.chi_squared(best)
-        minimum, bounds = Minimum(best, row["chi_squared"]), likelihood.deviations(best)
-        for p in likelihood.parameters:
-            if p.name in row["elastic"]:
-                # A comparison seeks no interval of contact point and baseline.
-                ends = curvature_interval(p, minimum, bounds, fit.rise)
-                row[p.name] = estimate_of(p, likelihood, minimum, ends, bounds).to_dict()
-        row |= row["chosen"]["parameters"]
-    residuals = likelihood.misfit(best)
-    scatter = likelihood.force - np.mean(likelihood.force)
-    _, force = likelihood.fitted(best)
-    return row | {
-        "r_squared": 1 - float(residuals @ residuals) / float(scatter @ scatter),
-        "indentation": float(np.max(likelihood.depth(best))),
+    """Fit a curve in a worker, and return JSON data of the fit, with what a population adds."""
+    fit = task.problem.fit()
+    (member,), (force,) = fit.members, fit.forces()
+    measured, position = member.curve.force, member.curve.position
+    scatter = measured - np.mean(measured)
+    kept = {name: value for name, value in fit.to_dict().items() if name not in _OF_ALL}
+    return kept | {
+        "r_squared": 1 - float(np.sum((force - measured) ** 2) / np.sum(scatter**2)),
+        "indentation": float(np.max(position)) - fit.contact_point.value,
         "largest_force": float(np.max(force)),
-        "sketch": to_json(likelihood.position, likelihood.force, force),
+        "sketch": Sketch.of(position, measured, force).to_dict(),
     }
 
 
-def _identity(config: FitConfig, source: Source, problem: FitProblem) -> str:
+def _identity(config: FitConfig, source: Source) -> str:
     """Return a hash that is equal for fits with equal results."""
     options = config.model_dump(mode="json", exclude=_WITHOUT_EFFECT, fallback=str)
-    curve = problem.curve
-    of_curve = (dict(source.fields), curve.is_depth, curve.stiffness, curve.messages)
+    curve = source.curve
+    assert not isinstance(curve, PellicleError)
+    of_curve = dict(source.fields), curve.is_depth, curve.stiffness, curve.speed, curve.messages
     plugins = registry().versions(components_of(config) - {type(config.executor)})
     versions = version("pellicle"), sorted(plugins.items())
     digest = hashlib.sha256(repr((versions, options, of_curve)).encode())
     if not isinstance(config.indenter, (Component, Mapping)):
         digest.update(pickle.dumps(config.indenter))
     for values in (curve.position, curve.force, *([] if curve.time is None else [curve.time])):
-        digest.update(values.tobytes())
+        digest.update(np.asarray(values).tobytes())
     return digest.hexdigest()
 
 
-def _read(path: Path) -> Row | None:
+def _read(path: Path) -> dict[str, Any] | None:
     """Return the fit that a file stores; None if it stores none."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
@@ -334,9 +303,9 @@ def _read(path: Path) -> Row | None:
     return content if isinstance(content, dict) else None
 
 
-def _failure(error: Exception, source: Source) -> str:
+def _failure(error: Exception, name: str) -> str:
     """Return the status of a curve that could not be fitted."""
-    reason = "; ".join(source.reason(error).splitlines()) or "no reason given"
+    reason = "; ".join(str(error).removeprefix(f"{name}: ").splitlines()) or "no reason given"
     kind = "" if isinstance(error, PellicleError) else f"{type(error).__name__}: "
     return f"{FAILED}{kind}{reason}"
 
@@ -345,7 +314,9 @@ def _write(
     fits: ManyFits, config: FitConfig, watch: Stopwatch, directory: Path
 ) -> tuple[Path, ...]:
     """Write the tables of the curves and of the groups, and return their paths."""
-    record = watch.record(config, [row["data"] for row in fits.rows if "data" in row])
+    import pandas as pd
+
+    record = watch.record(config, [row.data for row in fits.rows if row.is_fitted])
     attributes = {
         "configuration": config.to_json(),
         "versions": ", ".join(f"{name} {number}" for name, number in record.versions.items()),
@@ -354,17 +325,10 @@ def _write(
     dataset = table(fits.rows).assign_attrs(attributes)
     hdf5, text, groups = (directory / f"fits{end}" for end in (".h5", ".csv", "-groups.csv"))
     results.write(dataset.assign_attrs(command="fit"), hdf5)
-    columns = ["curve", *dataset.data_vars]
-    heads = [*(header(str(name), dataset[name]) for name in columns), *attributes]
-    cells = zip(*(dataset[name].values.tolist() for name in columns), strict=True)
-    _write_csv(text, heads, ((*row, *attributes.values()) for row in cells))
-    _write_csv(groups, Quartiles._fields, fits.summary())
-    content = fits.to_dict() | {"configuration": config.to_dict()} | record.to_dict()
-    return hdf5, text, groups, write_json(content, directory / "fits.json")
-
-
-def _write_csv(path: Path, heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
-    with atomic_write(path) as part, part.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(heads)
-        writer.writerows(rows)
+    heads = {name: header(str(name), variable) for name, variable in dataset.data_vars.items()}
+    frame = dataset.to_dataframe().rename(columns=heads).assign(**attributes)
+    for path, content in ((text, frame.reset_index()), (groups, pd.DataFrame(summary(fits.rows)))):
+        with atomic_write(path) as part:
+            content.to_csv(part, index=False, na_rep="nan")
+    whole = fits.to_dict() | {"configuration": config.to_dict()} | record.to_dict()
+    return hdf5, text, groups, write_json(whole, directory / "fits.json")

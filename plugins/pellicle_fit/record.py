@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -17,7 +17,7 @@ from pellicle.schema import walk
 
 from .config import FitConfig
 from .files.measurement import Measurement
-from .files.origin import sha256
+from .files.readers import sha256
 
 _ABOVE = 2
 """Folders above that of a record in which its curves are sought."""
@@ -87,36 +87,24 @@ class Repetition(NamedTuple):
     """Hash of each file that was fitted, by its path as it was given."""
     versions: Mapping[str, str]
 
-    def differences(
-        self, data: Iterable[Mapping[str, Any]], record: Record | None
-    ) -> Iterator[str]:
-        """Yield in words which files and versions differ from those of the first fit.
-
-        Parameters
-        ----------
-        data
-            `data_of` each curve that is fitted now.
-        record
-            Record of the fit, with its versions, if it has one.
-        """
-        hashes = {entry["file"]: entry["sha256"] for entry in data}
-        for file, digest in hashes.items():
-            if file not in self.sha256:
-                yield f"{file}: was not among the curves that were fitted then"
-            elif self.sha256[file] != digest:
-                yield (
-                    f"{file}: is not the file that was fitted then: its SHA-256 is {digest}, and "
-                    f"was {self.sha256[file]}"
-                )
-        for file in self.sha256.keys() - hashes.keys():
-            yield f"{file}: was fitted then, and is not read now"
-        for name, version in (record.versions if record else {}).items():
-            if self.versions.get(name) not in (None, version):
-                yield f"{name} is version {version}, and was {self.versions[name]}"
+    def difference(self, content: Mapping[str, Any]) -> str:
+        """Return how files and versions of the JSON data of fits differ; empty if they do not."""
+        now = _hashes(content)
+        differs = [
+            file
+            for file in sorted(now.keys() | self.sha256.keys())
+            if now.get(file) != self.sha256.get(file)
+        ]
+        differs += [
+            f"{name} {version} (was {self.versions[name]})"
+            for name, version in content.get("versions", {}).items()
+            if self.versions.get(name) not in (None, version)
+        ]
+        return f"not what was fitted then: {', '.join(differs)}" if differs else ""
 
 
 def repetition(path: Path) -> Repetition:
-    """Return what the JSON file of a fit, of a pooled fit or of many fits says was fitted.
+    """Return what the JSON file of a fit, of a pool or of many fits says was fitted.
 
     Its curves are sought from the current folder, from that of the file, and from those above it;
     those whose hashes are the recorded ones are preferred.
@@ -129,25 +117,35 @@ def repetition(path: Path) -> Repetition:
         The file cannot be read.
     """
     content = content_of(path)
-    rows = content.get("curves", [content])
-    entries = [row.get("data") for row in rows if isinstance(row, dict)]
-    hashes = {
-        str(data["file"]): str(data.get("sha256"))
-        for data in entries
-        if isinstance(data, dict) and data.get("file")
-    }
+    hashes = _hashes(content)
     if not hashes:
         raise ConfigError(
             f"{path}: holds no fit of a file; numbers that were given in Python have to be given "
             "again, with FitConfig.from_json"
         )
     config = FitConfig.from_json(json.dumps(content))
-    folder = _folder(path, hashes)
+    file, digest = next(iter(hashes.items()))
+    folders = [Path(), *path.resolve().parents[: 1 + _ABOVE]]
+    folders = [folder for folder in folders if (folder / file).is_file()]
+    if not folders:
+        raise StorageError(
+            f"{file}: is not there, nor in the folder of {path} or above it; call pellicle where "
+            "the fit was made"
+        )
+    folder = next((f for f in folders if sha256(f / file) == digest), folders[0])
     if folder != Path():
         hashes = {str(folder / file): digest for file, digest in hashes.items()}
         config = FitConfig.merged(config, curves=tuple(folder / curve for curve in config.curves))
-    recorded = content.get("versions")
-    return Repetition(config, hashes, recorded if isinstance(recorded, dict) else {})
+    return Repetition(config, hashes, content.get("versions", {}))
+
+
+def _hashes(content: Mapping[str, Any]) -> dict[str, str]:
+    """Return the hash of each file of the JSON data of a fit, of a pool or of many fits."""
+    found: dict[str, str] = {}
+    for row in content.get("curves", ()):
+        data = row.get("data", {})
+        found |= {data["file"]: data["sha256"]} if data.get("file") else _hashes(row)
+    return found
 
 
 def content_of(path: Path) -> dict[str, Any]:
@@ -164,16 +162,3 @@ def content_of(path: Path) -> dict[str, Any]:
             "bead-fit.json or fits.json"
         )
     return content
-
-
-def _folder(path: Path, hashes: Mapping[str, str]) -> Path:
-    """Return the folder from which the recorded paths lead to the curves."""
-    file, digest = next(iter(hashes.items()))
-    above = path.resolve().parents
-    folders = [folder for folder in (Path(), *above[: 1 + _ABOVE]) if (folder / file).is_file()]
-    if not folders:
-        raise StorageError(
-            f"{file}: is not there, nor in the folder of {path} or above it; call pellicle where "
-            "the fit was made"
-        )
-    return next((folder for folder in folders if sha256(folder / file) == digest), folders[0])

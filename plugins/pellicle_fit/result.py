@@ -44,6 +44,8 @@ class Fit:
     """All explanations that were compared, and the verdict."""
     members: tuple[Member, ...]
     """The curves."""
+    advice: str
+    """What to measure next; empty if nothing would help."""
     poissons_ratio: float | None = None
     """ν, if it was given."""
     config: FitConfig | None = None
@@ -101,18 +103,15 @@ class Fit:
         return sentences.comparison(self.answer)
 
     @property
-    def advice(self) -> str:
-        """What to measure next; empty if nothing is to be told apart."""
-        return sentences.advice(self.answer)
-
-    @property
     def sentences(self) -> list[str]:
         """The data, the verdict and the advice in words."""
-        return [
-            *filter(
-                None, [sentences.data(self.answer, self._uncertainty), self.comparison, self.advice]
-            )
-        ]
+        found = sentences.data(self.answer, self._uncertainty), self.comparison, self.agreement
+        return [*filter(None, [*found, self.advice])]
+
+    @property
+    def agreement(self) -> str:
+        """Whether several curves agree on what they share, in words; empty for one."""
+        return sentences.agreement(self.answer, [member.name for member in self.members])
 
     @property
     def _uncertainty(self) -> Mapping[str, float | str]:
@@ -144,8 +143,7 @@ class Fit:
 
     def forces(self) -> list[Array]:
         """Return the force [N] of the chosen explanation at the rows of each curve."""
-        chosen = self.answer.chosen
-        return replace(chosen.objective, curves=chosen.whole).forces(chosen.minimum.at)
+        return self.answer.chosen.forces()
 
     def explained(self, *types: str) -> Explained | None:
         """Return an explanation by the types of its effects; None if it was not compared."""
@@ -165,6 +163,7 @@ class Fit:
             "verdict": self.verdict.value,
             "comparison": self.comparison,
             "tension_needed": self.tension_needed,
+            "agreement": self.agreement,
             "advice": self.advice,
             "confidence": CONFIDENCE,
             "calibration": sentences.calibration(self._uncertainty),

@@ -12,6 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import bdtrc
 
+from pellicle.arrays import Array
+
 from .curve import Curve
 from .effect import Effect, Responds, Sizes
 from .explanation import Explanation, Solid
@@ -78,6 +80,10 @@ class Explained:
     def chi_squared(self) -> float:
         """χ² of all rows."""
         return replace(self.objective, curves=self.whole).chi_squared(self.minimum.at)
+
+    def forces(self) -> list[Array]:
+        """Return the force [N] at all rows of each curve."""
+        return replace(self.objective, curves=self.whole).forces(self.minimum.at)
 
     def at_noise(self, noise: Sequence[float]) -> Explained:
         """Return the same at another noise [N] of each curve."""

@@ -27,3 +27,4 @@ from .saving import svg as svg
 from .saving import write_charts as write_charts
 from .style import LINES as LINES
 from .style import FigureStyle as FigureStyle
+from .tables import input_table as input_table

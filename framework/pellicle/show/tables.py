@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellicle.components.charts import Column, Table
+from pellicle.config import describe
 from pellicle.config.describe import FieldRow
 from pellicle.contact.caveats import from_text, verdict_of
 from pellicle.results.derived import DERIVED
@@ -24,6 +25,7 @@ from pellicle.variables import CAVEATS, VARIABLES, names_of
 
 if TYPE_CHECKING:
     import xarray as xr
+    from pydantic import BaseModel
 
     from pellicle.runs.validation import CheckedCase
     from pellicle.studies.runner import RunTask
@@ -238,6 +240,16 @@ def inputs(fields: Iterable[FieldRow], caption: str = "") -> Table:
         if i.name != "title"
     ]
     return Table.of_rows(("of", "input", "value", "meaning"), rows, caption)
+
+
+def input_table(
+    configuration: Mapping[str, Any], model: type[BaseModel], caption: str = ""
+) -> Table:
+    """Return each value of a configuration of a ``model`` with its meaning, in words and units.
+
+    ``configuration`` has the form of its JSON.
+    """
+    return inputs(describe.inputs(configuration, model), caption)
 
 
 def inputs_of_study(table: xr.Dataset, fields: Iterable[FieldRow]) -> list[FieldRow]:

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from pellicle.arrays import Array, Mask
 from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.units import Quantity
 
-from .cleaning import grows
-from .columns import Calibration, Channel, unused_time
+from .columns import Calibration, Channel, from_columns
 from .measurement import Axis, Measurement, Site
-from .origin import CurveOrigin
+from .passes import labelled
 
 SUFFIXES = (
     ".jpk-force",
@@ -32,9 +31,7 @@ SUFFIXES = (
 )
 """Suffixes that only instrument files have; .h5, .csv and .txt may be an instrument's too."""
 INSTALL = "such files are read by afmformats: install it with pip install 'pellicle[afm]'"
-_FAR = 0.5
-"""Least motion of a segment that is not a pause, over the largest motion."""
-_SPRING, _TIP = "spring constant", "tip position"
+_TIP = "tip position"
 _HEIGHTS = ("height (measured)", "height (piezo)")
 
 
@@ -43,13 +40,12 @@ def installed() -> bool:
     return find_spec("afmformats") is not None
 
 
-def read(
+def read_instrument(
     path: Path, calibration: Calibration, segment: str
-) -> Mapping[str, Measurement | PellicleError]:
-    """Return the ``segment`` of each curve by its number; the label of a single curve is empty.
+) -> dict[str, Callable[[], Measurement]]:
+    """Return what reads the ``segment`` of each curve, by its number; a single one has no label.
 
-    A curve is read from the file whenever its value is taken, so that a force map does not have to
-    fit in memory.
+    The curves of a force map do not have to fit in memory.
 
     Raises
     ------
@@ -62,71 +58,38 @@ def read(
         raise StorageError(f"{path}: is the file of an instrument; {INSTALL}")
     from afmformats.formats import get_recipe
 
-    values = {_SPRING: calibration.spring_constant, "sensitivity": calibration.sensitivity}
-    overrides = {name: value for name, value in values.items() if value is not None}
+    values = calibration.model_dump(include={"spring_constant", "sensitivity"}, exclude_none=True)
+    overrides = {name.replace("_", " "): value for name, value in values.items()}
     if not path.is_file():
         raise StorageError(f"{path}: cannot be read (no such file)")
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        with _pellicle_errors(path):
-            loader = get_recipe(path).loader
-            try:
-                recordings = loader(path, meta_override=overrides)
-            except NotImplementedError:
-                # Formats that always hold their calibration do not take another.
-                recordings = loader(path)
-            # HDF5 lists curve 10 before curve 2.
-            recordings = sorted(recordings, key=lambda recording: recording["metadata"]["enum"])
-    return _Recordings(path, recordings, overrides, segment, _texts(caught))
-
-
-def _texts(caught: Sequence[warnings.WarningMessage]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(f"afmformats: {warning.message}" for warning in caught))
-
-
-class _Recordings(Mapping[str, Measurement | PellicleError]):
-    """The curves of a file by their numbers, each read whenever it is taken."""
-
-    def __init__(
-        self,
-        path: Path,
-        recordings: Sequence[Mapping[str, Any]],
-        overrides: Mapping[str, float],
-        segment: str,
-        messages: tuple[str, ...],
-    ) -> None:
-        self._path, self._overrides, self._segment = path, overrides, segment
-        self._messages = messages
-        self._recordings = {
-            "" if len(recordings) == 1 else str(recording["metadata"]["enum"]): recording
-            for recording in recordings
-        }
-
-    def __len__(self) -> int:
-        return len(self._recordings)
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._recordings)
-
-    def __getitem__(self, label: str) -> Measurement | PellicleError:
-        recording = self._recordings[label]
+    with _errors_and_warnings(path) as messages:
+        loader = get_recipe(path).loader
         try:
-            with warnings.catch_warnings(record=True) as caught, _pellicle_errors(self._path):
-                warnings.simplefilter("always")
-                curve = _curve(self._path, recording, self._overrides, self._segment)
-        except PellicleError as error:
-            return error
-        messages = tuple(dict.fromkeys((*self._messages, *_texts(caught), *curve.messages)))
-        return replace(curve, messages=messages)
+            recordings = loader(path, meta_override=overrides)
+        except NotImplementedError:
+            # Formats that always hold their calibration do not take another.
+            recordings = loader(path)
+        # HDF5 lists curve 10 before curve 2.
+        recordings = sorted(recordings, key=lambda recording: recording["metadata"]["enum"])
+    return {
+        "" if len(recordings) == 1 else str(recording["metadata"]["enum"]): partial(
+            _curve, path, recording, overrides, calibration.speed, segment, messages
+        )
+        for recording in recordings
+    }
 
 
 @contextmanager
-def _pellicle_errors(path: Path) -> Iterator[None]:
-    """Raise the errors of afmformats, some of which are not Exceptions, as errors of pellicle."""
+def _errors_and_warnings(path: Path) -> Iterator[list[str]]:
+    """Raise the errors of afmformats, some of which are not Exceptions, and list its warnings."""
     from afmformats import errors, meta
 
+    texts: list[str] = []
     try:
-        yield
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            yield texts
+        texts += [f"afmformats: {warning.message}" for warning in caught]
     except PellicleError:
         raise
     except errors.MissingMetaDataError as error:
@@ -140,94 +103,73 @@ def _pellicle_errors(path: Path) -> Iterator[None]:
 
 
 def _curve(
-    path: Path, recording: Mapping[str, Any], overrides: Mapping[str, float], segment: str
+    path: Path,
+    recording: Mapping[str, Any],
+    overrides: Mapping[str, float],
+    speed: float | None,
+    segment: str,
+    messages: Sequence[str],
 ) -> Measurement:
     """Return one segment of one curve in SI."""
-    data, metadata = recording["data"], recording["metadata"]
-    for name, value in overrides.items():
-        if not np.isclose(metadata.get(name, value), value, rtol=1e-6):
-            raise ConfigError(
-                f"{path}: holds a {name} of {metadata[name]:g} already, and this format takes no "
-                "other; leave it out",
-                name.replace(" ", "_"),
-            )
-    force = np.asarray(data["force"], dtype=float)
-    stiffness = metadata.get(_SPRING, overrides.get(_SPRING))
-    if _TIP in data:
-        tip, source = np.asarray(data[_TIP], dtype=float), _TIP
-    else:
-        height = next((name for name in _HEIGHTS if name in data), None)
-        if height is None:
+    with _errors_and_warnings(path) as own:
+        data, metadata = recording["data"], recording["metadata"]
+        for name, value in overrides.items():
+            if not np.isclose(metadata.get(name, value), value, rtol=1e-6):
+                raise ConfigError(
+                    f"{path}: holds a {name} of {metadata[name]:g} already, and this format takes "
+                    "no other; leave it out",
+                    name.replace(" ", "_"),
+                )
+        calibration = Calibration(
+            spring_constant=metadata.get("spring constant", overrides.get("spring constant")),
+            speed=speed,
+        )
+        force = np.asarray(data["force"], dtype=float)
+        source = next((name for name in (_TIP, *_HEIGHTS) if name in data), None)
+        if source is None:
             raise ConfigError(f"{path}: has no height over the sample (has {', '.join(data)})")
-        bending = force / Calibration(spring_constant=stiffness).required_spring_constant()
-        tip, source = np.asarray(data[height], dtype=float) + bending, height
-    rows: Any = slice(None)
-    if "segment" in data and segment != "both":
-        rows = _rows_of(np.asarray(data["segment"]), tip, segment)
-    used = {"position": f"{source} [m]", "force": "force [N]"}
-    time = np.asarray(data["time"], dtype=float)[rows] if "time" in data else None
-    messages: tuple[str, ...] = ()
-    if time is not None and not grows(time):
-        messages = (unused_time(Channel("s", time)),)
-        time = None
-    origin = CurveOrigin(
-        columns=used if time is None else used | {"time": "time [s]"},
-        sensitivity=metadata.get("sensitivity", overrides.get("sensitivity")),
-        library="afmformats",
-    )
-    site = _site(metadata)
-    return Measurement(
-        -tip[rows],
-        force[rows],
-        messages=messages,
-        stiffness=stiffness,
-        time=time,
-        origin=origin,
+        position = -np.asarray(data[source], dtype=float)
+        if source != _TIP:
+            position -= force / calibration.required_spring_constant()
+        columns = {"position": Channel("m", position, source), "force": Channel("N", force)}
+        if "time" in data:
+            columns["time"] = Channel("s", np.asarray(data["time"], dtype=float))
+        if "segment" in data and segment != "both":
+            labels = np.asarray(data["segment"])
+            rows = labelled(position, labels, inward=segment == "approach")
+            columns = {role: c._replace(values=c.values[rows]) for role, c in columns.items()}
+        curve = from_columns(columns, calibration)
+        site = _site(metadata)
+        sensitivity = metadata.get("sensitivity", overrides.get("sensitivity"))
+    return replace(
+        curve,
+        messages=tuple(dict.fromkeys((*messages, *own, *curve.messages))),
+        origin=replace(curve.origin, sensitivity=sensitivity, library="afmformats"),
         site=site,
     )
 
 
-def _rows_of(segments: Array, tip: Array, segment: str) -> Mask:
-    """Return the rows of the approach or of the retract, between which there may be pauses.
-
-    The approach is the first segment that falls by half of the largest motion, the retract the last
-    that rises by as much; in a file without such segments they are the first and the last.
-    """
-    numbers = np.unique(segments)
-    motions = np.array([np.ptp(tip[segments == number][[0, -1]]) for number in numbers])
-    down = np.array([float(np.diff(tip[segments == number][[0, -1]])[0]) < 0 for number in numbers])
-    far = motions >= _FAR * motions.max()
-    if segment == "approach":
-        chosen = next(iter(numbers[far & down]), numbers[0])
-    else:
-        chosen = next(iter(numbers[far & ~down][::-1]), numbers[-1])
-    mask: Mask = segments == chosen
-    return mask
-
-
 def _site(metadata: Mapping[str, Any]) -> Site | None:
     """Return where on the sample a curve was measured; None if the file does not say it."""
+
+    def length(name: str) -> float:
+        # Files that were converted may hold a text with a unit.
+        return Quantity("m")(metadata.get(name))
+
+    def axis(letter: str) -> Axis:
+        # The size includes half a pixel beyond the first position and the last.
+        centre, size = length(f"grid center {letter}"), length(f"grid size {letter}")
+        count = int(metadata.get(f"grid shape {letter}", 0))
+        if count < 1 or size <= 0:
+            raise ValueError("the grid has no extent")
+        pitch = size / count
+        return Axis(centre - size / 2 + pitch / 2, pitch, count)
+
     try:
-        x, y = (_length(metadata.get(f"position {axis}")) for axis in "xy")
+        x, y = length("position x"), length("position y")
     except ValueError:
         return None
     try:
-        along_x, along_y = (_axis(metadata, axis) for axis in "xy")
+        return Site(x, y, (axis("x"), axis("y")))
     except (TypeError, ValueError):
         return Site(x, y)
-    return Site(x, y, (along_x, along_y))
-
-
-def _axis(metadata: Mapping[str, Any], axis: str) -> Axis:
-    """Return the positions along one edge of a map, whose size includes half a pixel beyond."""
-    centre, size = (_length(metadata.get(f"grid {name} {axis}")) for name in ("center", "size"))
-    count = int(metadata.get(f"grid shape {axis}", 0))
-    if count < 1 or size <= 0:
-        raise ValueError("the grid has no extent")
-    pitch = size / count
-    return Axis(centre - size / 2 + pitch / 2, pitch, count)
-
-
-def _length(value: object) -> float:
-    """Return a length [m], which files that were converted may hold as text with a unit."""
-    return Quantity("m")(value)

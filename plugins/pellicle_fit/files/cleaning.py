@@ -11,33 +11,25 @@ from pellicle.arrays import Array, Mask
 from pellicle.errors import ConfigError, shown
 from pellicle.units import readable
 
-from .measurement import Measurement, Note, Segment
+from .measurement import Measurement, Note, Segment, grows
+from .passes import Pass, passes
 
-FEWEST = 8
-"""Least number of points of a fit."""
-_FEW = 30
+_FEWEST, _FEW = 8, 30
+"""Least number of points of a fit, and the least that need no warning."""
 _LARGEST_RATIO = 1e6
 """Largest ratio of the stiffnesses of cantilever and curve, either way, that is fitted."""
 LARGEST = 1e30
 """Largest SI value that is fitted; the smallest is one over this."""
-_TURN = 0.5
-"""Share of its range by which the position must move back for a change of direction to count."""
-_BLOCKS, _BLOCK_ROWS = 50, 4
-"""Parts of a pass in which a pause is sought, and their least number of rows."""
-_SLOW, _FAST_QUANTILE = 0.1, 0.9
-"""Largest speed in a pause over that quantile of all speeds."""
-_PAUSE_BLOCKS = 3
-"""Least number of blocks of a pause; a position that turns as a sine is as slow in one."""
 _SIGNIFICANT = 4.0
 """Standard errors that the rise of the force must exceed."""
 
 
 def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
-    """Return the rows of one pass into the solid (or out of it), sorted by position, or of both.
+    """Return the rows of one pass into the solid (or out of it), or of both.
 
-    Both passes are in order of time.  A speed is replaced by the time that follows from it.  Where
-    the spring constant is known, the passes are told apart by the position of the
-    cantilever's base, which has no noise.
+    Rows are in order of time, but those of an approach in order of position.  A speed is replaced
+    by the time that follows from it.  Where the spring constant is known, the passes are told apart
+    by the position of the cantilever's base, which has no noise.
 
     Raises
     ------
@@ -57,38 +49,39 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
         messages.append(Note(text))
     t = None if curve.time is None else _time(curve.time, finite)
     z, f = z[finite], f[finite]
-    _check_count(z, "the curve")
+    _check_count(z.size, "the curve")
     _check_si(z, "position", "m")
     _check_si(f, "force", "N")
-    span = float(np.ptp(z))
-    if not span:
+    if not np.ptp(z):
         raise ConfigError(f"is {z[0]:g} m in every row; give a curve that moves", "position")
     base = z if curve.stiffness is None else _base(z, f, curve.stiffness)
     _check_rise(base, f)
     if t is None and curve.speed is not None:
         t = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(base)))]) / curve.speed
-    rows = _rows(base, segment, messages)
-    z, f, base, t = z[rows], f[rows], base[rows], None if t is None else t[rows]
-    _check_count(z, "it" if segment == "both" else f"its {segment}")
-    if segment != "both":
+    first, last, unloading = _rows(base, segment)
+    if left_out := z.size - 1 - last + first:
+        text = f"rows {first + 1} to {last + 1} are the {segment}; the other {left_out} were left "
+        messages.append(Note(f"{text}out"))
+    if segment == "retract":
+        messages.append("a retract is fitted as if nothing adhered: compare with the approach")
+    rows = np.arange(first, last + 1)
+    _check_count(rows.size, "it" if segment == "both" else f"its {segment}")
+    if segment == "approach":
         # The position of a tip holds the noise of the force: sorted by it, the noise has a slope.
-        order = np.argsort(base, kind="stable")
-        z, f, t = z[order], f[order], None if t is None else t[order]
-    if z.size < _FEW:
-        messages.append(f"only {z.size} points: expect wide intervals")
-    if np.unique(z).size < FEWEST:
-        raise ConfigError(
-            f"has {np.unique(z).size} different values; give at least {FEWEST}", "position"
-        )
-    return replace(curve, position=z, force=f, time=t, speed=None, messages=tuple(messages))
-
-
-def grows(time: Array) -> bool:
-    """Return whether times are finite, never fall, and are not all the same."""
-    if not np.isfinite(time).all():
-        return False
-    steps = np.diff(time)
-    return bool((steps >= 0).all() and steps.any())
+        rows = rows[np.argsort(base[rows], kind="stable")]
+    if rows.size < _FEW:
+        messages.append(f"only {rows.size} points: expect wide intervals")
+    if (count := np.unique(z[rows]).size) < _FEWEST:
+        raise ConfigError(f"has {count} different values; give at least {_FEWEST}", "position")
+    return replace(
+        curve,
+        position=z[rows],
+        force=f[rows],
+        time=None if t is None else t[rows],
+        speed=None,
+        messages=tuple(messages),
+        unloading=rows >= unloading,
+    )
 
 
 def _time(values: Array, rows: Mask) -> Array:
@@ -96,13 +89,12 @@ def _time(values: Array, rows: Mask) -> Array:
     time = _array(values, "time")
     if time.shape != rows.shape:
         raise ConfigError(f"has {time.size} values; give one for each of {rows.size} rows", "time")
-    time = time[rows]
-    if not grows(time):
+    if not grows(time[rows]):
         raise ConfigError(
             "falls, stands still or holds no finite number; give the time of each row [s] in order",
             "time",
         )
-    return time
+    return time[rows]
 
 
 def _array(values: ArrayLike, name: str) -> Array:
@@ -125,9 +117,8 @@ def _base(z: Array, f: Array, stiffness: float) -> Array:
     if not 1 / _LARGEST_RATIO <= slope / stiffness <= _LARGEST_RATIO:
         raise ConfigError(
             f"of {readable(stiffness, 'N/m', 3)} is far from the {readable(slope, 'N/m', 3)} of "
-            "this curve itself, so "
-            "that deflection and position differ by orders of magnitude; give that of the "
-            "cantilever with its unit",
+            "this curve itself, so that deflection and position differ by orders of magnitude; "
+            "give that of the cantilever with its unit",
             "spring_constant",
         )
     return z + f / stiffness
@@ -144,9 +135,9 @@ def _check_si(values: Array, name: str, unit: str) -> None:
         )
 
 
-def _check_count(z: Array, rows: str) -> None:
-    if z.size < FEWEST:
-        raise ConfigError(f"{rows} has {z.size} points; a fit needs at least {FEWEST}", "position")
+def _check_count(count: int, which: str) -> None:
+    if count < _FEWEST:
+        raise ConfigError(f"{which} has {count} points; a fit needs at least {_FEWEST}", "position")
 
 
 def _check_rise(z: Array, f: Array) -> None:
@@ -168,95 +159,39 @@ def _check_rise(z: Array, f: Array) -> None:
     if rise <= least or not rise:
         raise ConfigError(
             f"does not rise with the position (by {readable(rise, 'N', 2)} at a noise of "
-            f"{readable(noise, 'N', 2)}): there "
-            "is no contact in the curve; give one that goes deeper",
+            f"{readable(noise, 'N', 2)}): there is no contact in the curve; give one that goes "
+            "deeper",
             "force",
         )
 
 
-def _rows(z: Array, segment: Segment, messages: list[str]) -> slice:
-    """Return the rows of the first pass into the solid, or out of it, or of both."""
-    turns = _turns(z, _TURN * float(np.ptp(z)))
-    passes = list(zip([0, *turns], [*turns, z.size - 1], strict=True))
-    inward = [bool(z[last] > z[first]) for first, last in passes]
-    if len(passes) > 2:
+def _rows(base: Array, segment: Segment) -> tuple[int, int, int]:
+    """Return the first and the last row of a segment, and the first of unloading."""
+    found = passes(base)
+    if len(found) > 2:
         raise ConfigError(
-            f"goes to and fro {len(passes)} times: several curves, or rows out of order; give one "
+            f"goes to and fro {len(found)} times: several curves, or rows out of order; give one "
             "curve at a time, its rows in order",
             "position",
         )
+    by_direction: dict[bool, Pass] = {one.inward: one for one in found}
     if segment == "both":
-        if inward not in ([True], [True, False]):
+        if not found[0].inward:
             raise ConfigError(
                 "does not begin with an approach, and both passes are to be fitted; give the rows "
                 "in order of time, or set segment to the pass that there is",
                 "position",
             )
-        return slice(0, z.size)
-    approach = segment == "approach"
-    if approach not in inward:
-        article, other = ("a", "retract") if approach else ("an", "approach")
+        # The row of the turn is of both passes.
+        return 0, base.size - 1, found[1].first + 1 if len(found) > 1 else base.size
+    is_approach = segment == "approach"
+    if is_approach not in by_direction:
+        article, other = ("a", "retract") if is_approach else ("an", "approach")
         raise ConfigError(
-            f"only moves {'out of' if approach else 'into'} the solid: this is {article} {other}, "
-            f"and the {segment} is to be fitted; give the {segment}, or set segment to {other!r}",
+            f"only moves {'out of' if is_approach else 'into'} the solid: this is {article} "
+            f"{other}, and the {segment} is to be fitted; give the {segment}, or set segment to "
+            f"{other!r}",
             "position",
         )
-    first, last = passes[inward.index(approach)]
-    # Rows of a dwell at the turn precede the retract.
-    while first and z[first + 1] == z[first]:
-        first += 1
-    first, last = _without_pause(z, first, last, approach)
-    if left_out := z.size - 1 - last + first:
-        messages.append(
-            Note(
-                f"rows {first + 1} to {last + 1} are the {segment}; the other {left_out} were left "
-                "out"
-            )
-        )
-    if not approach:
-        messages.append("a retract is fitted as if nothing adhered: compare with the approach")
-    return slice(first, last + 1)
-
-
-def _without_pause(z: Array, first: int, last: int, approach: bool) -> tuple[int, int]:
-    """Return the first and the last row of a pass without a pause at its deep end.
-
-    In a pause the position creeps or is only noise; the rows of an approach and its pause are split
-    into blocks, and those that move by less than a tenth of what the fast ones do are the pause.
-    """
-    rows = z[first : last + 1] if approach else z[first : last + 1][::-1]
-    size = rows.size // _BLOCKS
-    if size < _BLOCK_ROWS:
-        return first, last
-    blocks = rows[rows.size - size * _BLOCKS :].reshape(_BLOCKS, size)
-    centred = np.arange(size) - (size - 1) / 2
-    speed = np.abs(blocks @ centred)
-    slow = speed < _SLOW * np.quantile(speed, _FAST_QUANTILE)
-    count = int(np.argmin(slow[::-1])) if not slow.all() else 0
-    if count < _PAUSE_BLOCKS:
-        return first, last
-    begin, later = np.median(blocks[-count : 2 - count], axis=1)
-    # The block before holds rows of the ramp and, at most one block of creep earlier, of the pause.
-    end = int(np.argmax(rows >= begin - 1.5 * max(later - begin, 0.0)))
-    return (first, first + end) if approach else (last - end, last)
-
-
-def _turns(z: Array, least: float) -> list[int]:
-    """Return the rows after which the position moves the other way by ``least`` or more."""
-    turns: list[int] = []
-    low = high = 0
-    direction = 0
-    for row, value in enumerate(z.tolist()):
-        if value > z[high]:
-            high = row
-        if value < z[low]:
-            low = row
-        if direction >= 0 and z[high] - value >= least:
-            if direction:
-                turns.append(high)
-            direction, low = -1, row
-        elif direction <= 0 and value - z[low] >= least:
-            if direction:
-                turns.append(low)
-            direction, high = 1, row
-    return turns
+    first, last, _ = by_direction[is_approach]
+    return first, last, base.size if is_approach else first

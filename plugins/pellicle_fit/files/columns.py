@@ -1,53 +1,120 @@
-"""Position and force of a curve, whatever names and units its columns have."""
+"""Columns of a curve: their roles and units, and the position and force that they give."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Set
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
-from pellicle.arrays import Array, Mask
+from pellicle.arrays import Array
 from pellicle.errors import ConfigError, shown
-from pellicle.schema import Model
+from pellicle.schema import Model, nearest
 from pellicle.units import Quantity
 
-from .cleaning import grows
-from .measurement import Measurement, Note
-from .origin import CurveOrigin
-from .roles import EXAMPLE, OF_BASE, POSITIONS, SIGNALS, TIME, ColumnMap, factor, is_voltage
+from .measurement import Measurement, Note, Origin, grows
 
-SpringConstant = Annotated[float, Quantity("N/m", above=0)]
-"""Spring constant of a cantilever [N/m]."""
-Speed = Annotated[float, Quantity("m/s", above=0)]
-"""Speed of a cantilever's base, or of the indenter [m/s]."""
-Sensitivity = Annotated[float, Quantity("m/V", above=0)]
-"""Deflection of a cantilever over the signal of its detector [m/V]."""
+EXAMPLE = "position [um],force [nN]"
+_POSITIONS = {
+    "position": "position of the indenter, growing into the solid",
+    "depth": "position relative to first touch",
+    "height": "height of the cantilever's base, falling on approach",
+    "extension": "extension of the piezo, growing on approach",
+}
+"""Names of columns that hold a position, and what they are."""
+_OF_BASE = ("height", "extension")
+"""Positions from which the deflection must be subtracted."""
+_SIGNALS = ("force", "deflection")
+"""Names of columns of which one gives the force."""
+NAMES = (*_POSITIONS, *_SIGNALS, "time")
+"""Names of the columns that are read."""
+LABEL = "curve"
+"""Name of the column that tells the curves of one table apart."""
+_UNITS = {"force": ("N", "nN"), "time": ("s", "ms")}
+"""SI units of columns that are not lengths, and those of the examples in messages."""
+_MAP = "Z = extension nm, Defl = deflection nm"
+_ENTRY = re.compile(r'(?:"[^"]*"|[^,"])+')
 
 
-class Channel(NamedTuple):
-    """Values of a column, of shape (n,), and their unit as text."""
+class Role(NamedTuple):
+    """What a column holds."""
 
+    name: str
+    """One of `NAMES`, or the label that tells curves apart."""
     unit: str
-    values: Array
-    name: str = ""
-    """Its name in the file."""
+    """Its unit as text; empty if the file states it."""
+
+    @classmethod
+    def of(cls, text: str) -> Role:
+        """Return the role that a text such as ``"extension nm"`` states."""
+        name, _, unit = text.strip().partition(" ")
+        return cls(name.lower(), unit.strip())
+
+
+def column_map(value: object) -> dict[str, str]:
+    """Return the roles of columns, such as ``{"Z": "extension nm"}``, in the order of `NAMES`.
+
+    Parameters
+    ----------
+    value
+        Such a table, or a text such as ``"Z = extension nm, Defl = deflection nm"``.
+
+    Raises
+    ------
+    ConfigError
+        A role or a unit is unknown, a role is given twice, or the text has another form.
+    """
+    if isinstance(value, str):
+        entries = [entry.rpartition("=") for entry in _ENTRY.findall(value) if entry.strip()]
+        if not entries or not all(equals for _, equals, _ in entries):
+            raise ConfigError(f"{shown(value)} is not of the form {_MAP!r}")
+        pairs = [(name.strip().strip('"'), role) for name, _, role in entries]
+        if len(dict(pairs)) < len(pairs):
+            raise ConfigError(f"{shown(value)} names a column twice; give each column one role")
+        value = dict(pairs)
+    if not isinstance(value, Mapping):
+        raise ConfigError(f"{shown(value)} is not a table or a text such as {_MAP!r}")
+    roles = (*NAMES, LABEL)
+    by_role: dict[str, tuple[str, str]] = {}
+    for column, text in value.items():
+        if not isinstance(text, str) or not text.strip():
+            raise ConfigError(f"{shown(text)} is not a role with its unit; {_MAP!r}", column)
+        role = Role.of(text)
+        if role.name not in roles:
+            raise ConfigError(f"{shown(role.name)} is not a role; {nearest(role.name, roles)}")
+        if role.name in by_role:
+            raise ConfigError(f"{by_role[role.name][0]!r} and {column!r} are both {role.name}")
+        if role.unit and role.name != LABEL:
+            _factor(role.name, role.unit)
+        by_role[role.name] = str(column), " ".join(filter(None, role))
+    return dict(by_role[role] for role in roles if role in by_role)
 
 
 class Calibration(Model):
     """Converts the signal of a cantilever to force and deflection; None if not given."""
 
-    spring_constant: SpringConstant | None = Field(
+    spring_constant: Annotated[float, Quantity("N/m", above=0)] | None = Field(
         None, description="of the cantilever, to subtract its bending"
     )
-    sensitivity: Sensitivity | None = Field(
+    sensitivity: Annotated[float, Quantity("m/V", above=0)] | None = Field(
         None, description="deflection of the cantilever over the signal of its detector"
     )
-    speed: Speed | None = Field(
+    speed: Annotated[float, Quantity("m/s", above=0)] | None = Field(
         None, description="constant speed of the base, where a file holds no time"
     )
-    columns: ColumnMap = None
+    columns: Annotated[
+        dict[str, str] | None,
+        BeforeValidator(
+            lambda value: None if value is None else column_map(value),
+            json_schema_input_type=dict[str, str] | str | None,
+        ),
+    ] = Field(
+        None,
+        description="roles of columns by name, by number or by path in the file: "
+        '{ "Z" = "extension nm", "Defl" = "deflection nm" }',
+    )
 
     def required_spring_constant(self, purpose: str = "") -> float:
         """Return the spring constant [N/m]; an error tells the purpose if there is one."""
@@ -60,13 +127,26 @@ class Calibration(Model):
         return self.spring_constant
 
 
-def is_curve(columns: Mapping[str, Channel]) -> bool:
-    """Return whether the columns hold a force or deflection, and a position of some kind."""
-    return bool(SIGNALS & columns.keys()) and bool(POSITIONS.keys() & columns.keys())
+class Channel(NamedTuple):
+    """Values of a column, of shape (n,), and their unit as text."""
+
+    unit: str
+    values: Array
+    name: str = ""
+    """Its name in the file."""
 
 
-def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Measurement:
-    """Return the curve that columns with names from `NAMES` hold.
+Columns = Mapping[str, Channel]
+"""The columns of one curve by their names in `NAMES`."""
+
+
+def is_curve(names: Set[str]) -> bool:
+    """Return whether columns hold a force or deflection, and a position of some kind."""
+    return not names.isdisjoint(_SIGNALS) and not names.isdisjoint(_POSITIONS)
+
+
+def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
+    """Return the curve that columns hold.
 
     Force is ``force``, or the spring constant times ``deflection``, which may be in volts if the
     sensitivity is known.  Position is ``position`` or ``depth``, or else that of the cantilever's
@@ -77,7 +157,7 @@ def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Me
     ConfigError
         A column, a unit or a calibration is missing, or a unit measures something else.
     """
-    if not SIGNALS & columns.keys():
+    if columns.keys().isdisjoint(_SIGNALS):
         listing = ", ".join(columns) or "none that is known"
         raise ConfigError(
             f"has no column force or deflection (columns: {listing}); give a "
@@ -85,39 +165,42 @@ def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Me
             "which has to name each column that is read"
         )
     names = [name for name in ("position", "depth") if name in columns] or [
-        name for name in OF_BASE if name in columns
+        name for name in _OF_BASE if name in columns
     ]
     if len(names) != 1:
-        problem = (
-            f"both {' and '.join(names)}"
-            if names
-            else "no column position or depth, nor extension or height"
-        )
+        both = f"both {' and '.join(names)}"
+        problem = both if names else "no column position or depth, nor extension or height"
         raise ConfigError(f"has {problem}; give one of them, e.g. {EXAMPLE!r}")
     (name,) = names
-    position = factor(name, columns[name].unit) * columns[name].values
-    force = (
-        factor("force", columns["force"].unit) * columns["force"].values
-        if "force" in columns
-        else calibration.required_spring_constant()
-        * _deflection(columns["deflection"], calibration)
-    )
-    if name in OF_BASE:
-        purpose = (
-            f", and column {name} is the {POSITIONS[name]}, from which the deflection must be "
-            "subtracted"
-        )
-        deflection = (
-            _deflection(columns["deflection"], calibration)
-            if "deflection" in columns
-            else force / calibration.required_spring_constant(purpose)
-        )
+    position = _si(columns, name)
+    if "force" in columns:
+        force = _si(columns, "force")
+    else:
+        force = calibration.required_spring_constant() * _deflection(columns, calibration)
+    if name in _OF_BASE:
+        if "deflection" in columns:
+            deflection = _deflection(columns, calibration)
+        else:
+            deflection = force / calibration.required_spring_constant(
+                f", and column {name} is the {_POSITIONS[name]}, from which the deflection must be "
+                "subtracted"
+            )
         position = (position if name == "extension" else -position) - deflection
-    time = _time(columns, np.isfinite(position) & np.isfinite(force))
+    time = None
     messages: tuple[str, ...] = ()
-    if TIME in columns and time is None:
-        messages = (unused_time(columns[TIME]),)
-        columns = {role: channel for role, channel in columns.items() if role != TIME}
+    if "time" in columns:
+        channel, reason = columns["time"], ""
+        rows = np.isfinite(position) & np.isfinite(force)
+        if not channel.unit:
+            reason = "has no unit"
+        elif channel.values.shape != rows.shape or not grows(channel.values[rows]):
+            reason = "falls, stands still or has a row without a number"
+        else:
+            time = _si(columns, "time")
+        if reason:
+            text = f"column {channel.name or 'time'} {reason}, so the curve is taken as one without"
+            messages = (Note(f"{text} time"),)
+            columns = {role: channel for role, channel in columns.items() if role != "time"}
     return Measurement(
         position,
         force,
@@ -126,36 +209,65 @@ def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Me
         stiffness=calibration.spring_constant,
         time=time,
         speed=calibration.speed,
-        origin=CurveOrigin(
+        origin=Origin(
             columns={role: f"{c.name or role} [{c.unit}]" for role, c in columns.items()},
             sensitivity=calibration.sensitivity,
         ),
     )
 
 
-def _time(columns: Mapping[str, Channel], rows: Mask) -> Array | None:
-    """Return the time [s]; None where the file holds none that grows in the rows of the curve."""
-    if TIME not in columns or not columns[TIME].unit:
-        return None
-    time = columns[TIME].values
-    if time.shape != rows.shape or not grows(time[rows]):
-        return None
-    return factor(TIME, columns[TIME].unit) * time
+def _si(columns: Columns, name: str) -> Array:
+    """Return the values of a column in SI."""
+    return _factor(name, columns[name].unit) * columns[name].values
 
 
-def unused_time(column: Channel) -> Note:
-    """Return the note on a column of times that do not serve."""
-    reason = "falls, stands still or has a row without a number" if column.unit else "has no unit"
-    return Note(f"column {column.name or TIME} {reason}, so the curve is taken as one without time")
+def _deflection(columns: Columns, calibration: Calibration) -> Array:
+    """Return the deflection [m], also of a column in volts."""
+    unit, values, _ = columns["deflection"]
+    factor = _factor("deflection", unit)
+    if _is_voltage(unit):
+        if calibration.sensitivity is None:
+            raise ConfigError(
+                f"is missing, and column deflection is in {shown(unit)}; give it with its unit, "
+                "such as '50 nm/V' (--sensitivity on the command line)",
+                "sensitivity",
+            )
+        factor = calibration.sensitivity * factor
+    return factor * values
 
 
-def _deflection(column: Channel, calibration: Calibration) -> Array:
-    if not is_voltage(column.unit):
-        return factor("deflection", column.unit) * column.values
-    if calibration.sensitivity is None:
+def _is_voltage(unit: str) -> bool:
+    """Return whether a unit is one of voltage."""
+    try:
+        Quantity("V")(f"1 {unit}")
+    except ValueError:
+        return False
+    return True
+
+
+def _factor(name: str, unit: str) -> float:
+    """Return the factor from the unit of a column to SI; a deflection may be in volts.
+
+    Raises
+    ------
+    ConfigError
+        The column has no unit, or one that measures something else.
+    """
+    if not unit:
         raise ConfigError(
-            f"is missing, and column deflection is in {shown(column.unit)}; give it with its unit, "
-            "such as '50 nm/V' (--sensitivity on the command line)",
-            "sensitivity",
+            f"column {name} has no unit; write it in the header, e.g. {EXAMPLE!r}, or in columns "
+            "(--columns on the command line)"
         )
-    return calibration.sensitivity * factor("deflection", column.unit) * column.values
+    si, typical = _UNITS.get(name, ("m", "nm"))
+    is_voltage = _is_voltage(unit)
+    try:
+        return Quantity("V" if is_voltage and name == "deflection" else si)(f"1 {unit}")
+    except ValueError:
+        hint = (
+            "; a signal in volts is a column deflection, which becomes a force by sensitivity "
+            "[m/V] and spring constant [N/m]"
+        )
+        raise ConfigError(
+            f"column {name} is in {shown(unit)}, which is not a unit of {name}; give it in "
+            f"{si} or a multiple, e.g. {f'{name} [{typical}]'!r}{hint if is_voltage else ''}"
+        ) from None

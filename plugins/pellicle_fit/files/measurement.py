@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from pellicle.arrays import Array
+from pellicle.arrays import Array, Mask
 from pellicle.units import axis_unit
-
-from .origin import CurveOrigin
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,6 +46,27 @@ class Site(NamedTuple):
 
 
 @dataclass(frozen=True)
+class Origin:
+    """Where a curve comes from; without a file it was given by its numbers."""
+
+    file: str | None = None
+    curve: str | None = None
+    """Label of the curve in a file that holds several."""
+    sha256: str | None = None
+    """SHA-256 of the file."""
+    columns: Mapping[str, str] = field(default_factory=dict)
+    """Name and unit of the column in each role."""
+    sensitivity: float | None = None
+    """Deflection of the cantilever over the signal of its detector [m/V], if it was used."""
+    library: str | None = None
+    """Package that read the file, if it is not pellicle."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return JSON data, in which nothing of the machine but the path appears."""
+        return vars(self) | {"columns": dict(self.columns)}
+
+
+@dataclass(frozen=True)
 class Measurement:
     """One measured curve: position [m] that grows into the solid and force [N], of shape (n,)."""
 
@@ -64,8 +84,10 @@ class Measurement:
     """Constant speed [m/s] of the base, from which the time follows if `time` is None."""
     site: Site | None = None
     """Where on the sample it was measured, if it belongs to a force map."""
-    origin: CurveOrigin = field(default_factory=CurveOrigin)
+    origin: Origin = field(default_factory=Origin)
     """Its file, with the hash, the columns and the calibration."""
+    unloading: Mask | None = None
+    """Which rows were taken while the indenter moved out; None until the curve is cleaned."""
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw force against position on ``axes``, or else those of pyplot, and return them."""
@@ -79,3 +101,11 @@ class Measurement:
         label = "depth" if self.is_depth else "position"
         axes.set(xlabel=f"{label} [{length_unit}]", ylabel=f"force [{unit}]")
         return axes
+
+
+def grows(time: Array) -> bool:
+    """Return whether times are finite, never fall, and are not all the same."""
+    if not np.isfinite(time).all():
+        return False
+    steps = np.diff(time)
+    return bool((steps >= 0).all() and steps.any())

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import hashlib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from pellicle.errors import ConfigError, PellicleError, StorageError, shown
 
 from . import afm
-from .columns import Calibration, Channel, from_columns, is_curve
+from .columns import EXAMPLE, Calibration, Columns, from_columns, is_curve
 from .measurement import Measurement
-from .origin import Stamped, state
-from .roles import EXAMPLE
 from .text_table import curves_of, read_cells
 from .tree import read_hdf5, read_matlab
 
@@ -28,34 +29,65 @@ _TABLES_TOO = (".tab",)
 _SPREADSHEETS = (".xlsx", ".xlsm", ".xls", ".ods", ".numbers")
 
 
-def read(
-    path: Path, calibration: Calibration | None = None, segment: str = "approach"
-) -> Mapping[str, Measurement | PellicleError]:
+class Contents(Mapping[str, Measurement | PellicleError]):
+    """The curves of a file, or the errors of reading them, by their labels.
+
+    The label of a single curve is empty.  A curve is read when its value is taken; file and hash
+    are its origin.
+    """
+
+    def __init__(self, path: Path, calibration: Calibration, segment: str) -> None:
+        self._path, self._state = path, _state(path)
+        self._curves = _curves(path, calibration, segment)
+        self._sha256 = sha256(path)
+        self._check_state()
+
+    def _check_state(self) -> None:
+        if _state(self._path) != self._state:
+            raise StorageError(f"{self._path}: was changed while it was read; read it again")
+
+    def __len__(self) -> int:
+        return len(self._curves)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._curves)
+
+    def __getitem__(self, label: str) -> Measurement | PellicleError:
+        try:
+            curve = self._curves[label]()
+            self._check_state()
+        except PellicleError as error:
+            return error
+        origin = replace(
+            curve.origin, file=str(self._path), curve=label or None, sha256=self._sha256
+        )
+        return replace(curve, origin=origin)
+
+
+def read(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Contents:
     """Return the curves of a file, or the errors of reading them, by their labels.
 
-    The label of a single curve is empty.  A table (CSV, TSV, semicolons, spaces) has a header such
-    as ``position [um],force [nN]``; cells that hold no number are NaN, columns of other names are
-    ignored, and rows that differ in a column ``curve`` are different curves.  An HDF5 file has
-    datasets of the same names with an attribute ``units``, or groups of them, one for each curve; a
-    pellicle result is such a file.  The columns of the calibration name other columns of a table,
-    and the arrays of any HDF5 or MATLAB file.  Any other file is read by afmformats, which then
-    selects the ``segment``.
+    A table (CSV, TSV, semicolons, spaces) has a header such as ``position [um],force [nN]``; cells
+    that hold no number are NaN, columns of other names are ignored, and rows that differ in a
+    column ``curve`` are different curves.  An HDF5 file has datasets of the same names with an
+    attribute ``units``, or groups of them, one for each curve; a pellicle result is such a file.
+    The columns of the calibration name other columns of a table, and the arrays of any HDF5 or
+    MATLAB file.  Any other file is read by afmformats, which then selects the ``segment``.
 
     Raises
     ------
     ConfigError
         A column or a unit is missing, measures something else, or a column is repeated.
     StorageError
-        The file cannot be read.
+        The file cannot be read, or was replaced while it was read.
     """
-    before = state(path)
-    return Stamped(_read(path, calibration or Calibration(), segment), path, before)
+    return Contents(path, calibration or Calibration(), segment)
 
 
-def _read(
+def _curves(
     path: Path, calibration: Calibration, segment: str
-) -> Mapping[str, Measurement | PellicleError]:
-    """Return the curves of a file by their labels, or the error of each that cannot be read."""
+) -> dict[str, Callable[[], Measurement]]:
+    """Return what reads each curve of a file, by their labels."""
     suffix = path.suffix.lower()
     mapped = calibration.columns or {}
     if suffix in _SPREADSHEETS:
@@ -70,7 +102,7 @@ def _read(
                 "columns out",
                 "columns",
             )
-        return afm.read(path, calibration, segment)
+        return afm.read_instrument(path, calibration, segment)
     cells, hint = None, ""
     if suffix in _HDF5:
         tables = read_hdf5(path, mapped)
@@ -79,31 +111,50 @@ def _read(
     else:
         cells = read_cells(path, mapped)
         tables = curves_of(path, cells, mapped) if cells else {}
-    if not mapped and not any(map(is_curve, tables.values())):
+    if not mapped and not any(is_curve(columns.keys()) for columns in tables.values()):
         try:
-            return afm.read(path, calibration, segment)
+            return afm.read_instrument(path, calibration, segment)
         except StorageError:
             # Only afmformats can recognise the file of an instrument.
             hint = "" if afm.installed() else f"; if it is an instrument's: {afm.INSTALL}"
             if cells is not None:
-                first = ", ".join(shown(text) for text in cells.first[:_MANY])
+                first = ", ".join(map(shown, cells.first[:_MANY]))
                 hint = f"; its first line is {first}, and --columns says what such names are{hint}"
     if not tables:
         raise StorageError(
             f"{path}: is neither text, nor HDF5, nor a readable file of an instrument{hint}; "
             f"export it as a table with a header such as {EXAMPLE!r}"
         )
-    return {
-        label: _curve(columns, calibration, f"{path}: curve {label}" if label else str(path), hint)
-        for label, columns in tables.items()
-    }
+
+    def curve(label: str, columns: Columns) -> Measurement:
+        try:
+            return from_columns(columns, calibration)
+        except ConfigError as error:
+            name = f"{path}: curve {label}" if label else path
+            raise ConfigError(f"{name}: {error}{hint}") from None
+
+    return {label: partial(curve, label, columns) for label, columns in tables.items()}
 
 
-def _curve(
-    columns: Mapping[str, Channel], calibration: Calibration, name: str, hint: str
-) -> Measurement | PellicleError:
-    """Return the curve of a table; an error has its ``name``, and ends with a ``hint``."""
+def sha256(path: Path) -> str:
+    """Return the SHA-256 of a file in hexadecimal digits.
+
+    Raises
+    ------
+    StorageError
+        The file cannot be read.
+    """
     try:
-        return from_columns(columns, calibration)
-    except ConfigError as error:
-        return ConfigError(f"{name}: {error}{hint}")
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError as error:
+        raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
+
+
+def _state(path: Path) -> tuple[int, ...]:
+    """Return numbers that change if a file is written or replaced; none if it cannot be read."""
+    try:
+        status = path.stat()
+    except OSError:
+        return ()
+    return status.st_ino, status.st_size, status.st_mtime_ns

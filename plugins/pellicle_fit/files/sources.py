@@ -69,54 +69,42 @@ class CurveFile:
     segment: str
     calibration: Calibration
 
-    def open(self) -> Sources:
-        """Return its curves; those of a force map are read only as they are iterated over."""
-        own, fields = Calibration.model_fields, dict(self.fields)
-        settings = {name: getattr(self.calibration, name) for name in own}
-        settings |= {name: fields.pop(name) for name in own if name in fields}
+    def open(self) -> tuple[list[str], Iterator[Source]]:
+        """Return the labels of its curves, and the curves, each read only as it is taken."""
+        fields, site = dict(self.fields), None
+        own = {name: fields.pop(name) for name in Calibration.model_fields if name in fields}
         contents: Mapping[str, Measurement | PellicleError]
         try:
-            site = _site(fields)
-            calibration = Calibration(**settings)
-            if self.numbers is not None:
+            if {"x", "y"} <= fields.keys():
+                try:
+                    x, y = (Quantity("m")(fields.pop(name)) for name in ("x", "y"))
+                except ValueError as error:
+                    raise ConfigError(f"x and y: {error}") from None
+                site = Site(x, y)
+            settings = {name: getattr(self.calibration, name) for name in Calibration.model_fields}
+            calibration = Calibration(**settings | own)
+            if self.numbers is None:
+                contents = read(self.path, calibration, self.segment)
+            else:
                 # `clean` checks the arrays.
                 position, force, *time = (cast("Array", values) for values in self.numbers)
                 stiffness, speed = calibration.spring_constant, calibration.speed
                 own = {"stiffness": stiffness, "speed": speed, "time": time[0] if time else None}
                 contents = {"": Measurement(position, force, **own)}
-            else:
-                contents = read(self.path, calibration, self.segment)
         except PellicleError as error:
-            contents, site = {"": error}, None
-        return Sources(self, fields, contents, site)
+            contents = {"": error}
 
+        def sources() -> Iterator[Source]:
+            path = whole = str(self.path)
+            if site is not None and self.table is not None:
+                whole = str(self.table)
+            for label, curve in contents.items():
+                if site is not None and isinstance(curve, Measurement):
+                    curve = replace(curve, site=site)
+                name = f"{path}:{label}" if label else path
+                yield Source(name, curve, fields, path, self.group, whole)
 
-@dataclass(frozen=True)
-class Sources:
-    """The curves of one file."""
-
-    file: CurveFile
-    fields: Mapping[str, Any]
-    contents: Mapping[str, Measurement | PellicleError]
-    site: Site | None
-    """Where on the sample the file was recorded, if a table of files says so."""
-
-    @property
-    def is_single(self) -> bool:
-        """Whether the file holds one curve without a label."""
-        return list(self.contents) == [""]
-
-    def __len__(self) -> int:
-        return len(self.contents)
-
-    def __iter__(self) -> Iterator[Source]:
-        path = self.file.path
-        for label, curve in self.contents.items():
-            name = f"{path}:{label}" if label else str(path)
-            whole = str(path)
-            if self.site is not None and isinstance(curve, Measurement):
-                curve, whole = replace(curve, site=self.site), str(self.file.table or path)
-            yield Source(name, curve, self.fields, str(path), self.file.group, whole)
+        return list(contents), sources()
 
 
 class SourceStream:
@@ -126,8 +114,7 @@ class SourceStream:
     """
 
     def __init__(self, files: Sequence[CurveFile]) -> None:
-        self._files = files
-        self._count = len(files)
+        self._files, self._count = files, len(files)
 
     def __length_hint__(self) -> int:
         return self._count
@@ -135,8 +122,8 @@ class SourceStream:
     def __iter__(self) -> Iterator[Source]:
         self._count = len(self._files)
         for file in self._files:
-            sources = file.open()
-            self._count += len(sources) - 1
+            labels, sources = file.open()
+            self._count += len(labels) - 1
             yield from sources
 
 
@@ -162,9 +149,9 @@ def gather(
     StorageError
         A folder or a list of files cannot be read.
     """
-    arrays = curves if isinstance(curves, Mapping) else {}
+    files: list[tuple[Any, dict[str, str], Path | None]]
     if isinstance(curves, Mapping):
-        files: list[tuple[Any, dict[str, str], Path | None]] = [(n, {}, None) for n in curves]
+        files = [(name, {}, None) for name in curves]
     else:
         paths = [curves] if isinstance(curves, (str, Path)) else curves
         files = [file for text in paths for path in expanded(text) for file in _files(path)]
@@ -183,20 +170,9 @@ def gather(
         if not is_field:
             listed.pop(label.lower(), None)
         fields = {name: values[number] for name, values in per_file.items()} | listed
-        numbers = arrays.get(file)
+        numbers = curves[file] if isinstance(curves, Mapping) else None
         gathered.append(CurveFile(file, numbers, fields, group, table, segment, calibration))
     return gathered
-
-
-def _site(fields: dict[str, Any]) -> Site | None:
-    """Return where a curve was measured, and remove x and y from the fields of its file."""
-    if not {"x", "y"} <= fields.keys():
-        return None
-    try:
-        x, y = (Quantity("m")(fields.pop(name)) for name in ("x", "y"))
-    except ValueError as error:
-        raise ConfigError(f"x and y: {error}") from None
-    return Site(x, y)
 
 
 def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import csv
 import re
 import unicodedata
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,44 +18,30 @@ from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.files import read_text
 from pellicle.units import Quantity
 
-from .columns import Channel, is_curve
-from .roles import EXAMPLE, LABEL, NAMES, role_of
+from .columns import EXAMPLE, LABEL, NAMES, Channel, Columns, Role, is_curve
 
 FILE = "file"
 """Name of the column of a table that lists files."""
-_HEADER = re.compile(r"([^\[(]*)(?:[\[(]([^\])]*)[\])])?")
+_HEAD = re.compile(r"([^\[(]*)(?:[\[(]([^\])]*)[\])])?")
 _WORD = re.compile(r"[^\s\[(]+(?:\s?[\[(][^\])]*[\])])?")
 """A column's name and unit in a header whose columns are separated by spaces."""
 _WHOLE = re.compile(r"[-+]?[1-9]\d{0,2}")
 _GROUPED = re.compile(rf"{_WHOLE.pattern}(?:,\d{{3}})+(?:\.\d*)?")
 """A number whose thousands are separated by commas."""
 _COMMENT = ("#", "%")
-_SPACE = " "
 _PREAMBLE = 200
 """Lines in which a header is sought."""
 _UNIT_ROWS = 3
 """Rows below a header that may hold units instead of numbers."""
-_DIMENSIONS = ("m", "N", "V", "s")
 
 
-@dataclass(frozen=True)
-class Head:
-    """The head of a column."""
+class Head(NamedTuple):
+    """The head of a column, such as ``position [um]``."""
 
     text: str
     """All of it."""
     name: str
     unit: str
-
-    @classmethod
-    def of(cls, cell: str) -> Head:
-        """Return the head in a cell such as ``position [um]``."""
-        text = _plain(cell)
-        match = _HEADER.fullmatch(text)
-        if match is None:
-            return cls(text, text, "")
-        name, unit = match.groups(default="")
-        return cls(text, name.strip(), unit.strip())
 
     def is_called(self, name: str) -> bool:
         """Return whether a user who writes ``name`` may mean this column."""
@@ -68,8 +55,7 @@ class Cells:
     heads: tuple[Head, ...]
     """Heads of the columns; none if the table begins with numbers."""
     rows: list[list[str]]
-    comma: bool
-    """Whether the decimal separator may be a comma."""
+    separator: str
 
     @property
     def names(self) -> list[str]:
@@ -80,38 +66,6 @@ class Cells:
     def first(self) -> list[str]:
         """Names of the columns, or the first numbers of a table without."""
         return self.names or self.rows[0]
-
-    def name(self, index: int) -> str:
-        """Return the name of a column, or its number from 1."""
-        return self.heads[index].name if self.heads else str(index + 1)
-
-    def numbers(self, rows: Sequence[Sequence[str]], index: int, path: Path) -> Array:
-        """Return a column of some rows; NaN where a cell is missing or holds no number.
-
-        In a column that has points, a comma is not decimal, and may group thousands.
-
-        Raises
-        ------
-        ConfigError
-            Commas may be decimal or group thousands; ``path`` is named.
-        """
-        cells = [row[index].strip() if index < len(row) else "" for row in rows]
-        commas = [cell for cell in cells if "," in cell]
-        decimal = self.comma and not any("." in cell for cell in cells)
-        grouped = all(map(_GROUPED.fullmatch, commas))
-        whole = next(filter(_WHOLE.fullmatch, cells), None) if commas and grouped else None
-        if decimal and whole:
-            raise ConfigError(
-                f"{path}: column {self.name(index)} has {commas[0]!r} beside {whole!r}, so its "
-                "commas may be those of decimals or of thousands; export it without separators "
-                "of thousands, and with decimals in all rows"
-            )
-        mark = "." if decimal else "" if grouped else ","
-        values = np.full(len(rows), np.nan)
-        for number, cell in enumerate(cells):
-            with suppress(ValueError):
-                values[number] = float(cell.replace(",", mark))
-        return values
 
 
 def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | None:
@@ -137,75 +91,41 @@ def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | N
     data = [line for line in lines if not line.startswith(_COMMENT)]
     if not data:
         raise ConfigError(f"{path}: is empty; give a table with the header {EXAMPLE!r}")
-    try:
-        return _table(lines, data, mapped or {})
-    except csv.Error:
-        # A cell is longer than any number.
-        return None
+    # A cell that is longer than any number is no text.
+    with suppress(csv.Error):
+        for number, line in enumerate(data[:_PREAMBLE]):
+            if _fits(heads := _heads(line), mapped or {}):
+                return _below(heads, data[number + 1 :], _separator(line))
+        separator = _separator(data[0])
+        (first,) = _split(data[:1], separator)
+        if not all(_is_number(cell) for cell in first if cell.strip()):
+            return _below(_heads(data[0]), data[1:], separator)
+        above = reversed(lines[: lines.index(data[0])])
+        comments = [_heads(line.lstrip("".join(_COMMENT))) for line in above]
+        likely = [heads for heads in comments if _fits(heads, mapped or {})]
+        likely += [heads for heads in comments[:1] if len(heads) == len(first)]
+        return _below(next(iter(likely), ()), data, separator)
+    return None
 
 
-def _table(lines: list[str], data: list[str], mapped: Mapping[str, str]) -> Cells:
-    fits = _recogniser(mapped)
-    for number, line in enumerate(data[:_PREAMBLE]):
-        heads = _heads(line)
-        if fits(heads):
-            return _below(heads, data[number + 1 :], _separator(line))
-    first = _split(data[0], _separator(data[0]))
-    if not all(_is_number(cell) for cell in first if cell.strip()):
-        return _below(_heads(data[0]), data[1:], _separator(data[0]))
-    above = lines[: lines.index(data[0])]
-    comments = [_heads(line.lstrip("".join(_COMMENT))) for line in reversed(above)]
-    heads = next(filter(fits, comments), ())
-    if not heads and comments and len(comments[0]) == len(first):
-        heads = comments[0]
-    return _below(heads, data, _separator(data[0]))
-
-
-def _below(heads: tuple[Head, ...], lines: list[str], separator: str) -> Cells:
-    """Return the table below its header, after the rows that hold units."""
-    if lines and separator == _SPACE:
-        separator = _separator(lines[-1])
-    rows = [line.split() for line in lines]
-    if separator != _SPACE:
-        rows = list(csv.reader(lines, delimiter=separator))
-    units = []
-    for row in rows[:_UNIT_ROWS]:
-        if any(map(_is_number, row)):
-            break
-        units.append([_plain(cell).strip("[]()") for cell in row])
-    heads = tuple(
-        head if head.unit else Head(head.text, head.name, _first_unit(units, index))
-        for index, head in enumerate(heads)
-    )
-    return Cells(heads, rows[len(units) :] if heads else rows, separator != ",")
-
-
-def _first_unit(rows: Sequence[Sequence[str]], index: int) -> str:
-    cells = [row[index] for row in rows if index < len(row)]
-    return next((cell for cell in cells if _is_unit(cell)), "")
-
-
-def _is_unit(text: str) -> bool:
-    for dimension in _DIMENSIONS:
-        with suppress(ValueError):
-            Quantity(dimension)(f"1 {text}")
-            return True
-    return False
-
-
-def _recogniser(mapped: Mapping[str, str]) -> Callable[[tuple[Head, ...]], bool]:
-    """Return a function that tells whether heads are those of the table sought."""
-    named = [name for name in mapped if not name.isdecimal()]
-    if named:
-        return lambda heads: all(any(head.is_called(name) for head in heads) for name in named)
-    if mapped:
-        return lambda heads: False
-
-    def fits(heads: tuple[Head, ...]) -> bool:
-        names = {head.name.lower(): Channel("", np.empty(0)) for head in heads}
+def _fits(heads: tuple[Head, ...], mapped: Mapping[str, str]) -> bool:
+    """Return whether heads are those of the table that is sought."""
+    if not mapped:
+        names = {head.name.lower() for head in heads}
         return is_curve(names) or FILE in names
+    named = [name for name in mapped if not name.isdecimal()]
+    return bool(named) and all(any(head.is_called(name) for head in heads) for name in named)
 
-    return fits
+
+def _heads(line: str) -> tuple[Head, ...]:
+    separator = _separator(line)
+    cells = _WORD.findall(line) if separator == " " else _split([line], separator)[0]
+    heads = []
+    for text in map(_plain, cells):
+        match = _HEAD.fullmatch(text)
+        name, unit = match.groups(default="") if match else (text, "")
+        heads.append(Head(text, name.strip(), unit.strip()))
+    return tuple(heads)
 
 
 def _plain(text: str) -> str:
@@ -217,19 +137,32 @@ def _separator(line: str) -> str:
     line = line.strip()
     if "\t" in line or ";" in line:
         return max("\t;", key=line.count)
-    return "," if "," in line else _SPACE
+    return "," if "," in line else " "
 
 
-def _split(line: str, separator: str) -> list[str]:
-    if separator == _SPACE:
-        return line.split()
-    return next(csv.reader([line], delimiter=separator), [])
+def _split(lines: Sequence[str], separator: str) -> list[list[str]]:
+    if separator == " ":
+        return [line.split() for line in lines]
+    return list(csv.reader(lines, delimiter=separator))
 
 
-def _heads(line: str) -> tuple[Head, ...]:
-    separator = _separator(line)
-    cells = _WORD.findall(line) if separator == _SPACE else _split(line, separator)
-    return tuple(Head.of(cell) for cell in cells)
+def _below(heads: tuple[Head, ...], lines: list[str], separator: str) -> Cells:
+    """Return the table below its header, after the rows that hold units."""
+    if lines and separator == " ":
+        separator = _separator(lines[-1])
+    rows = _split(lines, separator)
+    if not heads:
+        return Cells(heads, rows, separator)
+    units = 0
+    while units < min(_UNIT_ROWS, len(rows)) and not any(map(_is_number, rows[units])):
+        units += 1
+
+    def unit(index: int) -> str:
+        cells = [_plain(row[index]).strip("[]()") for row in rows[:units] if index < len(row)]
+        return next(filter(_is_unit, cells), "")
+
+    heads = tuple(h if h.unit else h._replace(unit=unit(i)) for i, h in enumerate(heads))
+    return Cells(heads, rows[units:], separator)
 
 
 def _is_number(cell: str) -> bool:
@@ -240,64 +173,51 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-def curves_of(
-    path: Path, cells: Cells, mapped: Mapping[str, str]
-) -> dict[str, Mapping[str, Channel]]:
+def _is_unit(text: str) -> bool:
+    for dimension in "mNVs":
+        with suppress(ValueError):
+            Quantity(dimension)(f"1 {text}")
+            return True
+    return False
+
+
+def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, Columns]:
     """Return the known columns of each curve of a table, or those that ``mapped`` names.
 
     Raises
     ------
     ConfigError
-        A column is missing, or several have its name.
+        A column is missing, or several have its name, or the commas of one are ambiguous.
     """
-    indices, units = _mapped(path, cells, mapped) if mapped else _standard_columns(path, cells)
-    label = indices.pop(LABEL, None)
+    names = cells.names
+    if not mapped and cells.separator == "," and _fits(cells.heads, {}):
+        for row in cells.rows:
+            if len(row) > len(names) and all(map(_is_number, row)):
+                raise ConfigError(
+                    f"{path}: has {len(row)} numbers below {len(names)} names ({','.join(row)}), "
+                    "as where commas are decimal and separate columns too; export it with "
+                    "semicolons, tabs or decimal points, or choose columns by their numbers "
+                    "(--columns on the command line)"
+                )
+    mapped = mapped or {name: name for name in names if name in (*NAMES, LABEL)}
+    roles = {Role.of(text): _index(path, cells, name) for name, text in mapped.items()}
+    label = next((index for role, index in roles.items() if role.name == LABEL), None)
     curves: dict[str, list[list[str]]] = {"": cells.rows}
-    if label is not None and indices:
+    if label is not None and len(roles) > 1:
         curves = {}
         for row in cells.rows:
             curves.setdefault(row[label].strip() if label < len(row) else "", []).append(row)
-    return {
-        text: {
-            role: Channel(units[role], cells.numbers(rows, index, path), cells.name(index))
-            for role, index in indices.items()
-        }
-        for text, rows in curves.items()
-    }
-
-
-def _standard_columns(path: Path, cells: Cells) -> tuple[dict[str, int], dict[str, str]]:
-    names = cells.names
-    indices = {name: index for index, name in enumerate(names) if name in (*NAMES, LABEL)}
-    is_curve_table = _recogniser({})(cells.heads)
-    for row in cells.rows if is_curve_table and not cells.comma else []:
-        if len(row) > len(names) and all(map(_is_number, row)):
-            raise ConfigError(
-                f"{path}: has {len(row)} numbers below {len(names)} names ({','.join(row)}), as "
-                "where commas are decimal and separate columns too; export it with semicolons, "
-                "tabs or decimal points, or choose columns by their numbers (--columns on the "
-                "command line)"
-            )
-    for name in indices:
-        if names.count(name) > 1:
-            raise ConfigError(
-                f"{path}: has several columns {name}: give one curve to a file, tell curves apart "
-                f"by a column {LABEL}, or choose columns by their numbers (--columns on the "
-                "command line)"
-            )
-    return indices, {name: cells.heads[index].unit for name, index in indices.items()}
-
-
-def _mapped(
-    path: Path, cells: Cells, mapped: Mapping[str, str]
-) -> tuple[dict[str, int], dict[str, str]]:
-    indices, units = {}, {}
-    for name, text in mapped.items():
-        role = role_of(text)
-        index = _index(path, cells, name)
-        indices[role.name] = index
-        units[role.name] = role.unit or (cells.heads[index].unit if cells.heads else "")
-    return indices, units
+    tables: dict[str, Columns] = {}
+    for text, rows in curves.items():
+        columns = {}
+        for role, index in roles.items():
+            if role.name != LABEL:
+                head = cells.heads[index] if cells.heads else Head("", str(index + 1), "")
+                texts = [row[index].strip() if index < len(row) else "" for row in rows]
+                values = _numbers(texts, cells.separator, f"{path}: column {head.name}")
+                columns[role.name] = Channel(role.unit or head.unit, values, head.name)
+        tables[text] = columns
+    return tables
 
 
 def _index(path: Path, cells: Cells, name: str) -> int:
@@ -305,13 +225,41 @@ def _index(path: Path, cells: Cells, name: str) -> int:
     matches = [index for index, head in enumerate(cells.heads) if head.is_called(name)]
     if len(matches) == 1:
         return matches[0]
-    width = max((len(cells.heads), *(len(row) for row in cells.rows[:1])))
+    width = max(len(cells.heads), *(len(row) for row in cells.rows[:1]), 0)
     if not matches and name.isdecimal() and 1 <= int(name) <= width:
         return int(name) - 1
-    has = ", ".join(shown(text) for text in [h.text for h in cells.heads] or cells.first)
-    problem = f"has {len(matches)} columns {name!r}" if matches else f"has no column {name!r}"
+    has = ", ".join(map(shown, [head.text for head in cells.heads] or cells.first))
+    if not matches:
+        raise ConfigError(
+            f"{path}: has no column {name!r} (it has {has}); give a name of one column, or its "
+            f"number from 1 to {width}",
+            "columns",
+        )
     raise ConfigError(
-        f"{path}: {problem} (it has {has}); give a name of one column, or its number from 1 to "
-        f"{width}",
-        "columns",
+        f"{path}: has {len(matches)} columns {name!r} (it has {has}); give one curve to a file, "
+        f"tell curves apart by a column {LABEL}, or choose columns by their numbers (--columns on "
+        "the command line)"
     )
+
+
+def _numbers(cells: list[str], separator: str, column: str) -> Array:
+    """Return numbers; NaN where a cell holds none.
+
+    In a column that has points, a comma is not decimal, and may group thousands.
+    """
+    commas = [cell for cell in cells if "," in cell]
+    decimal = separator != "," and not any("." in cell for cell in cells)
+    grouped = all(map(_GROUPED.fullmatch, commas))
+    whole = next(filter(_WHOLE.fullmatch, cells), None) if commas and grouped else None
+    if decimal and whole:
+        raise ConfigError(
+            f"{column} has {commas[0]!r} beside {whole!r}, so its commas may be those of decimals "
+            "or of thousands; export it without separators of thousands, and with decimals in all "
+            "rows"
+        )
+    mark = "." if decimal else "" if grouped else ","
+    values = np.full(len(cells), np.nan)
+    for number, cell in enumerate(cells):
+        with suppress(ValueError):
+            values[number] = float(cell.replace(",", mark))
+    return values

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,20 +12,15 @@ from pellicle.arrays import Array
 from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.schema import read_mat
 
-from .columns import Channel
-from .roles import NAMES, role_of
+from .columns import NAMES, Channel, Columns, Role
 
-if TYPE_CHECKING:
-    import h5py
-
-_ANY = "*"
 _SHOWN = 8
 """Largest number of arrays that a message names."""
 _DEEPEST = 8
 """Largest depth of folders that a message describes; links can make circles."""
 
 
-def read_hdf5(path: Path, mapped: Mapping[str, str]) -> dict[str, Mapping[str, Channel]]:
+def read_hdf5(path: Path, mapped: Mapping[str, str]) -> dict[str, Columns]:
     """Return the columns of each curve of an HDF5 file by its label.
 
     Raises
@@ -37,14 +32,22 @@ def read_hdf5(path: Path, mapped: Mapping[str, str]) -> dict[str, Mapping[str, C
     """
     import h5py
 
+    def standard(group: h5py.Group) -> Columns:
+        found = {name: group.get(name) for name in NAMES}
+        return {
+            name: Channel(_unit(dataset), np.asarray(dataset, dtype=float))
+            for name, dataset in found.items()
+            if isinstance(dataset, h5py.Dataset) and dataset.ndim == 1 and _kind(dataset) in "fiu"
+        }
+
     try:
         with h5py.File(path) as file:
             if mapped:
-                return _mapped(path, file, mapped)
-            if columns := _standard_columns(file):
+                return _mapped(path, file, mapped, first=False)
+            if columns := standard(file):
                 return {"": columns}
             groups = {
-                str(name): _standard_columns(group)
+                str(name): standard(group)
                 for name, group in file.items()
                 if isinstance(group, h5py.Group)
             }
@@ -54,7 +57,7 @@ def read_hdf5(path: Path, mapped: Mapping[str, str]) -> dict[str, Mapping[str, C
     return {name: columns for name, columns in groups.items() if columns} or {"": {}}
 
 
-def read_matlab(path: Path, mapped: Mapping[str, str]) -> dict[str, Mapping[str, Channel]]:
+def read_matlab(path: Path, mapped: Mapping[str, str]) -> dict[str, Columns]:
     """Return the columns of each curve of a MATLAB file by its label.
 
     Raises
@@ -75,19 +78,12 @@ def read_matlab(path: Path, mapped: Mapping[str, str]) -> dict[str, Mapping[str,
             "are, such as 'z = extension nm, d = deflection nm' (--columns on the command line)",
             "columns",
         )
-    return _mapped(path, content, mapped)
+    return _mapped(path, content, mapped, first=True)
 
 
-def _standard_columns(group: h5py.Group) -> dict[str, Channel]:
-    """Return the columns with known names that are datasets of a group."""
-    import h5py
-
-    columns = {}
-    for name in NAMES:
-        dataset = group.get(name)
-        if isinstance(dataset, h5py.Dataset) and dataset.ndim == 1 and dataset.dtype.kind in "fiu":
-            columns[name] = Channel(_unit(dataset), np.asarray(dataset, dtype=float))
-    return columns
+def _kind(array: Any) -> str:
+    """Return the kind of the numbers of an array; a space for anything else."""
+    return str(getattr(getattr(array, "dtype", None), "kind", " "))
 
 
 def _unit(array: Any) -> str:
@@ -96,68 +92,58 @@ def _unit(array: Any) -> str:
     return unit.decode() if isinstance(unit, bytes) else str(unit)
 
 
-def _mapped(path: Path, root: Any, mapped: Mapping[str, str]) -> dict[str, Mapping[str, Channel]]:
-    """Return the arrays whose paths are ``mapped``, by the labels of their curves."""
+def _mapped(path: Path, root: Any, mapped: Mapping[str, str], *, first: bool) -> dict[str, Columns]:
+    """Return the arrays whose paths are ``mapped``, by the labels of their curves.
+
+    The points of a curve are along the ``first`` axis of an array of several, or along the last.
+    """
     channels: dict[str, dict[str, Channel]] = {}
     for pattern, text in mapped.items():
-        role = role_of(text)
+        role = Role.of(text)
         arrays = channels.setdefault(role.name, {})
-        for label, array in _leaves(root, _parts(root, pattern)):
-            for row, values in _rows(array, first=not hasattr(root, "filename")):
+        # The separators of a path are slashes or points.
+        parts = pattern.strip("/").split("/")
+        if len(parts) == 1 and parts[0] not in root:
+            parts = parts[0].split(".")
+        for label, array in _leaves(root, parts):
+            values: Array = np.asarray(array, dtype=float)
+            rows = {"": values.ravel()}
+            if values.squeeze().ndim > 1:
+                values = np.moveaxis(values, 0, -1) if first else values
+                rows = {",".join(map(str, i)): values[i] for i in np.ndindex(values.shape[:-1])}
+            for row, numbers in rows.items():
                 whole = "/".join(filter(None, (label, row)))
-                arrays[whole] = Channel(role.unit or _unit(array), values, pattern)
+                arrays[whole] = Channel(role.unit or _unit(array), numbers, pattern)
         if not arrays:
             raise ConfigError(
                 f"{path}: has no array of numbers at {pattern!r} (it has {_content(root)})",
                 "columns",
             )
-    labels = max(channels.values(), key=len)
-    curves: dict[str, Mapping[str, Channel]] = {}
-    for label in labels:
+    curves: dict[str, Columns] = {}
+    for label in max(channels.values(), key=len):
         # An array that all curves share, such as the time, has no label.
-        columns = {role: own.get(label, own.get("")) for role, own in channels.items()}
+        columns = {role: own.get(label) or own.get("") for role, own in channels.items()}
         if missing := [role for role, column in columns.items() if column is None]:
             raise ConfigError(f"{path}: curve {label} has no {missing[0]}", "columns")
         curves[label] = {role: column for role, column in columns.items() if column is not None}
     return curves
 
 
-def _parts(root: Any, pattern: str) -> list[str]:
-    """Return the names along a path; its separators are slashes or points."""
-    parts = pattern.strip("/").split("/")
-    return parts if len(parts) > 1 or parts[0] in root else parts[0].split(".")
-
-
 def _leaves(node: Any, parts: list[str], label: str = "") -> Iterator[tuple[str, Any]]:
     """Yield the arrays at a path, each with the names that stand for its ``*``."""
     if not parts:
-        if getattr(getattr(node, "dtype", None), "kind", "") in tuple("fiu"):
+        if _kind(node) in "fiu":
             yield label, node
         return
     part, *rest = parts
-    if isinstance(node, Mapping):
-        if part == _ANY:
-            for name in node:
-                yield from _leaves(node.get(name), rest, f"{label}/{name}" if label else str(name))
-        else:
-            # A link of an HDF5 file may lead nowhere.
-            yield from _leaves(node.get(part), rest, label)
+    if isinstance(node, Mapping) and part == "*":
+        for name in node:
+            yield from _leaves(node.get(name), rest, f"{label}/{name}" if label else str(name))
+    elif isinstance(node, Mapping):
+        # A link of an HDF5 file may lead nowhere.
+        yield from _leaves(node.get(part), rest, label)
     elif part in (getattr(getattr(node, "dtype", None), "names", None) or ()):
         yield from _leaves(node[part], rest, label)
-
-
-def _rows(array: Any, *, first: bool) -> Iterator[tuple[str, Array]]:
-    """Yield the curves of an array, each with its number if there are several.
-
-    The points of a curve are along the ``first`` axis, or else along the last.
-    """
-    values = np.asarray(array, dtype=float)
-    if values.squeeze().ndim <= 1:
-        yield "", values.ravel()
-        return
-    values = np.moveaxis(values, 0, -1) if first else values
-    for index in np.ndindex(values.shape[:-1]):
-        yield ",".join(map(str, index)), values[index]
 
 
 def _content(root: Any) -> str:
@@ -172,9 +158,9 @@ def _content(root: Any) -> str:
             child = node.get(name)
             if isinstance(child, Mapping) and below.count("/") < _DEEPEST:
                 visit(child, below)
-            elif getattr(getattr(child, "dtype", None), "kind", "") in tuple("fiuV"):
+            elif _kind(child) in "fiuV":
                 paths.append(below)
 
     visit(root, "")
-    names = ", ".join(shown(path) for path in paths[:_SHOWN])
+    names = ", ".join(map(shown, paths[:_SHOWN]))
     return f"{names}{', …' if len(paths) > _SHOWN else ''}" or "none"

@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pellicle.arrays import Array
 from pellicle_fit.files.measurement import Axis
-from pellicle_fit.parameters import CONTACT_POINT, OFFSET, SLOPE
+from pellicle_fit.objective import CONTACT_POINT
 
-from .judgement import Row
-from .rules import NUMBERS, is_closed
+from .row import ENDS, Row, is_closed, units_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
 CONTACT_HEIGHT = "contact_height"
 """Minus the contact point: the height of the surface over the zero of the instrument [m]."""
+_OF_BASELINE = "offset", "slope"
 _QUALITY = "r_squared", "chi_squared", "indentation", "largest_force"
 _OFF = 0.25
 """Distance of a curve from its pixel, in pixels, beyond which the places are not a grid."""
@@ -30,18 +30,20 @@ def force_maps(rows: Sequence[Row]) -> tuple[dict[str, xr.Dataset], list[str]]:
     """Return the images of each force map by its file, and notes on them."""
     members: dict[str, list[Row]] = {}
     for row in rows:
-        if "site" in row:
-            members.setdefault(row["site"]["map"], []).append(row)
+        if row.site is not None:
+            members.setdefault(row.map, []).append(row)
     maps, notes = {}, []
     for name, part in members.items():
-        places = {(row["site"]["x"], row["site"]["y"]) for row in part}
-        if len(places) < 2:
+        places = np.array([(row.site.x, row.site.y) for row in part if row.site]).T
+        if np.unique(places, axis=1).shape[1] < 2:
             continue
-        axes = _stated_grid(part) or _grid(part)
+        grids = {row.site.grid for row in part if row.site}
+        stated = grids.pop() if len(grids) == 1 else None
+        axes = stated if stated is not None and _holds(stated, places) else _grid(places)
         if axes is None:
             notes.append(f"{name}: its places are not on a grid, so there is no image")
             continue
-        maps[name], repeated = _images(part, axes)
+        maps[name], repeated = _images(part, places, axes)
         if repeated:
             notes.append(
                 f"{name}: {len(repeated)} curves are at places that have another, such as "
@@ -50,91 +52,71 @@ def force_maps(rows: Sequence[Row]) -> tuple[dict[str, xr.Dataset], list[str]]:
     return maps, notes
 
 
-def _images(rows: Sequence[Row], axes: tuple[Axis, Axis]) -> tuple[xr.Dataset, list[str]]:
+def _images(
+    rows: Sequence[Row], places: Array, axes: tuple[Axis, Axis]
+) -> tuple[xr.Dataset, list[str]]:
     """Return the images of a map, and the names of curves at places that have another."""
-    import xarray as xr
+    import pandas as pd
 
-    along_x, along_y = axes
-    shape = along_y.pixels, along_x.pixels
-    pixels = [_pixel(row, axes) for row in rows]
-    columns: dict[str, tuple[str, dict[int, float]]] = {}
-    for number, row in enumerate(rows):
-        if row["accepted"]:
-            for name, unit, value in _numbers(row):
-                columns.setdefault(name, (unit, {}))[1][number] = value
-    data: dict[str, Any] = {}
-    for name, (unit, values) in columns.items():
-        image = np.full(shape, np.nan)
-        for number, value in values.items():
-            image[pixels[number]] = value
-        data[name] = ("y", "x"), image, {"units": unit}
-    repeated, seen = [], set()
-    for row, pixel in zip(rows, pixels, strict=True):
-        if pixel in seen:
-            repeated.append(row["curve"])
-        seen.add(pixel)
+    columns, lines = (index.astype(int) for index in _indices(axes, places).round())
+    pixels = pd.MultiIndex.from_arrays([lines, columns], names=["y", "x"])
+    accepted = [row.accepted for row in rows]
+    frame = pd.DataFrame([_numbers(row) for row in rows if row.accepted], index=pixels[accepted])
+    sides = [range(axis.pixels) for axis in reversed(axes)]
+    frame = frame[~frame.index.duplicated(keep="last")]
+    images = frame.reindex(pd.MultiIndex.from_product(sides, names=["y", "x"])).to_xarray()
+    units = units_of(rows) | {f"{CONTACT_HEIGHT}{end}": "m" for end in ENDS}
+    for name, image in images.items():
+        image.attrs["units"] = units[str(name)]
     coordinates = {
         name: (name, axis.start + axis.pitch * np.arange(axis.pixels), {"units": "m"})
         for name, axis in zip("xy", axes, strict=True)
     }
-    return xr.Dataset(data, coordinates), repeated
+    repeated = [row.name for row, again in zip(rows, pixels.duplicated(), strict=True) if again]
+    return images.assign_coords(coordinates), repeated
 
 
-def _numbers(row: Row) -> list[tuple[str, str, float]]:
-    """Return name, unit and value of each number of a fit that has an image."""
-    numbers = []
-    for name, entry in row.items():
-        if isinstance(entry, dict) and "low" in entry and not entry["held"]:
-            low, value, high = (
-                np.nan if entry[key] is None else entry[key] for key in ("low", "value", "high")
-            )
-            if name in (OFFSET.name, SLOPE.name):
-                continue
-            value = value if is_closed(entry) else np.nan
-            if name == CONTACT_POINT.name:
-                name, low, value, high = CONTACT_HEIGHT, -high, -value, -low
-            for end, number in (("", value), ("_low", low), ("_high", high)):
-                numbers.append((f"{name}{end}", entry["unit"], number))
-    return [*numbers, *((name, NUMBERS[name], row[name]) for name in _QUALITY if name in row)]
+def _numbers(row: Row) -> dict[str, float]:
+    """Return the numbers of a fit that have an image, by name."""
+    known, numbers = row.values(), dict[str, float]()
+    for name, estimate in row.estimates.items():
+        if estimate.held or name in _OF_BASELINE:
+            continue
+        low, value, high = (known[f"{name}{end}"] for end in ("_low", "", "_high"))
+        value = value if is_closed(estimate) else np.nan
+        if name == CONTACT_POINT:
+            name, low, value, high = CONTACT_HEIGHT, -high, -value, -low
+        numbers |= {name: value, f"{name}_low": low, f"{name}_high": high}
+    return numbers | {name: known[name] for name in _QUALITY}
 
 
-def _pixel(row: Row, axes: tuple[Axis, Axis]) -> tuple[int, int]:
-    """Return the indices of the pixel of a curve along y and x."""
-    along_x, along_y = (
-        round((row["site"][name] - axis.start) / axis.pitch)
-        for name, axis in zip("xy", axes, strict=True)
-    )
-    return along_y, along_x
+def _indices(axes: tuple[Axis, Axis], places: Array) -> Array:
+    """Return the indices of places along x and y, as fractions, both of shape (2, n)."""
+    pairs = zip(axes, places, strict=True)
+    return np.array([(values - axis.start) / axis.pitch for axis, values in pairs])
 
 
-def _stated_grid(rows: Sequence[Row]) -> tuple[Axis, Axis] | None:
-    """Return the grid that the file states; None if it states none on which the curves are."""
-    grids = {row["site"]["grid"] for row in rows}
-    grid: tuple[Axis, Axis] | None = grids.pop() if len(grids) == 1 else None
-    if grid is None:
-        return None
-    for name, axis in zip("xy", grid, strict=True):
-        places = np.array([row["site"][name] for row in rows])
-        index = (places - axis.start) / axis.pitch
-        nearest = np.round(index)
-        inside = nearest.min() >= 0 and nearest.max() < axis.pixels
-        if not inside or np.abs(index - nearest).max() > _OFF:
-            return None
-    return grid
+def _holds(axes: tuple[Axis, Axis], places: Array) -> bool:
+    """Return whether all places are on the pixels of a grid."""
+    index = _indices(axes, places)
+    nearest = np.round(index)
+    pixels = np.array([[axis.pixels] for axis in axes])
+    inside = nearest.min() >= 0 and np.all(nearest < pixels)
+    return bool(inside and np.abs(index - nearest).max() <= _OFF)
 
 
-def _grid(rows: Sequence[Row]) -> tuple[Axis, Axis] | None:
+def _grid(places: Array) -> tuple[Axis, Axis] | None:
     """Return the grid of the places of curves; None if they are not on one along x and y."""
-    places = [np.array([row["site"][name] for row in rows]) for name in "xy"]
-    axes = [_axis(values) for values in places]
-    pitches = [axis.pitch for axis in axes if axis is not None and axis.pitch]
-    if None in axes or not pitches:
+    across, along = (_axis(values) for values in places)
+    if across is None or along is None:
         return None
     # A line of curves is one pixel wide.
-    along_x, along_y = (a._replace(pitch=a.pitch or pitches[0]) for a in axes if a is not None)
-    if along_x.pixels * along_y.pixels > _EMPTIEST * len(rows):
-        return None
-    return along_x, along_y
+    across, along = (
+        axis._replace(pitch=axis.pitch or other.pitch)
+        for axis, other in ((across, along), (along, across))
+    )
+    many = across.pixels * along.pixels > _EMPTIEST * places.shape[1]
+    return None if many else (across, along)
 
 
 def _axis(values: Array) -> Axis | None:

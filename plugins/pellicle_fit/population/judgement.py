@@ -8,16 +8,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import cached_property
+from itertools import compress
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.files import read_text
-from pellicle_fit.parameters import MODULUS
+from pellicle_fit.objective import MODULUS
 
-from .rules import Rule, is_closed, values
+from .row import Row, is_closed
+from .rules import Rule
 
 GROUP = "{group}"
 """The part of a pattern of file names that is the name of the group."""
@@ -27,23 +28,19 @@ _NORMAL = 1.4826
 """Standard deviation of a normal distribution over its median absolute deviation."""
 _LIMIT = 3.5
 """Distance from the median, in these deviations, beyond which a curve stands out."""
+_NAMED = 5
+"""Curves that stand out and are named."""
 _HEADS = ("curve", "name", "file")
 _PATTERN = re.compile(r"[*?[]")
 
-Row = dict[str, Any]
 
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Names:
     """A list of curves in a file."""
 
     path: Path
     reasons: Mapping[str, str]
     """What follows each name on its line."""
-
-    @cached_property
-    def _literal(self) -> dict[str, str]:
-        return {name.replace("\\", "/"): name for name in self.reasons}
 
     @cached_property
     def _patterns(self) -> list[str]:
@@ -55,14 +52,10 @@ class Names:
         The end follows a slash: ``a.csv`` means ``day/a.csv``.
         """
         path = curve.replace("\\", "/")
-        parts = path.split("/")
-        for start in range(len(parts)):
-            if (end := "/".join(parts[start:])) in self._literal:
-                return self._literal[end]
-        for name in self._patterns:
-            if fnmatchcase(path, name) or fnmatchcase(path, f"*/{name}"):
-                return name
-        return None
+        starts = [0, *(match.end() for match in re.finditer("/", path))]
+        ends = (path[start:] for start in starts)
+        patterns = (n for n in self._patterns if fnmatchcase(f"/{path}", f"*/{n}"))
+        return next((end for end in ends if end in self.reasons), next(patterns, None))
 
 
 def read_names(path: Path | None) -> Names | None:
@@ -81,7 +74,10 @@ def read_names(path: Path | None) -> Names | None:
     except (OSError, ValueError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or error
         raise StorageError(f"{path}: cannot be read as a list of curves ({reason})") from None
-    reasons = {row[0].strip(): ", ".join(cell.strip() for cell in row[1:]) for row in rows}
+    reasons = {
+        row[0].strip().replace("\\", "/"): ", ".join(cell.strip() for cell in row[1:])
+        for row in rows
+    }
     return Names(path, {k: v for k, v in reasons.items() if k and k.lower() not in _HEADS})
 
 
@@ -123,9 +119,8 @@ def judge(
     checks = [Rule(text) for text in rules]
     used: set[tuple[Path, str]] = set()
     for row in rows:
-        row["reason"] = _reason(row, checks, accepted, rejected, used)
-        row["accepted"] = not row["reason"]
-        row["outlier"] = False
+        row.reason = _reason(row, checks, accepted, rejected, used)
+        row.accepted, row.outlier = not row.reason, False
     notes = [
         f"{names.path} names {shown(name)}, which is none of the curves"
         for names in (accepted, rejected)
@@ -133,23 +128,22 @@ def judge(
         for name in names.reasons
         if (names.path, name) not in used
     ]
-    whole = [row for row in rows if row["accepted"]]
+    whole = [row for row in rows if row.accepted]
+    lost = sum(row.is_fitted for row in rows) - len(whole)
     if rows and not whole:
         notes.append(f"none of {len(rows)} curves was accepted")
-    elif len(whole) < sum(MODULUS.name in row for row in rows):
-        lost = sum(MODULUS.name in row for row in rows) - len(whole)
+    elif lost:
         curves = "curve was" if lost == 1 else "curves were"
         notes.append(f"{lost} fitted {curves} rejected; the table says why")
-    for group in dict.fromkeys(row.get("group", "") for row in whole):
-        members = [row for row in whole if row.get("group", "") == group]
-        for row in outliers(members):
-            row["outlier"] = True
-    if count := sum(row["outlier"] for row in rows):
-        few = [row["curve"] for row in rows if row["outlier"]]
-        more = f" and {count - 5} more" if count > 5 else ""
+    for row in outliers(whole):
+        row.outlier = True
+    names_of = [row.name for row in rows if row.outlier]
+    if names_of:
+        more = f" and {len(names_of) - _NAMED} more" if len(names_of) > _NAMED else ""
         notes.append(
-            f"the modulus of {count} of {len(whole)} accepted curves stands out from that of the "
-            f"others in the group; nothing was left out: {', '.join(few[:5])}{more}"
+            f"the modulus of {len(names_of)} of {len(whole)} accepted curves stands out from that "
+            f"of the others in the group; nothing was left out: "
+            f"{', '.join(names_of[:_NAMED])}{more}"
         )
     return notes
 
@@ -162,33 +156,32 @@ def _reason(
     used: set[tuple[Path, str]],
 ) -> str:
     """Return why a curve is not accepted; empty if it is."""
-    entries = {}
-    for names in filter(None, (accepted, rejected)):
-        if (entry := names.entry(row["curve"])) is not None:
-            used.add((names.path, entry))
-            entries[names.path] = entry
-    if MODULUS.name not in row:
-        return str(row["status"])
-    if rejected is not None and rejected.path in entries:
-        why = rejected.reasons[entries[rejected.path]]
+    entries = {names: names.entry(row.name) for names in (accepted, rejected) if names is not None}
+    used |= {(names.path, entry) for names, entry in entries.items() if entry is not None}
+    if not row.is_fitted:
+        return row.status
+    if rejected is not None and (entry := entries[rejected]) is not None:
+        why = rejected.reasons[entry]
         return f"in {rejected.path.name}{f': {why}' if why else ''}"
-    if accepted is not None and accepted.path not in entries:
+    if accepted is not None and entries[accepted] is None:
         return f"not in {accepted.path.name}"
-    numbers = values(row)
-    return "; ".join(filter(None, (rule.objection(numbers) for rule in rules)))
+    return "; ".join(filter(None, (rule.objection(row) for rule in rules)))
 
 
 def outliers(rows: Sequence[Row]) -> list[Row]:
     """Return the rows whose log E* is further from the median than 3.5 robust deviations.
 
-    Rows with an open interval of it are left out.
+    The median is that of the group; rows with an open interval are left out.
     The deviation is 1.4826 times the median absolute deviation, which some of the outliers
     themselves do not change (Iglewicz and Hoaglin, 1993).
     """
-    rows = [row for row in rows if is_closed(row[MODULUS.name])]
-    if len(rows) < _FEWEST:
-        return []
-    logarithms = np.log([row[MODULUS.name]["value"] for row in rows])
-    distance = np.abs(logarithms - np.median(logarithms))
-    limit = _LIMIT * _NORMAL * float(np.median(distance))
-    return [row for row, far in zip(rows, distance > limit, strict=True) if far and limit > 0]
+    import pandas as pd
+
+    rows = [row for row in rows if is_closed(row.estimates[MODULUS])]
+    moduli = [row.estimates[MODULUS].value for row in rows]
+    groups = pd.Series([row.group for row in rows], dtype=object)
+    logarithms = pd.Series(np.log(moduli)).groupby(groups)
+    distances = (pd.Series(np.log(moduli)) - logarithms.transform("median")).abs()
+    limits = _LIMIT * _NORMAL * distances.groupby(groups).transform("median")
+    far = (distances > limits) & (limits > 0) & (logarithms.transform("size") >= _FEWEST)
+    return list(compress(rows, far))

@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import operator
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
+from pellicle import registry
 from pellicle.errors import ConfigError, shown
 from pellicle.schema import evaluate, names_in, nearest
 from pellicle.units import one, readable, split
-from pellicle_fit import parameters
-from pellicle_fit.parameters import Parameter
+from pellicle_fit.effect import Effect, Fittable, quantities
+from pellicle_fit.explanation import Solid
 
-Row = Mapping[str, Any]
-"""JSON data of the fit of one curve."""
+from .row import ENDS, NUMBERS, Row
 
 _COMPARISONS: dict[str, Callable[[float, float], bool]] = {
     "<=": operator.le,
@@ -30,57 +29,18 @@ _COMPARISONS: dict[str, Callable[[float, float], bool]] = {
 }
 _COMPARISON = re.compile("|".join(_COMPARISONS))
 _EXAMPLE = "write one such as 'r_squared > 0.95' or '1 kPa < reduced_modulus < 1 MPa'"
-NUMBERS = {
-    "r_squared": "1",
-    "chi_squared": "1",
-    "points": "1",
-    "noise": "N",
-    "indentation": "m",
-    "largest_force": "N",
-    "delta_chi_squared": "1",
-    "delta_aic": "1",
-    "tension_needed": "1",
-    "failed_checks": "1",
-    "messages": "1",
-}
-"""Unit of each number of a fit that is not a parameter; checks and messages are counted."""
-_DERIVED = {"youngs_modulus": "Pa"}
-_ENDS = ("low", "high", "bound")
 
 
 def units() -> dict[str, str]:
     """Return the names that rules may contain, each with its unit."""
-    names = {p.name: p.unit for p in vars(parameters).values() if isinstance(p, Parameter)}
-    names |= _DERIVED
-    ends = {f"{name}_{end}": unit for name, unit in names.items() for end in _ENDS}
-    return names | ends | NUMBERS
-
-
-def values(row: Row) -> dict[str, float]:
-    """Return the numbers of a fit by the names of `units`; NaN where there is none."""
-    numbers = dict.fromkeys(units(), np.nan)
-    for name, entry in row.items():
-        if isinstance(entry, Mapping) and "unit" in entry:
-            numbers[name] = _number(entry["value"])
-            numbers |= {f"{name}_{end}": _number(entry.get(end)) for end in _ENDS}
-        elif name in ("failed_checks", "messages"):
-            numbers[name] = len(entry)
-        elif name in NUMBERS:
-            numbers[name] = _number(entry)
-    pair = row.get("without_tension", {})
-    return numbers | {name: _number(pair.get(name)) for name in ("delta_chi_squared", "delta_aic")}
-
-
-def is_closed(estimate: Mapping[str, Any]) -> bool:
-    """Return whether a fitted parameter has both ends of its interval.
-
-    The value of an open interval is one of many that describe the curve as well.
-    """
-    return not estimate["held"] and None not in (estimate["low"], estimate["high"])
-
-
-def _number(value: float | None) -> float:
-    return np.nan if value is None else float(value)
+    effects = registry().components.get(Effect.family, {}).values()
+    components = [Solid, *(effect.component for effect in effects)]
+    names = {"youngs_modulus": "Pa"}
+    for component in components:
+        if isinstance(component, type) and issubclass(component, Fittable):
+            names |= {name: quantity.unit for name, quantity in quantities(component).items()}
+    ends = {f"{name}{end}": unit for name, unit in names.items() for end in ENDS}
+    return ends | NUMBERS
 
 
 @dataclass(frozen=True)
@@ -133,17 +93,18 @@ class Rule:
             sides = " with ".join(f"{side} ({name})" for name, side in dimensions.items())
             raise ConfigError(f"{rule} compares {sides}; {_EXAMPLE}")
 
-    def objection(self, numbers: Mapping[str, float]) -> str:
-        """Return why a fit with these numbers breaks the rule; empty if it does not."""
+    def objection(self, row: Row) -> str:
+        """Return why a fit breaks the rule; empty if it does not."""
+        unit_of, known = units(), row.values()
+        numbers = {name: known.get(name, np.nan) for name in self.names}
         sides = [_value(side, numbers) for side in self._sides]
         pairs = zip(sides[:-1], self._signs, sides[1:], strict=True)
         if not any(map(np.isnan, sides)) and all(_COMPARISONS[s](a, b) for a, s, b in pairs):
             return ""
-        units_by_name, texts = units(), []
-        for name in self.names:
-            number = numbers[name]
-            text = "unknown" if np.isnan(number) else readable(number, units_by_name[name], 4)
-            texts.append(f"{name} is {text}")
+        texts = (
+            f"{name} is {'unknown' if np.isnan(v) else readable(v, unit_of[name], 4)}"
+            for name, v in numbers.items()
+        )
         return f"{', '.join(texts)}, against {self.text}"
 
 
@@ -159,7 +120,7 @@ def _value(side: str, numbers: Mapping[str, float]) -> float:
     return number[0] * float(one(number[1]).magnitude) if number else float(evaluate(side, numbers))
 
 
-def rules(texts: Iterable[str]) -> tuple[str, ...]:
+def rules(texts: tuple[str, ...]) -> tuple[str, ...]:
     """Return rules that are valid.
 
     Raises
@@ -167,7 +128,6 @@ def rules(texts: Iterable[str]) -> tuple[str, ...]:
     ConfigError
         A rule is not a comparison, or names something unknown, or compares different dimensions.
     """
-    texts = tuple(texts)
     for text in texts:
         Rule(text).check()
     return texts

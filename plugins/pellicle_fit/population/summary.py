@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from collections import Counter
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-from .rules import is_closed
+from .row import Row, is_closed
 
 ALL = "all"
 """Name of the line of all accepted curves."""
@@ -34,35 +35,29 @@ class Quartiles(NamedTuple):
     maximum: float
 
 
-def summary(rows: Sequence[Mapping[str, Any]]) -> list[Quartiles]:
+def summary(rows: Sequence[Row]) -> list[Quartiles]:
     """Return a line for each parameter and group that has an accepted curve, then for all curves.
 
     Parameters that were fixed have none.  Where all intervals are open, quartiles are NaN.
     """
-    groups = list(dict.fromkeys(row["group"] for row in rows))
-    several = groups if len(groups) > 1 else []
-    lines = []
-    for name in _DRAWN:
-        for group in (*several, None):
-            members = [row for row in rows if group is None or row["group"] == group]
-            whole = [row for row in members if row["accepted"] and name in row]
-            whole = [row for row in whole if not row[name]["held"]]
-            if not whole:
-                continue
-            values = [row[name]["value"] for row in whole if is_closed(row[name])]
-            quartiles = np.quantile(values or np.nan, (0, 0.25, 0.5, 0.75, 1))
-            lines.append(
-                Quartiles(
-                    label(group) if group is not None else ALL,
-                    name,
-                    whole[0][name]["unit"],
-                    len(members),
-                    len(whole),
-                    len(whole) - len(values),
-                    sum(row["outlier"] for row in whole),
-                    *quartiles.tolist(),
-                )
-            )
+    import pandas as pd
+
+    fitted = [
+        (name, row.group, e.unit, e.value if is_closed(e) else np.nan, row.outlier)
+        for name in _DRAWN
+        for row in rows
+        if row.accepted and (e := row.estimates.get(name)) is not None and not e.held
+    ]
+    frame = pd.DataFrame(fitted, columns=["parameter", "group", "unit", "value", "outlier"])
+    curves, lines = Counter(row.group for row in rows), []
+    for name, whole in frame.groupby("parameter", sort=False):
+        groups = whole.groupby("group", sort=False) if len(curves) > 1 else ()
+        parts = [(label(group), curves[group], part) for group, part in groups]
+        for group, count, part in (*parts, (ALL, len(rows), whole)):
+            values, unit = part["value"], part["unit"].iloc[0]
+            counts = len(part), int(values.isna().sum()), int(part["outlier"].sum())
+            quartiles = values.quantile([0, 0.25, 0.5, 0.75, 1]).tolist()
+            lines.append(Quartiles(group, name, unit, count, *counts, *quartiles))
     return lines
 
 

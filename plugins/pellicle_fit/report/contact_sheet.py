@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.files import for_document
 from pellicle.show import save_pages
-from pellicle.units import axis_unit, decimal, readable
-from pellicle_fit.many import FITTED, ManyFits
-from pellicle_fit.population.judgement import Row
-from pellicle_fit.population.sketch import Sketch
+from pellicle.units import decimal, readable
+from pellicle_fit.population.row import Row, Sketch
 
 if TYPE_CHECKING:
     from matplotlib.figure import FigureBase
@@ -28,27 +26,21 @@ _LEFT, _RIGHT, _TOP, _BOTTOM = 0.06, 0.94, 0.27, 0.93
 _MARGIN = 0.06
 """Space between the frame and the data, relative to the frame."""
 _LETTERS = 36
-_WORDS = "accepted", "outlier", "rejected", "not fitted"
-_COLOURS = dict(zip(_WORDS, ("0.6", "C1", "C3", "0.2"), strict=True))
-
-LEGEND = (
-    "Grey: data; blue: fit. Each frame spans the range of its curve, which is written in it. "
-    "Frame grey: accepted; orange: its modulus stands out; red: rejected; black: not fitted."
-)
+_COLOURS = {"accepted": "0.6", "outlier": "C1", "rejected": "C3", "not fitted": "0.2"}
+"""Colours of the frames."""
 
 
-def sheets(fits: ManyFits) -> list[Callable[[FigureBase], None]]:
+def sheets(rows: Sequence[Row]) -> list[Callable[[FigureBase], None]]:
     """Return functions that draw the pages of the contact sheet of all curves."""
     size = _ACROSS * _DOWN
-    starts = range(0, len(fits.rows), size)
-    pages = [range(start, min(start + size, len(fits.rows))) for start in starts]
+    pages = [rows[start : start + size] for start in range(0, len(rows), size)]
     return [
-        partial(_page, fits, rows, f"page {number} of {len(pages)}")
-        for number, rows in enumerate(pages, 1)
+        partial(_page, page, f"page {number} of {len(pages)}")
+        for number, page in enumerate(pages, 1)
     ]
 
 
-def save_sheets(fits: ManyFits, path: Path) -> Path:
+def save_sheets(rows: Sequence[Row], path: Path) -> Path:
     """Write the contact sheet of all curves as a PDF file, and return it.
 
     Raises
@@ -56,31 +48,32 @@ def save_sheets(fits: ManyFits, path: Path) -> Path:
     StorageError
         The file cannot be written.
     """
-    return save_pages(sheets(fits), path, PAGE)
+    return save_pages(sheets(rows), path, PAGE)
 
 
-def _page(fits: ManyFits, numbers: Sequence[int], caption: str, figure: FigureBase) -> None:
+def _page(rows: Sequence[Row], caption: str, figure: FigureBase) -> None:
     """Draw some curves on one page.
 
     All are in one coordinate system and few artists, a tenth of the time of axes for each.
     """
     from matplotlib.collections import LineCollection
+    from matplotlib.lines import Line2D
 
     axes = figure.subplots()
     axes.set(xlim=(0, _ACROSS), ylim=(_DOWN, 0))
     axes.set_axis_off()
-    axes.set_title(f"{caption}. {LEGEND}", fontsize=5)
+    axes.set_title(f"{caption}; each frame spans the range of its curve", fontsize=6, pad=14)
     frames, colours, points, lines = [], [], [], []
-    for cell, number in enumerate(numbers):
+    for cell, row in enumerate(rows):
         y, x = divmod(cell, _ACROSS)
-        row, sketch = fits.rows[number], fits.sketches.get(number)
+        sketch = row.sketch
         left, right, top, bottom = x + _LEFT, x + _RIGHT, y + _TOP, y + _BOTTOM
         frames.append([(left, top), (right, top), (right, bottom), (left, bottom), (left, top)])
-        colours.append(_COLOURS[_verdict(row)])
+        colours.append(_COLOURS[_state(row)])
         texts = [
-            (0.09, 5.0, _shortened(str(row["curve"]), _LETTERS, end=False), "black"),
+            (0.09, 5.0, _shortened(row.name, _LETTERS, end=False), "black"),
             (0.16, 5.0, _numbers(row), "black"),
-            (0.23, 5.0, _shortened(str(row["reason"]), _LETTERS + 16, end=True), "C3"),
+            (0.23, 5.0, _shortened(row.reason, _LETTERS + 16, end=True), "C3"),
         ]
         if sketch is not None and sketch.position.size:
             data, fit, span = _curve(x, y, sketch)
@@ -98,6 +91,23 @@ def _page(fits: ManyFits, numbers: Sequence[int], caption: str, figure: FigureBa
     if points:
         axes.plot(*np.concatenate(points).T, ".", color="0.6", markersize=1.5)
     axes.add_collection(LineCollection(lines, colors="C0", linewidths=0.7))
+    axes.legend(
+        handles=[
+            Line2D([], [], color="0.6", marker=".", linestyle="", label="data"),
+            Line2D([], [], color="C0", label="fit"),
+            *(
+                Line2D(
+                    [], [], color=c, marker="s", mfc="none", linestyle="", label=f"frame: {state}"
+                )
+                for state, c in _COLOURS.items()
+            ),
+        ],
+        loc="lower center",
+        bbox_to_anchor=(0.5, 1.0),
+        ncols=2 + len(_COLOURS),
+        fontsize=5,
+        frameon=False,
+    )
 
 
 def _curve(x: float, y: float, sketch: Sketch) -> tuple[Array, Array | None, list[str]]:
@@ -116,27 +126,25 @@ def _curve(x: float, y: float, sketch: Sketch) -> tuple[Array, Array | None, lis
     return placed(sketch.force), fit, [readable(width, "m", 3), readable(height, "N", 3)]
 
 
-def _verdict(row: Row) -> str:
-    if row["status"] != FITTED:
+def _state(row: Row) -> str:
+    if not row.is_fitted:
         return "not fitted"
-    if not row["accepted"]:
+    if not row.accepted:
         return "rejected"
-    return "outlier" if row["outlier"] else "accepted"
+    return "outlier" if row.outlier else "accepted"
 
 
 def _numbers(row: Row) -> str:
     """Return modulus, tension and quality of a fit as a line."""
     texts = []
     for name, symbol in (("reduced_modulus", "E*"), ("tension", "τ₀"), ("work_of_adhesion", "W")):
-        estimate: Mapping[str, Any] = row.get(name, {})
-        if estimate and not (estimate["held"] and not estimate["value"]):
-            factor, unit = axis_unit([estimate["value"]], estimate["unit"])
-            texts.append(f"{symbol} {decimal(estimate['value'] * factor, 3)} {unit}")
-    if "elastic" in row:
-        texts.append(f"by {row['chosen']['model']}")
-    if "r_squared" in row:
-        texts.append(f"R² {row['r_squared']:.4f}")
-        texts.append(f"χ²/n {decimal(row['chi_squared'] / row['points'], 3)}")
+        estimate = row.estimates.get(name)
+        if estimate is not None and not (estimate.held and not estimate.value):
+            texts.append(f"{symbol} {readable(estimate.value, estimate.unit, 3)}")
+    if row.is_fitted:
+        numbers = row.numbers
+        texts.append(f"R² {numbers['r_squared']:.4f}")
+        texts.append(f"χ²/n {decimal(numbers['chi_squared'] / numbers['points'], 3)}")
     return ", ".join(texts)
 
 

@@ -10,16 +10,18 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.units import axis_unit
-from pellicle_fit.parameters import MODULUS, TENSION, Parameter
-from pellicle_fit.population.judgement import Row
-from pellicle_fit.population.rules import is_closed
+from pellicle_fit.objective import MODULUS
+from pellicle_fit.population.row import Row, is_closed
 from pellicle_fit.population.summary import label
+from pellicle_fit.recipe import TENSION
+from pellicle_fit.wording import words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import FigureBase
 
 SIZE = 11.0, 3.6
+_DRAWN = MODULUS, TENSION
 _BINS = 5, 40
 """Least and greatest number of bins."""
 _GROUPS = 10
@@ -32,24 +34,27 @@ _RASTERISED = 1000
 
 def drawable(rows: Sequence[Row]) -> list[Row]:
     """Return the rows that are drawn: of accepted curves that have a closed interval."""
-    accepted = [row for row in rows if row["accepted"]]
-    return [row for row in accepted if any(is_closed(row[p.name]) for p in (MODULUS, TENSION))]
+    return [row for row in rows if row.accepted and any(_is_closed(row, n) for n in _DRAWN)]
+
+
+def _is_closed(row: Row, name: str) -> bool:
+    return name in row.estimates and is_closed(row.estimates[name])
 
 
 def distributions(rows: Sequence[Row], figure: FigureBase) -> None:
     """Draw histograms of log E* and τ₀ of the accepted curves, by group, and E* against τ₀."""
     rows = drawable(rows)
-    groups = [row["group"] for row in rows]
+    groups = [row.group for row in rows]
     names = list(dict.fromkeys(groups))
     kinds = np.array([min(names.index(group), _GROUPS - 1) for group in groups])
     labels = [label(name) for name in names[:_GROUPS]]
     if len(names) > _GROUPS:
         labels[-1] = f"{len(names) - _GROUPS + 1} other groups"
-    fitted = [p for p in (MODULUS, TENSION) if any(is_closed(row[p.name]) for row in rows)]
+    fitted = [name for name in _DRAWN if any(_is_closed(row, name) for row in rows)]
     columns = figure.subplots(1, len(fitted) + (len(fitted) == 2), squeeze=False)[0]
-    for parameter, axes in zip(fitted, columns, strict=False):
-        closed = [is_closed(row[parameter.name]) for row in rows]
-        _histogram(axes, list(compress(rows, closed)), parameter, kinds[closed], labels)
+    for name, axes in zip(fitted, columns, strict=False):
+        closed = [_is_closed(row, name) for row in rows]
+        _histogram(axes, list(compress(rows, closed)), name, kinds[closed], labels)
     if len(fitted) == 2:
         _scatter(columns[-1], rows, kinds)
     if len(labels) > 1:
@@ -58,22 +63,23 @@ def distributions(rows: Sequence[Row], figure: FigureBase) -> None:
         figure.legend(handles, names, loc="outside upper center", ncols=_GROUPS, fontsize="small")
 
 
-def _values(rows: Sequence[Row], parameter: Parameter) -> tuple[Array, str]:
-    """Return the values of a parameter in a unit that brings them near 1, and the axis label."""
-    values = np.array([row[parameter.name]["value"] for row in rows])
-    scale, unit = axis_unit(np.array([np.median(values)]), parameter.unit)
-    return values * scale, f"{parameter.name.replace('_', ' ')} [{unit}]"
+def _values(rows: Sequence[Row], name: str) -> tuple[Array, str]:
+    """Return values of a quantity in a unit that brings them near 1, and the axis label."""
+    estimates = [row.estimates[name] for row in rows]
+    values = np.array([estimate.value for estimate in estimates])
+    scale, unit = axis_unit([np.median(values)], estimates[0].unit)
+    return values * scale, f"{words(name)} [{unit}]"
 
 
 def _histogram(
-    axes: Axes, rows: Sequence[Row], parameter: Parameter, kinds: Array, labels: Sequence[str]
+    axes: Axes, rows: Sequence[Row], name: str, kinds: Array, labels: Sequence[str]
 ) -> None:
     from matplotlib.ticker import MaxNLocator
 
-    values, name = _values(rows, parameter)
+    values, head = _values(rows, name)
     low, high = float(values.min()), float(values.max())
     number = int(np.clip(np.sqrt(values.size) * 2, *_BINS))
-    if parameter.logarithmic and high > _DECADE * low:
+    if name == MODULUS and high > _DECADE * low:
         bins = np.geomspace(low, high, number + 1)
         _logarithmic(axes)
     else:
@@ -81,14 +87,14 @@ def _histogram(
     parts = [values[kinds == kind] for kind in range(len(labels))]
     axes.hist(parts, bins.tolist(), stacked=True, label=labels, edgecolor="white", linewidth=0.3)
     axes.axvline(float(np.median(values)), color="0.2", linewidth=1, linestyle="--")
-    axes.set(xlabel=name, ylabel="curves")
+    axes.set(xlabel=head, ylabel="curves")
     axes.yaxis.set_major_locator(MaxNLocator(integer=True))
 
 
 def _scatter(axes: Axes, rows: Sequence[Row], kinds: Array) -> None:
     tension, tension_label = _values(rows, TENSION)
     modulus, modulus_label = _values(rows, MODULUS)
-    outlier = np.array([row["outlier"] for row in rows])
+    outlier = np.array([row.outlier for row in rows])
     style: dict[str, Any] = {"markersize": 3, "alpha": 0.7, "rasterized": len(rows) > _RASTERISED}
     for kind in np.unique(kinds).tolist():
         chosen = kinds == kind

@@ -21,7 +21,7 @@ def save_population(fits: ManyFits, directory: Path) -> tuple[Path, ...]:
     StorageError
         A file cannot be written.
     """
-    files = [save_sheets(fits, directory / "fits-curves.pdf")]
+    files = [save_sheets(fits.rows, directory / "fits-curves.pdf")]
     if distributions.drawable(fits.rows):
         draw = partial(distributions.distributions, fits.rows)
         files += save_figure(draw, directory / "fits", ["png"], distributions.SIZE)

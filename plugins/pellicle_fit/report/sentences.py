@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from pellicle.units import axis_unit
-from pellicle_fit.many import FITTED, ManyFits
-from pellicle_fit.parameters import CONTACT_POINT
-from pellicle_fit.population.summary import ALL, Quartiles
-from pellicle_fit.result import FitResult
-from pellicle_fit.statistics.profile import CONFIDENCE
+from pellicle_fit.intervals import CONFIDENCE
+from pellicle_fit.many import ManyFits
+from pellicle_fit.population.summary import ALL, Quartiles, summary
+from pellicle_fit.result import Fit
+from pellicle_fit.sentences import words as words_of
 from pellicle_fit.wording import in_words, words
 
 _GROUPS = 4
@@ -17,27 +15,26 @@ _GROUPS = 4
 _NAMES = "youngs_modulus", "reduced_modulus", "tension"
 
 
-def sentence_of_fit(fit: FitResult, *, si: bool = False) -> str:
-    """Return the estimates of the chosen model with their intervals as a sentence.
+def sentence_of_fit(fit: Fit, *, si: bool = False) -> str:
+    """Return modulus and tension with their intervals, and what the chosen explanation adds.
 
-    It has the modulus, tension and contact point of an elastic solid under tension, and the
-    parameters of another model if that is chosen.  The modulus is Young's where Poisson's ratio is
-    known; its range over other models follows if the curves cannot tell them apart.
+    The modulus is Young's where Poisson's ratio is known.
     """
-    estimates, chosen = fit.chosen_estimates(), fit.chosen
-    names = [name for name in _NAMES if name in estimates]
-    if chosen is None:
-        names += [CONTACT_POINT.name] if CONTACT_POINT.name in estimates else []
-    else:
-        names += [name for name in estimates if name not in names]
+    estimates, chosen = fit.estimates(), fit.answer.chosen
+    own = (e for e in chosen.objective.explanation.effects if e.type_name in chosen.types)
+    others = [name for effect in own for name in effect.open if name not in _NAMES]
     hidden = "reduced_modulus" if "youngs_modulus" in estimates else ""
-    parts = [
-        f"{words(name)} {in_words(estimates[name], si=si)}" for name in names if name != hidden
+    absent = fit.tension.held and not fit.tension.value
+    names = [
+        n for n in _NAMES if n in estimates and n != hidden and not (n == "tension" and absent)
     ]
+    names += [*others, *(["contact_point"] if len(fit.members) == 1 else [])]
+    parts = [f"{words(name)} {in_words(estimates[name], si=si)}" for name in names]
     text = f"{', '.join(parts[:-1])} and {parts[-1]}" if len(parts) > 1 else parts[0]
-    by = "" if chosen is None else f", by {chosen.rival.words}"
-    text = f"{text[0].upper()}{text[1:]}, with {100 * CONFIDENCE:.0f} % intervals{by}"
-    return f"{'; '.join(filter(None, [text, fit.range_of_models(si=si)]))}."
+    by = "" if chosen.types == fit.answer.question.word else f", by {words_of(chosen)}"
+    tied = len(fit.answer.tied)
+    over = f", over {tied} explanations that the data cannot tell apart" if tied > 1 else ""
+    return f"{text[0].upper()}{text[1:]}, with {100 * CONFIDENCE:.0f} % intervals{over}{by}."
 
 
 def sentences_of_population(fits: ManyFits) -> str:
@@ -46,11 +43,9 @@ def sentences_of_population(fits: ManyFits) -> str:
     Of curves in groups the median over all means little, so it is left to the table. A median is
     followed by the quartiles. The modulus is Young's where Poisson's ratio is known.
     """
-    rows = fits.rows
-    fitted = sum(row["status"] == FITTED for row in rows)
-    accepted = sum(row["accepted"] for row in rows)
-    parts = fits.summary()
-    outliers = sum(row["outlier"] for row in rows if row["accepted"])
+    rows, parts = fits.rows, summary(fits.rows)
+    fitted, accepted = sum(row.is_fitted for row in rows), sum(row.accepted for row in rows)
+    outliers = sum(row.outlier for row in rows)
     counts = f"{fitted} of {len(rows)} curves were fitted"
     if accepted != fitted:
         counts += f", {accepted} of them accepted"
@@ -73,7 +68,7 @@ def sentences_of_population(fits: ManyFits) -> str:
 
 def _quartiles(part: Quartiles) -> str:
     """Return a median with its quartiles: ``5 mN/m (4.8 to 5.2)``."""
-    scale = axis_unit(np.array([part.median or part.upper_quartile]), part.unit)
+    scale = axis_unit([part.median or part.upper_quartile], part.unit)
     median, low, high = (
         scale.number(value, 3) for value in (part.median, part.lower_quartile, part.upper_quartile)
     )

@@ -12,6 +12,7 @@ from pellicle.arrays import Array
 from pellicle.components import Component, HasForceCurve, IsShallowLimit
 from pellicle.errors import ConfigError, ConvergenceError
 from pellicle.units import decimal, readable
+from pellicle_fit.long_memory import exponent_of
 from pellicle_fit.models.force_model import ClosedFormModel, ForceModel
 from pellicle_fit.models.layer import LayerModel, with_thickness
 from pellicle_fit.models.solid import lengths
@@ -20,7 +21,6 @@ from pellicle_fit.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates
 from .chi_squared import ChiSquared, Minimum, best_minimum
 from .initial_guess import initial_guesses
 from .likelihood import Likelihood
-from pellicle_fit.long_memory import exponent_of
 from .noise import FailedCheck, Noise, NoiseEstimate, Residuals, check_baseline
 from .profile import CONFIDENCE, Estimate
 

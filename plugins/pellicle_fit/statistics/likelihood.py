@@ -12,13 +12,13 @@ import numpy as np
 from pellicle.arrays import Array, Mask
 from pellicle.errors import ConvergenceError
 from pellicle_fit.files.measurement import Segment
+from pellicle_fit.long_memory import differenced
 from pellicle_fit.models.force_model import ForceModel, HasRows, ModelForce
 from pellicle_fit.models.history import History, constant_speed, last_row_of_loading
 from pellicle_fit.parameters import CONTACT_POINT, OFFSET, SLOPE, Coordinates, Parameter
 
 from .chi_squared import ChiSquared, Range
 from .condensed import Condensation, Rows
-from pellicle_fit.long_memory import differenced
 
 _Value = TypeVar("_Value")
 

@@ -13,11 +13,11 @@ from scipy.special import bdtrc, fdtrc, ndtr, ndtri
 
 from pellicle.arrays import Array, Mask
 from pellicle.units import decimal, readable
+from pellicle_fit.long_memory import differenced
 from pellicle_fit.models.adhesive import WORK_OF_ADHESION
 from pellicle_fit.parameters import OFFSET, SLOPE, Coordinates, Parameter
 
 from .likelihood import Likelihood
-from pellicle_fit.long_memory import differenced
 
 CHANCE = 1e-3
 """Probability that a check flags a curve without fault."""

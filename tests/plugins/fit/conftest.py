@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 from typer.testing import CliRunner, Result
 
 import pellicle as pl
 from pellicle.cli.app import app
-from tests.shared_fits import share_fits
+from tests.shared_fits import share_fits, skip_rivals
 
 
 @pytest.fixture
@@ -26,16 +25,6 @@ def cli(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Result
         return result
 
     return call
-
-
-def skip_rivals(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let fits of this process skip rivals: most of their time, and tested elsewhere."""
-
-    def skipped(*arguments: Any, **options: Any) -> None:
-        """Compare nothing."""
-
-    for module in ("one_curve", "pooled"):
-        monkeypatch.setattr(f"pellicle_fit.{module}.compare", skipped)
 
 
 @pytest.fixture

@@ -13,10 +13,9 @@ from scipy.io import savemat
 
 import pellicle as pl
 from pellicle_fit.files.cleaning import clean
-from pellicle_fit.files.columns import Calibration
+from pellicle_fit.files.columns import Calibration, column_map
 from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.files.readers import read
-from pellicle_fit.files.roles import column_map
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
 

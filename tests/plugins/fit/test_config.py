@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,10 @@ Cli = Callable[..., Result]
 OPTIONS: dict[str, Any] = {
     "indenter": "sphere",
     "poissons_ratio": 0.4,
-    "fix": {"tension": "5 mN/m"},
+    "model": ["tension", {"type": "drag", "drag": {"value": 0, "deviation": "1 mPa s"}}],
+    "rivals": ["power_law", ["offset", "slope"], {"type": "layer", "thickness": "20 um"}],
+    "fix": {"relaxation_exponent": 0.2},
+    "uncertainty": {"spring_constant": "10 %", "radius": 0.03},
     "baseline": "offset",
     "spring_constant": "0.5 N/m",
     "executor": {"type": "processes", "workers": 1},
@@ -30,7 +34,10 @@ poissons_ratio = 0.4
 baseline = "offset"
 spring_constant = "0.5 N/m"
 grid_points = 32
-fix = { tension = "5 mN/m" }
+model = ["tension", { type = "drag", drag = { value = 0, deviation = "1 mPa s" } }]
+rivals = ["power_law", ["offset", "slope"], { type = "layer", thickness = "20 um" }]
+fix = { relaxation_exponent = 0.2 }
+uncertainty = { spring_constant = "10 %", radius = "3 %" }
 executor = { type = "processes", workers = 1 }
 """
 FILE = f'{BODY}\n[indenter]\ntype = "sphere"\nradius = "5 um"\n'
@@ -54,7 +61,10 @@ def test_three_ways_make_one_object(tmp_path: Path) -> None:
     config = pl.FitConfig.from_toml(tmp_path / "bead.toml")
     assert config == pl.FitConfig.merged(None, radius="5 um", **OPTIONS)
     assert config == pl.FitConfig.merged(
-        {"indenter": "cone"}, ["fix.tension=5 mN/m"], **OPTIONS | {"fix": None}, radius=5e-6
+        {"indenter": "cone"},
+        ["fix.relaxation_exponent=0.2"],
+        **OPTIONS | {"fix": None},
+        radius=5e-6,
     )
     assert config == pl.FitConfig.from_json(config.to_json())
     (tmp_path / "again.toml").write_text(config.to_toml(), encoding="utf-8")
@@ -106,17 +116,53 @@ def test_radius_of_each_file(cli: Cli) -> None:
         encoding="utf-8",
     )
     curves = json.loads(cli("beads.toml", "--json").stdout)["curves"]
-    assert [curve["model"]["indenter"]["radius"] for curve in curves] == [5e-6, 20e-6]
+    assert [curve["indenter"]["radius"] for curve in curves] == [5e-6, 20e-6]
 
 
-@pytest.mark.usefixtures("no_rivals")
-def test_many_fits_keep_the_configuration(tmp_path: Path) -> None:
-    """The table of many curves holds the configuration once."""
-    measure(tmp_path / "a.csv")
-    pl.fit_many(tmp_path / "a.csv", directory=tmp_path, progress=False, radius="5 um", **OPTIONS)
-    content = json.loads((tmp_path / "fits.json").read_text(encoding="utf-8"))
-    assert content["configuration"]["fix"] == {"tension": 5e-3}
-    assert "configuration" not in content["curves"][0]
+def test_options_of_the_question(cli: Cli) -> None:
+    """Model, rivals, fixed quantities and uncertainties are given on the command line."""
+    measure(Path("a.csv"))
+    found = json.loads(
+        cli(
+            *("a.csv", "-i", "sphere", "--radius", "5 um", "--spring-constant", "0.5 N/m"),
+            *("--model", "none", "--rivals", "offset,slope", "--rivals", "power_law"),
+            *("--fix", "relaxation_exponent=0.1", "--fix", "reduced_modulus=6 kPa"),
+            *("--uncertainty", "radius=3 %", "--uncertainty", "sensitivity=0.05", "--json"),
+        ).stdout
+    )
+    assert sorted(e["effects"] for e in found["explanations"]) == [
+        [],
+        ["offset", "slope"],
+        ["power_law"],
+    ]
+    assert found["reduced_modulus"]["held"]
+    (relaxing,) = (e for e in found["explanations"] if e["effects"] == ["power_law"])
+    assert relaxing["parameters"]["relaxation_exponent"]["value"] == 0.1
+    assert found["calibration"] == "calibration weighed: radius to 0.03 and sensitivity to 0.05"
+    configuration = found["configuration"]
+    assert configuration["fix"] == {"relaxation_exponent": 0.1, "reduced_modulus": 6e3}
+    assert configuration["uncertainty"] == {"radius": 0.03, "sensitivity": 0.05}
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"model": "springs"}, "'springs' is not an effect"),
+        ({"rivals": [["offset", 3]]}, "rivals"),
+        ({"fix": {"tensoin": 0}}, "fix.tensoin: is no quantity of the model or of a rival"),
+        ({"fix": {"tension": "3 Pa"}}, "fix.tension: '3 Pa'"),
+        ({"fix": {"tension": 0, "reduced_modulus": 1}}, "fixes both modulus and tension"),
+        ({"uncertainty": {"mass": 0.1}}, "spring_constant, sensitivity, radius"),
+        ({"uncertainty": {"radius": "3 N"}}, "uncertainty.radius: '3 N'"),
+        ({"uncertainty": {"radius": "-3 %"}}, "uncertainty.radius"),
+        ({"thickness": "1 um"}, "poissons_ratio: is missing"),
+        ({"thickness": "1 um", "kernel": "half_space"}, "cannot be given with a kernel"),
+    ],
+)
+def test_bad_options(options: dict[str, Any], words: str) -> None:
+    """What is wrong is said by its place in the configuration."""
+    with pytest.raises(pl.ConfigError, match=re.escape(words)):
+        pl.FitConfig.merged(indenter="sphere", radius="5 um", **options)
 
 
 def test_schema() -> None:
@@ -124,6 +170,7 @@ def test_schema() -> None:
     validator = Draft202012Validator(pl.FitConfig.model_json_schema())
     table = {"indenter": {"type": "sphere", "radius": "5 um"}, "curves": ["a.csv"]}
     assert validator.is_valid(table | {"spring_constant": "1 N/m", "baseline": "slope"})
+    assert validator.is_valid(table | {"rivals": [[{"type": "power_law"}]], "model": []})
     assert not validator.is_valid(table | {"base": "slope"})
     assert not validator.is_valid(table | {"baseline": "cubic"})
 

@@ -9,7 +9,6 @@ import sys
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
@@ -20,16 +19,16 @@ from PIL import Image
 
 import pellicle as pl
 from pellicle.errors import ConfigError
-from pellicle_fit.files.measurement import Axis
+from pellicle_fit.files.measurement import Axis, Site
 from pellicle_fit.population.images import force_maps
+from pellicle_fit.population.row import Row
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.plugins.fit import instruments
-from tests.plugins.fit.conftest import skip_rivals
-from tests.plugins.fit.test_many import curve, save
+from tests.plugins.fit.test_many import ALONE, BEAD, curve, save
 from tests.plugins.fit.test_population import row
 
 COLUMNS, ROWS, BROKEN, EMPTY = 4, 3, 5, 10
-OPTIONS: dict[str, Any] = {"indenter": "paraboloid", "radius": "10 um", "progress": False}
+OPTIONS = BEAD | ALONE
 NAMES = "reduced_modulus", "tension", "contact_height"
 
 
@@ -67,9 +66,7 @@ def mapped(tmp_path_factory: pytest.TempPathFactory) -> Path:
     nothing = curves[EMPTY].force[:0]
     curves[EMPTY] = replace(curves[EMPTY], force=nothing, height=nothing)
     instruments.jpk(folder / "cell.jpk-force-map", *curves)
-    with pytest.MonkeyPatch.context() as monkeypatch:
-        skip_rivals(monkeypatch)
-        pl.fit_map(folder / "cell.jpk-force-map", directory=folder / "out", **OPTIONS)
+    pl.fit_map(folder / "cell.jpk-force-map", directory=folder / "out", **OPTIONS)
     return folder
 
 
@@ -104,8 +101,8 @@ def test_killed_and_resumed(mapped: Path) -> None:
     """Killed without warning, the same command goes on, and ends with the same numbers."""
     source, folder = mapped / "cell.jpk-force-map", mapped / "killed"
     command = [sys.executable, "-m", "pellicle", "fit", str(source), "-i", "paraboloid"]
-    command += ["--radius", "10 um", "-o", str(folder), "--fix", "tension=0", "--quiet"]
-    child = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+    command += ["--radius", "10 um", "-o", str(folder), "--fix", "tension=0", "--rivals", "none"]
+    child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
         while len(list((folder / "curves").glob("*.json"))) < 2 and child.poll() is None:
             time.sleep(0.002)
@@ -146,16 +143,15 @@ def test_places_as_text(tmp_path: Path) -> None:
     assert images["y"].values == pytest.approx([0, 3e-7])
 
 
-def placed(places: list[tuple[float, float]], grid: object = None) -> list[dict[str, Any]]:
+def placed(places: list[tuple[float, float]], grid: tuple[Axis, Axis] | None = None) -> list[Row]:
     """Return accepted rows at places [µm], their moduli in order."""
-    return [
-        row(f"m:{k}", 1e3 + k, accepted=True)
-        | {"site": {"map": "m", "x": 1e-6 * x, "y": 1e-6 * y, "grid": grid}}
-        for k, (x, y) in enumerate(places)
-    ]
+    rows = [row(f"m:{k}", 1e3 + k) for k in range(len(places))]
+    for one, (x, y) in zip(rows, places, strict=True):
+        one.accepted, one.map, one.site = True, "m", Site(1e-6 * x, 1e-6 * y, grid)
+    return rows
 
 
-def only_image(rows: list[dict[str, Any]]) -> tuple[list[list[float]], list[str]]:
+def only_image(rows: list[Row]) -> tuple[list[list[float]], list[str]]:
     """Return the modulus of the only map less 1000, -1 where there is none, and the notes."""
     maps, notes = force_maps(rows)
     (images,) = maps.values()
@@ -165,7 +161,7 @@ def only_image(rows: list[dict[str, Any]]) -> tuple[list[list[float]], list[str]
 def test_two_at_one_place() -> None:
     """Of two curves at one place the last accepted one is shown, and the user is told."""
     rows = placed([(0, 0), (1, 0), (0, 1), (1, 1), (0, 0), (1, 0)])
-    rows[5]["accepted"] = False
+    rows[5].accepted = False
     image, notes = only_image(rows)
     assert image == [[4, 1], [2, 3]]
     assert "2 curves are at places that have another, such as m:4" in notes[0]
@@ -174,7 +170,7 @@ def test_two_at_one_place() -> None:
 def test_open_intervals_have_no_pixel() -> None:
     """The value of an open interval is one of many."""
     rows = placed([(0, 0), (1, 0)])
-    rows[0]["reduced_modulus"]["high"] = None
+    rows[0].keep(row("m:0", is_open=True).fit)
     assert only_image(rows)[0] == [[-1, 1]]
 
 

@@ -18,25 +18,17 @@ from numpy.typing import NDArray
 import pellicle as pl
 from pellicle.components import AnyTask, Executor, Outcome, Report, Say
 from pellicle.plugins import Registry
-from pellicle_fit.alternatives import reported_estimates
-from pellicle_fit.comparison import Comparison, RivalFit
-from pellicle_fit.config import FitConfig
 from pellicle_fit.many import fit_sources
-from pellicle_fit.models.force_model import tension_model
-from pellicle_fit.population.judgement import judge
-from pellicle_fit.population.summary import summary
-from pellicle_fit.population.table import table
-from pellicle_fit.statistics.chi_squared import Minimum
-from pellicle_fit.statistics.likelihood import Likelihood
-from pellicle_fit.statistics.rivals import NONE
+from pellicle_fit.simulated.simulation import Simulation
 from pellicle_plugins.indenters.of_revolution import Paraboloid
-
-pytestmark = pytest.mark.usefixtures("no_rivals")
 
 Array = NDArray[np.float64]
 MODULUS, LENGTH, RADIUS = 5e3, 3e-6, 10e-6
 HEADER = "position [um],force [nN]"
-OPTIONS = ("-i", "paraboloid", "--radius", "10 um")
+OPTIONS = ("-i", "paraboloid", "--radius", "10 um", "--rivals", "none")
+ALONE: dict[str, Any] = {"rivals": (), "progress": False}
+BEAD: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS}
+HERTZ = BEAD | ALONE | {"fix": {"tension": 0}}
 Cli = Callable[..., Result]
 
 
@@ -92,7 +84,7 @@ def test_folder(cli: Cli, tmp_path: Path) -> None:
     assert lines[0].startswith("curve,status,reduced_modulus [Pa],reduced_modulus_low [Pa],")
     assert len(lines) == 7
     page = Path("out/fits.html").read_text(encoding="utf-8")
-    for words in ("2 of 6 curves were fitted", "10 µm", "fixed", "no contact", "svg+xml"):
+    for words in ("2 of 6 curves were fitted", "10 µm", "no contact", "svg+xml"):
         assert words in page
     assert page.count(">failed</td>") == 4
 
@@ -101,9 +93,9 @@ def test_same_as_alone(tmp_path: Path) -> None:
     """The row of a curve is what `fit` says of it."""
     position, force = curve(1)
     save(tmp_path / "a.csv", position, force)
-    table = pl.fit_many(tmp_path / "a.csv", indenter="paraboloid", radius="10 um", progress=False)
+    table = pl.fit_many(tmp_path / "a.csv", **BEAD | ALONE)
     position = np.round(position * 1e6, 12) * 1e-6
-    alone = pl.fit(position, force, indenter="paraboloid", radius="10 um")
+    alone = pl.fit(position, force, **BEAD, rivals=())
     for name in ("reduced_modulus", "tension", "contact_point"):
         estimate = getattr(alone, name)
         assert table[name].item() == pytest.approx(estimate.value, rel=1e-6)
@@ -126,32 +118,16 @@ def test_what_is_done_is_kept(cli: Cli, tmp_path: Path) -> None:
     assert len(list(Path("out/curves").iterdir())) == 6
 
 
-def test_a_row_is_that_of_the_chosen_model(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Here a solid without tension is chosen, whose figures are those of a fit without one."""
-
-    def compared(likelihood: Likelihood, best: Minimum, without: Minimum, **_: Any) -> Comparison:
-        """Choose the solid without tension."""
-        parts = without.chi_squared, 0.0, 0.0, without.parameters
-        chosen = RivalFit(NONE, *parts, reported_estimates(NONE.of(likelihood), without, {}))
-        return Comparison((chosen,), "other", "", "", (), chosen)
-
-    monkeypatch.setattr("pellicle_fit.one_curve.compare", compared)
-    curves = {"a": curve(1), "b": curve(2)}
-    config = FitConfig(indenter=Paraboloid(radius=RADIUS))
-    row, *_ = fits = fit_sources(config, config.sources(curves), None, progress=False).rows
-    fixed = pl.fit_many(curves, config=config, fix={"tension": 0}, progress=False)
-    assert row["chosen"]["model"] == "none"
-    for name in ("reduced_modulus", "contact_point", "tension"):
-        assert row[name]["value"] == pytest.approx(float(fixed[name][0]), rel=1e-4)
-        assert row["elastic"][name]["value"] != row[name]["value"]
-    for name in ("r_squared", "indentation", "largest_force"):
-        assert row[name] == pytest.approx(float(fixed[name][0]), rel=1e-4)
-    # Intervals are by the noise of the solid under tension here.
-    low, high = (row["contact_point"][end] for end in ("low", "high"))
-    assert low < row["contact_point"]["value"] < high
-    judge(fits, [], None, None)
-    assert {part.parameter for part in summary(fits)} == {"reduced_modulus"}
-    assert str(table(fits)["chosen_model"].values[0]) == "none"
+def test_a_row_is_that_of_the_chosen_explanation() -> None:
+    """The curve of a stiffer cantilever is best described by an offset, of which its row tells."""
+    position, force = curve(1)
+    shifted = {"a": (position, force + 0.05 * force.max())}
+    table = pl.fit_many(shifted, **BEAD, rivals=["offset"], progress=False)
+    alone = pl.fit(*shifted["a"], **BEAD, rivals=["offset"])
+    for name, estimate in alone.estimates().items():
+        assert table[name].item() == pytest.approx(estimate.value, rel=1e-6)
+    assert "offset" in str(table["model"].item())
+    assert str(table["verdict"].item()) == alone.verdict.value
 
 
 def test_another_version_of_a_plugin_is_another_fit(
@@ -166,9 +142,7 @@ def test_another_version_of_a_plugin_is_another_fit(
 
     def fits() -> int:
         """Fit a curve, and return how many fits are kept."""
-        bead, fixed = Paraboloid(radius=RADIUS), {"tension": 0}
-        options: dict[str, Any] = {"directory": tmp_path, "progress": False, "executor": Keeps()}
-        pl.fit_many({"a": curve(1)}, indenter=bead, fix=fixed, **options)
+        pl.fit_many({"a": curve(1)}, directory=tmp_path, executor=Keeps(), **HERTZ)
         return len(list((tmp_path / "curves").iterdir()))
 
     monkeypatch.setattr(Registry, "versions", versions)
@@ -196,16 +170,15 @@ class Stiffer:
 
 @pytest.mark.slow
 def test_each_change_is_another_fit(tmp_path: Path) -> None:
-    """Radius, indenter and solid make another fit of the same curve; an executor does not."""
-    common: dict[str, Any] = {"fix": {"tension": 0}, "directory": tmp_path, "progress": False}
-    bead: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS}
+    """Radius, indenter and model make another fit of the same curve; an executor does not."""
+    common: dict[str, Any] = ALONE | {"fix": {"tension": 0}, "directory": tmp_path}
     moduli = set()
     for options in (
-        bead,
-        bead | {"executor": Keeps()},
-        bead | {"radius": 2 * RADIUS},
-        bead | {"radius": [3 * RADIUS]},
-        bead | {"fix": {"tension": 1e-3}},
+        BEAD,
+        BEAD | {"executor": Keeps()},
+        BEAD | {"radius": 2 * RADIUS},
+        BEAD | {"radius": [3 * RADIUS]},
+        BEAD | {"fix": {"tension": 1e-3}},
         {"indenter": Stiffer(2.0)},
         {"indenter": Stiffer(5.0)},
     ):
@@ -233,7 +206,7 @@ class Stops(Executor):
 def test_interrupted(tmp_path: Path) -> None:
     """What was finished is in the table, and the rest is said not to have run."""
     curves = {str(seed): curve(seed) for seed in range(3)}
-    config = pl.FitConfig.merged(indenter="paraboloid", radius=RADIUS, fix={"tension": 0})
+    config = pl.FitConfig.merged(**BEAD, rivals=(), fix={"tension": 0})
     sources = config.sources(curves)
     stops = pl.FitConfig.merged(config, executor=Stops())
     with pytest.raises(KeyboardInterrupt):
@@ -265,27 +238,24 @@ class Keeps(Executor):
 def test_tasks_travel(tmp_path: Path) -> None:
     """Curves, questions and answers pickle, and rows keep their order."""
     curves = {str(seed): curve(seed) for seed in range(3)}
-    common: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS, "fix": {"tension": 0}}
-    copy = pl.fit_many(curves, executor=Keeps(), progress=False, **common)
-    here = pl.fit_many(curves, progress=False, **common)
+    copy, here = (pl.fit_many(curves, **HERTZ | own) for own in ({"executor": Keeps()}, {}))
     xr.testing.assert_identical(copy, here)
 
 
-def test_simulated_once_here(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What has to be simulated is so before the fits, by the same executor; tasks take it along."""
-    requests = []
+def test_simulated_before_the_fits(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What has to be simulated is so by the executor of the fits, which take it along."""
+    executors = []
 
-    def simulate(indenter: pl.Indenter, solid: object, deepest: float, **settings: Any) -> Any:
-        requests.append(settings["executor"])
-        assert isinstance(indenter, pl.HasForceCurve)
-        return tension_model(indenter)
+    def simulated(simulation: Simulation, reach: float, **settings: Any) -> pl.Indenter:
+        executors.append(settings["executor"])
+        return simulation.indenter
 
-    monkeypatch.setattr("pellicle_fit.problem.simulate", simulate)
+    monkeypatch.setattr(Simulation, "curve", simulated)
     curves = {str(seed): curve(seed) for seed in range(2)}
-    common: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS, "fix": {"tension": 0}}
-    copy = pl.fit_many(curves, kernel="tensed_membrane", executor=Keeps(), progress=False, **common)
-    assert requests == [Keeps(), Keeps()]
-    xr.testing.assert_identical(copy, pl.fit_many(curves, progress=False, **common))
+    solid = {"kernel": "tensed_membrane", "executor": Keeps()}
+    copy, here = (pl.fit_many(curves, **HERTZ | own) for own in (solid, {}))
+    assert executors == [Keeps(), Keeps()]
+    xr.testing.assert_identical(copy, here)
 
 
 def test_labelled_curves(cli: Cli) -> None:
@@ -310,13 +280,7 @@ def test_groups(tmp_path: Path) -> None:
                 file[f"{name}/{column}"] = values
                 if (name, column) != ("second", "force"):
                     file[f"{name}/{column}"].attrs["units"] = "m" if column == "position" else "N"
-    table = pl.fit_many(
-        tmp_path / "map.h5",
-        indenter="paraboloid",
-        radius=RADIUS,
-        fix={"tension": 0},
-        progress=False,
-    )
+    table = pl.fit_many(tmp_path / "map.h5", **HERTZ)
     first, second = table["status"].values
     assert first == "fitted"
     assert "curve second: column force has no unit" in second
@@ -331,5 +295,7 @@ def test_radius_of_each(cli: Cli, listed: bool) -> None:
     files = (
         ("beads.csv",) if listed else ("5.csv", "20.csv", "--radius", "5 um", "--radius", "20 um")
     )
-    for row in json.loads(cli(*files, "-i", "paraboloid", "--json").stdout)["curves"]:
+    for row in json.loads(cli(*files, "-i", "paraboloid", "--rivals", "none", "--json").stdout)[
+        "curves"
+    ]:
         assert row["reduced_modulus"]["low"] < MODULUS < row["reduced_modulus"]["high"]

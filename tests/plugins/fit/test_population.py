@@ -32,29 +32,34 @@ from pellicle_fit.population.judgement import (
     outliers,
     read_names,
 )
-from pellicle_fit.population.rules import Rule, values
+from pellicle_fit.population.row import Row
+from pellicle_fit.population.rules import Rule
 from pellicle_fit.population.summary import summary
 from pellicle_fit.report.contact_sheet import sheets
 from pellicle_fit.report.distributions import drawable
 from pellicle_fit.report.sentences import sentences_of_population
-from tests.plugins.fit.test_many import OPTIONS, curve, save
-
-pytestmark = pytest.mark.usefixtures("no_rivals")
+from tests.plugins.fit.test_many import BEAD, HERTZ, OPTIONS, curve, save
 
 Cli = Callable[..., Result]
-Row = dict[str, Any]
 FIXED = (*OPTIONS, "--fix", "tension=0")
 
 
-def row(name: str, modulus: float | None = 1e3, *, is_open: bool = False, **others: Any) -> Row:
-    """Return the row of a curve."""
-    result: Row = {"curve": name, "status": "fitted", "group": "", **others}
+def estimate(value: float, unit: str = "Pa", *, is_open: bool = False) -> dict[str, Any]:
+    """Return JSON data of an estimate."""
+    high = None if is_open else 1.1 * value
+    return {"value": value, "low": 0.9 * value, "high": high, "unit": unit, "held": False}
+
+
+def row(name: str, modulus: float | None = 1e3, *, is_open: bool = False, group: str = "") -> Row:
+    """Return the row of a curve; without a modulus it could not be fitted."""
     if modulus is None:
-        return result | {"status": "failed: no contact"}
-    high = None if is_open else 1.1 * modulus
-    estimate = {"value": modulus, "low": 0.9 * modulus, "high": high, "bound": 1.0}
-    result["reduced_modulus"] = estimate | {"unit": "Pa", "held": False}
-    return {"r_squared": 0.99, "chi_squared": 50.0, "points": 50} | result
+        return Row(name, group, status="failed: no contact")
+    curve = {"points": 50, "noise": {"value": 1e-9, "unit": "N"}, "failed_checks": [], "data": {}}
+    parameters = {"reduced_modulus": estimate(modulus, is_open=is_open)}
+    numbers = {"r_squared": 0.99, "chi_squared": 50.0, "indentation": 1e-6, "largest_force": 1e-8}
+    model = {"effects": [], "words": "no effect"}
+    fit = {"parameters": parameters, "curves": [curve], "messages": [], "model": model}
+    return Row(name, group, fit=numbers | fit | parameters)
 
 
 @pytest.mark.parametrize(
@@ -77,7 +82,7 @@ def row(name: str, modulus: float | None = 1e3, *, is_open: bool = False, **othe
 def test_rules(rule: str, holds: bool) -> None:
     """A rule compares numbers and quantities; no rule holds of an open end or a missing number."""
     Rule(rule).check()
-    objection = Rule(rule).objection(values(row("a", is_open=True)))
+    objection = Rule(rule).objection(row("a", is_open=True))
     assert (not objection) == holds
     assert holds or objection.endswith(f"against {rule}")
 
@@ -94,12 +99,12 @@ def test_lists(tmp_path: Path) -> None:
     listed.write_text("curve,reason\n# a comment\na.csv, a bubble\nmap.h5:1\nold/*\nzz.csv\n")
     rows = [row(n) for n in ("day/a.csv", "day/aa.csv", "map.h5:1", "map.h5:11", "x/old/b.csv")]
     notes = judge(rows, [], None, read_names(listed))
-    assert [r["accepted"] for r in rows] == [False, True, False, True, False]
-    assert rows[0]["reason"] == "in rejected.txt: a bubble"
+    assert [r.accepted for r in rows] == [False, True, False, True, False]
+    assert rows[0].reason == "in rejected.txt: a bubble"
     assert any("'zz.csv', which is none of the curves" in note for note in notes)
     judge(rows, [], read_names(listed), None)
-    assert [r["accepted"] for r in rows] == [True, False, True, False, True]
-    assert rows[1]["reason"] == "not in rejected.txt"
+    assert [r.accepted for r in rows] == [True, False, True, False, True]
+    assert rows[1].reason == "not in rejected.txt"
     with pytest.raises(StorageError, match="cannot be read as a list"):
         read_names(tmp_path / "none.txt")
 
@@ -125,14 +130,14 @@ def test_outliers_are_kept() -> None:
     spread = np.exp(0.1 * np.random.default_rng(1).standard_normal(20))
     rows = [row(f"{k}", 1e3 * s, group="soft/1") for k, s in enumerate(spread)]
     rows += [row(f"s{k}", 1e5 * s, group="stiff") for k, s in enumerate(spread)]
-    rows[3]["reduced_modulus"]["value"] = 1e5
+    rows[3] = row("3", 1e5, group="soft/1")
     notes = judge(rows, [], None, None)
-    assert [r["curve"] for r in rows if r["outlier"]] == ["3"]
-    assert rows[3]["accepted"]
+    assert [r.name for r in rows if r.outlier] == ["3"]
+    assert rows[3].accepted
     assert any("nothing was left out: 3" in note for note in notes)
     parts = {part.group: part for part in summary(rows)}
     assert (parts["soft/1"].n, parts["soft/1"].outliers, parts["all"].n) == (20, 1, 40)
-    soft = [r["reduced_modulus"]["value"] for r in rows[:20]]
+    soft = [r.estimates["reduced_modulus"].value for r in rows[:20]]
     assert parts["soft/1"].median == np.median(soft)
     assert parts["soft/1"].upper_quartile == np.quantile(soft, 0.75)
     # Equal moduli have no deviation to compare with, and four have no majority.
@@ -145,15 +150,13 @@ def test_open_intervals_have_no_median() -> None:
     rows = [row(f"{k}", modulus) for k, modulus in enumerate((1e3, 1.1e3, 1.2e3, 1.3e3, 1.4e3))]
     rows += [row(f"open {k}", 1e6, is_open=True) for k in range(5)]
     judge(rows, [], None, None)
-    assert not any(r["outlier"] for r in rows)
+    assert not any(r.outlier for r in rows)
     (part,) = summary(rows)
     assert (part.n, part.open, part.median, part.maximum) == (10, 5, 1.2e3, 1.4e3)
     assert "1.2 kPa (1.1 to 1.3; open in 5 of 10)" in sentences_of_population(ManyFits(rows))
     (part,) = summary(rows[5:])
     assert (part.n, part.open, np.isnan(part.median)) == (5, 5, True)
-    for r in rows:
-        r["tension"] = r["reduced_modulus"] | {"unit": "N/m"}
-    assert [r["curve"] for r in drawable(rows)] == list("01234")
+    assert [r.name for r in drawable(rows)] == list("01234")
 
 
 def test_nothing_is_left() -> None:
@@ -161,10 +164,10 @@ def test_nothing_is_left() -> None:
     rows = [row("a"), row("b", None)]
     notes = judge(rows, ["r_squared > 1"], None, None)
     assert notes == ["none of 2 curves was accepted"]
-    assert rows[1]["reason"] == "failed: no contact"
+    assert rows[1].reason == "failed: no contact"
     assert summary(rows) == []
-    assert len(sheets(ManyFits(rows))) == 1
-    assert len(sheets(ManyFits(rows * 30))) == 3
+    assert len(sheets(rows)) == 1
+    assert len(sheets(rows * 30)) == 3
 
 
 def test_files(cli: Cli, tmp_path: Path) -> None:
@@ -202,7 +205,7 @@ def test_files(cli: Cli, tmp_path: Path) -> None:
     assert b"/Type3" not in sheet
     assert Path("out/fits.png").is_file()
     page = Path("out/fits.html").read_text(encoding="utf-8")
-    for words in ("slipped", "lower quartile", "Each curve with its fit"):
+    for words in ("slipped", "quartiles", "Each curve with its fit"):
         assert words in page
     shown = CliRunner().invoke(app, ["show", "out"])
     assert shown.exit_code == 1
@@ -229,7 +232,7 @@ def test_group_by_column(tmp_path: Path) -> None:
         save(tmp_path / f"{radius}.csv", *curve(radius, radius=radius * 1e-6))
     listed = tmp_path / "list.csv"
     listed.write_text("file,radius [um],day\n5.csv,5,May/1\n10.csv,10,\n")
-    common: dict[str, Any] = {"indenter": "paraboloid", "fix": {"tension": 0}, "progress": False}
+    common = {name: value for name, value in HERTZ.items() if name != "radius"}
     table = pl.fit_many(listed, group_by="Day", **common)
     assert table["group"].values.tolist() == ["May/1", ""]
     listed.write_text("file,radius [um]\n5.csv,5\n10.csv,10\n")
@@ -252,15 +255,15 @@ def test_curves_do_not_pile_up(monkeypatch: pytest.MonkeyPatch) -> None:
             yield Source(str(seed), Measurement(position, force), {})
             del position, force
 
-    config = pl.FitConfig.merged(indenter="paraboloid", radius="10 um", fix={"tension": 0})
+    config = pl.FitConfig.merged(**BEAD, rivals=(), fix={"tension": 0})
     whole = fit_sources(config, list(sources()), None, progress=False)
     assert most == 9
     monkeypatch.setattr(many, "_BATCH", 100)
     curves.clear()
     most = 0
     parts = fit_sources(config, sources(), None, progress=False)
-    assert parts.rows == whole.rows
-    assert len(parts.sketches) == 9
+    assert parts.to_dict() == whole.to_dict()
+    assert all(row.sketch is not None for row in parts.rows)
     assert most <= 5
 
 
