@@ -16,7 +16,6 @@ from pellicle.errors import ConfigError
 if TYPE_CHECKING:
     from pellicle_fit.config import FitConfig
     from pellicle_fit.many import ManyFits
-    from pellicle_fit.record import Repetition
     from pellicle_fit.result import Fit
 
 
@@ -32,11 +31,7 @@ def fit(
     ] = None,
     indenter: Annotated[
         str | None,
-        typer.Option(
-            "--indenter",
-            "-i",
-            help="Type: sphere (a bead), paraboloid (Hertz, to 0.1 R), cone, flat_punch, …",
-        ),
+        typer.Option("-i", "--indenter", help="sphere (a bead), paraboloid (Hertz), cone, …"),
     ] = None,
     radius: Annotated[
         list[str] | None,
@@ -50,45 +45,33 @@ def fit(
     ] = None,
     thickness: Annotated[
         str | None,
-        typer.Option(
-            help='Thickness of a layer on a rigid base: "50 um", or free to fit it; with '
-            "--poissons-ratio."
-        ),
+        typer.Option(help="Thickness of a layer on a rigid base, or free; with --poissons-ratio."),
     ] = None,
     model: Annotated[
         list[str] | None,
-        typer.Option(
-            help="Effect whose need is asked (default tension), then those that are certain; none "
-            "for an elastic half-space. See pellicle plugins.",
-        ),
+        typer.Option(help="Effect whose need is asked: tension (default), …, or none of them."),
     ] = None,
     rivals: Annotated[
         list[str] | None,
         typer.Option(
-            help="Effect to compare, or several that act together: offset,slope; repeat it. none "
-            "for no comparison; by default all that bend curves as a tension does.",
+            help="Effect to compare, or several that act together (offset,slope); repeat it. none "
+            "for no comparison; by default all that bend curves as a tension does."
         ),
     ] = None,
     fix: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="NAME=VALUE",
-            help='Fix a quantity: --fix tension=0, --fix reduced_modulus="10 kPa".',
-        ),
+        typer.Option(metavar="NAME=VALUE", help="Fix a quantity: --fix tension=0."),
     ] = None,
     uncertainty: Annotated[
         list[str] | None,
         typer.Option(
             metavar="NAME=VALUE",
-            help="Standard deviation of spring_constant, sensitivity or radius: "
-            '--uncertainty spring_constant="10 %".',
+            help='Standard deviation of spring_constant, sensitivity or radius: "radius=5 %".',
         ),
     ] = None,
     baseline: Annotated[
         str | None,
-        typer.Option(
-            help="Part of the force before contact to fit: none (default), offset, slope."
-        ),
+        typer.Option(help="Force before contact to fit: none (default), offset, slope."),
     ] = None,
     segment: Annotated[
         str | None, typer.Option(help="Pass to fit: approach (default), retract, both.")
@@ -128,10 +111,7 @@ def fit(
         typer.Option("-o", "--output", metavar="DIR", help="Folder for JSON, table and figure."),
     ] = None,
     report: Annotated[
-        bool,
-        typer.Option(
-            "--report", help="Write a web page, to the folder of --output or the current one."
-        ),
+        bool, typer.Option("--report", help="Write a web page, to that folder or the current one.")
     ] = False,
     again: Annotated[
         Path | None,
@@ -154,6 +134,8 @@ def fit(
     from pellicle_fit.many import ManyFits
     from pellicle_fit.print_fits import print_fit, print_fits, print_notes
     from pellicle_fit.record import repetition
+    from pellicle_fit.report.figures import save_figure
+    from pellicle_fit.report.page import save_report
 
     files = files or []
     configs = [path for path in files if path.suffix.lower() == ".toml"]
@@ -165,11 +147,11 @@ def fit(
     repeated = None if again is None else repetition(again)
     if repeated is not None and configs:
         raise ConfigError(f"{configs[0]}: --again has a configuration of its own; leave one out")
+    tables = {"fix": fix, "uncertainty": uncertainty}
     config = FitConfig.merged(
         configs[0] if configs else repeated and repeated.config,
         [
-            *(_override("fix", text) for text in fix or ()),
-            *(_override("uncertainty", text) for text in uncertainty or ()),
+            *(_override(k, text) for k, texts in tables.items() for text in texts or ()),
             *(set_ or ()),
         ],
         curves=tuple(path for path in files if path not in configs) or None,
@@ -189,6 +171,7 @@ def fit(
         compare=compare or None,
     )
     result, name, title = _fit(config, directory, quiet=quiet)
+    many = result if isinstance(result, ManyFits) else None
     if json:
         print_json(result.to_dict())
     elif isinstance(result, ManyFits):
@@ -197,16 +180,20 @@ def fit(
         print_notes(result)
     else:
         print_fit(result, si=si)
-    if repeated and (difference := _difference(repeated, result)):
+    if repeated and (difference := repeated.difference(result.to_dict())):
         echo(f"warning: {difference}", err=True)
-    written = _write(result, name, title, directory, report=report)
-    if not quiet:
-        if isinstance(result, ManyFits) and result.resumed:
-            echo(f"{result.resumed} of {len(result.rows)} fits were done before")
-        for path in written:
-            echo(f"wrote {path}")
-    if isinstance(result, ManyFits) and result.failed:
-        echo(f"{result.failed} of {len(result.rows)} curves could not be fitted", err=True)
+    written = [*many.files] if many else []
+    if directory is not None and not isinstance(result, ManyFits):
+        written.append(result.save(directory / f"{name}.json"))
+        written.append(save_figure(result, directory / f"{name}.png"))
+    if report:
+        written.append(save_report(result, (directory or Path()) / f"{name}.html", title))
+    if many and many.resumed and not quiet:
+        echo(f"{many.resumed} of {len(many.rows)} fits were done before")
+    for path in () if quiet else written:
+        echo(f"wrote {path}")
+    if many and many.failed:
+        echo(f"{many.failed} of {len(many.rows)} curves could not be fitted", err=True)
         raise typer.Exit(NOT_CONVERGED)
 
 
@@ -246,39 +233,6 @@ def _fit(
         echo(f"interrupted{hint if directory else ''}", err=True)
         raise typer.Exit(INTERRUPTED) from None
     return fits, "fits", f"Fits of {len(fits.rows)} curves"
-
-
-def _difference(repeated: Repetition, result: Fit | ManyFits) -> str:
-    """Return how data and versions differ from those of the fit that is repeated."""
-    from pellicle_fit.many import ManyFits
-
-    if isinstance(result, ManyFits):
-        return repeated.difference([row.data for row in result.rows if row.data], None)
-    return repeated.difference([member.data for member in result.members], result.record)
-
-
-def _write(
-    result: Fit | ManyFits,
-    name: str,
-    title: str,
-    directory: Path | None,
-    *,
-    report: bool,
-) -> list[Path]:
-    """Write the page, JSON and figure unless `fit_sources` did; return the paths of all files."""
-    from pellicle_fit.many import ManyFits
-    from pellicle_fit.report.figures import save_figure
-    from pellicle_fit.report.page import save_report
-
-    written: list[Path] = []
-    if isinstance(result, ManyFits):
-        written += result.files
-    elif directory is not None:
-        written.append(result.save(directory / f"{name}.json"))
-        written.append(save_figure(result, directory / f"{name}.png"))
-    if report:
-        written.append(save_report(result, (directory or Path()) / f"{name}.html", title))
-    return written
 
 
 def _override(key: str, text: str) -> str:

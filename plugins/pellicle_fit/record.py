@@ -87,25 +87,20 @@ class Repetition(NamedTuple):
     """Hash of each file that was fitted, by its path as it was given."""
     versions: Mapping[str, str]
 
-    def difference(self, data: Iterable[Mapping[str, Any]], record: Record | None) -> str:
-        """Return which files and versions differ from those of the first fit; empty if none do.
-
-        ``data`` are `data_of` each curve that is fitted now; ``record`` is that of the fit.
-        """
-        now = {str(entry["file"]): str(entry["sha256"]) for entry in data}
-        files = [
+    def difference(self, content: Mapping[str, Any]) -> str:
+        """Return how files and versions of the JSON data of fits differ; empty if they do not."""
+        now = _hashes(content)
+        differs = [
             file
             for file in sorted(now.keys() | self.sha256.keys())
             if now.get(file) != self.sha256.get(file)
         ]
-        versions = record.versions if record else {}
-        names = [
+        differs += [
             f"{name} {version} (was {self.versions[name]})"
-            for name, version in versions.items()
+            for name, version in content.get("versions", {}).items()
             if self.versions.get(name) not in (None, version)
         ]
-        differs = ", ".join([*files, *names])
-        return differs and f"differs from what was fitted then: {differs}"
+        return f"not what was fitted then: {', '.join(differs)}" if differs else ""
 
 
 def repetition(path: Path) -> Repetition:
@@ -122,20 +117,35 @@ def repetition(path: Path) -> Repetition:
         The file cannot be read.
     """
     content = content_of(path)
-    rows = content.get("curves", ())
-    entries = [row.get("data") or {} for row in rows if isinstance(row, dict)]
-    hashes = {str(data["file"]): str(data.get("sha256")) for data in entries if data.get("file")}
+    hashes = _hashes(content)
     if not hashes:
         raise ConfigError(
             f"{path}: holds no fit of a file; numbers that were given in Python have to be given "
             "again, with FitConfig.from_json"
         )
     config = FitConfig.from_json(json.dumps(content))
-    folder = _folder(path, hashes)
+    file, digest = next(iter(hashes.items()))
+    folders = [Path(), *path.resolve().parents[: 1 + _ABOVE]]
+    folders = [folder for folder in folders if (folder / file).is_file()]
+    if not folders:
+        raise StorageError(
+            f"{file}: is not there, nor in the folder of {path} or above it; call pellicle where "
+            "the fit was made"
+        )
+    folder = next((f for f in folders if sha256(f / file) == digest), folders[0])
     if folder != Path():
         hashes = {str(folder / file): digest for file, digest in hashes.items()}
         config = FitConfig.merged(config, curves=tuple(folder / curve for curve in config.curves))
     return Repetition(config, hashes, content.get("versions", {}))
+
+
+def _hashes(content: Mapping[str, Any]) -> dict[str, str]:
+    """Return the hash of each file of the JSON data of a fit, of a pool or of many fits."""
+    found: dict[str, str] = {}
+    for row in content.get("curves", ()):
+        data = row.get("data", {})
+        found |= {data["file"]: data["sha256"]} if data.get("file") else _hashes(row)
+    return found
 
 
 def content_of(path: Path) -> dict[str, Any]:
@@ -152,16 +162,3 @@ def content_of(path: Path) -> dict[str, Any]:
             "bead-fit.json or fits.json"
         )
     return content
-
-
-def _folder(path: Path, hashes: Mapping[str, str]) -> Path:
-    """Return the folder from which the recorded paths lead to the curves."""
-    file, digest = next(iter(hashes.items()))
-    above = path.resolve().parents
-    folders = [folder for folder in (Path(), *above[: 1 + _ABOVE]) if (folder / file).is_file()]
-    if not folders:
-        raise StorageError(
-            f"{file}: is not there, nor in the folder of {path} or above it; call pellicle where "
-            "the fit was made"
-        )
-    return next((folder for folder in folders if sha256(folder / file) == digest), folders[0])

@@ -20,7 +20,7 @@ Cli = Callable[..., Result]
 OPTIONS: dict[str, Any] = {
     "indenter": "sphere",
     "poissons_ratio": 0.4,
-    "model": ["tension", {"type": "drag", "drag": {"value": 0, "deviation": "1 nN s/m"}}],
+    "model": ["tension", {"type": "drag", "drag": {"value": 0, "deviation": "1 mPa s"}}],
     "rivals": ["power_law", ["offset", "slope"], {"type": "layer", "thickness": "20 um"}],
     "fix": {"relaxation_exponent": 0.2},
     "uncertainty": {"spring_constant": "10 %", "radius": 0.03},
@@ -34,7 +34,7 @@ poissons_ratio = 0.4
 baseline = "offset"
 spring_constant = "0.5 N/m"
 grid_points = 32
-model = ["tension", { type = "drag", drag = { value = 0, deviation = "1 nN s/m" } }]
+model = ["tension", { type = "drag", drag = { value = 0, deviation = "1 mPa s" } }]
 rivals = ["power_law", ["offset", "slope"], { type = "layer", thickness = "20 um" }]
 fix = { relaxation_exponent = 0.2 }
 uncertainty = { spring_constant = "10 %", radius = "3 %" }
