@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -16,8 +17,33 @@ Area = Callable[[Array, float], Array]
 """F/E* [m²] at depths [m] and an elastocapillary length s = 2τ₀/E* [m]; 0 at depths ≤ 0."""
 _STEP = 1e-4
 """Step of the slope of the force, over the depth."""
+_RATIO = 1.1
+"""Ratio of the depths to which areas are tabulated."""
 _NODES = 129
 """Nodes of a tabulated area, evenly spaced in the root of the depth."""
+
+
+@dataclass(frozen=True)
+class OwnArea:
+    """The area of an indenter with its lengths times a factor: λ² A₁(δ/λ, s/λ)."""
+
+    indenter: HasForceCurve
+    size: float
+
+    def __call__(self, depth: Array, length: float) -> Array:
+        """Return F/E* [m²]."""
+        size = self.size
+        return size**2 * checked_force(self.indenter, "force_curve", depth / size, length / size)
+
+
+@lru_cache(maxsize=64)
+def _spline(area: Area, length: float, deepest: float) -> Callable[[Array], Array]:
+    """Return an area at a length as a function of √δ."""
+    from scipy.interpolate import CubicSpline
+
+    root = np.linspace(0.0, np.sqrt(deepest), _NODES)
+    spline: Callable[[Array], Array] = CubicSpline(root, area(root**2, length))
+    return spline
 
 
 @dataclass(frozen=True)
@@ -36,23 +62,22 @@ class Contact:
     """Depth [m] beyond which the area is not known, and is continued as a constant."""
     tension: float = 0.0
     """τ₀ [N/m]."""
+    size: float = 1.0
+    """Factor λ of the indenter's lengths."""
     half_space: bool = True
     """Whether the solid is one, so that half the slope of the area is the contact radius."""
     error: float = 1e-6
     """Error of the area over the largest one."""
 
     @classmethod
-    def on_half_space(cls, indenter: HasForceCurve, modulus: float) -> Contact:
+    def on_half_space(cls, indenter: HasForceCurve, modulus: float, size: float = 1.0) -> Contact:
         """Return the contact of an indenter that has a force curve of its own."""
-
-        def area(depth: Array, length: float) -> Array:
-            return checked_force(indenter, "force_curve", depth, length)
-
         return cls(
             indenter,
             modulus,
-            area,
-            indenter.depth_limit,
+            OwnArea(indenter, size),
+            size * indenter.depth_limit,
+            size=size,
             half_space=getattr(indenter, "half_space", True),
             error=max(1e-6, getattr(indenter, "accuracy", 0.0)),
         )
@@ -60,12 +85,18 @@ class Contact:
     @property
     def tip_radius(self) -> float | None:
         """Radius R of the indenter [m]; None if it has none."""
-        return getattr(self.indenter, "radius", None)
+        radius = getattr(self.indenter, "radius", None)
+        return None if radius is None else self.size * radius
+
+    @property
+    def is_own(self) -> bool:
+        """Whether it is the indenter itself on a half-space, under a tension or not."""
+        return self.half_space and isinstance(self.area, OwnArea)
 
     @property
     def is_bare_indenter(self) -> bool:
         """Whether it is the indenter itself on a half-space, with a known contact radius."""
-        return self.half_space and isinstance(self.indenter, HasContactRadius)
+        return self.is_own and isinstance(self.indenter, HasContactRadius)
 
     def force(self, depth: Array) -> Array:
         """Return the force [N] at depths [m]."""
@@ -77,18 +108,18 @@ class Contact:
 
         Over √δ areas of round and of conical bodies are polynomials, under a tension nearly so.
         """
-        from scipy.interpolate import CubicSpline
-
         length, bare = 2 * self.tension / self.modulus, self.area
-        root = np.linspace(0.0, np.sqrt(min(max(deepest, 1e-300), self.depth_limit)), _NODES)
-        spline = CubicSpline(root, bare(root**2, length))
+        # Rounded up, so that the table serves the next contact point too.
+        deepest = _RATIO ** np.ceil(np.log(max(deepest, 1e-300)) / np.log(_RATIO))
+        limit = min(float(deepest), self.depth_limit)
+        spline = _spline(bare, length, limit)
 
         def area(depth: Array, other: float) -> Array:
             if other != length:
                 return bare(depth, other)
             return np.where(depth > 0, spline(np.sqrt(np.maximum(depth, 0.0))), 0.0)
 
-        return replace(self, area=area, depth_limit=float(root[-1] ** 2))
+        return replace(self, area=area, depth_limit=limit)
 
     def stiffness(self, depth: Array) -> Array:
         """Return ∂F/∂δ [N/m] at depths [m]."""
@@ -105,12 +136,12 @@ class Contact:
         The stiffness at depths > 0 [m] is that of a flat punch of the radius: 2E*a without tension.
         """
         assert isinstance(self.indenter, HasContactRadius)
-        length = 2 * self.tension / self.modulus
-        curve = self.indenter.force_curve(depth, length)
-        found = self.indenter.contact_radius(depth, length)
+        size, length = self.size, 2 * self.tension / self.modulus
+        curve = self.indenter.force_curve(depth / size, length / size)
+        contact = self.indenter.contact_radius(depth / size, length / size)
         return (
-            self.modulus * curve.force,
-            self.modulus * curve.by_depth,
-            found.radius,
-            self.modulus * found.stiffness_slope,
+            self.modulus * size**2 * curve.force,
+            self.modulus * size * curve.by_depth,
+            size * contact.radius,
+            self.modulus * contact.stiffness_slope,
         )

@@ -14,8 +14,8 @@ from pellicle.errors import ConfigError
 
 _FEWEST = 8
 """Rows that a curve has to have."""
-_GROUPS = 20
-"""Parts of a pass that have a velocity of their own."""
+_DEEP, _LASTS = 0.02, 0.1
+"""Distance of a dwell from the deepest row, over the range, and its least part of the loading."""
 _NEIGHBOURS = 4
 """Rows on each side over which forces are smoothed."""
 
@@ -108,15 +108,21 @@ class Curve:
         return [rows for rows in passes if rows.size]
 
     @cached_property
+    def rests(self) -> Mask:
+        """Rows of a dwell: the deepest on the way in, if they last for a tenth of it."""
+        deep = ~self.moves_out & (self.base >= self.base.max() - _DEEP * float(np.ptp(self.base)))
+        lasts = deep.any() and np.ptp(self.clock[deep]) > _LASTS * np.ptp(
+            self.clock[~self.moves_out]
+        )
+        return deep if lasts else np.zeros_like(deep)
+
+    @cached_property
     def velocity(self) -> Array:
-        """Velocity of the base into the solid [m/s], of shape (n,), that of groups of neighbours."""
+        """Velocity of the base into the solid [m/s], of shape (n,), the mean of each pass."""
         velocity = np.zeros_like(self.base)
-        for rows in self.passes:
-            for group in np.array_split(rows, min(_GROUPS, max(rows.size // 4, 1))):
-                time, base = (
-                    values[group] - np.mean(values[group]) for values in (self.clock, self.base)
-                )
-                velocity[group] = time @ base / max(float(time @ time), 1e-300)
+        for rows in (~self.moves_out & ~self.rests, self.moves_out):
+            if rows.any() and np.ptp(self.clock[rows]) > 0:
+                velocity[rows] = np.polyfit(self.clock[rows], self.base[rows], 1)[0]
         return velocity
 
     @cached_property

@@ -177,13 +177,18 @@ class Effect(Fittable):
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Return why it cannot act on a curve beside effects of some types; empty if it can.
 
-        ``contact`` is the bare indenter's on a half-space of modulus 1 Pa.
+        ``contact`` is what it acts on, of modulus 1 Pa: bent by those that bend it before.
         """
         return ""
 
     def starts(self, sizes: Sizes) -> Iterable[Values]:
         """Yield values of its quantities from which searches start."""
         yield {name: 0.1 * sizes.of(quantity.unit) for name, quantity in self.open.items()}
+
+    def known(self, sizes: Sizes) -> Self:
+        """Return it with its open quantities at the first of its starts."""
+        usual = {name: 0.1 * sizes.of(quantity.unit) for name, quantity in self.open.items()}
+        return self.at({**usual, **next(iter(self.starts(sizes)), {})})
 
     def limits(self, sizes: Sizes) -> Mapping[str, tuple[float, float]]:
         """Return between which values [SI] such a curve can tell anything of a quantity."""

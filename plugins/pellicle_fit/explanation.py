@@ -24,17 +24,21 @@ from .effect import (
     Records,
     Responds,
     Response,
+    Sizes,
     Yields,
     fitted,
+    quantities,
 )
 
 _Kind = TypeVar("_Kind", bound=Effect)
 _BALANCE = 1e-10
 """Error of a depth in balance over the largest way."""
-_STEPS, _DIFFERENCE = 100, 1e-7
-"""Largest number of steps to it, and the step of their slopes over that way."""
+_DIFFERENCE = 1e-6
+"""Step of slopes by √δ over the root of that way."""
 _AT_ONCE = 6
 """Steps of Newton's method without a bracket."""
+_HALVINGS = 40
+"""How often the bracket of a balance is halved."""
 _WIDER = 12
 """How often the bracket of a balance doubles."""
 _NODES = 200
@@ -88,6 +92,9 @@ class Explanation:
         responds = self.of(Responds)
         if len(responds) > 1 or len(ranks) > len(set(ranks)):
             return "two of them stand in one place"
+        names = [name for part in self.parts for name in quantities(type(part))]
+        if len(names) > len(set(names)):
+            return "two of them have a quantity of one name"
         if responds and responds[0].balances and self.of(Yields):
             return "nothing may be in series with what balances the cantilever itself"
         return ""
@@ -101,14 +108,17 @@ class Explanation:
 
     def excuse(self, curves: Sequence[Curve]) -> str:
         """Return why the set cannot act on the curves; empty if it can."""
-        excuses = (
-            effect.excuse(
-                Contact.on_half_space(curve.indenter, 1.0), curve, self.types - {effect.type_name}
-            )
-            for curve in curves
-            for effect in self.effects
-        )
-        return self.clash() or next(filter(None, excuses), "")
+        if clash := self.clash():
+            return clash
+        bends = self.of(Bends)
+        for curve in curves:
+            contact = Contact.on_half_space(curve.indenter, 1.0)
+            for effect in (*bends, *(e for e in self.effects if e not in bends)):
+                if excuse := effect.excuse(contact, curve, self.types - {effect.type_name}):
+                    return excuse
+                if isinstance(effect, Bends):
+                    contact = effect.known(Sizes.of_curve(curve)).contact(contact)
+        return ""
 
     def accuracy(self, curve: Curve) -> float:
         """Return the error of its force over the largest one."""
@@ -188,20 +198,20 @@ def balanced(
         The sum does not grow, or there is no root.
     """
     scale = max(float(np.ptp(base)), 1e-300)
+    step, far = _DIFFERENCE * np.sqrt(scale), 2 * np.sqrt(scale)
 
     def excess(depth: Array) -> Array:
         return depth + give(pushed(depth)) - base
 
-    def newton(depth: Array, above: Array) -> Array:
-        slope = (excess(depth + _DIFFERENCE * scale) - above) / (_DIFFERENCE * scale)
-        return depth - above / np.maximum(slope, 1e-300)
-
-    depth = start
+    # In √δ a toe that is infinitely soft at first touch has a slope.
+    root = np.sign(start) * np.sqrt(np.abs(start))
     for _ in range(_AT_ONCE):
-        new = newton(depth, excess(depth))
-        if np.max(np.abs(new - depth)) <= _BALANCE * scale:
-            return new
-        depth = new
+        beyond, above = root + step, excess(root * np.abs(root))
+        slope = (excess(beyond * np.abs(beyond)) - above) / step
+        new = np.clip(root - above / np.maximum(slope, 1e-6 * step), -far, far)
+        if np.max(np.abs(new * np.abs(new) - root * np.abs(root))) <= _BALANCE * scale:
+            return new * np.abs(new)
+        root = new
     ends = base, base - give(pushed(base))
     low, high = np.minimum(*ends), np.maximum(*ends)
     for _ in range(_WIDER):
@@ -210,18 +220,13 @@ def balanced(
             break
         width = high - low
         high, low = np.where(short, high + width, high), np.where(long, low - width, low)
-    depth, last = np.clip(start, low, high), high - low
-    for _ in range(_STEPS):
-        above = excess(depth)
-        low, high = np.where(above < 0, depth, low), np.where(above > 0, depth, high)
-        new = newton(depth, above)
-        # Where Newton's step leaves the bracket or does not halve the last one, its middle.
-        slow = ~((new >= low) & (new <= high)) | (np.abs(new - depth) > last / 2)
-        new = np.where(slow & (above != 0), (low + high) / 2, np.clip(new, low, high))
-        last = np.abs(new - depth)
-        if np.all(last <= _BALANCE * scale):
-            return new
-        depth = new
-    raise ConvergenceError(
-        "the forces of the cantilever and the solid do not balance; is the spring constant right?"
-    )
+    else:
+        raise ConvergenceError(
+            "the forces of the cantilever and the solid do not balance; is the spring constant "
+            "right?"
+        )
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        over = excess(middle) > 0
+        low, high = np.where(over, low, middle), np.where(over, middle, high)
+    return (low + high) / 2

@@ -34,7 +34,7 @@ from .simulated.simulation import Simulation
 _BASELINES = {"none": (), "offset": ("offset",), "slope": ("offset", "slope")}
 _EFFECTS = {
     "spring_constant": ("spring", "spring_error"),
-    "sensitivity": ("compliance", "compliance"),
+    "sensitivity": ("sensitivity", "sensitivity_error"),
     "radius": ("size", "size_error"),
 }
 """Effect and quantity that an uncertainty is of."""
@@ -296,10 +296,7 @@ def _effects(
 def _uncertain(
     config: FitConfig, measured: Sequence[Measurement], indenters: Sequence[object]
 ) -> list[Effect]:
-    """Return the effects that stand for the uncertainties of the calibration.
-
-    Where a sensitivity is off by ε the tip is not where it seems, by ε F/k.
-    """
+    """Return the effects that stand for the uncertainties of the calibration."""
     effects: list[Effect] = []
     known = {
         "spring_constant": {curve.stiffness for curve in measured},
@@ -317,8 +314,6 @@ def _uncertain(
     for name, value in config.uncertainty.items():
         if isinstance(value, str):
             value = Quantity(UNCERTAIN[name])(value) / one(name, name, "give a share such as 5 %")
-        if name == "sensitivity":
-            value /= one("spring_constant", name, "give that of the cantilever, or leave this out")
         effect, quantity = _EFFECTS[name]
         weighed = {quantity: {"value": 0.0, "deviation": value}}
         effects.append(registry().make(Effect, {"type": effect, **weighed}))

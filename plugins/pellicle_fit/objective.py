@@ -21,10 +21,10 @@ _STEP = 1e-6
 """Step of derivatives by differences, in coordinates of the order of 1."""
 _SEARCHES = (("dogbox", 60), ("trf", 400))
 """Optimisers in the order in which they are tried, and their largest numbers of steps."""
-_TOLERANCE, _ROUGHLY = 1e-9, 1e-5
+_TOLERANCE, _ROUGHLY = 1e-8, 1e-4
 ROUGH = 20
 """Steps of a search that tells whether a start is worth another."""
-_HALVING = ((4, 3), (12, 1))
+_HALVING = ((4, 2), (16, 1))
 """Steps from all starts that are left, and how many of the best are kept."""
 _BEFORE = 1.0
 """How far before the first row a contact may lie, over the range of positions."""
@@ -231,14 +231,17 @@ class Objective:
                 break
         return Minimum(full(at), 2 * float(found.cost), bool(found.success))
 
-    def best(self, starts: Iterable[Array]) -> Minimum:
-        """Return the least minimum from several starts: few steps of all, more of the best."""
+    def best(self, starts: Iterable[Array], limit: float = np.inf) -> Minimum:
+        """Return the least minimum from several starts: few steps of all, more of the best.
+
+        One that stays above a limit of χ² is not sought to the end.
+        """
         left = list(starts)
         for steps, kept in _HALVING:
             minima = [self.minimise(start, steps=steps) for start in left]
             minima.sort(key=lambda minimum: minimum.chi_squared)
             left = [minimum.at for minimum in minima[:kept]]
-        return self.minimise(left[0])
+        return self.minimise(left[0]) if minima[0].chi_squared < limit else minima[0]
 
     def with_noise(self, noise: Sequence[float]) -> Objective:
         """Return χ² of another noise [N] of each curve."""

@@ -34,6 +34,8 @@ _FAILING = 0.01
 """Probability that a curve without fault fails some check."""
 _RARE = 0.05
 """Probability below which the number of failing curves is not attributed to chance."""
+_FAR = 40.0
+"""Difference of AIC beyond which an explanation is not sought to the end."""
 _ROWS = 250
 """Means that stand for the rows of each pass, where the force has no jumps."""
 Types = frozenset[str]
@@ -72,9 +74,7 @@ class Explained:
     @property
     def aic(self) -> float:
         """Akaike's criterion, less a constant of the curves."""
-        effects, curves = self.objective.explanation.effects, self.objective.curves
-        searched = sum(effect.searched(curve) for effect in effects for curve in curves)
-        return self.chi_squared + 2 * (len(self.objective.slots) + searched)
+        return criterion(self.objective, self.chi_squared)
 
     @cached_property
     def chi_squared(self) -> float:
@@ -286,7 +286,8 @@ def compared(
         parts = [(fit.objective, fit.minimum) for part, fit in fits.items() if part < types]
         # A pair starts from its parts.
         scan = not word < types or not word
-        minimum = objective.best(starts(objective, parts, scan=scan))
+        limit = np.inf if types in first else _limit(types, word, objective, fits, jumps=jumps)
+        minimum = objective.best(starts(objective, parts, scan=scan), limit)
         fits[types] = Explained(types, objective, minimum, curves)
         if len(fits) == len(first):
             fits = at_common_noise(fits.values())
@@ -294,6 +295,33 @@ def compared(
         return list(fits.values()), excused
     better = [_restarted(fit, fits) for fit in fits.values()]
     return list(at_common_noise(better).values()), excused
+
+
+def _limit(
+    types: Types,
+    word: Types,
+    objective: Objective,
+    fits: Mapping[Types, Explained],
+    *,
+    jumps: bool,
+) -> float:
+    """Return χ² above which an explanation decides nothing.
+
+    It is then far behind the best, or behind one of its parts.
+    """
+    most = min(fit.aic for fit in fits.values()) + _FAR
+    if word < types:
+        most = min(most, *(fits[part].aic + 1 for part in (word, types - word) if part in fits))
+    # Of means, χ² lacks the scatter of the rows about them.
+    scatter = 0.0 if jumps else fits[word].chi_squared - fits[word].minimum.chi_squared
+    return most - criterion(objective, 0.0) - scatter
+
+
+def criterion(objective: Objective, chi_squared: float) -> float:
+    """Return Akaike's criterion, less a constant of the curves."""
+    effects, curves = objective.explanation.effects, objective.curves
+    searched = sum(effect.searched(curve) for effect in effects for curve in curves)
+    return chi_squared + 2 * (len(objective.slots) + searched)
 
 
 def at_common_noise(fits: Collection[Explained]) -> dict[Types, Explained]:

@@ -1,12 +1,327 @@
-"""The contract of effects as a test: one call checks an effect."""
+"""The contract of effects as a test: one call checks an effect.
+
+An effect is asked on clean curves of a round tip and of a cone, on the approach alone and on both
+passes, with its quantities where searches start; on a curve for which it has an excuse it is not.
+"""
 
 from __future__ import annotations
 
-from pellicle.testing import check, rules_of
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import replace
+from itertools import product
+from typing import NamedTuple
 
-from .effect import Effect
+import numpy as np
+
+import pellicle as pl
+from pellicle.arrays import Array
+from pellicle.components import HasForceCurve
+from pellicle.testing import check, rules_of
+from pellicle.units import quantity_of
+
+from .contact import Contact
+from .curve import Curve
+from .effect import Adds, Bends, Effect, Records, Responds, Sizes, Yields, quantities
+from .explanation import Explanation, Solid
+
+_PLACES = Bends, Responds, Adds, Yields, Records
+_MODULUS, _STIFFNESS, _SPEED = 2e3, 0.05, 1e-6
+_DEPTHS = np.linspace(-0.5e-6, 1e-6, 61)
+_VALUES = 2
+"""Starts of each curve at which an effect is asked."""
+_ROUNDING, _LIMIT = 1e-6, 1e-3
+"""Differences over the largest force: rounding, and what is left at the limit of a quantity."""
+_SCALES = {"lengths": (2.0, 1.0, 1.0), "forces": (1.0, 3.0, 1.0), "times": (1.0, 1.0, 5.0)}
+_HALVINGS = 12
+
+
+class Case(NamedTuple):
+    """An effect of known quantities on a curve."""
+
+    words: str
+    effect: Effect
+    curve: Curve
+    modulus: float = _MODULUS
+    """That at the end of the loading [Pa], as fits count it."""
+
+    @property
+    def contact(self) -> Contact:
+        """The contact of the indenter on a half-space."""
+        return Contact.on_half_space(self.curve.indenter, self.modulus)
+
+    def force(self, *, without: bool = False, contact_point: float = 0.0) -> Array:
+        """Return the recorded force [N] with the effect, or without."""
+        effects = () if without else (self.effect,)
+        relaxed = Explanation(Solid(), effects).relaxed(self.curve.loading_time)
+        solid = Solid(reduced_modulus=self.modulus / relaxed, contact_point=contact_point)
+        return Explanation(solid, effects).force(self.curve)
+
+    def scaled(self, length: float, force: float, time: float) -> Case:
+        """Return the case with lengths, forces and times times factors, and so all quantities."""
+        update, curve, body = {}, self.curve, self.curve.indenter
+        for name, info in type(self.effect).model_fields.items():
+            quantity, value = quantity_of(info), getattr(self.effect, name)
+            if quantity is not None and value is not None:
+                newton, metre, second = quantity.powers()
+                update[name] = value * force**newton * length**metre * time**second
+        if radius := getattr(body, "radius", None):
+            body = _body("paraboloid", radius=length * radius)
+        curve = Curve(
+            length * curve.position,
+            force * curve.force,
+            body,
+            time * curve.clock,
+            stiffness=_STIFFNESS * force / length,
+        )
+        effect = self.effect.model_copy(update=update)
+        return Case(self.words, effect, curve, self.modulus * force / length**2)
+
+    def given(self, rows: Array) -> Array:
+        """Return what the effect itself makes of depths [m] or, of an instrument, forces [N]."""
+        rows = rows.view()
+        rows.flags.writeable = False
+        effect, curve = self.effect, self.curve
+        match effect:
+            case Bends():
+                return effect.contact(self.contact).force(rows)
+            case Responds():
+                response = effect.response(self.contact, curve, curve.position, 1 / _STIFFNESS)
+                return response(rows)
+            case Adds():
+                return effect.force(self.contact, curve, rows)
+            case Yields():
+                return effect.give(rows)
+            case Records():
+                return effect.recorded(rows, curve)
+        raise AssertionError(f"{type(effect).__name__} is in no place")
+
+    @property
+    def rows(self) -> Array:
+        """Depths [m] of the rows; forces [N] of what yields or is the instrument's."""
+        is_force = isinstance(self.effect, (Yields, Records))
+        return self.curve.force if is_force else self.curve.position
+
+    @property
+    def allowed(self) -> float:
+        """Difference of forces that is none [N]."""
+        known = Explanation(Solid(reduced_modulus=self.modulus, contact_point=0.0), (self.effect,))
+        return max(_ROUNDING, 3 * known.accuracy(self.curve)) * self.curve.largest
 
 
 def check_effect(effect: Effect) -> None:
-    """Check that an effect keeps its contract."""
+    """Check that an effect keeps its contract.
+
+    Besides the rules of all components: it acts on one of the curves of the kit; without its cause,
+    at 0 or at the limit of a quantity, the force is that without it; units are right; what it
+    returns is finite, of the right shape and a function of each row; contact and depths grow; jumps
+    are told; and searches start within its limits.
+    """
     check(effect, Effect, rules_of(__name__))
+
+
+def stands_in_one_place(effect: Effect) -> str:
+    """The class derives from one of Bends, Responds, Adds, Yields and Records."""
+    found = [place.__name__ for place in _PLACES if isinstance(effect, place)]
+    return "" if len(found) == 1 else f"it derives from {' and '.join(found) or 'Effect alone'}"
+
+
+def starts_lie_within_limits(effect: Effect) -> str:
+    """starts() and limits() name quantities; limits are a lower and an upper one, starts inside."""
+    known = quantities(type(effect))
+    for words, curve in _curves():
+        sizes = Sizes.of_curve(curve)
+        free, limits = _free(effect), effect.limits(sizes)
+        starts = list(free.starts(sizes))
+        for name in {*limits, *(name for start in starts for name in start)} - known.keys():
+            return f"{name} is not one of its quantities, {', '.join(known) or 'of which none is'}"
+        if not starts:
+            return f"starts() yields nothing on {words}; without quantities it yields {{}} once"
+        for name, (low, high) in limits.items():
+            if not low < high:
+                return f"the limits of {name} on {words} are {low:g} and {high:g}"
+        for name, value in ((n, v) for start in starts for n, v in start.items()):
+            low, high = limits.get(name, (-np.inf, np.inf))
+            known[name](value)
+            if not low <= value <= high:
+                return f"{name} starts at {value:g} on {words}, outside {low:g} to {high:g}"
+    return ""
+
+
+def acts_on_a_curve(effect: Effect) -> str:
+    """excuse() returns an empty text for one of the curves of the kit, else why not."""
+    if next(_cases(effect), None):
+        return ""
+    reasons = (effect.excuse(_contact(curve), curve, frozenset()) for _, curve in _curves())
+    return f"on all of them it is excused: {'; '.join(dict.fromkeys(reasons))}"
+
+
+def returns_a_number_for_each_row(effect: Effect) -> str:
+    """It returns float64 of the shape of its argument, which stays, and the same each time."""
+    for case in _cases(effect):
+        first, second = (case.given(case.rows) for _ in range(2))
+        if not isinstance(first, np.ndarray) or first.dtype != np.float64:
+            return f"{case.words}: {first!r}, which is no array of float64"
+        if first.shape != case.rows.shape:
+            return f"{case.words}: of shape {first.shape} for {case.rows.shape}"
+        if not np.array_equal(first, second):
+            return f"{case.words}: the second call returns something else"
+    return ""
+
+
+def is_finite_everywhere(effect: Effect) -> str:
+    """It is finite before contact, at tiny and at large forces, and down to the depth limit."""
+    for case in _cases(effect):
+        deepest = np.inf
+        if isinstance(case.effect, Bends):
+            deepest = case.effect.contact(case.contact).depth_limit
+        ends, largest = case.rows.copy(), float(case.rows.max())
+        ends[:4] = [0.0, 1e-9 * largest, -largest, min(10 * largest, deepest)]
+        if not np.all(finite := np.isfinite(case.given(ends))):
+            return f"{case.words}: it is not at {ends[~finite][0]:g} in SI"
+    return ""
+
+
+def each_row_is_its_own(effect: Effect) -> str:
+    """What is no response depends on each row alone: of every second row it is every second one."""
+    for case in _cases(effect):
+        curve, every = case.curve, slice(None, None, 2)
+        rows = {name: getattr(curve, name)[every] for name in ("position", "force", "time")}
+        half = case._replace(curve=replace(curve, **rows, unloading=curve.moves_out[every]))
+        whole = case.given(case.rows)
+        far = np.abs(half.given(half.rows) - whole[every]) > _LIMIT**2 * np.max(np.abs(whole))
+        if not isinstance(effect, Responds) and far.any():
+            return f"{case.words}: without every second row the others change"
+    return ""
+
+
+def depths_grow(effect: Effect) -> str:
+    """A bent contact has no force at depths ≤ 0, and one that grows; with what yields, bases sink.
+
+    The depth of the base, δ + u(F), grows with that of the solid.
+    """
+    for case in _cases(effect):
+        contact, deepest = case.contact, 2 * float(_DEPTHS[-1])
+        if isinstance(case.effect, Bends):
+            contact = case.effect.contact(contact)
+            deepest = min(deepest, contact.depth_limit)
+        depth = deepest * np.linspace(-1.0, 1.0, 201)
+        force = contact.force(depth)
+        if np.any(force[:101] != 0) or not np.all(np.diff(force[100:]) > 0):
+            return f"{case.words}: the forces at {depth[95]:g}, …, {depth[-1]:g} m are {force[95:]}"
+        give = case.effect.give(force) if isinstance(case.effect, Yields) else 0.0
+        sinks = np.diff(depth + give) > 0
+        if not sinks[100 : 100 + _DEPTHS.size].all():
+            return f"{case.words}: the base does not from a depth of {depth[:-1][~sinks][0]:g} m on"
+    return ""
+
+
+def without_its_cause_it_is_nothing(effect: Effect) -> str:
+    """At 0, or in the limit, of one of its quantities the force is that of a set without it."""
+    for case in _cases(effect):
+        least, words = np.inf, ""
+        for name, quantity in quantities(type(effect)).items():
+            value = getattr(case.effect, name)
+            for off in (0.0, 1e-9 * value, 1e9 * value):
+                with suppress(ValueError):
+                    off = quantity(off)
+                    without = case._replace(effect=case.effect.model_copy(update={name: off}))
+                    far = np.max(np.abs(without.force() - case.force(without=True)))
+                    far -= max(case.allowed, _LIMIT * case.curve.largest if off else 0.0)
+                    least, words = min((least, words), (far, f"{name} = {off:g}"))
+        if words and least > 0:
+            return f"{case.words}: even with {words} in SI the force differs by {least:.2g} N"
+    return ""
+
+
+def units_are_right(effect: Effect) -> str:
+    """With lengths, forces or times times a factor, quantities by their units, F is as expected.
+
+    The modulus is the one at the end of the loading.
+    """
+    for case in _cases(effect):
+        for words, factors in _SCALES.items():
+            scaled = case.scaled(*factors)
+            far = np.max(np.abs(scaled.force() - factors[1] * case.force()))
+            if far > scaled.allowed:
+                return (
+                    f"{case.words}: with {words} {max(factors):g} times as large the force is off "
+                    f"by {far:.2g} N; is the unit of a quantity wrong?"
+                )
+    return ""
+
+
+def jumps_are_told(effect: Effect) -> str:
+    """A force that jumps with the contact point is a discrete choice, which searched() counts."""
+    for case in _cases(effect):
+        if effect.searched(case.curve):
+            continue
+        # A soft cantilever may jump by itself.
+        case = case._replace(curve=replace(case.curve, stiffness=None))
+        shifts = list(float(np.ptp(_DEPTHS)) / _DEPTHS.size / 8 * np.arange(-8.0, 9.0))
+        forces = [case.force(contact_point=shift) for shift in shifts]
+        for _ in range(_HALVINGS):
+            # A jump is a bend of a curve that halving does not make smaller.
+            bends = np.max(np.abs(np.diff(forces, 2, axis=0)), axis=1)
+            at = int(np.argmax(bends))
+            shifts = [*np.linspace(shifts[at], shifts[at + 2], 5)]
+            forces = [case.force(contact_point=shift) for shift in shifts]
+        jump = float(np.max(np.abs(np.diff(forces, axis=0))))
+        if jump > _LIMIT * case.curve.largest:
+            return f"{case.words}: the force jumps by {jump:.2g} N"
+    return ""
+
+
+def what_it_says_is_valid(effect: Effect) -> str:
+    """accuracy() is a share, searched() a whole number ≥ 0; relaxed() and stiffness() are > 0."""
+    for case in _cases(effect):
+        known, says = case.effect, {}
+        says["accuracy()"] = 0 <= known.accuracy(case.contact, case.curve, frozenset()) < 1
+        says["searched()"] = known.searched(case.curve) in range(100)
+        if isinstance(known, Responds):
+            says["relaxed()"] = 0 < known.relaxed(1.0) < np.inf
+        if isinstance(known, Records):
+            says["stiffness()"] = 0 < known.stiffness(_STIFFNESS) < np.inf
+        if wrong := [name for name, is_valid in says.items() if not is_valid]:
+            return f"{case.words}: {' and '.join(wrong)} is not"
+    return ""
+
+
+def _cases(effect: Effect) -> Iterator[Case]:
+    """Yield the effect on the curves on which it can act, at the first of its starts."""
+    for words, curve in _curves():
+        if effect.excuse(_contact(curve), curve, frozenset()):
+            continue
+        free, sizes = _free(effect), Sizes.of_curve(curve)
+        for start in list(free.starts(sizes))[:_VALUES]:
+            known = free.known(sizes).model_copy(update=dict(start))
+            yield Case(words, known, curve)
+
+
+def _free(effect: Effect) -> Effect:
+    """Return the effect with all of its quantities open."""
+    return effect.model_copy(update=dict.fromkeys(quantities(type(effect))))
+
+
+def _contact(curve: Curve) -> Contact:
+    return Contact.on_half_space(curve.indenter, 1.0)
+
+
+def _curves() -> Iterator[tuple[str, Curve]]:
+    """Yield clean curves, whose base moves at a constant speed."""
+    bodies = {"a round tip": _body("paraboloid", radius=5e-6)}
+    bodies["a cone"] = _body("cone", half_angle=1.2)
+    passes = {"the approach": _DEPTHS, "both passes": np.append(_DEPTHS, _DEPTHS[-2::-1])}
+    for (tip, body), (words, depth) in product(bodies.items(), passes.items()):
+        force = Contact.on_half_space(body, _MODULUS).force(depth)
+        way = np.abs(np.diff(depth + force / _STIFFNESS, prepend=depth[0]))
+        curve = Curve(depth, force, body, np.cumsum(way) / _SPEED, stiffness=_STIFFNESS)
+        for array in (depth, force, curve.clock, curve.base, curve.smoothed, curve.velocity):
+            array.flags.writeable = False
+        yield f"{words} of {tip}", curve
+
+
+def _body(name: str, **fields: float) -> HasForceCurve:
+    body = pl.indenter(name, **fields)
+    assert isinstance(body, HasForceCurve)
+    return body

@@ -212,9 +212,10 @@ def truth_of(kind: str, random: np.random.Generator) -> Truth:
         return of(tensed(tension), "tension", tension=tension)
     if kind.startswith("sensitivity"):
         error = sign * uniform(0.03, 0.10)
-        # The lever bends as far as the solid gives way; the tip is told off by that share of it.
+        # The lever bends as far as the solid gives way.
         spring = largest / TOP
-        return of(series(lambda f: error * f / spring), "compliance", spring=spring)
+        force = series(lambda f: f / spring)
+        return of(lambda rows: (1 + error) * force(rows), "compliance", spring=spring)
     match kind:
         case "hertz" | "1/f noise":
             return of(lambda rows: hertz(rows.depth), coloured=kind != "hertz")
@@ -291,9 +292,12 @@ def fitted(truth: Truth, protocol: str, share: float, random: np.random.Generato
         force = truth.force(rows)
         draw = pink(random, force.size) if truth.coloured else random.standard_normal(force.size)
         measured = force + share * np.abs(force).max() * draw
-        curves[str(number)] = rows.depth + 1e-6, measured, rows.time - rows.time[0]
+        tip = rows.depth + 1e-6 - (measured / truth.spring if truth.spring else 0.0)
+        curves[str(number)] = tip, measured, rows.time - rows.time[0]
     options: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS}
     options["segment"] = "both" if protocol == "both" else "approach"
+    if truth.spring:
+        options["spring_constant"] = truth.spring
     if "weighed" in truth.kind:
         options |= {"uncertainty": {"sensitivity": "6 %"}}
     if len(curves) > 1:
@@ -303,7 +307,7 @@ def fitted(truth: Truth, protocol: str, share: float, random: np.random.Generato
 
 
 def expected(answer: Answer, truth: Truth, protocol: str) -> float:
-    """Return Δχ² without noise between the best explanation without a tension and the true one."""
+    """Return χ² without noise of the best explanation that has no tension."""
     paths = rows_of(protocol, TOP)
 
     def least(fit: Explained) -> float:

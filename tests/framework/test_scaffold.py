@@ -13,12 +13,12 @@ from pellicle.components import FAMILIES
 from pellicle.plugins import Registry
 
 
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("family", [*FAMILIES, "effect"])
 def test_writes_a_package(family: str, tmp_path: Path) -> None:
     """A name with a dash is a type, a module and a distribution, each in its own spelling."""
     folder = write_plugin(family, "graded-solid2", tmp_path)
     assert folder == tmp_path / "pellicle-graded-solid2"
-    assert {path.name for path in folder.iterdir()} == {
+    assert {path.name for path in folder.iterdir()} - {"curve.csv"} == {
         "README.md",
         "graded_solid2.toml",
         "pellicle_graded_solid2.py",
@@ -26,7 +26,10 @@ def test_writes_a_package(family: str, tmp_path: Path) -> None:
         "test_pellicle_graded_solid2.py",
     }
     code = (folder / "pellicle_graded_solid2.py").read_text(encoding="utf-8")
-    assert "class GradedSolid2(pl." in code
+    assert "class GradedSolid2(" in code
+    command = "fit" if family == "effect" else "run"
+    readme = (folder / "README.md").read_text(encoding="utf-8")
+    assert f"$ pellicle {command} graded_solid2.toml" in readme
     assert 'type: Literal["graded_solid2"] = "graded_solid2"' in code
     entry = f'"{family}.graded_solid2" = "pellicle_graded_solid2:GradedSolid2"'
     assert entry in (folder / "pyproject.toml").read_text(encoding="utf-8")

@@ -15,8 +15,9 @@ import pytest
 
 import pellicle as pl
 from pellicle.cli.new import write_plugin
-from pellicle.components import FAMILIES
+from pellicle.components import FAMILIES as OWN
 
+FAMILIES = *OWN, "effect"
 HERE = Path(__file__).parent
 CELLS = HERE.parent / "data" / "kernel_cells.csv"
 GRADED, GEL, HOTTEST, RETRACT, SQUEEZE = (
@@ -64,7 +65,26 @@ from pellicle_mean_gap import MeanGap
 for share in (1.0, 0.5):
     check_prescription(MeanGap(share=share))
 """,
+    "effect": """
+from pellicle_charged_gel.attraction import Attraction
+from pellicle_charged_gel.stiffening import Stiffening
+from pellicle_fit.testing import check_effect
+check_effect(Attraction())
+check_effect(Stiffening(power=2))
+""",
 }
+ATTRACTED = """
+import json, sys
+import numpy as np
+import pellicle as pl
+depth = np.linspace(-0.6e-6, 0.8e-6, 160)
+force = 4 / 3 * 2e3 * np.sqrt(5e-6) * depth.clip(0) ** 1.5
+force -= 1.5e-10 * np.exp(depth.clip(None, 0) / 6e-8)
+force += 1.2e-11 * np.random.default_rng(4).standard_normal(depth.size)
+fit = pl.fit(depth, force, indenter="paraboloid", radius="5 um", rivals=sys.argv[1:])
+print(fit.to_json())
+"""
+"""A curve of an attraction of 0.15 nN over 60 nm, fitted with rivals."""
 Command = Callable[..., subprocess.CompletedProcess[str]]
 
 
@@ -298,6 +318,34 @@ def test_a_prescription_runs_and_is_on_record(pellicle: Command, tmp_path: Path)
     assert "mean gap [µm]" in pellicle("show", str(tmp_path / "squeeze.h5")).stdout
 
 
+@pytest.mark.slow
+def test_an_effect_is_weighed_when_it_is_named(
+    environment: dict[str, str], python: Callable[..., str]
+) -> None:
+    """Installed but not named it changes nothing; named it explains what the others do not."""
+    without = {**environment, "PELLICLE_DISABLE_PLUGINS": "1"}
+    bare = subprocess.run(
+        [sys.executable, "-c", ATTRACTED, "offset"],
+        env=without,
+        capture_output=True,
+        encoding="utf-8",
+        check=True,
+    )
+    answers = [json.loads(bare.stdout), json.loads(python("-c", ATTRACTED, "offset"))]
+    for answer in answers:
+        for passing in ("date", "wall_time"):
+            answer.pop(passing, None)
+    assert answers[0] == answers[1]
+    named = json.loads(python("-c", ATTRACTED, "offset", "attraction", "stiffening"))
+    assert named["model"]["effects"] == ["attraction"]
+    found = named["parameters"]
+    for name, truth in (("reduced_modulus", 2e3), ("attraction", 1.5e-10)):
+        assert found[name]["low"] <= truth <= found[name]["high"]
+    compared = [set(explanation["effects"]) for explanation in named["explanations"]]
+    assert {"stiffening"} in compared
+    assert {"attraction", "tension"} in compared
+
+
 @pytest.mark.parametrize(
     ("file", "change", "words"),
     [
@@ -384,9 +432,11 @@ def test_example_of_a_written_package_runs(
     family: str, written: dict[str, Path], pellicle: Command, tmp_path: Path
 ) -> None:
     """It converges, with the component in its place, and no placeholder is left in any file."""
-    pellicle("run", str(written[family] / f"my_{family}.toml"), "-o", str(tmp_path))
+    command = "fit" if family == "effect" else "run"
+    done = pellicle(command, str(written[family] / f"my_{family}.toml"), "-o", str(tmp_path))
     assert any(tmp_path.iterdir())
+    assert command == "run" or "double-layer repulsion" in done.stdout
     files = list(written[family].iterdir())
-    assert len(files) == 5
+    assert len(files) == 5 + (family == "effect")
     for file in files:
         assert "$" not in file.read_text(encoding="utf-8").replace("\n$ ", "\n"), file

@@ -45,7 +45,7 @@ def new(
             "--plugin",
             metavar="FAMILY",
             help="Write the package of a kernel, indenter, interaction, solver, correction, "
-            "output, executor or prescription.",
+            "output, executor or prescription, or of a plugin's family, such as effect.",
         ),
     ] = None,
 ) -> None:
@@ -107,8 +107,9 @@ def _write_new(path: Path, content: bytes) -> None:
 def write_plugin(family: str, name: str, parent: Path) -> Path:
     """Write a complete package that adds a component, and return its folder, inside ``parent``.
 
-    The package of the family's base class has a folder ``templates/FAMILY``. ``name`` is the
-    component's type, such as ``graded`` or ``graded-solid``.
+    The package of the family's base class has a folder ``templates/FAMILY``; what belongs to its
+    example is copied as it is. ``name`` is the component's type, such as ``graded`` or
+    ``graded-solid``.
     """
     template = _template(family)
     names = _names(family, name)
@@ -120,6 +121,7 @@ def write_plugin(family: str, name: str, parent: Path) -> Path:
         f"{names['module']}.py": template / "module",
         f"test_{names['module']}.py": template / "test",
         f"{names['type']}.toml": template / "example",
+        **{file.name: file for file in template.iterdir() if file.suffix == ".csv"},
     }
     if folder.exists():
         raise StorageError(f"{folder} exists already; give another name")
@@ -167,8 +169,11 @@ def _names(family: str, name: str) -> dict[str, str]:
     module = f"pellicle_{type_}"
     if find_spec(module):
         raise ConfigError(f"a module {module} is installed already; give another name", "NAME")
+    package = registry().families[family].__module__.partition(".")[0]
+    takes_file = {c.file.partition(".")[0]: name for name, c in usable_commands().items() if c.file}
     return {
         "family": family,
+        "command": takes_file.get(package, "run"),
         "type": type_,
         "class_name": class_name,
         "module": module,

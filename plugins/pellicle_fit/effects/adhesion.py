@@ -53,10 +53,8 @@ class Adhesion(Responds):
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Refuse a contact without a radius."""
-        others = {"layer", "worn_tip", "size", "stiff_surface"}
-        if contact.is_bare_indenter and not beside & others:
-            return ""
-        return "needs an indenter with a contact radius on a half-space"
+        known = contact.is_bare_indenter
+        return "" if known else "needs an indenter with a contact radius on a half-space"
 
     def starts(self, sizes: Sizes) -> Iterable[Values]:
         """Yield little and much adhesion."""

@@ -13,7 +13,11 @@ from pellicle_fit.effect import Fitted, Sizes, Values, Yields, fitted
 
 
 class Brush(Yields):
-    """Polymer brush on the solid: F = F₁ (exp(2πu/L) − 1), compressed by u (Alexander 1977)."""
+    """Polymer brush on the solid, compressed by u under F = F₁ (exp(2πu/L) − 1).
+
+    The force on a brush of length L falls with what is left of it as exp(−2π(L − u)/L) (Alexander
+    1977; Butt et al. 1999).
+    """
 
     model_config = ConfigDict(title="a brush")
     type: Literal["brush"] = "brush"

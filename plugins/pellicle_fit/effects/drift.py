@@ -14,7 +14,7 @@ from pellicle_fit.effect import Fitted, Records, fitted
 
 
 class Drift(Records):
-    """A force that grows with time."""
+    """Force of the instrument that grows with time."""
 
     model_config = ConfigDict(title="drift in time")
     type: Literal["drift"] = "drift"
@@ -26,8 +26,6 @@ class Drift(Records):
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Refuse curves of one pass, on which it is a sloping baseline."""
-        if curve.time is None:
-            return "needs times or a speed"
         return "" if curve.has_both_passes else "on one pass it is a sloping baseline"
 
     def recorded(self, force: Array, curve: Curve) -> Array:

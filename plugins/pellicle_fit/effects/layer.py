@@ -23,7 +23,7 @@ _ERROR = 1e-4
 
 
 class Layer(Bends):
-    """A layer bonded to a rigid base in place of the half-space."""
+    """Elastic layer of thickness h, bonded to a rigid base, in place of the half-space."""
 
     model_config = ConfigDict(title="a thin layer")
     type: Literal["layer"] = "layer"
@@ -35,21 +35,21 @@ class Layer(Bends):
     ] = 0.5
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
-        """Refuse an indenter without a curve on layers."""
-        known = isinstance(contact.indenter, HasLayerForceCurve) and contact.half_space
-        if known and "worn_tip" not in beside:
-            return ""
-        return "needs an indenter whose curve on a layer is known"
+        """Refuse an indenter without a curve on layers, or one whose tip is another."""
+        known = contact.is_own and isinstance(contact.indenter, HasLayerForceCurve)
+        return "" if known else "needs an indenter whose curve on a layer is known"
 
     def contact(self, contact: Contact) -> Contact:
         """Return the contact with the layer."""
-        body, thickness, ratio = contact.indenter, self.thickness, self.poissons_ratio
+        body, size, ratio = contact.indenter, contact.size, self.poissons_ratio
         assert isinstance(body, HasLayerForceCurve)
+        layer = self.thickness / size, ratio
 
         def area(depth: Array, length: float) -> Array:
-            return checked_force(body, "layer_force_curve", depth, length, thickness, ratio)
+            lengths = depth / size, length / size
+            return size**2 * checked_force(body, "layer_force_curve", *lengths, *layer)
 
-        limit = body.layer_depth_limit(thickness, ratio)
+        limit = size * body.layer_depth_limit(*layer)
         return replace(contact, area=area, depth_limit=limit, half_space=False, error=_ERROR)
 
     def starts(self, sizes: Sizes) -> Iterable[Values]:

@@ -12,7 +12,7 @@ from pellicle_fit.effect import Fitted, Records, fitted
 
 
 class Offset(Records):
-    """A constant force."""
+    """Constant force of the instrument."""
 
     model_config = ConfigDict(title="an offset")
     type: Literal["offset"] = "offset"

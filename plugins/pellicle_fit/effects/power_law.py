@@ -14,7 +14,7 @@ from .relaxing import Relaxing
 
 
 class PowerLaw(Relaxing):
-    """E(t) = E* (t / 1 s)^−α."""
+    """Solid that relaxes by a power law, E(t) = E* (t / 1 s)^−α."""
 
     model_config = ConfigDict(title="power-law relaxation")
     type: Literal["power_law"] = "power_law"

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import ConfigDict
 
-from pellicle.arrays import Array
 from pellicle_fit.contact import Contact
 from pellicle_fit.curve import Curve
 from pellicle_fit.effect import Bends, Fitted, Weighed, fitted
@@ -31,10 +29,5 @@ class Size(Bends):
         return ""
 
     def contact(self, contact: Contact) -> Contact:
-        """Return A(δ, s) = λ² A₁(δ/λ, s/λ) with λ = 1 + ε."""
-        factor, area = 1 + self.size_error, contact.area
-
-        def scaled(depth: Array, length: float) -> Array:
-            return factor**2 * area(depth / factor, length / factor)
-
-        return replace(contact, area=scaled, depth_limit=contact.depth_limit * factor)
+        """Return the contact of the indenter with its lengths times 1 + ε."""
+        return Contact.on_half_space(contact.indenter, contact.modulus, 1 + self.size_error)

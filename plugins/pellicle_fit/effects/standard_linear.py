@@ -15,7 +15,7 @@ from .relaxing import Relaxing
 
 
 class StandardLinear(Relaxing):
-    """E(t) = E* (1 − g + g e^(−t/T)), with E* that of fast loading."""
+    """Standard linear solid, E(t) = E* (1 − g + g e^(−t/T)), with E* that of fast loading."""
 
     model_config = ConfigDict(title="standard linear relaxation")
     type: Literal["standard_linear"] = "standard_linear"
@@ -42,5 +42,6 @@ class StandardLinear(Relaxing):
 
     def starts(self, sizes: Sizes) -> Iterable[Values]:
         """Yield relaxation within a small part of the path, a third of it and all of it."""
+        least, _ = self.limits(sizes)["relaxation_time"]
         for share in (0.05, 0.3, 2.0):
-            yield {"relaxed_share": 0.3, "relaxation_time": share * sizes.time}
+            yield {"relaxed_share": 0.3, "relaxation_time": max(share * sizes.time, least)}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 
@@ -14,17 +14,16 @@ from pellicle_fit.contact import Contact
 from pellicle_fit.curve import Curve
 from pellicle_fit.effect import Bends, Fitted, Sizes, Values, fitted
 
-_NODES = 300
-"""Depths between which the area is interpolated."""
-_LEAST = 1e-5
-"""Smallest of them over the largest."""
+_NODES, _SHARES = np.polynomial.legendre.leggauss(20)
+_ROOTS, _WEIGHTS = (_NODES + 1) / 2, _SHARES / 2
+"""Nodes √(δ′/δ) and weights of the integral over the depths δ′ of smaller contacts."""
 
 
 class StiffSurface(Bends):
-    """A stiffness k = 2E*a (1 + g e^(−a/l)) of contacts of radius a: a gradient, or a film.
+    """Surface stiffer or softer than the bulk: contacts of radius a have k = 2E*a (1 + g e^(−a/l)).
 
-    With |g| ≤ ½: a surface stiffer than half again mimics any tension, for both are a stiffness
-    over the contact radius.
+    A gradient of the modulus, or a film. With |g| ≤ ½: a surface stiffer than half again mimics any
+    tension, for both are a stiffness over the contact radius.
     """
 
     model_config = ConfigDict(title="a surface stiffer or softer than the bulk")
@@ -45,20 +44,19 @@ class StiffSurface(Bends):
         return "" if contact.is_bare_indenter else "needs an indenter with a contact radius"
 
     def contact(self, contact: Contact) -> Contact:
-        """Return A = ∫ (1 + g e^(−a/l)) dA₁ over the contacts of radius a = ½ dA₁/dδ."""
-        bare, gain, reach = contact.area, self.gain, self.reach
+        """Return A = A₁ + ∫ 2a g e^(−a/l) dδ over the contacts of radius a, those of A₁."""
+        bare, gain, reach = replace(contact, tension=0.0), self.gain, self.reach
 
-        def area(depth: Array, length: float) -> Array:
-            deepest = max(float(np.max(depth)), 1e-300)
-            grid = np.append(0.0, np.geomspace(_LEAST * deepest, deepest, _NODES))
-            force = bare(grid, 0.0)
-            radius = np.diff(force) / np.diff(grid) / 2
-            total = np.cumsum(np.diff(force) * (1 + gain * np.exp(-radius / reach)))
-            return np.asarray(np.interp(np.maximum(depth, 0.0), grid, np.append(0.0, total)))
+        def area(depth: Array, _: float) -> Array:
+            # The radius of round bodies is smooth in √δ.
+            depths = np.maximum(depth, 0.0)[:, None] * _ROOTS**2
+            radius = bare.radius(depths.ravel()).reshape(depths.shape)
+            excess = 4 * gain * radius * np.exp(-radius / reach) * _ROOTS @ _WEIGHTS
+            return bare.area(depth, 0.0) + np.maximum(depth, 0.0) * excess
 
         return replace(contact, area=area, half_space=False)
 
-    def limits(self, sizes: Sizes) -> dict[str, tuple[float, float]]:
+    def limits(self, sizes: Sizes) -> Mapping[str, tuple[float, float]]:
         """Return lengths that are neither below all contacts nor beyond them."""
         return {"reach": (0.01 * sizes.length, 100 * sizes.length)}
 
