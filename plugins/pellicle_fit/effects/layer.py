@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 
@@ -51,6 +51,10 @@ class Layer(Bends):
 
         limit = size * body.layer_depth_limit(*layer)
         return replace(contact, area=area, depth_limit=limit, half_space=False, error=_ERROR)
+
+    def limits(self, sizes: Sizes) -> Mapping[str, tuple[float, float]]:
+        """Return thicknesses up to that of a half-space."""
+        return {"thickness": (1e-2 * sizes.length, 1e3 * sizes.length)}
 
     def starts(self, sizes: Sizes) -> Iterable[Values]:
         """Yield thin and thick layers."""
