@@ -8,13 +8,10 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import ConfigDict, Field
 
-from pellicle.arrays import Array
 from pellicle.components import HasLayerForceCurve
 from pellicle.units import Quantity
 from pellicle_fit.checked_force import checked_force
-from pellicle_fit.contact import Contact
-from pellicle_fit.curve import Curve
-from pellicle_fit.effect import Bends, Fitted, Sizes, Values, fitted
+from pellicle_fit.effect import Array, Bends, Contact, Curve, Fitted, Sizes, Values, fitted
 
 _THICKNESSES = (0.5, 2.0, 10.0)
 """Thicknesses from which searches start, over the range of positions."""
