@@ -215,7 +215,7 @@ def answer(
     )
     fits, excused = fitted_all(question, curves)
     if question.word in excused:
-        raise ConfigError(f"cannot be fitted to this curve: it {excused[question.word]}", "model")
+        raise ConfigError(f"cannot be fitted to this curve: {excused[question.word]}", "model")
     best = min(fits, key=lambda fit: fit.aic)
     threshold = threshold_of(min(judged.noise.freedom for judged in best.judgements))
     margin, word = max(MARGIN, threshold), question.word
