@@ -109,6 +109,8 @@ def test_calibration_is_not_given_twice(tmp_path: Path, recording: instruments.R
     with pytest.raises(pl.ConfigError, match=r"holds a spring constant of 0\.05 already"):
         only(tmp_path / "curve.tab", Calibration(spring_constant=0.1))
     assert is_curve(only(tmp_path / "curve.tab", Calibration(spring_constant=SPRING)), *SEEN)
+    # It holds no time.
+    assert only(tmp_path / "curve.tab", Calibration(speed=1e-6)).speed == 1e-6
 
 
 def test_damaged_file(tmp_path: Path, recording: instruments.Recording) -> None:
