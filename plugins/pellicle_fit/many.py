@@ -40,7 +40,6 @@ _WITHOUT_EFFECT = {
     "curves",
     "per_file",
     "pool",
-    "contact_points",
     "executor",
     "cache",
     "accept",

@@ -11,7 +11,7 @@ from pellicle.arrays import Array
 from pellicle_fit.files.measurement import Axis
 from pellicle_fit.objective import CONTACT_POINT
 
-from .row import ENDS, Row, is_closed, units_of
+from .row import ENDS, Row, units_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -83,7 +83,7 @@ def _numbers(row: Row) -> dict[str, float]:
         if estimate.held or name in _OF_BASELINE:
             continue
         low, value, high = (known[f"{name}{end}"] for end in ("_low", "", "_high"))
-        value = value if is_closed(estimate) else np.nan
+        value = value if row.is_closed(name) else np.nan
         if name == CONTACT_POINT:
             name, low, value, high = CONTACT_HEIGHT, -high, -value, -low
         numbers |= {name: value, f"{name}_low": low, f"{name}_high": high}

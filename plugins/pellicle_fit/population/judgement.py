@@ -17,7 +17,7 @@ from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.files import read_text
 from pellicle_fit.objective import MODULUS
 
-from .row import Row, is_closed
+from .row import Row
 from .rules import Rule
 
 GROUP = "{group}"
@@ -177,7 +177,7 @@ def outliers(rows: Sequence[Row]) -> list[Row]:
     """
     import pandas as pd
 
-    rows = [row for row in rows if is_closed(row.estimates[MODULUS])]
+    rows = [row for row in rows if row.is_closed(MODULUS)]
     moduli = [row.estimates[MODULUS].value for row in rows]
     groups = pd.Series([row.group for row in rows], dtype=object)
     logarithms = pd.Series(np.log(moduli)).groupby(groups)

@@ -108,6 +108,14 @@ class Row:
         """Whether there is a fit."""
         return self.status == FITTED
 
+    def is_closed(self, name: str) -> bool:
+        """Return whether the chosen explanation has both ends of the interval of a quantity.
+
+        The value of an open interval is one of many that describe the curve as well.
+        """
+        own = self.fit.get("parameters", {}).get(name.replace("youngs", "reduced"))
+        return own is not None and not own["held"] and None not in (own["low"], own["high"])
+
     def values(self) -> dict[str, float]:
         """Return all numbers in SI by name, ends of intervals too; an open end is NaN."""
         values: dict[str, float] = {}
@@ -121,6 +129,11 @@ class Row:
     def model(self) -> str:
         """The effects of the chosen explanation in words; empty without a fit."""
         return str(self.fit["model"]["words"]) if self.fit else ""
+
+    @property
+    def verdict(self) -> str:
+        """Whether what was asked for is needed; empty without a fit."""
+        return str(self.fit.get("verdict", ""))
 
     @property
     def messages(self) -> list[str]:
@@ -162,14 +175,6 @@ class Row:
         name, group, status = (fit.pop(key) for key in ("curve", "group", "status"))
         own = {key: fit.pop(key) for key in ("accepted", "reason", "outlier")}
         return cls(name, group, status=status, fit=fit, **own)
-
-
-def is_closed(estimate: Estimate) -> bool:
-    """Return whether a quantity was fitted and has both ends of its interval.
-
-    The value of an open interval is one of many that describe the curve as well.
-    """
-    return not estimate.held and estimate.low is not None and estimate.high is not None
 
 
 def units_of(rows: Iterable[Row]) -> dict[str, str]:

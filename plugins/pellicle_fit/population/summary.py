@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .row import Row, is_closed
+from .row import Row
 
 ALL = "all"
 """Name of the line of all accepted curves."""
@@ -43,7 +43,7 @@ def summary(rows: Sequence[Row]) -> list[Quartiles]:
     import pandas as pd
 
     fitted = [
-        (name, row.group, e.unit, e.value if is_closed(e) else np.nan, row.outlier)
+        (name, row.group, e.unit, e.value if row.is_closed(name) else np.nan, row.outlier)
         for name in _DRAWN
         for row in rows
         if row.accepted and (e := row.estimates.get(name)) is not None and not e.held

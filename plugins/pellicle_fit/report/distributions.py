@@ -11,7 +11,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.units import axis_unit
 from pellicle_fit.objective import MODULUS
-from pellicle_fit.population.row import Row, is_closed
+from pellicle_fit.population.row import Row
 from pellicle_fit.population.summary import label
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.wording import words
@@ -34,11 +34,7 @@ _RASTERISED = 1000
 
 def drawable(rows: Sequence[Row]) -> list[Row]:
     """Return the rows that are drawn: of accepted curves that have a closed interval."""
-    return [row for row in rows if row.accepted and any(_is_closed(row, n) for n in _DRAWN)]
-
-
-def _is_closed(row: Row, name: str) -> bool:
-    return name in row.estimates and is_closed(row.estimates[name])
+    return [row for row in rows if row.accepted and any(row.is_closed(n) for n in _DRAWN)]
 
 
 def distributions(rows: Sequence[Row], figure: FigureBase) -> None:
@@ -50,10 +46,10 @@ def distributions(rows: Sequence[Row], figure: FigureBase) -> None:
     labels = [label(name) for name in names[:_GROUPS]]
     if len(names) > _GROUPS:
         labels[-1] = f"{len(names) - _GROUPS + 1} other groups"
-    fitted = [name for name in _DRAWN if any(_is_closed(row, name) for row in rows)]
+    fitted = [name for name in _DRAWN if any(row.is_closed(name) for row in rows)]
     columns = figure.subplots(1, len(fitted) + (len(fitted) == 2), squeeze=False)[0]
     for name, axes in zip(fitted, columns, strict=False):
-        closed = [_is_closed(row, name) for row in rows]
+        closed = [row.is_closed(name) for row in rows]
         _histogram(axes, list(compress(rows, closed)), name, kinds[closed], labels)
     if len(fitted) == 2:
         _scatter(columns[-1], rows, kinds)

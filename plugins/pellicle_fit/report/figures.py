@@ -15,7 +15,7 @@ from pellicle.show import save_figure as save_drawing
 from pellicle.units import axis_unit
 from pellicle_fit.intervals import Estimate
 from pellicle_fit.many import ManyFits
-from pellicle_fit.objective import MODULUS, Slot
+from pellicle_fit.objective import MODULUS
 from pellicle_fit.population.row import Row
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import Fit, parameters_of
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 
 SIZE = (5.2, 4.6)
 """Width and height of a panel [inch]."""
-_PROFILE_MARGIN = 0.4
-"""Values drawn beyond an interval, as a fraction of its width."""
+_REACH = 1.8
+"""Coordinates drawn to either side, over the distance of the end of the interval."""
 _OPEN_DEVIATIONS = 3.0
 """Coordinates drawn towards an open end, in standard deviations."""
 _PROFILE_POINTS = 15
@@ -174,7 +174,9 @@ def _curve(fit: Fit, other: Explained, figure: FigureBase) -> None:
         upper.plot(position * metre, force * newton, style, label=label)
         residuals = (curve.force - force) / noise
         lower.plot(data[0], residuals, f"{style[:2]}.", markersize=2, alpha=0.5)
-    upper.axvline(fit.contact_point.value * metre, color="0.3", linewidth=0.8, linestyle=":")
+    # No line of the axes, beside which a legend would go.
+    touch, across = fit.contact_point.value * metre, upper.get_xaxis_transform()
+    upper.vlines(touch, 0, 1, "0.3", ":", linewidth=0.8, transform=across)
     upper.set_ylabel(f"force [{force_unit}]")
     upper.legend()
     lower.set_xlabel(f"position [{unit}]")
@@ -208,10 +210,14 @@ def _profiles(fit: Fit, shared: Sequence[int], figure: FigureBase) -> None:
     objective, minimum, own = chosen.objective, chosen.minimum, parameters_of(chosen)
     deviations = objective.deviations(minimum.at)
     for k, axes in zip(shared, figure.subplots(len(shared), 1, squeeze=False)[:, 0], strict=True):
-        slot = objective.slots[k]
-        ends = _ends(slot, own[slot.name], minimum.at[k], deviations[k])
-        margin = _PROFILE_MARGIN * (ends[1] - ends[0])
-        low, high = np.clip((ends[0] - margin, ends[1] + margin), *(e[k] for e in objective.limits))
+        slot, best = objective.slots[k], minimum.at[k]
+        far = _OPEN_DEVIATIONS * min(deviations[k], max(abs(best), 1.0))
+        estimate = own[slot.name]
+        low, high = (
+            far if end is None else _REACH * abs(slot.coordinate(end) - best)
+            for end in (estimate.low, estimate.high)
+        )
+        low, high = np.clip((best - low, best + high), *(ends[k] for ends in objective.limits))
         coordinates, rises = np.linspace(low, high, _PROFILE_POINTS), []
         for coordinate in coordinates:
             start = np.array(minimum.at)
@@ -221,19 +227,11 @@ def _profiles(fit: Fit, shared: Sequence[int], figure: FigureBase) -> None:
         factor, unit = axis_unit(values, slot.quantity.unit)
         axes.plot(values * factor, rises, "C0-")
         axes.axhline(fit.answer.threshold, color="0.3", linewidth=0.8, linestyle="--")
-        for end in (own[slot.name].low, own[slot.name].high):
+        for end in (estimate.low, estimate.high):
             if end is not None:
                 axes.axvline(end * factor, color="0.2", linewidth=1.0, linestyle=":")
         axes.set(xlabel=f"{words(slot.name)} [{unit}]", ylabel="Δχ²")
         axes.set_ylim(0, 3 * fit.answer.threshold)
-
-
-def _ends(slot: Slot, estimate: Estimate, best: float, deviation: float) -> tuple[float, float]:
-    """Return the coordinates of the ends of an interval; an open one ends some deviations away."""
-    far = _OPEN_DEVIATIONS * (deviation if np.isfinite(deviation) else max(abs(best), 1.0))
-    low = best - far if estimate.low is None else slot.coordinate(estimate.low)
-    high = best + far if estimate.high is None else slot.coordinate(estimate.high)
-    return low, high
 
 
 def _fitted(rows: Sequence[Row], name: str) -> list[tuple[int, Estimate]]:

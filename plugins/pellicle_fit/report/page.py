@@ -78,9 +78,11 @@ def save_report(fit: Fit | ManyFits, path: Path, title: str) -> Path:
 
 def _one(fit: Fit) -> list[Block]:
     """Return the results of the fit of one curve or of several."""
+    others = [text for text in fit.sentences if text not in (fit.comparison, fit.advice)]
     return [
         Text(sentence_of_fit(fit), lead=True),
         Notice(_sentence(fit.comparison), good=fit.verdict not in _UNDECIDED),
+        *(Text(_sentence(text)) for text in others),
         *_warnings(fit.warnings),
         tables.estimates(fit),
         tables.explanations(fit),

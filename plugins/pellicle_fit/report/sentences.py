@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 from pellicle.units import axis_unit
 from pellicle_fit.intervals import CONFIDENCE
 from pellicle_fit.many import ManyFits
@@ -51,6 +53,9 @@ def sentences_of_population(fits: ManyFits) -> str:
         counts += f", {accepted} of them accepted"
     if outliers:
         counts += f"; the modulus of {outliers} stands out"
+    verdicts = Counter(row.verdict for row in rows if row.accepted).most_common()
+    if verdicts:
+        counts += f"; verdicts: {', '.join(f'{count} {verdict}' for verdict, count in verdicts)}"
     hidden = "reduced_modulus" if any(p.parameter == "youngs_modulus" for p in parts) else ""
     groups = [group for group in dict.fromkeys(p.group for p in parts) if group != ALL]
     sentences = [f"{counts}."]

@@ -93,6 +93,7 @@ def rows(of: Sequence[Row], *, si: bool = False) -> Table:
     columns += _quantity("contact_point", [row.estimates.get("contact_point") for row in of], si)[
         :1
     ]
+    columns.append(Column("verdict", [row.verdict for row in of]))
     columns.append(Column("R²", [row.numbers.get("r_squared", "") for row in of], digits=5))
     columns.append(Column("failed checks", [", ".join(row.failed_checks) for row in of]))
     columns.append(Column("notes", [str(len(row.messages)) for row in of]))
