@@ -24,13 +24,13 @@ from pellicle.results import header
 
 from .config import FitConfig
 from .files.sources import Curves, Source, SourceStream
-from .fits import Problem, problem
 from .population.images import force_maps
 from .population.judgement import group_of, group_pattern, judge, read_names
 from .population.row import FAILED, Row, Sketch
 from .population.summary import summary
 from .population.table import table
-from .record import Stopwatch, components_of
+from .problem import Problem, problem
+from .record import Stopwatch, components_of, data_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -240,7 +240,9 @@ def _fit_batch(
             if directory is not None:
                 path = directory / _JOURNAL / f"{_identity(config, source)[:16]}.json"
                 if (earlier := _read(path)) is not None:
-                    row.keep(earlier)
+                    # The file may have another name now.
+                    own_data = {"name": source.name, "data": data_of(source.curve, config)}
+                    row.keep(earlier | {"curves": [earlier["curves"][0] | own_data]})
                     fits.resumed += 1
                     continue
             ready = problem(config, [source], progress=progress)

@@ -231,17 +231,18 @@ class Objective:
                 break
         return Minimum(full(at), 2 * float(found.cost), bool(found.success))
 
-    def best(self, starts: Iterable[Array], limit: float = np.inf) -> Minimum:
+    def best(self, starts: Iterable[Array], idle: tuple[float, float]) -> Minimum:
         """Return the least minimum from several starts: few steps of all, more of the best.
 
-        One that stays above a limit of χ² is not sought to the end.
+        One whose χ² is then in an ``idle`` range is not sought to the end.
         """
         left = list(starts)
         for steps, kept in _HALVING:
             minima = [self.minimise(start, steps=steps) for start in left]
             minima.sort(key=lambda minimum: minimum.chi_squared)
             left = [minimum.at for minimum in minima[:kept]]
-        return self.minimise(left[0]) if minima[0].chi_squared < limit else minima[0]
+        low, high = idle
+        return minima[0] if low < minima[0].chi_squared < high else self.minimise(left[0])
 
     def with_noise(self, noise: Sequence[float]) -> Objective:
         """Return χ² of another noise [N] of each curve."""

@@ -286,8 +286,10 @@ def compared(
         parts = [(fit.objective, fit.minimum) for part, fit in fits.items() if part < types]
         # A pair starts from its parts.
         scan = not word < types or not word
-        limit = np.inf if types in first else _limit(types, word, objective, fits, jumps=jumps)
-        minimum = objective.best(starts(objective, parts, scan=scan), limit)
+        idle = (np.inf, np.inf)
+        if types in others:
+            idle = _idle(types, word, objective, fits, jumps=jumps)
+        minimum = objective.best(starts(objective, parts, scan=scan), idle)
         fits[types] = Explained(types, objective, minimum, curves)
         if len(fits) == len(first):
             fits = at_common_noise(fits.values())
@@ -297,24 +299,27 @@ def compared(
     return list(at_common_noise(better).values()), excused
 
 
-def _limit(
+def _idle(
     types: Types,
     word: Types,
     objective: Objective,
     fits: Mapping[Types, Explained],
     *,
     jumps: bool,
-) -> float:
-    """Return χ² above which an explanation decides nothing.
+) -> tuple[float, float]:
+    """Return between which χ² an explanation decides nothing.
 
-    It is then far behind the best, or behind one of its parts.
+    It is then far behind the best, or behind one of its parts; worse than nothing at all it cannot
+    be, which it mostly contains.
     """
-    most = min(fit.aic for fit in fits.values()) + _FAR
+    low, high = min(fit.aic for fit in fits.values()) + _FAR, fits[NONE].aic
     if word < types:
-        most = min(most, *(fits[part].aic + 1 for part in (word, types - word) if part in fits))
+        own = [fits[part].aic for part in (word, types - word) if part in fits]
+        low, high = min(low, *(aic + 1 for aic in own)), max(own)
     # Of means, χ² lacks the scatter of the rows about them.
     scatter = 0.0 if jumps else fits[word].chi_squared - fits[word].minimum.chi_squared
-    return most - criterion(objective, 0.0) - scatter
+    lacks = criterion(objective, 0.0) + scatter
+    return low - lacks, high - lacks + 2 * len(objective.slots)
 
 
 def criterion(objective: Objective, chi_squared: float) -> float:

@@ -49,9 +49,9 @@ def complex_force(curve: Any, depth: Any) -> Any:
     return curve._replace(force=curve.force + 0j)
 
 
-def unknown_sensitivity(curve: pl.ForceCurve, depth: Any) -> Any:
-    """Return NaN for a sensitivity."""
-    return curve._replace(by_length=np.full_like(depth, np.nan))
+def unknown_force(curve: pl.ForceCurve, depth: Any) -> Any:
+    """Return NaN for a force."""
+    return curve._replace(force=np.full_like(depth, np.nan))
 
 
 def moves_depth(curve: pl.ForceCurve, depth: Any) -> Any:
@@ -61,10 +61,10 @@ def moves_depth(curve: pl.ForceCurve, depth: Any) -> Any:
 
 
 LIES = {
-    curve_in_a_row: "() returned array(",
-    too_short: "().force is array(",
-    complex_force: "().force is array(",
-    unknown_sensitivity: "().by_length has values that are NaN",
+    curve_in_a_row: "() returned ",
+    too_short: "() returned ",
+    complex_force: "() returned ",
+    unknown_force: "().force has values that are NaN",
 }
 
 
@@ -76,7 +76,7 @@ def test_a_force_curve_that_lies_is_refused(change: Any, solid: dict[str, Any]) 
     """No modulus is fitted by a force that is none."""
     method = "layer_force_curve" if solid else "force_curve"
     with pytest.raises(pl.PluginError) as error:
-        pl.fit(DEPTH, FORCE, indenter=liar(change), **solid)
+        pl.fit(DEPTH, FORCE, indenter=liar(change), rivals=[], **solid)
     assert f"indenter 'liar': {method}{LIES[change]}" in str(error.value)
 
 
