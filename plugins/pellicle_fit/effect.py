@@ -20,12 +20,12 @@ from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import core_schema
 
-from pellicle.arrays import Array
+from pellicle.arrays import Array as Array
 from pellicle.components import Component
 from pellicle.units import Quantity, quantity_of
 
-from .contact import Contact
-from .curve import Curve
+from .contact import Contact as Contact
+from .curve import Curve as Curve
 
 Values = Mapping[str, float]
 """Values [SI] of quantities by name."""

@@ -215,7 +215,7 @@ def answer(
     )
     fits, excused = fitted_all(question, curves)
     if question.word in excused:
-        raise ConfigError(f"cannot be fitted to this curve: it {excused[question.word]}", "model")
+        raise ConfigError(f"cannot be fitted to this curve: {excused[question.word]}", "model")
     best = min(fits, key=lambda fit: fit.aic)
     threshold = threshold_of(min(judged.noise.freedom for judged in best.judgements))
     margin, word = max(MARGIN, threshold), question.word
@@ -257,6 +257,7 @@ def with_estimates(
     fit: Explained, threshold: float, extra: Sequence[Effect], everything: bool
 ) -> Explained:
     """Return an explanation with its estimates: all, or modulus and tension."""
+    fit = fit.refined()
     objective, minimum = fit.objective, fit.minimum
     accuracy = max(
         objective.known(minimum.at, i).accuracy(curve) * curve.largest / noise

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import argparse
 import warnings
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
@@ -27,7 +26,8 @@ from pellicle.errors import PellicleError
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.columns import Calibration
 from pellicle_fit.files.measurement import Measurement
-from pellicle_fit.files.readers import SUFFIXES, read
+from pellicle_fit.files.readers import SUFFIXES
+from pellicle_fit.files.sources import SourceStream, gather
 
 RADIUS, RATIO = 10e-6, 0.5
 CALIBRATION = Calibration(spring_constant=0.05, sensitivity=50e-9)
@@ -141,13 +141,11 @@ def outcome(curve: Measurement | PellicleError) -> Outcome:
 
 def curves_of(path: Path) -> dict[str, Measurement | PellicleError]:
     """Return the curves of a file, with a calibration if it holds none."""
-    try:
-        curves = dict(read(path))
-    except PellicleError as error:
-        curves = {"": error}
-    if all(isinstance(curve, PellicleError) for curve in curves.values()):
-        with suppress(PellicleError):
-            return dict(read(path, CALIBRATION))
+    for calibration in (Calibration(), CALIBRATION):
+        sources = SourceStream(gather(path, "approach", calibration, {}))
+        curves = {source.name: source.curve for source in sources}
+        if any(isinstance(curve, Measurement) for curve in curves.values()):
+            break
     return curves
 
 

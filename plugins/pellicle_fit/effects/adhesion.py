@@ -9,9 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array, Mask
-from pellicle_fit.contact import Contact
-from pellicle_fit.curve import Curve
-from pellicle_fit.effect import Fitted, Responds, Response, Sizes, Values, fitted
+from pellicle_fit.effect import Contact, Curve, Fitted, Responds, Response, Sizes, Values, fitted
 
 _SEARCHED, _REFINED, _NODES = 61, 3, 120
 """Contacts among which the end of a branch is sought, and how often; nodes that describe it."""

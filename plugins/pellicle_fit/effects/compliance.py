@@ -7,8 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict
 
-from pellicle.arrays import Array
-from pellicle_fit.effect import Fitted, Sizes, Values, Yields, fitted
+from pellicle_fit.effect import Array, Fitted, Sizes, Values, Yields, fitted
 
 _MOST = 0.3
 """Largest give over the way, at the largest force."""

@@ -7,8 +7,7 @@ from typing import ClassVar, Literal
 import numpy as np
 from pydantic import ConfigDict
 
-from pellicle_fit.contact import Contact
-from pellicle_fit.curve import Curve
+from pellicle_fit.effect import Contact, Curve
 
 from .shape import Shape, in_place
 

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pellicle.arrays import Array
-from pellicle_fit.contact import Contact
-from pellicle_fit.curve import Curve
-from pellicle_fit.effect import Adds, Fitted, fitted
+from pellicle_fit.effect import Adds, Array, Contact, Curve, Fitted, fitted
 
 
 class Drag(Adds):

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import ConfigDict, Field
 
-from pellicle.arrays import Array
 from pellicle.components import HasLayerForceCurve
 from pellicle.units import Quantity
 from pellicle_fit.checked_force import checked_force
-from pellicle_fit.contact import Contact
-from pellicle_fit.curve import Curve
-from pellicle_fit.effect import Bends, Fitted, Sizes, Values, fitted
+from pellicle_fit.effect import Array, Bends, Contact, Curve, Fitted, Sizes, Values, fitted
 
 _THICKNESSES = (0.5, 2.0, 10.0)
 """Thicknesses from which searches start, over the range of positions."""
@@ -51,6 +48,10 @@ class Layer(Bends):
 
         limit = size * body.layer_depth_limit(*layer)
         return replace(contact, area=area, depth_limit=limit, half_space=False, error=_ERROR)
+
+    def limits(self, sizes: Sizes) -> Mapping[str, tuple[float, float]]:
+        """Return thicknesses up to that of a half-space."""
+        return {"thickness": (1e-2 * sizes.length, 1e3 * sizes.length)}
 
     def starts(self, sizes: Sizes) -> Iterable[Values]:
         """Yield thin and thick layers."""

@@ -10,10 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from pellicle.arrays import Array
-from pellicle_fit.contact import Contact
-from pellicle_fit.curve import Curve
-from pellicle_fit.effect import Responds, Response
+from pellicle_fit.effect import Array, Contact, Curve, Responds, Response
 
 _NODES = 97
 """Nodes of the path while the indenter moves in; as many where it dwells or moves out."""

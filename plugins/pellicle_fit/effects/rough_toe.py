@@ -8,10 +8,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import ConfigDict
 
-from pellicle.arrays import Array
-from pellicle_fit.contact import Contact
-from pellicle_fit.curve import Curve
-from pellicle_fit.effect import Fitted, Sizes, Values, Yields, fitted
+from pellicle_fit.effect import Array, Contact, Curve, Fitted, Sizes, Values, Yields, fitted
 
 
 class RoughToe(Yields):

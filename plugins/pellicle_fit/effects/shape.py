@@ -8,9 +8,7 @@ from typing import ClassVar
 
 from pellicle import indenter
 from pellicle.components import HasForceCurve
-from pellicle_fit.contact import Contact
-from pellicle_fit.curve import Curve
-from pellicle_fit.effect import Bends, Sizes, Values
+from pellicle_fit.effect import Bends, Contact, Curve, Sizes, Values
 
 
 class Shape(Bends):

@@ -6,9 +6,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import ConfigDict
 
-from pellicle_fit.contact import Contact
-from pellicle_fit.curve import Curve
-from pellicle_fit.effect import Bends, Fitted, Weighed, fitted
+from pellicle_fit.effect import Bends, Contact, Curve, Fitted, Weighed, fitted
 
 
 class Size(Bends):

@@ -7,9 +7,7 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import ConfigDict
 
-from pellicle.arrays import Array
-from pellicle_fit.curve import Curve
-from pellicle_fit.effect import Fitted, Records, fitted
+from pellicle_fit.effect import Array, Curve, Fitted, Records, fitted
 
 
 class Slope(Records):

@@ -6,8 +6,7 @@ from typing import Literal
 
 from pydantic import ConfigDict
 
-from pellicle_fit.contact import Contact
-from pellicle_fit.curve import Curve
+from pellicle_fit.effect import Contact, Curve
 
 from .shape import Shape, in_place
 

@@ -6,10 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict
 
-from pellicle.arrays import Array
-from pellicle_fit.contact import Contact
-from pellicle_fit.curve import Curve
-from pellicle_fit.effect import Fitted, Records, Weighed, fitted
+from pellicle_fit.effect import Array, Contact, Curve, Fitted, Records, Weighed, fitted
 
 
 class Spring(Records):

@@ -8,8 +8,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import ConfigDict
 
-from pellicle.arrays import Array
-from pellicle_fit.effect import Fitted, Sizes, Values, fitted
+from pellicle_fit.effect import Array, Fitted, Sizes, Values, fitted
 
 from .relaxing import Relaxing
 

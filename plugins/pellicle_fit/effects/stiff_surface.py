@@ -9,14 +9,11 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import ConfigDict
 
-from pellicle.arrays import Array
-from pellicle_fit.contact import Contact
-from pellicle_fit.curve import Curve
-from pellicle_fit.effect import Bends, Fitted, Sizes, Values, fitted
+from pellicle_fit.effect import Array, Bends, Contact, Curve, Fitted, Sizes, Values, fitted
 
-_NODES, _SHARES = np.polynomial.legendre.leggauss(20)
-_ROOTS, _WEIGHTS = (_NODES + 1) / 2, _SHARES / 2
-"""Nodes √(δ′/δ) and weights of the integral over the depths δ′ of smaller contacts."""
+_NODES, _SHARES = np.polynomial.legendre.leggauss(10)
+_ROOTS, _WEIGHTS = ((_NODES + 1) / 2) ** 2, _SHARES * (_NODES + 1) / 2
+"""Nodes √(δ′/δ), dense at first touch, and weights of integrals over the depths δ′ of contacts."""
 
 
 class StiffSurface(Bends):

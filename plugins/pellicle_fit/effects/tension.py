@@ -6,8 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 
-from pellicle_fit.contact import Contact
-from pellicle_fit.effect import Bends, Fitted, Sizes, Values, fitted
+from pellicle_fit.effect import Bends, Contact, Fitted, Sizes, Values, fitted
 
 _SHARES = (0.0, 0.015, 0.15, 1.5)
 """Tensions from which searches start, over force per length."""

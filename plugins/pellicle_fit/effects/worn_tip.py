@@ -10,9 +10,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import ConfigDict
 
-from pellicle.arrays import Array
-from pellicle_fit.contact import Contact
-from pellicle_fit.effect import Fitted, Sizes, Values, fitted
+from pellicle_fit.effect import Array, Contact, Fitted, Sizes, Values, fitted
 
 from .shape import Shape
 

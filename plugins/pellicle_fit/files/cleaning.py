@@ -12,7 +12,7 @@ from pellicle.errors import ConfigError, shown
 from pellicle.units import readable
 
 from .measurement import Measurement, Note, Segment, grows
-from .passes import Pass, passes
+from .passes import Pass, first_out, passes
 
 _FEWEST, _FEW = 8, 30
 """Least number of points of a fit, and the least that need no warning."""
@@ -182,8 +182,7 @@ def _rows(base: Array, segment: Segment) -> tuple[int, int, int]:
                 "in order of time, or set segment to the pass that there is",
                 "position",
             )
-        # The row of the turn is of both passes.
-        return 0, base.size - 1, found[1].first + 1 if len(found) > 1 else base.size
+        return 0, base.size - 1, first_out(base, found[1]) if len(found) > 1 else base.size
     is_approach = segment == "approach"
     if is_approach not in by_direction:
         article, other = ("a", "retract") if is_approach else ("an", "approach")

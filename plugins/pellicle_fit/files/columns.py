@@ -35,22 +35,6 @@ LABEL = "curve"
 _UNITS = {"force": ("N", "nN"), "time": ("s", "ms")}
 """SI units of columns that are not lengths, and those of the examples in messages."""
 _MAP = "Z = extension nm, Defl = deflection nm"
-_ENTRY = re.compile(r'(?:"[^"]*"|[^,"])+')
-
-
-class Role(NamedTuple):
-    """What a column holds."""
-
-    name: str
-    """One of `NAMES`, or the label that tells curves apart."""
-    unit: str
-    """Its unit as text; empty if the file states it."""
-
-    @classmethod
-    def of(cls, text: str) -> Role:
-        """Return the role that a text such as ``"extension nm"`` states."""
-        name, _, unit = text.strip().partition(" ")
-        return cls(name.lower(), unit.strip())
 
 
 def column_map(value: object) -> dict[str, str]:
@@ -67,7 +51,8 @@ def column_map(value: object) -> dict[str, str]:
         A role or a unit is unknown, a role is given twice, or the text has another form.
     """
     if isinstance(value, str):
-        entries = [entry.rpartition("=") for entry in _ENTRY.findall(value) if entry.strip()]
+        texts = re.findall(r'(?:"[^"]*"|[^,"])+', value)
+        entries = [text.rpartition("=") for text in texts if text.strip()]
         if not entries or not all(equals for _, equals, _ in entries):
             raise ConfigError(f"{shown(value)} is not of the form {_MAP!r}")
         pairs = [(name.strip().strip('"'), role) for name, _, role in entries]
@@ -81,14 +66,15 @@ def column_map(value: object) -> dict[str, str]:
     for column, text in value.items():
         if not isinstance(text, str) or not text.strip():
             raise ConfigError(f"{shown(text)} is not a role with its unit; {_MAP!r}", column)
-        role = Role.of(text)
-        if role.name not in roles:
-            raise ConfigError(f"{shown(role.name)} is not a role; {nearest(role.name, roles)}")
-        if role.name in by_role:
-            raise ConfigError(f"{by_role[role.name][0]!r} and {column!r} are both {role.name}")
-        if role.unit and role.name != LABEL:
-            _factor(role.name, role.unit)
-        by_role[role.name] = str(column), " ".join(filter(None, role))
+        name, _, unit = text.strip().partition(" ")
+        role, unit = name.lower(), unit.strip()
+        if role not in roles:
+            raise ConfigError(f"{shown(role)} is not a role; {nearest(role, roles)}")
+        if role in by_role:
+            raise ConfigError(f"{by_role[role][0]!r} and {column!r} are both {role}")
+        if unit and role != LABEL:
+            _factor(role, unit)
+        by_role[role] = str(column), f"{role} {unit}".strip()
     return dict(by_role[role] for role in roles if role in by_role)
 
 

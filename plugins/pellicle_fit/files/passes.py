@@ -18,6 +18,12 @@ _PAUSE_BLOCKS = 3
 """Least number of blocks of a pause; a position that turns as a sine is as slow in one."""
 
 
+_NORMAL = 1.4826 / np.sqrt(6)
+"""Standard deviation of noise over the median size of its second differences."""
+_WILD = 4.0
+"""Standard deviations of noise below the largest position within which the indenter rests."""
+
+
 class Pass(NamedTuple):
     """Rows from ``first`` to ``last``, both included, of a motion one way."""
 
@@ -53,6 +59,13 @@ def passes(base: Array) -> list[Pass]:
         rest = _rest(base[first : last + 1] if inward else base[first : last + 1][::-1])
         found.append(Pass(first, last - rest, True) if inward else Pass(first + rest, last, False))
     return found
+
+
+def first_out(base: Array, retract: Pass) -> int:
+    """Return the first row of a retract after the turn, where it may rest and hold noise."""
+    noise = _NORMAL * float(np.median(np.abs(np.diff(base, 2))))
+    deepest = int(np.flatnonzero(base >= base.max() - _WILD * noise)[-1])
+    return max(retract.first, deepest) + 1
 
 
 def _rest(rows: Array) -> int:

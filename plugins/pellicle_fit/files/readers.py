@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from pellicle.errors import ConfigError, PellicleError, StorageError, shown
+from pellicle.errors import ConfigError, StorageError, shown
 
 from . import afm
 from .columns import EXAMPLE, Calibration, Columns, from_columns, is_curve
@@ -19,53 +19,18 @@ from .tree import read_hdf5, read_matlab
 TEXT = (".csv", ".tsv", ".txt")
 """Suffixes of tables."""
 _HDF5 = (".h5", ".hdf5", ".nc")
-_MATLAB = (".mat",)
-SUFFIXES = (*TEXT, *_HDF5, *_MATLAB, *afm.SUFFIXES)
+SUFFIXES = (*TEXT, *_HDF5, ".mat", *afm.SUFFIXES)
 """Suffixes of the files of a folder that are read."""
 _MANY = 8
 """Largest number of texts of a line that a message quotes."""
-_TABLES_TOO = (".tab",)
-"""Suffixes of instrument files that are tables."""
-_SPREADSHEETS = (".xlsx", ".xlsm", ".xls", ".ods", ".numbers")
 
 
-class Contents(Mapping[str, Measurement | PellicleError]):
-    """The curves of a file, or the errors of reading them, by their labels.
+def read(
+    path: Path, calibration: Calibration | None = None, segment: str = "approach"
+) -> dict[str, Callable[[], Measurement]]:
+    """Return functions that read the curves of a file, by their labels.
 
-    The label of a single curve is empty.  A curve is read when its value is taken; file and hash
-    are its origin.
-    """
-
-    def __init__(self, path: Path, calibration: Calibration, segment: str) -> None:
-        self._path, self._state = path, _state(path)
-        self._curves = _curves(path, calibration, segment)
-        self._sha256 = sha256(path)
-        self._check_state()
-
-    def _check_state(self) -> None:
-        if _state(self._path) != self._state:
-            raise StorageError(f"{self._path}: was changed while it was read; read it again")
-
-    def __len__(self) -> int:
-        return len(self._curves)
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._curves)
-
-    def __getitem__(self, label: str) -> Measurement | PellicleError:
-        try:
-            curve = self._curves[label]()
-            self._check_state()
-        except PellicleError as error:
-            return error
-        origin = replace(
-            curve.origin, file=str(self._path), curve=label or None, sha256=self._sha256
-        )
-        return replace(curve, origin=origin)
-
-
-def read(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Contents:
-    """Return the curves of a file, or the errors of reading them, by their labels.
+    The label of a single curve is empty.  The functions raise what this one does.
 
     A table (CSV, TSV, semicolons, spaces) has a header such as ``position [um],force [nN]``; cells
     that hold no number are NaN, columns of other names are ignored, and rows that differ in a
@@ -81,21 +46,36 @@ def read(path: Path, calibration: Calibration | None = None, segment: str = "app
     StorageError
         The file cannot be read, or was replaced while it was read.
     """
-    return Contents(path, calibration or Calibration(), segment)
+
+    def check() -> None:
+        if _state(path) != state:
+            raise StorageError(f"{path}: was changed while it was read; read it again")
+
+    def curve(label: str) -> Measurement:
+        measured = readers[label]()
+        check()
+        origin = replace(measured.origin, file=str(path), curve=label or None, sha256=digest)
+        return replace(measured, origin=origin)
+
+    state = _state(path)
+    readers = _readers(path, calibration or Calibration(), segment)
+    digest = sha256(path)
+    check()
+    return {label: partial(curve, label) for label in readers}
 
 
-def _curves(
+def _readers(
     path: Path, calibration: Calibration, segment: str
 ) -> dict[str, Callable[[], Measurement]]:
-    """Return what reads each curve of a file, by their labels."""
     suffix = path.suffix.lower()
     mapped = calibration.columns or {}
-    if suffix in _SPREADSHEETS:
+    if suffix in (".xlsx", ".xlsm", ".xls", ".ods", ".numbers"):
         raise StorageError(
             f"{path}: is a spreadsheet; save the sheet of each curve as CSV (in Excel and "
             f"LibreOffice: Save as), with a header such as {EXAMPLE!r}"
         )
-    if suffix in afm.SUFFIXES and not (mapped and suffix in _TABLES_TOO):
+    # The columns of a table can be named though it is an instrument's.
+    if suffix in afm.SUFFIXES and not (mapped and suffix == ".tab"):
         if mapped:
             raise ConfigError(
                 f"{path} is the file of an instrument, which states what its columns are; leave "
@@ -106,7 +86,7 @@ def _curves(
     cells, hint = None, ""
     if suffix in _HDF5:
         tables = read_hdf5(path, mapped)
-    elif suffix in _MATLAB:
+    elif suffix == ".mat":
         tables = read_matlab(path, mapped)
     else:
         cells = read_cells(path, mapped)
@@ -118,7 +98,7 @@ def _curves(
             # Only afmformats can recognise the file of an instrument.
             hint = "" if afm.installed() else f"; if it is an instrument's: {afm.INSTALL}"
             if cells is not None:
-                first = ", ".join(map(shown, cells.first[:_MANY]))
+                first = ", ".join(map(shown, (cells.names or cells.rows[0])[:_MANY]))
                 hint = f"; its first line is {first}, and --columns says what such names are{hint}"
     if not tables:
         raise StorageError(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -73,7 +73,9 @@ class CurveFile:
         """Return the labels of its curves, and the curves, each read only as it is taken."""
         fields, site = dict(self.fields), None
         own = {name: fields.pop(name) for name in Calibration.model_fields if name in fields}
-        contents: Mapping[str, Measurement | PellicleError]
+        settings = {name: getattr(self.calibration, name) for name in Calibration.model_fields}
+        readers: dict[str, Callable[[], Measurement]] = {}
+        failure: PellicleError | None = None
         try:
             if {"x", "y"} <= fields.keys():
                 try:
@@ -81,30 +83,39 @@ class CurveFile:
                 except ValueError as error:
                     raise ConfigError(f"x and y: {error}") from None
                 site = Site(x, y)
-            settings = {name: getattr(self.calibration, name) for name in Calibration.model_fields}
             calibration = Calibration(**settings | own)
             if self.numbers is None:
-                contents = read(self.path, calibration, self.segment)
+                readers = read(self.path, calibration, self.segment)
             else:
                 # `clean` checks the arrays.
                 position, force, *time = (cast("Array", values) for values in self.numbers)
-                stiffness, speed = calibration.spring_constant, calibration.speed
-                own = {"stiffness": stiffness, "speed": speed, "time": time[0] if time else None}
-                contents = {"": Measurement(position, force, **own)}
+                measured = Measurement(
+                    position,
+                    force,
+                    stiffness=calibration.spring_constant,
+                    speed=calibration.speed,
+                    time=time[0] if time else None,
+                )
+                readers[""] = lambda: measured
         except PellicleError as error:
-            contents = {"": error}
+            failure = error
 
         def sources() -> Iterator[Source]:
-            path = whole = str(self.path)
-            if site is not None and self.table is not None:
-                whole = str(self.table)
-            for label, curve in contents.items():
-                if site is not None and isinstance(curve, Measurement):
-                    curve = replace(curve, site=site)
+            path = str(self.path)
+            whole = str(self.table) if site and self.table else path
+            if failure is not None:
+                yield Source(path, failure, fields, path, self.group, whole)
+            for label, reader in readers.items():
+                curve: Measurement | PellicleError
+                try:
+                    curve = reader()
+                    curve = replace(curve, site=site or curve.site)
+                except PellicleError as error:
+                    curve = error
                 name = f"{path}:{label}" if label else path
                 yield Source(name, curve, fields, path, self.group, whole)
 
-        return list(contents), sources()
+        return [*readers] if failure is None else [""], sources()
 
 
 class SourceStream:

@@ -18,7 +18,7 @@ from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.files import read_text
 from pellicle.units import Quantity
 
-from .columns import EXAMPLE, LABEL, NAMES, Channel, Columns, Role, is_curve
+from .columns import EXAMPLE, LABEL, NAMES, Channel, Columns, is_curve
 
 FILE = "file"
 """Name of the column of a table that lists files."""
@@ -61,11 +61,6 @@ class Cells:
     def names(self) -> list[str]:
         """Names of the columns in lower case."""
         return [head.name.lower() for head in self.heads]
-
-    @property
-    def first(self) -> list[str]:
-        """Names of the columns, or the first numbers of a table without."""
-        return self.names or self.rows[0]
 
 
 def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | None:
@@ -200,8 +195,8 @@ def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, 
                     "(--columns on the command line)"
                 )
     mapped = mapped or {name: name for name in names if name in (*NAMES, LABEL)}
-    roles = {Role.of(text): _index(path, cells, name) for name, text in mapped.items()}
-    label = next((index for role, index in roles.items() if role.name == LABEL), None)
+    roles = {text: _index(path, cells, name) for name, text in mapped.items()}
+    label = next((index for role, index in roles.items() if role.split()[0] == LABEL), None)
     curves: dict[str, list[list[str]]] = {"": cells.rows}
     if label is not None and len(roles) > 1:
         curves = {}
@@ -211,11 +206,12 @@ def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, 
     for text, rows in curves.items():
         columns = {}
         for role, index in roles.items():
-            if role.name != LABEL:
+            name, _, unit = role.partition(" ")
+            if name != LABEL:
                 head = cells.heads[index] if cells.heads else Head("", str(index + 1), "")
                 texts = [row[index].strip() if index < len(row) else "" for row in rows]
                 values = _numbers(texts, cells.separator, f"{path}: column {head.name}")
-                columns[role.name] = Channel(role.unit or head.unit, values, head.name)
+                columns[name] = Channel(unit or head.unit, values, head.name)
         tables[text] = columns
     return tables
 
@@ -228,7 +224,7 @@ def _index(path: Path, cells: Cells, name: str) -> int:
     width = max(len(cells.heads), *(len(row) for row in cells.rows[:1]), 0)
     if not matches and name.isdecimal() and 1 <= int(name) <= width:
         return int(name) - 1
-    has = ", ".join(map(shown, [head.text for head in cells.heads] or cells.first))
+    has = ", ".join(map(shown, [head.text for head in cells.heads] or cells.rows[0]))
     if not matches:
         raise ConfigError(
             f"{path}: has no column {name!r} (it has {has}); give a name of one column, or its "

@@ -12,7 +12,7 @@ from pellicle.arrays import Array
 from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.schema import read_mat
 
-from .columns import NAMES, Channel, Columns, Role
+from .columns import NAMES, Channel, Columns
 
 _SHOWN = 8
 """Largest number of arrays that a message names."""
@@ -99,8 +99,8 @@ def _mapped(path: Path, root: Any, mapped: Mapping[str, str], *, first: bool) ->
     """
     channels: dict[str, dict[str, Channel]] = {}
     for pattern, text in mapped.items():
-        role = Role.of(text)
-        arrays = channels.setdefault(role.name, {})
+        role, _, unit = text.partition(" ")
+        arrays = channels.setdefault(role, {})
         # The separators of a path are slashes or points.
         parts = pattern.strip("/").split("/")
         if len(parts) == 1 and parts[0] not in root:
@@ -113,7 +113,7 @@ def _mapped(path: Path, root: Any, mapped: Mapping[str, str], *, first: bool) ->
                 rows = {",".join(map(str, i)): values[i] for i in np.ndindex(values.shape[:-1])}
             for row, numbers in rows.items():
                 whole = "/".join(filter(None, (label, row)))
-                arrays[whole] = Channel(role.unit or _unit(array), numbers, pattern)
+                arrays[whole] = Channel(unit or _unit(array), numbers, pattern)
         if not arrays:
             raise ConfigError(
                 f"{path}: has no array of numbers at {pattern!r} (it has {_content(root)})",

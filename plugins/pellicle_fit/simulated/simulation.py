@@ -179,21 +179,18 @@ def half_widths(indenter: Indenter, depth: float) -> tuple[float, float]:
             [np.max(np.abs(np.broadcast_to(x, below.shape)[below]), initial=0.0) for x in axes]
         )
         outside = reach >= [np.max(np.abs(x)) for x in axes]
-        if outside.any():
-            half = np.where(outside, 2 * half, half)
-            if half.max() > _WIDEST * depth:
-                raise ConfigError(
-                    f"is less than {readable(depth, 'm')} high out to "
-                    f"{readable(half.max(), 'm', 2)}; give one whose "
-                    "contact ends",
-                    "indenter",
-                )
-            continue
         fitted = reach + half / _CELLS
-        if (fitted >= _CLOSE * half).all():
+        if not outside.any() and (fitted >= _CLOSE * half).all():
             return float(fitted[0]), float(fitted[1])
         # At least one cell, so that the domain cannot shrink past the shape in one step.
-        half = np.maximum(1.02 * fitted, 2 * half / _CELLS)
+        smaller = half if outside.any() else np.maximum(1.02 * fitted, 2 * half / _CELLS)
+        half = np.where(outside, 2 * half, smaller)
+        if half.max() > _WIDEST * depth:
+            raise ConfigError(
+                f"is less than {readable(depth, 'm')} high out to {readable(half.max(), 'm', 2)}; "
+                "give one whose contact ends",
+                "indenter",
+            )
 
 
 def _table(study: Study, cache: Path, progress: bool) -> xr.Dataset:

@@ -278,18 +278,6 @@ def workshop(path: Path, recording: Recording) -> None:
     path.write_text("\n".join(lines), encoding="utf-8")
 
 
-def nova(path: Path, recording: Recording) -> None:
-    """Write a table of NT-MDT Nova, without a header: height [nm] and both signals [nA].
-
-    The retract is that of the approach's heights.
-    """
-    half = recording.force.size // 2
-    back = np.arange(half)[::-1]
-    signal = 1e9 * recording.volts[:half]
-    rows = np.column_stack([1e9 * recording.height[:half], signal, signal - 1])[back]
-    path.write_text("\n".join(" ".join(f"{v:.10g}" for v in row) for row in rows), encoding="utf-8")
-
-
 def chiaro(path: Path, recording: Recording) -> None:
     """Write a table of an Optics11 Chiaro indenter, in the encoding of western Windows."""
     bending = recording.force / recording.spring_constant
@@ -317,7 +305,6 @@ WRITERS: dict[str, Callable[[Path, Recording], None]] = {
     "curve.jpk-force": jpk,
     "curve.ibw": ibw,
     "workshop.csv": workshop,
-    "nova.txt": nova,
     "chiaro.txt": chiaro,
 }
 """Files of one curve."""
@@ -326,4 +313,3 @@ MAPS: dict[str, Callable[[Path, Sequence[Recording]], None]] = {
     "map.jpk-force-map": lambda path, recording: jpk(path, *recording),
 }
 """Files of several."""
-UNCALIBRATED = ("workshop.csv", "nova.txt")

@@ -64,7 +64,8 @@ def force(curve: Curve, *effects: Effect, modulus: float = E) -> Array:
 
 def hertz(depth: Array, radius: float = R) -> Array:
     """Return F = 4/3 E* √R δ^(3/2) [N]."""
-    return 4 / 3 * E * np.sqrt(radius) * np.maximum(depth, 0) ** 1.5
+    force: Array = 4 / 3 * E * np.sqrt(radius) * np.maximum(depth, 0) ** 1.5
+    return force
 
 
 def test_a_size_is_that_of_the_indenter() -> None:
@@ -324,8 +325,8 @@ def test_excuses(names: Sequence[Any], curve: Curve, words: str) -> None:
 def test_quantities_are_fitted_held_or_weighed() -> None:
     """Left out, given, given with a deviation; each goes through files and refuses nonsense."""
     assert Tension().open.keys() == {"tension"}
-    assert not Tension(tension="2 mN/m").open  # type: ignore[arg-type]
-    weighed = Tension(tension={"value": "2 mN/m", "deviation": "0.1 mN/m"})  # type: ignore[arg-type]
+    assert not Tension(tension="2 mN/m").open
+    weighed = Tension(tension={"value": "2 mN/m", "deviation": "0.1 mN/m"})
     assert isinstance(weighed.tension, Weighed)
     assert weighed.tension.deviation == 1e-4
     assert weighed.open.keys() == {"tension"}
@@ -334,7 +335,7 @@ def test_quantities_are_fitted_held_or_weighed() -> None:
     assert (again.tension, again.tension.deviation) == (2e-3, 1e-4)
     for wrong in ({"value": 1}, {"value": 1, "deviation": 0}, {"value": 1, "sigma": 1}, -1, "1 N"):
         with pytest.raises(pl.ConfigError, match="tension: "):
-            Tension(tension=wrong)  # type: ignore[arg-type]
+            Tension(tension=wrong)
 
 
 class Push(Adds):

@@ -1,0 +1,331 @@
+"""What fits answer about curves of known solids: values, intervals, verdicts, flaws."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any, cast
+
+import fit_verdicts
+import numpy as np
+import pytest
+from fit_verdicts import MODULUS, NOISE, RADIUS, TOP, Array, outcome, pink, truth_of
+from scipy.optimize import minimize
+
+import pellicle as pl
+from pellicle_fit import rivals as comparison
+from pellicle_fit.noise import Flaw
+from pellicle_fit.rivals import Explained, Verdict, decided
+from pellicle_plugins.indenters.of_revolution import Cone, FlatPunch, Paraboloid, Sphere
+from tests.plugins.fit.conftest import ends_of, holds
+
+TENSION = 0.3 * RADIUS * MODULUS / 2
+"""τ₀ at s = 0.3 R [N/m]."""
+BEAD = Paraboloid(radius=RADIUS)
+
+
+def curve(
+    tension: float = 0.0,
+    *,
+    points: int = 300,
+    deepest: float = TOP,
+    noise: float = 0.005,
+    seed: int = 1,
+    modulus: float = MODULUS,
+) -> tuple[Array, Array]:
+    """Return position and force of an approach that touches at 1 µm."""
+    depth = np.linspace(-0.3, 1.0, points) * deepest
+    force = modulus * BEAD.force_curve(depth, 2 * tension / modulus).force
+    errors = np.random.default_rng(seed).standard_normal(points)
+    return depth + 1e-6, force + noise * force.max() * errors
+
+
+def fit(position: Array, force: Array, **options: Any) -> pl.Fit:
+    """Return the fit by a paraboloid, without rivals unless some are named."""
+    return pl.fit(position, force, **{"indenter": BEAD, "rivals": (), **options})
+
+
+def flaws(found: pl.Fit) -> frozenset[Flaw]:
+    """Return what contradicts the best explanation of the first curve."""
+    return found.answer.judgements[0].flaws
+
+
+@pytest.mark.parametrize("body", [BEAD, Sphere(radius=5e-6), Cone(half_angle=1.2)])
+def test_exact_curves_give_the_truth(body: Any) -> None:
+    """Without noise all quantities come back, for every shape that tells them apart."""
+    depth = np.linspace(-0.5e-6, 2e-6, 300)
+    force = 8e3 * body.force_curve(depth, 0.7e-6).force
+    found = fit(depth + 3e-6, force, indenter=body)
+    assert found.reduced_modulus.value == pytest.approx(8e3, rel=1e-4)
+    assert found.tension.value == pytest.approx(8e3 * 0.7e-6 / 2, rel=1e-4)
+    assert found.contact_point.value == pytest.approx(3e-6, abs=1e-10)
+
+
+def test_fits_know_no_units() -> None:
+    """Lengths and forces in other measure give the same answer in that measure."""
+    position, force = curve(TENSION)
+    one, length, stress = fit(position, force), 1e4, 30.0
+    larger = Paraboloid(radius=RADIUS * length)
+    two = fit(position * length, force * stress * length**2, indenter=larger)
+    for name, factor in (("reduced_modulus", stress), ("tension", stress * length)):
+        for end in ("value", "low", "high"):
+            assert getattr(getattr(two, name), end) == pytest.approx(
+                getattr(getattr(one, name), end) * factor, rel=2e-3
+            )
+
+
+def test_ends_are_where_the_profile_has_risen() -> None:
+    """A minimiser of another kind finds χ² up by the stated threshold at each end."""
+    found = fit(*curve(TENSION))
+    explained, threshold = found.answer.chosen, found.answer.threshold
+    objective, best = explained.objective, explained.minimum
+    bounds = objective.deviations(best.at)
+    for k, slot in enumerate(objective.slots):
+        for end in ends_of(found.answer.estimates[slot.name]):
+            others = [i for i in range(best.at.size) if i != k]
+
+            def chi_squared(u: Array, k: int = k, end: float = end, others: Any = others) -> float:
+                at = best.at.copy()
+                at[k] = objective.slots[k].coordinate(end)
+                at[others] += u * bounds[others]
+                return objective.chi_squared(at)
+
+            least = minimize(chi_squared, np.zeros(len(others)), method="Nelder-Mead")
+            assert least.fun - best.chi_squared == pytest.approx(threshold, rel=0.02)
+
+
+@pytest.mark.slow
+def test_errors_reach_the_bound_and_intervals_hold() -> None:
+    """Over random curves errors are those of the Cramér–Rao bound, and 95 % means 95 %."""
+    errors, held = [], []
+    for seed in range(30):
+        found = fit(*curve(TENSION, seed=seed))
+        objective, at = found.answer.chosen.objective, found.answer.chosen.minimum.at
+        truth = {"reduced_modulus": MODULUS, "tension": TENSION, "contact_point": 1e-6}
+        for name, value in truth.items():
+            k = objective.index(name)
+            assert k is not None
+            error = at[k] - objective.slots[k].coordinate(value)
+            errors.append(error / objective.deviations(at)[k])
+            held.append(holds(found.answer.estimates[name], value))
+    # Three standard deviations of the rms of 30 normal numbers around 1.
+    assert 0.6 < np.sqrt(np.mean(np.square(errors))) < 1.4
+    assert sum(held) >= 0.88 * len(held)
+
+
+def test_a_punch_cannot_tell_modulus_and_tension_apart() -> None:
+    """A flat punch gives a straight line: one number for two quantities, both ends open."""
+    depth, punch = np.linspace(-0.5e-6, 2e-6, 300), FlatPunch(radius=5e-6)
+    force = 8e3 * punch.force_curve(depth, 2e-6).force
+    force = force + 0.005 * force.max() * np.random.default_rng(3).standard_normal(300)
+    found = fit(depth, force, indenter=punch)
+    assert found.tension.low is None
+    assert found.reduced_modulus.low is None
+    known = fit(depth, force, indenter=punch, fix={"tension": 8e3 * 2e-6 / 2})
+    assert known.reduced_modulus.value == pytest.approx(8e3, rel=0.01)
+
+
+def test_a_shallow_curve_leaves_the_modulus_open_and_a_deep_one_the_tension() -> None:
+    """Where tension carries all, a modulus a hundred times less does as well, and vice versa."""
+    shallow = fit(*curve(RADIUS * MODULUS / 2, deepest=1e-3 * RADIUS, noise=0.05))
+    assert (shallow.reduced_modulus.low or 0.0) < 0.02 * shallow.reduced_modulus.value
+    assert shallow.tension.low is not None
+    deep = fit(*curve(0.005 * TENSION))
+    assert deep.tension.low is None
+    assert deep.tension.high is not None
+
+
+@pytest.mark.parametrize(("kind", "points", "size"), [("sphere", 96, 14), ("paraboloid", 64, 13)])
+def test_a_curve_of_the_solver_is_recovered(kind: str, points: int, size: int) -> None:
+    """What was pressed in on a grid, not by the master curve, is found within the intervals."""
+    depth = np.linspace(0.1e-6, 1.5e-6, 15)
+    run = pl.Run(
+        grid={"points": points, "size": f"{size} um", "boundary": "free"},
+        kernel={"type": "tensed_membrane", "reduced_modulus": 4e3, "tension": 4e-3},
+        indenter={"type": kind, "radius": "5 um"},
+        loading={"depth": depth.tolist()},
+    )
+    forces = pl.run(run, progress=False).dataset["force"].values
+    position = np.concatenate([np.linspace(-0.5e-6, -0.01e-6, 60), np.repeat(depth, 20)])
+    force = np.concatenate([np.zeros(60), np.repeat(forces, 20)])
+    force = force + 0.005 * force.max() * np.random.default_rng(2).standard_normal(force.size)
+    found = pl.fit(position, force, indenter=kind, radius="5 um", rivals=())
+    assert holds(found.reduced_modulus, 4e3)
+    assert holds(found.tension, 4e-3)
+
+
+@pytest.mark.parametrize("tension", [0.0, TENSION])
+def test_means_of_rows_answer_as_all_rows_do(
+    tension: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a long curve the means that searches see lose next to nothing of the intervals."""
+    rows = curve(tension, points=3000, noise=0.02)
+    short = fit(*rows)
+    monkeypatch.setattr(comparison, "_ROWS", 3000)
+    long = fit(*rows)
+    low, high = ends_of(long.reduced_modulus)
+    for end in ("value", "low", "high"):
+        off = getattr(short.reduced_modulus, end) - getattr(long.reduced_modulus, end)
+        assert abs(off) < 0.05 * (high - low)
+
+
+@pytest.mark.parametrize(
+    ("aic", "verdict"),
+    [
+        ({"": 50, "a": 0, "b": 5}, Verdict.NEEDED),
+        ({"": 50, "a": 0, "b": 3}, Verdict.CANNOT_TELL),
+        ({"": 50, "a": 5, "b": 0}, Verdict.OTHER),
+        ({"": 5, "a": 0, "b": 9}, Verdict.NO_SIGN),
+        ({"": 5, "a": 2, "b": -6}, Verdict.NO_SIGN),
+        ({"": 13, "a": 10, "b": 0}, Verdict.OTHER),
+        # A pair counts if it is better than each of its parts.
+        ({"": 50, "a": 20, "b": 12, "ab": 0}, Verdict.NEEDED),
+        ({"": 50, "a": 20, "b": 5, "ab": 0}, Verdict.OTHER),
+    ],
+)
+def test_verdicts_follow_from_criteria(aic: dict[str, float], verdict: Verdict) -> None:
+    """At the margins the verdict changes, and where the best fails its checks there is none."""
+    fits = cast(
+        "list[Explained]",
+        [SimpleNamespace(types=frozenset(key), aic=value) for key, value in aic.items()],
+    )
+    word = frozenset("a")
+    assert decided(word, fits, doubted=False, margin=4.0).verdict is verdict
+    assert decided(word, fits, doubted=True, margin=4.0).verdict is Verdict.UNDESCRIBED
+
+
+@pytest.mark.parametrize("separation", [1.0, 4.0, 9.0, 16.0])
+def test_false_claims_at_the_margin(separation: float) -> None:
+    """Of two explanations the wrong one is preferred in at most 3 %, however far they are apart."""
+    # χ² differ by S without noise: with it by normal numbers about S of deviation 2√S.
+    draws = np.random.default_rng(1).standard_normal(100_000)
+    lead = separation + 2 * np.sqrt(separation) * draws
+    assert np.mean(lead < -comparison.MARGIN) < 0.03
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("kind", "protocol", "verdict"),
+    [
+        ("hertz", "approach", "NO_SIGN"),
+        ("tension", "both", "NEEDED"),
+        ("power law", "both", "OTHER"),
+        ("worn tip", "both", "OTHER"),
+        ("adhesion", "both", "OTHER"),
+        ("power law", "speeds", "OTHER"),
+        ("1/f noise", "approach", "NO_SIGN"),
+    ],
+)
+def test_verdicts_on_known_solids(kind: str, protocol: str, verdict: str) -> None:
+    """A twentieth of tests/benchmarks/fit_verdicts.py, with all default rivals."""
+    found = outcome(kind, protocol, number=1, seed=7)
+    assert found["verdict"] == verdict
+    assert found["modulus"]
+    assert found["tension"]
+
+
+def test_ties_widen_the_interval() -> None:
+    """An approach cannot tell a tension from a solid that relaxes; E* is that of both."""
+    known = truth_of("tension", np.random.default_rng(5))
+    (rows,) = fit_verdicts.rows_of("approach", TOP)
+    force = known.force(rows)
+    force = force + NOISE[1] * force.max() * np.random.default_rng(1).standard_normal(force.size)
+    alone = fit(rows.depth, force, time=rows.time - rows.time[0])
+    beside = fit(rows.depth, force, time=rows.time - rows.time[0], rivals=["power_law"])
+    assert beside.verdict is Verdict.CANNOT_TELL
+    assert [sorted(e.types) for e in beside.answer.tied] == [["tension"], ["power_law"]] or len(
+        beside.answer.tied
+    ) > 1
+    assert ends_of(beside.reduced_modulus)[1] > ends_of(alone.reduced_modulus)[1]
+
+
+@pytest.mark.parametrize(("name", "share"), [("spring_constant", 0.1), ("radius", 0.1)])
+def test_a_weighed_calibration_widens_the_modulus(name: str, share: float) -> None:
+    """F ∝ k and, of Hertz, F ∝ E* R^½: what is known to a share leaves E* known to one or half."""
+    position, force = curve(noise=0.002)
+    sure = fit(position, force, fix={"tension": 0})
+    weighed = fit(position, force, fix={"tension": 0}, uncertainty={name: share})
+    assert weighed.reduced_modulus.value == pytest.approx(sure.reduced_modulus.value, rel=1e-3)
+    low, high = ends_of(weighed.reduced_modulus)
+    expected = 2 * 1.96 * share * {"spring_constant": 1.0, "radius": 0.5}[name]
+    assert (high - low) / MODULUS == pytest.approx(expected, rel=0.15)
+
+
+@pytest.mark.parametrize("moduli", [(MODULUS, MODULUS), (MODULUS, 1.2 * MODULUS)])
+def test_curves_that_disagree_widen_what_they_share(moduli: tuple[float, float]) -> None:
+    """Two curves of one modulus agree; of two that differ by 20 % the interval reaches further."""
+    curves = {str(n): curve(seed=n, modulus=m) for n, m in enumerate(moduli)}
+    pool = pl.fit_pooled(curves, indenter=BEAD, rivals=(), model=())
+    low, high = ends_of(pool.reduced_modulus)
+    assert (pool.answer.agreement.factor > 1) == (moduli[0] != moduli[1])
+    assert ((high - low) / MODULUS > 0.05) == (moduli[0] != moduli[1])
+
+
+@pytest.mark.parametrize(
+    ("change", "flaw"),
+    [
+        (lambda z, f: f, None),
+        (lambda z, f: f + 3e-11, Flaw.OFFSET),
+        (lambda z, f: f + 0.1 * f.max() * np.linspace(0, 1, f.size), Flaw.DRIFT),
+        (lambda z, f: f - 0.05 * f.max() * ((z > 0.97e-6) & (z < 1e-6)), Flaw.DIP),
+        (lambda z, f: f * (1 - 0.4 * np.maximum(z - 1e-6, 0) / TOP), Flaw.PATTERN),
+        (lambda z, f: np.where(np.arange(f.size) % 97, f, f + 0.2 * f.max()), Flaw.SPIKES),
+        (lambda z, f: 0.04 * f.max() * np.round(f / (0.04 * f.max())), Flaw.STEPS),
+        (
+            lambda z, f: (
+                f
+                + 0.01
+                * f.max()
+                * np.convolve(
+                    np.random.default_rng(4).standard_normal(f.size + 14), np.ones(15) / 4, "valid"
+                )
+            ),
+            Flaw.SLOW,
+        ),
+    ],
+)
+def test_flaws_are_seen(change: Any, flaw: Flaw | None) -> None:
+    """Each flaw of a curve without tension is named, and a clean curve has none."""
+    position, force = curve(points=600)
+    found = flaws(fit(position, change(position, force), model=()))
+    assert flaw in found if flaw else not found
+
+
+def test_noise_of_1_over_f_is_taken_so() -> None:
+    """Intervals of correlated noise hold the modulus, and are wider than those of white noise."""
+    position, clean = curve(points=600, noise=0.0)
+    random = np.random.default_rng(3)
+    coloured = fit(position, clean + 0.005 * clean.max() * pink(random, 600), model=())
+    assert coloured.answer.chosen.objective.memory[0] > 0.2
+    assert holds(coloured.reduced_modulus, MODULUS)
+    white = fit(*curve(points=600), model=())
+    assert np.ptp(ends_of(coloured.reduced_modulus)) > 2 * np.ptp(ends_of(white.reduced_modulus))
+
+
+def test_relaxation_beside_a_tension_has_no_model_of_retraction() -> None:
+    """Where no explanation describes both passes and that one was not tried, nothing is bounded."""
+    (rows,) = fit_verdicts.rows_of("both", TOP)
+    force = fit_verdicts.power_law(0.2)(rows) + fit_verdicts.tensed(TENSION)(rows)
+    force = force + 0.003 * force.max() * np.random.default_rng(2).standard_normal(force.size)
+    found = fit(
+        rows.depth, force, time=rows.time - rows.time[0], rivals=["power_law"], segment="both"
+    )
+    assert found.verdict is Verdict.UNDESCRIBED
+    assert found.answer.untried
+    assert found.reduced_modulus.low is found.reduced_modulus.high is None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("share", [0.02, 0.1])
+def test_work_of_adhesion_is_held(share: float) -> None:
+    """Over retractions of known work, the modulus and the work lie within their intervals."""
+    work = share * float(fit_verdicts.hertz(TOP)) / (1.5 * np.pi * RADIUS)
+    (rows,) = fit_verdicts.rows_of("both", TOP)
+    force, held = fit_verdicts.adhesive(work)(rows), []
+    for seed in range(10):
+        noise = 0.005 * force.max() * np.random.default_rng(seed).standard_normal(force.size)
+        found = fit(rows.depth, force + noise, model=["adhesion"], segment="both")
+        held += [
+            holds(found.reduced_modulus, MODULUS),
+            holds(found.estimates()["work_of_adhesion"], work),
+        ]
+    assert sum(held) >= 17
