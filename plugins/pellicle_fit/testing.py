@@ -325,3 +325,15 @@ def _body(name: str, **fields: float) -> HasForceCurve:
     body = pl.indenter(name, **fields)
     assert isinstance(body, HasForceCurve)
     return body
+
+
+QUICK = [
+    stands_in_one_place,
+    starts_lie_within_limits,
+    returns_a_number_for_each_row,
+    is_finite_everywhere,
+    each_row_is_its_own,
+    depths_grow,
+    what_it_says_is_valid,
+]
+"""Rules that balance no forces, which a fit asks of effects that pellicle does not ship."""

@@ -31,6 +31,8 @@ from pellicle_fit.effect import (
 )
 from pellicle_fit.effects.tension import Tension
 from pellicle_fit.explanation import Explanation, Solid
+from pellicle_fit.recipe import answer
+from pellicle_fit.rivals import Verdict
 from pellicle_fit.testing import check_effect
 
 R, E = 5e-6, 2e3
@@ -434,6 +436,22 @@ def test_the_kit_refuses(
         check_effect(made())
     assert f"Broken breaks the rule {rule}\nrequired: " in str(caught.value)
     assert words in str(caught.value).partition("violation: ")[2]
+
+
+def test_a_fit_refuses_what_is_broken() -> None:
+    """Before it computes, a stranger's effect that lies is named, with the rule and a remedy."""
+    curve = bead(stiffness=0.05)
+
+    class Liar(Push):
+        """Force of a wrong shape."""
+
+        def force(self, contact: Contact, curve: Curve, depth: Array) -> Array:
+            """Return one force."""
+            return self.push * depth[:1]
+
+    with pytest.raises(pl.PluginError, match="effect 'push': Liar breaks the rule returns_a_num"):
+        answer([curve], [Tension()], [[Liar()]])
+    assert answer([curve], [], [[Push()]]).verdict is Verdict.NO_SIGN
 
 
 def test_each_rule_refuses_one() -> None:
