@@ -8,7 +8,7 @@ import pytest
 
 from pellicle_fit.recipe import Answer, answer
 
-ANSWER = "pellicle_fit.fits.answer"
+ANSWER = "pellicle_fit.problem.answer"
 
 
 def share_fits(monkeypatch: pytest.MonkeyPatch) -> None:

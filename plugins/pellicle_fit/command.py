@@ -215,17 +215,20 @@ def _fit(
 ) -> tuple[Fit | ManyFits, str, str]:
     """Return the fit of the curves, the name of its files and the title of its page."""
     from pellicle_fit.files.sources import SourceStream
-    from pellicle_fit.fits import fitted
     from pellicle_fit.many import fit_sources
+    from pellicle_fit.problem import problem
 
     progress, curves = not quiet and sys.stderr.isatty(), config.files()
+    sources, name, title = None, "pool", "Pooled fit"
     if config.pool:
-        return fitted(config, [*SourceStream(curves)], progress=progress), "pool", "Pooled fit"
-    if [file.path for file in curves] == [config.curves[0]]:
+        sources = [*SourceStream(curves)]
+    elif [file.path for file in curves] == [config.curves[0]]:
         labels, opened = curves[0].open()
         if labels == [""]:
-            stem = config.curves[0].stem
-            return fitted(config, list(opened), progress=progress), f"{stem}-fit", stem
+            sources, title = [*opened], config.curves[0].stem
+            name = f"{title}-fit"
+    if sources is not None:
+        return problem(config, sources, progress=progress).fit(progress=progress), name, title
     try:
         fits = fit_sources(config, SourceStream(curves), directory, progress=not quiet)
     except KeyboardInterrupt:

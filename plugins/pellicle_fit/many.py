@@ -24,12 +24,12 @@ from pellicle.results import header
 
 from .config import FitConfig
 from .files.sources import Curves, Source, SourceStream
-from .fits import Problem, problem
 from .population.images import force_maps
 from .population.judgement import group_of, group_pattern, judge, read_names
 from .population.row import FAILED, Row, Sketch
 from .population.summary import summary
 from .population.table import table
+from .problem import Problem, problem
 from .record import Stopwatch, components_of, data_of
 
 if TYPE_CHECKING:

@@ -90,11 +90,12 @@ def judged(
     depth
         Position over the contact point [m].
     """
+    correlated = {Flaw.SLOW} if memory else set()
     if memory:
         residuals, jacobian = differenced(residuals, memory), differenced(jacobian, memory)
     before = (depth < -_NEAR * curve.span) & curve.first_pass
     least = max(_LEAST * float(np.max(np.abs(curve.force))), _step(curve.force) / np.sqrt(12))
-    flaws = {Flaw.SPIKES} if has_spikes(residuals, least) else set()
+    flaws = correlated | ({Flaw.SPIKES} if has_spikes(residuals, least) else set())
     if before.sum() < _FEWEST:
         left = max(residuals.size - jacobian.shape[1], 1)
         noise = Noise(max(float(np.sqrt(np.sum(residuals**2) / left)), least), left)
@@ -124,7 +125,8 @@ def judged(
 def memory_of(curve: Curve, residuals: Array, depth: Array, flaws: frozenset[Flaw]) -> float:
     """Return the exponent of correlated noise before contact; 0 if it is not of that kind."""
     before = (depth < -_NEAR * curve.span) & curve.first_pass
-    return exponent_of(residuals[before]) if Flaw.SLOW in flaws else 0.0
+    slow = Flaw.SLOW in flaws and Flaw.DIP not in flaws
+    return exponent_of(residuals[before]) if slow else 0.0
 
 
 def _before_contact(force: Array, base: Array, least: float) -> tuple[set[Flaw], Noise, Noise]:
@@ -134,35 +136,45 @@ def _before_contact(force: Array, base: Array, least: float) -> tuple[set[Flaw],
     and no dip.
     """
     line = np.column_stack([np.ones(force.size), (base - base.mean()) / np.ptp(base)])
-    rest = force - line @ np.linalg.lstsq(line, force, rcond=None)[0]
-    freedom = force.size - 2
-    noise = Noise(max(float(np.sqrt(rest @ rest / freedom)), least), freedom)
-    independent, flaws, slow = _neighbours(force, least), set(), noise
-    sums = binned(rest, line, _equal(force.size))
+    unit = line / np.linalg.norm(line, axis=0)
+    independent, flaws = _neighbours(force, least), set()
+    limit = float(ndtri(CHANCE / len(_WINDOWS)))
+    # A line may explain more than a dip, which then has to be significant beside it.
+    depth, window = max(_dip(force, unit[:, :1]), _dip(force, unit))
+    dips = depth < limit * independent.deviation
+    # A dip may begin before its window.
+    far = slice(0, max(force.size - 2 * window, force.size // 4) if dips else force.size)
+    rest = force - line @ np.linalg.lstsq(line[far], force[far], rcond=None)[0]
+    freedom = max(rest[far].size - 2, 1)
+    noise = Noise(max(float(np.sqrt(np.sum(rest[far] ** 2) / freedom)), least), freedom)
+    slow = noise
+    sums = binned(rest[far], line[far], _equal(rest[far].size))
     if sums and sums.exceeds(independent):
         flaws.add(Flaw.SLOW)
-        slow = max(noise, sums)
-        noise = slow
-    unit = line / np.linalg.norm(line, axis=0)
-    limit = -float(ndtri(CHANCE / 2)) * slow.deviation
-    if dips(force, unit[:, :1], slow.deviation) and dips(force, unit, slow.deviation):
+        noise = slow = max(noise, sums)
+    unit = line[far] / np.linalg.norm(line[far], axis=0)
+    limit_of_line = -float(ndtri(CHANCE / 2)) * slow.deviation
+    if dips and depth < limit * slow.deviation:
         flaws.add(Flaw.DIP)
-    elif abs(unit[:, 1] @ force) > limit:
+    elif abs(unit[:, 1] @ force[far]) > limit_of_line:
         flaws.add(Flaw.DRIFT)
-    elif abs(unit[:, 0] @ force) > limit:
+    elif abs(unit[:, 0] @ force[far]) > limit_of_line:
         flaws.add(Flaw.OFFSET)
     return flaws, noise, slow if Flaw.SLOW in flaws else independent
 
 
-def dips(force: Array, trend: Array, deviation: float) -> bool:
-    """Return whether the force falls next to contact by more than noise does, about a trend."""
-    limit = float(ndtri(CHANCE / len(_WINDOWS))) * deviation
+def _dip(force: Array, trend: Array) -> tuple[float, int]:
+    """Return the deepest mean of a window next to contact about a trend [N], and its rows.
+
+    The mean is weighted, so that its noise is that of one row.
+    """
+    found = []
     for share in _WINDOWS:
         window = np.where(np.arange(force.size) >= force.size * (1 - share), 1.0, 0.0)
+        rows = int(window.sum())
         window -= trend @ (trend.T @ window)
-        if window @ force < limit * np.linalg.norm(window):
-            return True
-    return False
+        found.append((float(window @ force / max(np.linalg.norm(window), 1e-300)), rows))
+    return min(found)
 
 
 def binned(residuals: Array, jacobian: Array, bins: Array) -> Noise | None:

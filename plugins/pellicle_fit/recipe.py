@@ -261,6 +261,7 @@ def with_estimates(
     fit: Explained, threshold: float, extra: Sequence[Effect], everything: bool
 ) -> Explained:
     """Return an explanation with its estimates: all, or modulus and tension."""
+    fit = fit.refined()
     objective, minimum = fit.objective, fit.minimum
     accuracy = max(
         objective.known(minimum.at, i).accuracy(curve) * curve.largest / noise

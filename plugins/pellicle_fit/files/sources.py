@@ -89,9 +89,14 @@ class CurveFile:
             else:
                 # `clean` checks the arrays.
                 position, force, *time = (cast("Array", values) for values in self.numbers)
-                stiffness, speed = calibration.spring_constant, calibration.speed
-                own = {"stiffness": stiffness, "speed": speed, "time": time[0] if time else None}
-                readers[""] = lambda: Measurement(position, force, **own)
+                measured = Measurement(
+                    position,
+                    force,
+                    stiffness=calibration.spring_constant,
+                    speed=calibration.speed,
+                    time=time[0] if time else None,
+                )
+                readers[""] = lambda: measured
         except PellicleError as error:
             failure = error
 

@@ -174,7 +174,9 @@ def _curve(fit: Fit, other: Explained, figure: FigureBase) -> None:
         upper.plot(position * metre, force * newton, style, label=label)
         residuals = (curve.force - force) / noise
         lower.plot(data[0], residuals, f"{style[:2]}.", markersize=2, alpha=0.5)
-    upper.axvline(fit.contact_point.value * metre, color="0.3", linewidth=0.8, linestyle=":")
+    # No line of the axes, beside which a legend would go.
+    touch, across = fit.contact_point.value * metre, upper.get_xaxis_transform()
+    upper.vlines(touch, 0, 1, "0.3", ":", linewidth=0.8, transform=across)
     upper.set_ylabel(f"force [{force_unit}]")
     upper.legend()
     lower.set_xlabel(f"position [{unit}]")

@@ -1,0 +1,196 @@
+"""What a fit asks: curves on their solid, the model, its rivals, and what is known."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pellicle import registry
+from pellicle.batch import status_line
+from pellicle.components import HasForceCurve, Indenter
+from pellicle.errors import ConfigError, PellicleError
+from pellicle.units import Quantity
+
+from .config import FREE, TENSION, UNCERTAIN, FitConfig
+from .curve import Curve
+from .effect import Effect, quantities
+from .explanation import Solid
+from .files.cleaning import clean
+from .files.measurement import Measurement
+from .files.sources import Source
+from .objective import CONTACT_POINT
+from .recipe import answer
+from .record import Stopwatch, data_of
+from .result import Fit, Member
+from .sentences import advised
+from .simulated.body import body_of, layer_of, layer_table
+from .simulated.simulation import Simulation
+
+_BASELINES = {"none": (), "offset": ("offset",), "slope": ("offset", "slope")}
+_EFFECTS = {
+    "spring_constant": ("spring", "spring_error"),
+    "sensitivity": ("sensitivity", "sensitivity_error"),
+    "radius": ("size", "size_error"),
+}
+"""Effect and quantity that an uncertainty is of."""
+_REACH = 1.5
+"""Depth down to which a force is simulated where the contact is not known, over the range."""
+_RATIO = "poissons_ratio"
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Curves of one solid that are ready to fit; it pickles to workers."""
+
+    config: FitConfig
+    members: tuple[Member, ...]
+    question: Mapping[str, Any]
+    """What `answer` is asked of them."""
+    poissons_ratio: float | None
+    watch: Stopwatch
+
+    def fit(self, *, progress: bool = False) -> Fit:
+        """Return the fit of the curves: one modulus, and what else they share.
+
+        Raises
+        ------
+        ConfigError, PluginError, ConvergenceError
+            The curves cannot be fitted.
+        """
+        with status_line("fitting", progress):
+            found = answer([member.curve for member in self.members], **self.question)
+            advice = advised(found)
+        record = self.watch.record(self.config, [member.data for member in self.members])
+        return Fit(found, self.members, advice, self.poissons_ratio, self.config, record)
+
+
+def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = False) -> Problem:
+    """Return cleaned curves with their indenters, whose forces are simulated if need be.
+
+    Raises
+    ------
+    ConfigError, PluginError, ConvergenceError, StorageError
+        A curve or an option does not allow a fit, or a study failed.
+    """
+    if config.pool and len(sources) < 2:
+        raise ConfigError("holds one curve, and a pool needs two; use fit", "curves")
+    watch, measured, indenters = Stopwatch(), [], []
+    for source in sources:
+        try:
+            if isinstance(source.curve, PellicleError):
+                raise source.curve
+            indenters.append(config.indenter_with(source.fields))
+            measured.append(clean(source.curve, config.segment))
+        except ConfigError as error:
+            raise error if len(sources) == 1 else source.named(error, "; leave it out") from None
+    fix, depths = dict(config.fix), {curve.is_depth for curve in measured}
+    if len(depths) > 1:
+        raise ConfigError("some are of depths and some of positions; fit them apart", "curves")
+    if len(measured) > 1 and CONTACT_POINT in fix:
+        raise ConfigError(
+            "is not shared, each curve has its own; leave it out", "fix.contact_point"
+        )
+    if True in depths:
+        fix[CONTACT_POINT] = 0.0
+    bodies, layers, ratio = _on_solid(config, indenters, measured, progress)
+    members = tuple(
+        Member(
+            source.name,
+            Curve(one.position, one.force, body, one.time, one.unloading, one.stiffness),
+            one.messages,
+            data_of(one, config),
+        )
+        for source, one, body in zip(sources, measured, bodies, strict=True)
+    )
+    model = _known(config.model, fix, ratio)
+    # What is given leaves nothing to ask.
+    given = [effect for effect in model if quantities(type(effect)) and not effect.open]
+    baseline = [registry().make(Effect, {"type": name}) for name in _BASELINES[config.baseline]]
+    question = {
+        "model": [effect for effect in model if effect not in given],
+        "rivals": [r for rival in config.rivals if (r := _known(rival, fix, ratio))],
+        "kept": [*given, *baseline, *layers],
+        "fix": {name: fix[name] for name in quantities(Solid).keys() & fix.keys()},
+        "uncertainty": _uncertain(config, measured, indenters),
+        "full": config.compare,
+    }
+    return Problem(config, members, question, ratio, watch)
+
+
+def _on_solid(
+    config: FitConfig,
+    indenters: Sequence[Indenter | HasForceCurve],
+    measured: Sequence[Measurement],
+    progress: bool,
+) -> tuple[list[Any], list[Effect], float | None]:
+    """Return what has the force curve of each indenter, a layer beside it, and Poisson's ratio."""
+    kernel, ratio, thickness = config.kernel, config.poissons_ratio, config.thickness
+    if thickness == FREE:
+        layer = registry().make(Effect, {"type": "layer", _RATIO: ratio})
+        return [*indenters], [layer], ratio
+    if isinstance(thickness, float) and ratio is not None:
+        kernel = layer_table(ratio, thickness)
+    if kernel is not None:
+        layers = [layer_of(indenter, kernel, ratio) for indenter in indenters]
+        if layers[0] is not None and all(layers):
+            return [*indenters], [layers[0]], layers[0].poissons_ratio
+    bodies: list[Any] = []
+    for indenter, curve in zip(indenters, measured, strict=True):
+        body = body_of(indenter, kernel, ratio)
+        if isinstance(body, Simulation):
+            ratio, span = body.solid.poissons_ratio, float(np.ptp(curve.position))
+            point = 0.0 if curve.is_depth else config.fix.get(CONTACT_POINT)
+            reach = _REACH * span if point is None else float(curve.position.max()) - point
+            body = body.curve(
+                # If no position reaches contact, the fit itself reports it.
+                reach if reach > 0 else span,
+                cache=config.cache,
+                executor=config.executor,
+                grid_points=config.grid_points,
+                progress=progress,
+            )
+        bodies.append(body)
+    return bodies, [], ratio
+
+
+def _known(
+    effects: Sequence[Effect], fix: Mapping[str, float], ratio: float | None
+) -> list[Effect]:
+    """Return effects with what is fixed, and the solid's ratio; none for a tension fixed at 0."""
+    found = []
+    for effect in effects:
+        own = {name: fix[name] for name in quantities(type(effect)).keys() & fix.keys()}
+        if hasattr(effect, _RATIO) and _RATIO not in effect.model_fields_set and ratio:
+            own[_RATIO] = max(ratio, 0.0)
+        if own.get(TENSION) != 0:
+            found.append(effect.model_copy(update=own))
+    return found
+
+
+def _uncertain(
+    config: FitConfig, measured: Sequence[Measurement], indenters: Sequence[object]
+) -> list[Effect]:
+    """Return the effects that stand for the uncertainties of the calibration."""
+    effects: list[Effect] = []
+    known = {
+        "spring_constant": {curve.stiffness for curve in measured},
+        "sensitivity": {curve.origin.sensitivity for curve in measured},
+        "radius": {getattr(indenter, "radius", None) for indenter in indenters},
+    }
+    for name, value in config.uncertainty.items():
+        if isinstance(value, str):
+            reference, *others = known[name]
+            if reference is None or others:
+                raise ConfigError(
+                    "is a quantity, and there is no one value to compare it with; give a share "
+                    "such as 5 %",
+                    f"uncertainty.{name}",
+                )
+            value = Quantity(UNCERTAIN[name])(value) / reference
+        effect, quantity = _EFFECTS[name]
+        weighed = {quantity: {"value": 0.0, "deviation": value}}
+        effects.append(registry().make(Effect, {"type": effect, **weighed}))
+    return effects
