@@ -28,7 +28,7 @@ class WornTip(Shape):
 
     def contact(self, contact: Contact) -> Contact:
         """Return the contact of the worn tip."""
-        radius, flat, whole = contact.tip_radius or 0.0, self.flat_radius, contact.area
+        radius, flat = contact.tip_radius or 0.0, self.flat_radius
 
         def area(depth: Array, length: float) -> Array:
             deep = np.maximum(depth, 0.0)
@@ -36,7 +36,8 @@ class WornTip(Shape):
             rise = np.sqrt(np.maximum(squared - flat**2, 0.0))
             hertz = 4 / 3 * np.sqrt(radius * np.maximum(deep, 1e-90) ** 3)
             worn = 2 / (3 * radius) * (2 * squared + flat**2) * rise
-            return worn * np.where(deep > 0, whole(depth, length) / hertz, 0.0)
+            whole = contact.tabulated(float(np.max(deep))).area(depth, length)
+            return worn * np.where(deep > 0, whole / hertz, 0.0)
 
         return replace(contact, area=area)
 
