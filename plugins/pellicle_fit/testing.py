@@ -30,8 +30,8 @@ _MODULUS, _STIFFNESS, _SPEED = 2e3, 0.05, 1e-6
 _DEPTHS = np.linspace(-0.5e-6, 1e-6, 61)
 _VALUES = 2
 """Starts of each curve at which an effect is asked."""
-_ROUNDING, _LIMIT = 1e-6, 1e-3
-"""Differences over the largest force: rounding, and what is left at the limit of a quantity."""
+_ROUNDING, _LIMIT = 2e-5, 1e-3
+"""Differences over the largest force: of tables, and what is left at the limit of a quantity."""
 _SCALES = {"lengths": (2.0, 1.0, 1.0), "forces": (1.0, 3.0, 1.0), "times": (1.0, 1.0, 5.0)}
 _HALVINGS = 12
 
