@@ -50,19 +50,20 @@ def save_sheets(rows: Sequence[Row], path: Path) -> Path:
 def _page(rows: Sequence[Row], caption: str, figure: FigureBase) -> None:
     """Draw some curves on one page."""
     from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
 
     axes = figure.subplots(_DOWN, _ACROSS).ravel()
     for row, cell in zip(rows, axes, strict=False):
         _curve(row, cell)
     for cell in axes[len(rows) :]:
         cell.set_axis_off()
-    square = {"marker": "s", "mfc": "none", "linestyle": ""}
+    handles = (
+        Line2D([], [], color="0.6", marker=".", linestyle="", label="data"),
+        Line2D([], [], color="C0", label="fit"),
+        *(Patch(facecolor="none", edgecolor=c, label=state) for state, c in _COLOURS.items()),
+    )
     figure.legend(
-        handles=[
-            Line2D([], [], color="0.6", marker=".", linestyle="", label="data"),
-            Line2D([], [], color="C0", label="fit"),
-            *(Line2D([], [], color=c, label=state, **square) for state, c in _COLOURS.items()),
-        ],
+        handles=handles,
         title=f"{caption}; each frame spans the range of its curve",
         loc="outside upper center",
         ncols=2 + len(_COLOURS),
