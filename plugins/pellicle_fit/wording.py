@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from pellicle.units import Scale, axis_unit, printed
 
 from .intervals import Estimate
-from .population.summary import Quartiles
 
 _WORDS = {
     "youngs_modulus": "Young's modulus",
@@ -35,16 +34,6 @@ def scale(estimate: Estimate, *, si: bool = False) -> Scale:
 def column_scale(values: Sequence[float], unit: str, *, si: bool = False) -> Scale:
     """Return the unit of a column of values in SI, with one prefix unless ``si``."""
     return Scale(1.0, printed(unit)) if si else axis_unit(values, unit)
-
-
-def group_scales(parts: Sequence[Quartiles], *, si: bool = False) -> dict[str, Scale]:
-    """Return the unit of each parameter in a table of groups, the same for all of them."""
-    values: dict[str, list[float]] = {}
-    units = {part.parameter: part.unit for part in parts}
-    for part in parts:
-        middle = part.median or part.upper_quartile
-        values.setdefault(part.parameter, []).append(middle)
-    return {name: column_scale(values[name], units[name], si=si) for name in units}
 
 
 def interval_text(low: float | None, high: float | None, scale: Scale) -> str:

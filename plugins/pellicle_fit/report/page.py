@@ -29,7 +29,10 @@ _PAGES = 6
 """Pages of the contact sheet on the page, which a browser has to load at once."""
 _LONGEST = 2_000_000
 """Letters of JSON that the page repeats."""
-_ELSEWHERE = {"curves", "per_file", "rivals", "pool", "compare", "executor", "cache"}
+_ELSEWHERE = {
+    *("curves", "per_file", "rivals", "pool", "compare"),
+    *("executor", "cache", "grid_points"),
+}
 """Fields of a configuration that say nothing of the solid, or stand in the tables."""
 _UNDECIDED = Verdict.CANNOT_TELL, Verdict.UNDESCRIBED
 
@@ -78,11 +81,12 @@ def save_report(fit: Fit | ManyFits, path: Path, title: str) -> Path:
 
 def _one(fit: Fit) -> list[Block]:
     """Return the results of the fit of one curve or of several."""
-    others = [text for text in fit.sentences if text not in (fit.comparison, fit.advice)]
+    agree = fit.answer.agreement.factor == 1
     return [
         Text(sentence_of_fit(fit), lead=True),
         Notice(_sentence(fit.comparison), good=fit.verdict not in _UNDECIDED),
-        *(Text(_sentence(text)) for text in others),
+        *([Notice(_sentence(fit.agreement), good=agree)] if fit.agreement else []),
+        Text(_sentence(fit.sentences[0])),
         *_warnings(fit.warnings),
         tables.estimates(fit),
         tables.explanations(fit),
