@@ -47,6 +47,7 @@ RIVALS = (
 )
 """Sets of effects that are compared with a tension."""
 
+
 @contextmanager
 def _caveats_hidden() -> Iterator[None]:
     with warnings.catch_warnings():
