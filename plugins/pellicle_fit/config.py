@@ -44,23 +44,11 @@ from .population.rules import rules
 from .simulated.simulation import GRID_POINTS
 from .simulated.solid import solid
 
-Baseline = Literal["none", "offset", "slope"]
-
 DEFAULT_RIVALS: tuple[str | list[str], ...] = (
-    ["offset", "slope"],
-    ["offset", "drift"],
-    "drag",
-    "power_law",
-    "standard_linear",
-    "adhesion",
-    "layer",
-    "sphere",
-    "cone",
-    "worn_tip",
-    "brush",
-    "compliance",
-    "stiff_surface",
-    "rough_toe",
+    *(["offset", "slope"], ["offset", "drift"], "drag"),
+    *("power_law", "standard_linear", "adhesion"),
+    *("layer", "sphere", "cone", "worn_tip", "stiff_surface"),
+    *("brush", "compliance", "rough_toe"),
 )
 """What bends a curve as a tension does, and is compared unless a configuration says otherwise."""
 UNCERTAIN = {"spring_constant": "N/m", "sensitivity": "m/V", "radius": "m"}
@@ -76,6 +64,7 @@ def _component(value: object) -> object:
     return {"type": value} if isinstance(value, str) else value
 
 
+_Effects = list[str | dict[str, Any]]
 _OneEffect = Annotated[Effect, FromRegistry(), BeforeValidator(_component)]
 
 
@@ -115,16 +104,13 @@ def _uncertain(value: object) -> dict[str, float | str]:
     for name, entry in value.items():
         if name not in UNCERTAIN:
             raise ConfigError(f"is not one of {', '.join(UNCERTAIN)}", str(name))
-        share = isinstance(entry, str) and entry.strip().endswith("%")
+        percent = isinstance(entry, str) and entry.rstrip().endswith("%")
+        unit = UNCERTAIN[name] if isinstance(entry, str) and not percent else "1"
         try:
-            if share or not isinstance(entry, str):
-                number = Quantity("1", above=0)(entry.strip()[:-1] if share else entry)
-                found[name] = number / 100 if share else number
-            else:
-                Quantity(UNCERTAIN[name], above=0)(entry)
-                found[name] = entry
+            number = Quantity(unit, above=0)(entry.rstrip(" %") if percent else entry)
         except ValueError as error:
             raise ConfigError(f'{error}; or a share such as "5 %"', name) from None
+        found[name] = number / 100 if percent else number if unit == "1" else entry
     return found
 
 
@@ -136,15 +122,6 @@ def _thickness(value: object) -> float | str:
         return Quantity("m", above=0)(value)
     except ValueError as error:
         raise ConfigError(f'{error}; or "{FREE}"') from None
-
-
-def _from_folder(data: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the content of a file with its relative paths starting from ``folder``."""
-    curves, cache = data.get("curves"), data.get("cache")
-    curves = [curves] if isinstance(curves, str) else curves
-    if isinstance(curves, list) and all(isinstance(curve, str) for curve in curves):
-        data = data | {"curves": [path for curve in curves for path in expanded(curve, folder)]}
-    return data | {"cache": folder / cache} if isinstance(cache, str) else data
 
 
 class FitConfig(FromFile, Calibration):
@@ -164,25 +141,17 @@ class FitConfig(FromFile, Calibration):
 
     curves: Annotated[
         tuple[Path, ...],
-        BeforeValidator(
-            lambda value: [value] if isinstance(value, (str, Path)) else value,
-            json_schema_input_type=tuple[Path, ...] | Path,
-        ),
-        Field(
-            description="files, folders, patterns such as beads/*.csv, or tables of files",
-        ),
+        BeforeValidator(_as_list, json_schema_input_type=tuple[Path, ...] | Path),
+        Field(description="files, folders, patterns such as beads/*.csv, or tables of files"),
     ] = ()
     indenter: Annotated[
         Indenter | HasForceCurve | dict[str, Any],
         PlainValidator(_indenter, json_schema_input_type=dict[str, Any] | str),
         PlainSerializer(described),
-        Field(
-            description="the indenter: its type and fields",
-        ),
+        Field(description="the indenter: its type and fields"),
     ]
     poissons_ratio: PoissonsRatio | None = Field(
-        None,
-        description="of the solid, to get Young's modulus as well, or if the kernel needs it",
+        None, description="of the solid, to get Young's modulus as well, or if the kernel needs it"
     )
     kernel: Annotated[
         dict[str, Any] | None,
@@ -199,16 +168,16 @@ class FitConfig(FromFile, Calibration):
     ] = None
     model: Annotated[
         tuple[_OneEffect, ...],
-        BeforeValidator(_as_list),
+        BeforeValidator(_as_list, json_schema_input_type=_Effects),
         Field(
             description="effects that the force has; whether the first is needed is the question. "
             "Without any, whether a curve shows more than an elastic half-space",
             validate_default=True,
         ),
-    ] = ("tension",)  # type: ignore[assignment]
+    ] = (TENSION,)  # type: ignore[assignment]
     rivals: Annotated[
         tuple[Annotated[tuple[_OneEffect, ...], BeforeValidator(_as_list)], ...],
-        BeforeValidator(_as_list),
+        BeforeValidator(_as_list, json_schema_input_type=list[str | dict[str, Any] | _Effects]),
         Field(
             description="effects, or lists of effects that act together, that are compared with "
             "the model, each alone and beside it",
@@ -228,7 +197,7 @@ class FitConfig(FromFile, Calibration):
             "share such as 5 % or a quantity; without any, the calibration counts as exact"
         ),
     ] = Field(default_factory=dict)
-    baseline: Baseline = Field(
+    baseline: Literal["none", "offset", "slope"] = Field(
         "none", description="force before contact that is fitted: offset, or offset and slope"
     )
     segment: Segment = Field("approach", description="the pass that is fitted")
@@ -243,10 +212,7 @@ class FitConfig(FromFile, Calibration):
     )
     accept: Annotated[
         tuple[str, ...],
-        BeforeValidator(
-            lambda value: [value] if isinstance(value, str) else value,
-            json_schema_input_type=tuple[str, ...] | str,
-        ),
+        BeforeValidator(_as_list, json_schema_input_type=tuple[str, ...] | str),
         AfterValidator(rules),
         Field(description="rules for the curves of a population, such as r_squared > 0.95"),
     ] = ()
@@ -365,10 +331,16 @@ class FitConfig(FromFile, Calibration):
         """
         if isinstance(base, (str, Path)):
             folder, data = Path(base).parent, read_toml(Path(base))
-            if options.get("curves") is not None:
-                data.pop("curves", None)
+            given = data.pop("curves", None)
+            if options.get("curves") is None and given is not None:
+                paths = _as_list(given)
+                if all(isinstance(path, str) for path in paths):
+                    paths = [one for path in paths for one in expanded(path, folder)]
+                data["curves"] = paths
+            if isinstance(data.get("cache"), str):
+                data["cache"] = folder / data["cache"]
             with paths_relative_to(folder):
-                return cls.merged(_from_folder(data, folder), overrides, **options)
+                return cls.merged(data, overrides, **options)
         if isinstance(base, FitConfig):
             base = {name: getattr(base, name) for name in base.model_fields_set}
         options = {name: value for name, value in options.items() if value is not None}

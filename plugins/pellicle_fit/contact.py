@@ -19,6 +19,8 @@ _STEP = 1e-4
 """Step of the slope of the force, over the depth."""
 _RATIO = 1.1
 """Ratio of the depths to which areas are tabulated."""
+_SHALLOW = 1e-6
+"""Depth over radius at which any round tip is a paraboloid."""
 _NODES = 129
 """Nodes of a tabulated area, evenly spaced in the root of the depth."""
 
@@ -84,9 +86,14 @@ class Contact:
 
     @property
     def tip_radius(self) -> float | None:
-        """Radius R of the indenter [m]; None if it has none."""
+        """Radius R of a round tip [m], F = 4/3 E* √R δ^(3/2) where shallow; None of any other."""
         radius = getattr(self.indenter, "radius", None)
-        return None if radius is None else self.size * radius
+        if radius is None:
+            return None
+        depth = np.array([_SHALLOW * radius])
+        hertz = 4 / 3 * _SHALLOW**1.5 * radius**2
+        is_round = np.isclose(OwnArea(self.indenter, 1.0)(depth, 0.0)[0], hertz, rtol=0.01, atol=0)
+        return self.size * radius if is_round else None
 
     @property
     def is_own(self) -> bool:

@@ -39,8 +39,8 @@ _AT_ONCE = 6
 """Steps of Newton's method without a bracket."""
 _HALVINGS = 40
 """How often the bracket of a balance is halved."""
-_WIDER = 12
-"""How often the bracket of a balance doubles."""
+_WIDER, _NARROW = 12, 1e-4
+"""How often the bracket of a balance doubles, and its least width then over the largest way."""
 _NODES = 200
 """Nodes of the table from which searches for a balance start."""
 _DEEPER = 2.0
@@ -206,9 +206,10 @@ def balanced(
     # In √δ a toe that is infinitely soft at first touch has a slope.
     root = np.sign(start) * np.sqrt(np.abs(start))
     for _ in range(_AT_ONCE):
-        beyond, above = root + step, excess(root * np.abs(root))
+        beyond: Array = root + step
+        above = excess(root * np.abs(root))
         slope = (excess(beyond * np.abs(beyond)) - above) / step
-        new = np.clip(root - above / np.maximum(slope, 1e-6 * step), -far, far)
+        new: Array = np.clip(root - above / np.maximum(slope, 1e-6 * step), -far, far)
         if np.max(np.abs(new * np.abs(new) - root * np.abs(root))) <= _BALANCE * scale:
             return new * np.abs(new)
         root = new
@@ -218,7 +219,8 @@ def balanced(
         short, long = excess(high) < 0, excess(low) > 0
         if not (short.any() or long.any()):
             break
-        width = high - low
+        # At first touch both ends are one, and a drag may hold the solid far below them.
+        width = np.maximum(high - low, _NARROW * scale)
         high, low = np.where(short, high + width, high), np.where(long, low - width, low)
     else:
         raise ConvergenceError(

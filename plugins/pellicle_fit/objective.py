@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -144,12 +145,16 @@ class Objective:
         low_ends, high_ends = np.array(ends).reshape(-1, 2).T
         return low_ends, high_ends
 
+    def acts(self, slot: Slot, curve: int) -> bool:
+        """Return whether a coordinate is of a curve."""
+        owner = self.beads[curve] if slot.quantity.scope == "indenter" else curve
+        return slot.curve in (None, owner)
+
     def known(self, at: Array, curve: int) -> Explanation:
         """Return the explanation of a curve with values of its open quantities."""
         values: list[dict[str, float]] = [{} for _ in self.explanation.parts]
         for slot, coordinate in zip(self.slots, at, strict=True):
-            owner = self.beads[curve] if slot.quantity.scope == "indenter" else curve
-            if slot.curve in (None, owner):
+            if self.acts(slot, curve):
                 values[slot.part][slot.name] = slot.value(coordinate)
         pairs = zip(self.explanation.effects, values[1:], strict=True)
         effects = tuple(effect.at(known) for effect, known in pairs)
@@ -166,16 +171,23 @@ class Objective:
 
     def residuals(self, at: Array) -> Array:
         """Return (recorded − measured)/noise of all rows, then the terms of what is weighed."""
-        rows = zip(self.forces(at), self.curves, self.noise, strict=True)
-        terms = [curve.weights * (force - curve.force) / noise for force, curve, noise in rows]
-        if any(self.memory):
-            pairs = zip(terms, self.memory, strict=True)
-            terms = [differenced(term, d) if d else term for term, d in pairs]
+        return np.concatenate(self._terms(at))
+
+    def _terms(self, at: Array, known: Mapping[int, Array] = MappingProxyType({})) -> list[Array]:
+        """Return the residuals of each curve, unless they are known, and of what is weighed."""
+        terms = []
+        for i, (curve, noise) in enumerate(zip(self.curves, self.noise, strict=True)):
+            if (term := known.get(i)) is None:
+                force = self.known(at, i).force(curve)
+                term = curve.weights * (force - curve.force) / noise
+                if self.memory and self.memory[i]:
+                    term = differenced(term, self.memory[i])
+            terms.append(term)
         for slot, coordinate in zip(self.slots, at, strict=True):
             given = getattr(self.explanation.parts[slot.part], slot.name)
             if isinstance(given, Weighed):
                 terms.append(np.array([(slot.value(coordinate) - given) / given.deviation]))
-        return np.concatenate(terms)
+        return terms
 
     def chi_squared(self, at: Array) -> float:
         """Return χ²."""
@@ -183,12 +195,15 @@ class Objective:
 
     def jacobian(self, at: Array, free: Sequence[int]) -> Array:
         """Return the derivatives of the residuals by some coordinates, from differences."""
-        here, columns = self.residuals(at), []
+        here, columns = self._terms(at), []
         for k in free:
             step = _STEP if at[k] + _STEP <= self.limits[1][k] else -_STEP
             moved = at.copy()
             moved[k] += step
-            columns.append((self.residuals(moved) - here) / step)
+            # A quantity of one curve leaves the others as they are.
+            same = {i: here[i] for i in range(len(self.curves)) if not self.acts(self.slots[k], i)}
+            change = np.concatenate(self._terms(moved, same)) - np.concatenate(here)
+            columns.append(change / step)
         return np.column_stack(columns)
 
     def deviations(self, at: Array) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -30,6 +31,7 @@ from .rivals import (
     fitted_all,
     lenders,
 )
+from .strangers import refuse_broken
 
 TENSION = "tension"
 _SMALL = 0.2
@@ -206,13 +208,15 @@ def answer(
         A value is not allowed.
     ConvergenceError
         The force of a cantilever does not balance that of the solid.
+    PluginError
+        An effect that pellicle does not ship breaks its contract.
     """
+    sets = tuple(map(tuple, rivals))
+    refuse_broken([*model, *kept, *chain(*sets), *uncertainty])
     curves = timed(curves)
     asked = next((effect for effect in model if not isinstance(effect, Records)), None)
     kept = (*kept, *(effect for effect in model if effect is not asked))
-    question = Question(
-        Solid.model_validate(dict(fix or {})), asked, kept, tuple(map(tuple, rivals))
-    )
+    question = Question(Solid.model_validate(dict(fix or {})), asked, kept, sets)
     fits, excused = fitted_all(question, curves)
     if question.word in excused:
         raise ConfigError(f"cannot be fitted to this curve: {excused[question.word]}", "model")

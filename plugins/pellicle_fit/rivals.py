@@ -34,6 +34,8 @@ _FAILING = 0.01
 """Probability that a curve without fault fails some check."""
 _RARE = 0.05
 """Probability below which the number of failing curves is not attributed to chance."""
+_SAME = 0.01
+"""Difference of χ² that decides nothing."""
 _REFINED = 2
 """How often means are corrected by the explanation that is fitted to them."""
 _FAR = 40.0
@@ -338,14 +340,14 @@ def _idle(
     It is then far behind the best, or behind one of its parts; worse than nothing at all it cannot
     be, which it mostly contains.
     """
-    low, high = min(fit.aic for fit in fits.values()) + _FAR, fits[NONE].aic
+    low, contained = min(fit.aic for fit in fits.values()) + _FAR, [fits[NONE]]
     if word < types:
-        own = [fits[part].aic for part in (word, types - word) if part in fits]
-        low, high = min(low, *(aic + 1 for aic in own)), max(own)
+        contained = [fits[part] for part in (word, types - word) if part in fits]
+        low = min(low, *(fit.aic + 1 for fit in contained))
+    high = min(fit.chi_squared for fit in contained)
     # Of means, χ² lacks the scatter of the rows about them.
     scatter = 0.0 if jumps else fits[word].chi_squared - fits[word].minimum.chi_squared
-    lacks = criterion(objective, 0.0) + scatter
-    return low - lacks, high - lacks + 2 * len(objective.slots)
+    return low - criterion(objective, 0.0) - scatter, high - scatter + _SAME
 
 
 def criterion(objective: Objective, chi_squared: float) -> float:

@@ -30,8 +30,8 @@ _MODULUS, _STIFFNESS, _SPEED = 2e3, 0.05, 1e-6
 _DEPTHS = np.linspace(-0.5e-6, 1e-6, 61)
 _VALUES = 2
 """Starts of each curve at which an effect is asked."""
-_ROUNDING, _LIMIT = 1e-6, 1e-3
-"""Differences over the largest force: rounding, and what is left at the limit of a quantity."""
+_ROUNDING, _LIMIT = 2e-5, 1e-3
+"""Differences over the largest force: of tables, and what is left at the limit of a quantity."""
 _SCALES = {"lengths": (2.0, 1.0, 1.0), "forces": (1.0, 3.0, 1.0), "times": (1.0, 1.0, 5.0)}
 _HALVINGS = 12
 
@@ -325,3 +325,15 @@ def _body(name: str, **fields: float) -> HasForceCurve:
     body = pl.indenter(name, **fields)
     assert isinstance(body, HasForceCurve)
     return body
+
+
+QUICK = [
+    stands_in_one_place,
+    starts_lie_within_limits,
+    returns_a_number_for_each_row,
+    is_finite_everywhere,
+    each_row_is_its_own,
+    depths_grow,
+    what_it_says_is_valid,
+]
+"""Rules that balance no forces, which a fit asks of effects that pellicle does not ship."""

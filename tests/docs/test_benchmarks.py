@@ -9,8 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.shared_fits import skip_rivals
-
 BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
 SCRIPTS = {
     "adhesion.py": (
@@ -18,8 +16,11 @@ SCRIPTS = {
         1,
         {"N": "32", "": "(missed)?"},
     ),
-    "fit_checks.py": (["1"], 11, {"claimed": "(0|100) %", "flagged": "(0|100) %"}),
-    "fit_rivals.py": (["1", "7", "no tension"], 1, {"false": "0 %", "right": "100 %"}),
+    "fit_verdicts.py": (
+        ["outcomes.jsonl", "1", "7", "drift"],
+        1,
+        {"needed": "0 of 1", "τ₀ held": "1 of 1"},
+    ),
     "kernels.py": (["--cases", "rough", "--points", "32"], 20, {"rough, N = 32": r"[1-4]?\d"}),
     "next_step.py": (
         ["--cases", "rough", "--points", "32", "--number", "4"],
@@ -38,7 +39,7 @@ SCRIPTS = {
     ),
 }
 """Options of a script, number of rows, and patterns that all cells of a column match."""
-SLOW = {"fit_checks.py", "cost.py"}
+SLOW = {"fit_verdicts.py", "cost.py"}
 
 
 @pytest.mark.parametrize(
@@ -52,13 +53,12 @@ def test_table(
     script: str,
     size: tuple[list[str], int, dict[str, str]],
     monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     """A heading, the line under it, and as many rows as were asked for, with sound values."""
     options, rows, patterns = size
-    if script == "fit_checks.py":
-        # Its table is that of the checks.
-        skip_rivals(monkeypatch)
+    monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "argv", [script, *options])
     runpy.run_path(str(BENCHMARKS / script), run_name="__main__")
     assert_is_table(capsys.readouterr().out, rows, patterns)

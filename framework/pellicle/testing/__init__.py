@@ -11,6 +11,7 @@ A family that a plugin brings has its check in the package of its base class, ma
 """
 
 from .component import check as check
+from .component import keep as keep
 from .component import rules_of as rules_of
 from .corrections import check_correction as check_correction
 from .executors import check_executor as check_executor

@@ -29,7 +29,7 @@ class RoughToe(Yields):
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Refuse tips that are not round."""
-        return "" if contact.tip_radius else "needs an indenter with a radius"
+        return "" if contact.tip_radius else "needs a round tip"
 
     def give(self, force: Array) -> Array:
         """Return λ ln(1 + (F/F₁)^⅓) [m]."""

@@ -17,10 +17,10 @@ class Shape(Bends):
     rank: ClassVar[int] = 1
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
-        """Refuse a set with a tension, and an indenter without a radius."""
+        """Refuse a set with a tension, and a tip that is not round."""
         if "tension" in beside:
             return "a tension makes up for any shape"
-        return "" if contact.tip_radius else "needs an indenter with a radius"
+        return "" if contact.tip_radius else "needs a round tip"
 
     def starts(self, sizes: Sizes) -> Iterable[Values]:
         """Yield nothing to search."""

@@ -46,10 +46,12 @@ class StiffSurface(Bends):
 
         def area(depth: Array, _: float) -> Array:
             # The radius of round bodies is smooth in √δ.
-            depths = np.maximum(depth, 0.0)[:, None] * _ROOTS**2
-            radius = bare.radius(depths.ravel()).reshape(depths.shape)
+            deep = np.maximum(depth, 0.0)
+            table = bare.tabulated(1.01 * float(np.max(deep)))
+            depths = deep[:, None] * _ROOTS**2
+            radius = table.radius(depths.ravel()).reshape(depths.shape)
             excess = 4 * gain * radius * np.exp(-radius / reach) * _ROOTS @ _WEIGHTS
-            return bare.area(depth, 0.0) + np.maximum(depth, 0.0) * excess
+            return table.area(depth, 0.0) + deep * excess
 
         return replace(contact, area=area, half_space=False)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from math import inf
 from typing import Annotated, Literal
 
 import numpy as np
@@ -16,9 +15,10 @@ from .shape import Shape
 
 
 class WornTip(Shape):
-    """A paraboloid whose tip is worn to a flat of radius b.
+    """A paraboloid or a sphere whose tip is worn to a flat of radius b.
 
-    δ = (a/R) √(a² − b²), F = (2 E*/3R) (2a² + b²) √(a² − b²) (Popov, Heß & Willert 2019).
+    δ = (a/R) √(a² − b²), F = (2 E*/3R) (2a² + b²) √(a² − b²) (Popov, Heß & Willert 2019), times the
+    force of a sphere over that of a paraboloid at the same depth.
     """
 
     model_config = ConfigDict(title="a worn tip")
@@ -30,13 +30,16 @@ class WornTip(Shape):
         """Return the contact of the worn tip."""
         radius, flat = contact.tip_radius or 0.0, self.flat_radius
 
-        def area(depth: Array, _: float) -> Array:
+        def area(depth: Array, length: float) -> Array:
             deep = np.maximum(depth, 0.0)
             squared = (flat**2 + np.sqrt(flat**4 + 4 * (radius * deep) ** 2)) / 2
             rise = np.sqrt(np.maximum(squared - flat**2, 0.0))
-            return 2 / (3 * radius) * (2 * squared + flat**2) * rise
+            hertz = 4 / 3 * np.sqrt(radius * np.maximum(deep, 1e-90) ** 3)
+            worn = 2 / (3 * radius) * (2 * squared + flat**2) * rise
+            whole = contact.tabulated(float(np.max(deep))).area(depth, length)
+            return worn * np.where(deep > 0, whole / hertz, 0.0)
 
-        return replace(contact, area=area, depth_limit=inf)
+        return replace(contact, area=area)
 
     def starts(self, sizes: Sizes) -> Iterable[Values]:
         """Yield flats of a part of the way, and of half of it."""

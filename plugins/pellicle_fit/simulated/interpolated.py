@@ -20,7 +20,7 @@ def stretched(x: Array) -> Array:
     return np.log1p(x / SCALE)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SimulatedCurve:
     """F/E* of an indenter on a solid under tension, interpolated between the runs of a study.
 

@@ -11,7 +11,6 @@ import tempfile
 import warnings
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
@@ -22,6 +21,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import pellicle as pl
+from pellicle_fit.config import FitConfig
 from pellicle_fit.curve import Curve
 from pellicle_fit.effect import Effect, Sizes
 from pellicle_fit.explanation import Explanation, Solid
@@ -34,18 +34,7 @@ from tests.physics.frozen.fit_curves import RADIUS, Case
 from tests.physics.frozen.not_frozen import VARIABLES
 
 Array = NDArray[np.float64]
-RIVALS = (
-    ("offset", "slope"),
-    ("offset", "drift"),
-    *(
-        (name,)
-        for name in (
-            "drag power_law standard_linear adhesion layer sphere cone worn_tip brush compliance "
-            "stiff_surface rough_toe"
-        ).split()
-    ),
-)
-"""Sets of effects that are compared with a tension."""
+
 
 
 @contextmanager
@@ -157,7 +146,7 @@ def _curves(case: Case) -> tuple[Curve, ...]:
     """Return the curves of a case as fits see them."""
     options = {"indenter": "paraboloid", "radius": RADIUS, **case.options}
     shape = {k: options[k] for k in ("radius", "half_angle") if options.get(k) is not None}
-    body = pl.indenter(options["indenter"], **shape)
+    body: Any = pl.indenter(options["indenter"], **shape)
     segment = options.get("segment", "approach")
     curves = []
     for curve in case.curves:
@@ -168,10 +157,9 @@ def _curves(case: Case) -> tuple[Curve, ...]:
         # An approach ends where a dwell begins.
         kept = rows <= first if segment == "approach" else rows >= 0
         out = rows > turn if segment == "both" else np.full(rows.size, segment == "retract")
-        arrays = (a[kept] for a in (curve.position, curve.force, curve.time, out))
-        position, force, time, unloading = arrays
+        position, force, time = (a[kept] for a in (curve.position, curve.force, curve.time))
         stiffness = options.get("spring_constant")
-        curves.append(Curve(position, force, body, time, unloading, stiffness))
+        curves.append(Curve(position, force, body, time, out[kept], stiffness))
     return tuple(curves)
 
 
@@ -201,7 +189,7 @@ def _objective(
 
 def _sorted(case: Case) -> bool:
     """Return whether the stored forces of a case are in the order of positions."""
-    return case.options.get("segment", "approach") == "retract"
+    return bool(case.options.get("segment", "approach") == "retract")
 
 
 def forces(case: Case, effects: Collection[str], values: Mapping[str, float]) -> Array:
@@ -244,7 +232,7 @@ def fit(case: Case) -> dict[str, Any]:
     found = answer(
         _curves(case),
         [_effect("tension", **known), *_given(case)],
-        [[_effect(name) for name in rival] for rival in RIVALS],
+        FitConfig(indenter={"type": "cone", "half_angle": 1.2}).rivals,
         fix=fixed,
         full=case.full,
     )

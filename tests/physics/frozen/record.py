@@ -67,9 +67,7 @@ def fits() -> None:
         values = {name: rounded(value) for name, value in entries()}
         _tell({f"{layer}: {text}": "" for text in differences(layer, before, values)})
         new[layer] = {
-            name: before[name]
-            if name in before and not [*changed(name)(before[name], value)]
-            else value
+            name: before[name] if name in before and not [*changed(before[name], value)] else value
             for name, value in values.items()
         }
     store("fits", new)

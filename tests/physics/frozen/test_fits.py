@@ -1,4 +1,4 @@
-"""Fits answer as they did: forces, χ², noise, minima, ends of intervals, verdicts, tables."""
+"""Fits answer as they did: forces, χ², noise, minima, ends of intervals, verdicts."""
 
 from __future__ import annotations
 
@@ -13,12 +13,9 @@ AT_ONCE = "elastic", "layer, thick", "slope, baseline fitted"
 AGAIN = "if that is right: python tests/physics/frozen/record.py fits"
 
 
-@pytest.mark.parametrize(
-    "layer",
-    ["forces", "chi_squared", "noise", pytest.param("tables", marks=pytest.mark.slow)],
-)
+@pytest.mark.parametrize("layer", ["forces", "chi_squared", "noise"])
 def test_layer(layer: str) -> None:
-    """What is computed at given values, and tables, is as stored."""
+    """What is computed at given values is as stored."""
     told = differences(layer, FROZEN[layer], dict(LAYERS[layer][0]()))
     assert not told, "\n".join([*told, AGAIN])
 

@@ -87,6 +87,7 @@ def test_paths_start_from_the_folder_of_the_file(tmp_path: Path) -> None:
     assert config.cache == folder / "studies"
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_options_replace_values_of_the_file(cli: Cli) -> None:
     """The command line wins over the file, and --set over the other options."""
     measure(Path("a.csv"))

@@ -31,6 +31,8 @@ from pellicle_fit.effect import (
 )
 from pellicle_fit.effects.tension import Tension
 from pellicle_fit.explanation import Explanation, Solid
+from pellicle_fit.recipe import answer
+from pellicle_fit.rivals import Verdict
 from pellicle_fit.testing import check_effect
 
 R, E = 5e-6, 2e3
@@ -95,7 +97,9 @@ def test_a_worn_tip() -> None:
     expected = 2 * E / 3 / R * (2 * a**2 + flat**2) * rise
     np.testing.assert_allclose(worn.force(a / R * rise), expected, rtol=1e-9, atol=1e-20)
     np.testing.assert_allclose(worn.radius(a[5:] / R * rise[5:]), a[5:], rtol=1e-6)
-    np.testing.assert_allclose(force(bead(), effect("worn_tip", flat_radius=0)), hertz(DEPTH))
+    for tip in ("paraboloid", "sphere"):
+        curve = bead(tip=body(tip, radius=R))
+        np.testing.assert_allclose(force(curve, effect("worn_tip", flat_radius=0)), force(curve))
 
 
 def test_other_shapes() -> None:
@@ -303,7 +307,8 @@ BOTH = np.append(DEPTH, DEPTH[-2::-1])
         (["drag", "layer"], bead(), "needs a contact radius"),
         (["drag", "worn_tip"], bead(), ""),
         (["cone"], bead(tip=body("cone", half_angle=1.2)), "the indenter is one"),
-        (["worn_tip"], bead(tip=body("cone", half_angle=1.2)), "needs an indenter with a radius"),
+        (["worn_tip"], bead(tip=body("cone", half_angle=1.2)), "needs a round tip"),
+        (["sphere"], bead(tip=body("flat_punch", radius=R)), "needs a round tip"),
         (["sphere"], bead(0.1 * DEPTH), "on a shallow curve"),
         (["worn_tip", "tension"], bead(), "a tension makes up for any shape"),
         (["drift"], bead(), "on one pass it is a sloping baseline"),
@@ -434,6 +439,22 @@ def test_the_kit_refuses(
         check_effect(made())
     assert f"Broken breaks the rule {rule}\nrequired: " in str(caught.value)
     assert words in str(caught.value).partition("violation: ")[2]
+
+
+def test_a_fit_refuses_what_is_broken() -> None:
+    """Before it computes, a stranger's effect that lies is named, with the rule and a remedy."""
+    curve = bead(stiffness=0.05)
+
+    class Liar(Push):
+        """Force of a wrong shape."""
+
+        def force(self, contact: Contact, curve: Curve, depth: Array) -> Array:
+            """Return one force."""
+            return self.push * depth[:1]
+
+    with pytest.raises(pl.PluginError, match="effect 'push': Liar breaks the rule returns_a_num"):
+        answer([curve], [Tension()], [[Liar()]])
+    assert answer([curve], [], [[Push()]]).verdict is Verdict.NO_SIGN
 
 
 def test_each_rule_refuses_one() -> None:
