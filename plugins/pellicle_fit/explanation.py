@@ -206,9 +206,10 @@ def balanced(
     # In √δ a toe that is infinitely soft at first touch has a slope.
     root = np.sign(start) * np.sqrt(np.abs(start))
     for _ in range(_AT_ONCE):
-        beyond, above = root + step, excess(root * np.abs(root))
+        beyond: Array = root + step
+        above = excess(root * np.abs(root))
         slope = (excess(beyond * np.abs(beyond)) - above) / step
-        new = np.clip(root - above / np.maximum(slope, 1e-6 * step), -far, far)
+        new: Array = np.clip(root - above / np.maximum(slope, 1e-6 * step), -far, far)
         if np.max(np.abs(new * np.abs(new) - root * np.abs(root))) <= _BALANCE * scale:
             return new * np.abs(new)
         root = new

@@ -157,7 +157,7 @@ def _predicted(fit: Explained, measurement: Measurement) -> Curve:
 
 def _noise(fit: Explained) -> float:
     """Return the noise of a mean of rows of the first curve [N]."""
-    return fit.objective.noise[0] * np.sqrt(_ROWS / fit.whole[0].passes[0].size)
+    return float(fit.objective.noise[0] * np.sqrt(_ROWS / fit.whole[0].passes[0].size))
 
 
 def _separation(measurement: Measurement, truth: Explained, guess: Explained) -> float:

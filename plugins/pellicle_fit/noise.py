@@ -173,7 +173,8 @@ def _dip(force: Array, trend: Array) -> tuple[float, int]:
         window = np.where(np.arange(force.size) >= force.size * (1 - share), 1.0, 0.0)
         rows = int(window.sum())
         window -= trend @ (trend.T @ window)
-        found.append((float(window @ force / max(np.linalg.norm(window), 1e-300)), rows))
+        size = max(float(np.linalg.norm(window)), 1e-300)
+        found.append((float(window @ force) / size, rows))
     return min(found)
 
 

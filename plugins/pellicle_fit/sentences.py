@@ -30,6 +30,8 @@ _CHECKS = {
     Flaw.TOO_DEEP: "the depth is beyond that to which the force of this contact is known: are "
     "radius and units right?",
 }
+_MIMIC = "a surface more than half again as stiff as the bulk, which was not weighed, looks alike"
+"""What bends curves as a tension does: both are a stiffness over the contact radius."""
 _PLAUSIBLE = {MODULUS: (1.0, 1e12), TENSION: (0.0, 1.0), "thickness": (1e-9, 1.0)}
 """Values [SI] beyond which a unit is probably wrong."""
 _PLAUSIBLE_DEPTH = 1e-5, 10.0
@@ -84,7 +86,9 @@ def comparison(answer: Answer) -> str:
         if not answer.question.rivals:
             rival = "nothing else was compared"
         text = f"{subject} is needed ({figures} against none; {rival})"
-        return text if asked.types == word else f"{text}; the best is {words(asked)}"
+        if asked.types != word:
+            text += f"; the best is {words(asked)}"
+        return text + (f"; {_MIMIC}" if word == {TENSION} else "")
     if verdict is Verdict.OTHER and none.aic - asked.aic < EFFECT_MARGIN and word:
         return f"{words(other)} describes {curves}, without {subject}"
     if verdict is Verdict.OTHER:

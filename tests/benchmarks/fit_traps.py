@@ -146,10 +146,8 @@ def main() -> None:
         verdicts: Counter[str] = Counter()
         for index in range(count):
             fit = fitted(curve_of(name, seed, index))
-            verdicts[fit.rivals.verdict if fit.rivals else "not shown"] += 1
-            estimates = fit.chosen_estimates()
-            modulus, tension = estimates["reduced_modulus"], estimates.get("tension")
-            ends = [(e.value, e.low, e.high) for e in (modulus, tension) if e]
+            verdicts[fit.verdict.value] += 1
+            ends = [(e.value, e.low, e.high) for e in (fit.reduced_modulus, fit.tension)]
             print(f"  {name} {index}: {ends} {fit.comparison}", flush=True)
         print(f"{name}: {', '.join(f'{n} {word}' for word, n in verdicts.items())}", flush=True)
 

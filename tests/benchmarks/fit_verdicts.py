@@ -24,8 +24,8 @@ from scipy.special import beta, betainc
 from tables import print_head, print_row
 
 import pellicle as pl
-from pellicle_fit.recipe import Answer, Verdict
-from pellicle_fit.rivals import Explained
+from pellicle_fit.recipe import Answer
+from pellicle_fit.rivals import Explained, Verdict
 
 Array = NDArray[np.float64]
 RADIUS, MODULUS = 5e-6, 2e3

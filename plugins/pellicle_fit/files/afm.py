@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
@@ -17,7 +17,7 @@ from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.units import Quantity
 
 from .columns import Calibration, Channel, from_columns
-from .measurement import Axis, Measurement, Site
+from .measurement import Axis, Measurement, Readers, Site
 from .passes import labelled
 
 SUFFIXES = (
@@ -31,6 +31,8 @@ SUFFIXES = (
 )
 """Suffixes that only instrument files have; .h5, .csv and .txt may be an instrument's too."""
 INSTALL = "such files are read by afmformats: install it with pip install 'pellicle[afm]'"
+_CALIBRATION = ("spring_constant", "sensitivity")
+"""What files may hold, with a space in place of the underscore."""
 _TIP = "tip position"
 _HEIGHTS = ("height (measured)", "height (piezo)")
 
@@ -40,10 +42,8 @@ def installed() -> bool:
     return find_spec("afmformats") is not None
 
 
-def read_instrument(
-    path: Path, calibration: Calibration, segment: str
-) -> dict[str, Callable[[], Measurement]]:
-    """Return what reads the ``segment`` of each curve, by its number; a single one has no label.
+def read_instrument(path: Path, calibration: Calibration, segment: str) -> Readers:
+    """Return what reads the ``segment`` of each curve, by its number.
 
     The curves of a force map do not have to fit in memory.
 
@@ -58,8 +58,8 @@ def read_instrument(
         raise StorageError(f"{path}: is the file of an instrument; {INSTALL}")
     from afmformats.formats import get_recipe
 
-    values = calibration.model_dump(include={"spring_constant", "sensitivity"}, exclude_none=True)
-    overrides = {name.replace("_", " "): value for name, value in values.items()}
+    given = calibration.model_dump(include={*_CALIBRATION}, exclude_none=True)
+    overrides = {name.replace("_", " "): value for name, value in given.items()}
     if not path.is_file():
         raise StorageError(f"{path}: cannot be read (no such file)")
     with _errors_and_warnings(path) as messages:
@@ -73,7 +73,7 @@ def read_instrument(
         recordings = sorted(recordings, key=lambda recording: recording["metadata"]["enum"])
     return {
         "" if len(recordings) == 1 else str(recording["metadata"]["enum"]): partial(
-            _curve, path, recording, overrides, calibration.speed, segment, messages
+            _curve, path, recording, calibration, segment, messages
         )
         for recording in recordings
     }
@@ -105,25 +105,25 @@ def _errors_and_warnings(path: Path) -> Iterator[list[str]]:
 def _curve(
     path: Path,
     recording: Mapping[str, Any],
-    overrides: Mapping[str, float],
-    speed: float | None,
+    calibration: Calibration,
     segment: str,
     messages: Sequence[str],
 ) -> Measurement:
     """Return one segment of one curve in SI."""
     with _errors_and_warnings(path) as own:
         data, metadata = recording["data"], recording["metadata"]
-        for name, value in overrides.items():
-            if not np.isclose(metadata.get(name, value), value, rtol=1e-6):
+        known = {}
+        for name in _CALIBRATION:
+            given, words = getattr(calibration, name), name.replace("_", " ")
+            known[name] = metadata.get(words, given)
+            if given is not None and not np.isclose(known[name], given, rtol=1e-6):
                 raise ConfigError(
-                    f"{path}: holds a {name} of {metadata[name]:g} already, and this format takes "
-                    "no other; leave it out",
-                    name.replace(" ", "_"),
+                    f"{path}: holds a {words} of {known[name]:g} already, and this format takes no "
+                    "other; leave it out",
+                    name,
                 )
-        calibration = Calibration(
-            spring_constant=metadata.get("spring constant", overrides.get("spring constant")),
-            speed=speed,
-        )
+        stiffness = known["spring_constant"]
+        calibration = Calibration(spring_constant=stiffness, speed=calibration.speed)
         force = np.asarray(data["force"], dtype=float)
         source = next((name for name in (_TIP, *_HEIGHTS) if name in data), None)
         if source is None:
@@ -140,11 +140,10 @@ def _curve(
             columns = {role: c._replace(values=c.values[rows]) for role, c in columns.items()}
         curve = from_columns(columns, calibration)
         site = _site(metadata)
-        sensitivity = metadata.get("sensitivity", overrides.get("sensitivity"))
     return replace(
         curve,
         messages=tuple(dict.fromkeys((*messages, *own, *curve.messages))),
-        origin=replace(curve.origin, sensitivity=sensitivity, library="afmformats"),
+        origin=replace(curve.origin, sensitivity=known["sensitivity"], library="afmformats"),
         site=site,
     )
 

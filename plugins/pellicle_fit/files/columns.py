@@ -175,16 +175,13 @@ def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
     time = None
     messages: tuple[str, ...] = ()
     if "time" in columns:
-        channel, reason = columns["time"], ""
+        unit, values, own_name = columns["time"]
         rows = np.isfinite(position) & np.isfinite(force)
-        if not channel.unit:
-            reason = "has no unit"
-        elif channel.values.shape != rows.shape or not grows(channel.values[rows]):
-            reason = "falls, stands still or has a row without a number"
-        else:
+        if unit and values.shape == rows.shape and grows(values[rows]):
             time = _si(columns, "time")
-        if reason:
-            text = f"column {channel.name or 'time'} {reason}, so the curve is taken as one without"
+        else:
+            reason = "falls, stands still or has a row without a number" if unit else "has no unit"
+            text = f"column {own_name or 'time'} {reason}, so the curve is taken as one without"
             messages = (Note(f"{text} time"),)
             columns = {role: channel for role, channel in columns.items() if role != "time"}
     return Measurement(

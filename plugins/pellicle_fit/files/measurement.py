@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -101,6 +101,10 @@ class Measurement:
         label = "depth" if self.is_depth else "position"
         axes.set(xlabel=f"{label} [{length_unit}]", ylabel=f"force [{unit}]")
         return axes
+
+
+Readers = Mapping[str, Callable[[], Measurement]]
+"""What reads each curve of a file, by its label, which is empty where there is one."""
 
 
 def grows(time: Array) -> bool:

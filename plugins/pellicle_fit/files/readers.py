@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -12,7 +11,7 @@ from pellicle.errors import ConfigError, StorageError, shown
 
 from . import afm
 from .columns import EXAMPLE, Calibration, Columns, from_columns, is_curve
-from .measurement import Measurement
+from .measurement import Measurement, Readers
 from .text_table import curves_of, read_cells
 from .tree import read_hdf5, read_matlab
 
@@ -25,12 +24,8 @@ _MANY = 8
 """Largest number of texts of a line that a message quotes."""
 
 
-def read(
-    path: Path, calibration: Calibration | None = None, segment: str = "approach"
-) -> dict[str, Callable[[], Measurement]]:
-    """Return functions that read the curves of a file, by their labels.
-
-    The label of a single curve is empty.  The functions raise what this one does.
+def read(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Readers:
+    """Return functions that read the curves of a file, and raise what this one does.
 
     A table (CSV, TSV, semicolons, spaces) has a header such as ``position [um],force [nN]``; cells
     that hold no number are NaN, columns of other names are ignored, and rows that differ in a
@@ -64,9 +59,7 @@ def read(
     return {label: partial(curve, label) for label in readers}
 
 
-def _readers(
-    path: Path, calibration: Calibration, segment: str
-) -> dict[str, Callable[[], Measurement]]:
+def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
     suffix = path.suffix.lower()
     mapped = calibration.columns or {}
     if suffix in (".xlsx", ".xlsm", ".xls", ".ods", ".numbers"):

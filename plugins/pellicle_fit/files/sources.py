@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,7 +17,7 @@ from pellicle.errors import ConfigError, PellicleError
 from pellicle.units import Quantity
 
 from .columns import Calibration
-from .measurement import Measurement, Segment, Site
+from .measurement import Measurement, Readers, Segment, Site
 from .readers import SUFFIXES, TEXT, read
 from .text_table import FILE, read_cells
 
@@ -74,7 +74,7 @@ class CurveFile:
         fields, site = dict(self.fields), None
         own = {name: fields.pop(name) for name in Calibration.model_fields if name in fields}
         settings = {name: getattr(self.calibration, name) for name in Calibration.model_fields}
-        readers: dict[str, Callable[[], Measurement]] = {}
+        readers: Readers = {}
         failure: PellicleError | None = None
         try:
             if {"x", "y"} <= fields.keys():
@@ -96,7 +96,7 @@ class CurveFile:
                     speed=calibration.speed,
                     time=time[0] if time else None,
                 )
-                readers[""] = lambda: measured
+                readers = {"": lambda: measured}
         except PellicleError as error:
             failure = error
 

@@ -154,7 +154,12 @@ def _below(heads: tuple[Head, ...], lines: list[str], separator: str) -> Cells:
 
     def unit(index: int) -> str:
         cells = [_plain(row[index]).strip("[]()") for row in rows[:units] if index < len(row)]
-        return next(filter(_is_unit, cells), "")
+        for cell in cells:
+            for dimension in "mNVs":
+                with suppress(ValueError):
+                    Quantity(dimension)(f"1 {cell}")
+                    return cell
+        return ""
 
     heads = tuple(h if h.unit else h._replace(unit=unit(i)) for i, h in enumerate(heads))
     return Cells(heads, rows[units:], separator)
@@ -166,14 +171,6 @@ def _is_number(cell: str) -> bool:
     except ValueError:
         return False
     return True
-
-
-def _is_unit(text: str) -> bool:
-    for dimension in "mNVs":
-        with suppress(ValueError):
-            Quantity(dimension)(f"1 {text}")
-            return True
-    return False
 
 
 def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, Columns]:
