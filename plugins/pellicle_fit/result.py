@@ -83,8 +83,9 @@ class Fit:
         Those of further curves have their number behind the name, as ``contact_point_1``.
         """
         found = {"reduced_modulus": self.reduced_modulus, "tension": self.tension}
-        found |= {k: v for k, v in parameters_of(self.answer.chosen).items() if k not in found}
-        return found | ({"youngs_modulus": youngs} if (youngs := self.youngs_modulus) else {})
+        if youngs := self.youngs_modulus:
+            found["youngs_modulus"] = youngs
+        return {**found, **parameters_of(self.answer.chosen), **found}
 
     @property
     def verdict(self) -> Verdict:
