@@ -85,7 +85,7 @@ class Fit:
         found = {"reduced_modulus": self.reduced_modulus, "tension": self.tension}
         if youngs := self.youngs_modulus:
             found["youngs_modulus"] = youngs
-        return {**parameters_of(self.answer.chosen), **found}
+        return {**found, **parameters_of(self.answer.chosen), **found}
 
     @property
     def verdict(self) -> Verdict:

@@ -33,7 +33,9 @@ def scale(estimate: Estimate, *, si: bool = False) -> Scale:
 
 def column_scale(values: Sequence[float], unit: str, *, si: bool = False) -> Scale:
     """Return the unit of a column of values in SI, with one prefix unless ``si``."""
-    return Scale(1.0, printed(unit)) if si else axis_unit(values, unit)
+    if si:
+        return Scale(1.0, "" if unit == "1" else printed(unit))
+    return axis_unit(values, unit)
 
 
 def interval_text(low: float | None, high: float | None, scale: Scale) -> str:

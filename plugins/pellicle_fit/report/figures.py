@@ -230,7 +230,7 @@ def _profiles(fit: Fit, shared: Sequence[int], figure: FigureBase) -> None:
         for end in (estimate.low, estimate.high):
             if end is not None:
                 axes.axvline(end * factor, color="0.2", linewidth=1.0, linestyle=":")
-        axes.set(xlabel=f"{words(slot.name)} [{unit}]", ylabel="Δχ²")
+        axes.set(xlabel=f"{words(slot.name)} [{unit}]" if unit else words(slot.name), ylabel="Δχ²")
         axes.set_ylim(0, 3 * fit.answer.threshold)
 
 
