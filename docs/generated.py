@@ -73,7 +73,7 @@ def _fields(rows: Iterable[FieldRow]) -> str:
     """Return a table of fields: unit and range, default, meaning."""
     cells = []
     for row in rows:
-        in_words = re.fullmatch("none|required|see below|one of these|with .*", row.default)
+        in_words = re.fullmatch("none|fitted|required|see below|one of these|with .*", row.default)
         default = row.default if in_words else f"`{row.default}`"
         cells.append((f"`{row.name}`", row.kind, default, _cell(row.meaning)))
     return _table(("field", "takes", "default", "meaning"), cells)

@@ -59,6 +59,7 @@ class Fitted(Quantity):
         curve has one.
     """
 
+    left_out: ClassVar[str] = "fitted"
     log: bool = False
     scope: Literal["all", "indenter", "curve"] = "all"
 

@@ -244,13 +244,16 @@ def lenders(
     """Return the explanations that the curves cannot tell from the best and that lend values.
 
     The best is one of those that the verdict weighs: a pair that is little better than its parts
-    does not push out what ties with them.
+    does not push out what ties with them.  Where there is no sign of what is asked for, what lacks
+    it lends too.
     """
     aic = {fit.types: fit.aic for fit in fits}
     least = min(aic[decision.asked], aic[decision.other])
 
     def lends(fit: Explained) -> bool:
         effects = fit.objective.explanation.effects
+        if decision.verdict is Verdict.NO_SIGN and not fit.types:
+            return True
         if fit.aic - least >= margin or not all(effect.holds_modulus for effect in effects):
             return False
         if decision.verdict is Verdict.NO_SIGN:

@@ -30,6 +30,8 @@ _CHECKS = {
     Flaw.TOO_DEEP: "the depth is beyond that to which the force of this contact is known: are "
     "radius and units right?",
 }
+_MIMIC = "a surface more than half again as stiff as the bulk, which was not weighed, looks alike"
+"""What bends curves as a tension does: both are a stiffness over the contact radius."""
 _PLAUSIBLE = {MODULUS: (1.0, 1e12), TENSION: (0.0, 1.0), "thickness": (1e-9, 1.0)}
 """Values [SI] beyond which a unit is probably wrong."""
 _PLAUSIBLE_DEPTH = 1e-5, 10.0
@@ -45,7 +47,7 @@ def words(fit: Explained) -> str:
 def calibration(uncertainty: Mapping[str, float | str]) -> str:
     """Return to which uncertainties the calibration is known: exactly, if there are none."""
     known = [
-        f"{name.replace('_', ' ')} to {value if isinstance(value, str) else f'{value:.3g}'}"
+        f"{name.replace('_', ' ')} to {value if isinstance(value, str) else f'{100 * value:.3g} %'}"
         for name, value in uncertainty.items()
     ]
     return f"calibration weighed: {_listed(known)}" if known else "calibration taken as exact"
@@ -80,9 +82,13 @@ def comparison(answer: Answer) -> str:
         without = f"; {untried} could not be tried, so there are no intervals"
         return text + (without if untried else "")
     if verdict is Verdict.NEEDED:
-        rival = f"; ΔAIC = {decimal(lead, 3)} against {words(other)}, the best without it"
-        text = f"{subject} is needed ({figures} against none{rival if other.types else ''})"
-        return text if asked.types == word else f"{text}; the best is {words(asked)}"
+        rival = f"ΔAIC = {decimal(lead, 3)} against {words(other)}, the best without it"
+        if not answer.question.rivals:
+            rival = "nothing else was compared"
+        text = f"{subject} is needed ({figures} against none; {rival})"
+        if asked.types != word:
+            text += f"; the best is {words(asked)}"
+        return text + (f"; {_MIMIC}" if word == {TENSION} else "")
     if verdict is Verdict.OTHER and none.aic - asked.aic < EFFECT_MARGIN and word:
         return f"{words(other)} describes {curves}, without {subject}"
     if verdict is Verdict.OTHER:
@@ -180,11 +186,11 @@ def remarks(answer: Answer) -> Iterator[str]:
             f"{words(fit)} would do with a reduced modulus of {modulus}, a small part of that of "
             "all others: beside it the data do not hold the modulus"
         )
-    compared = {fit.types for fit in answer.explanations}
     reasons: dict[str, list[str]] = {}
+    word = answer.question.word
     for types, reason in answer.excused.items():
-        # Of a rival that was compared alone, nothing is said of it beside what is asked.
-        if types - answer.question.word not in compared:
+        # Nothing is said of a rival that only beside what is asked could not be compared.
+        if not (word and word <= types):
             reasons.setdefault(reason, []).append(_named(answer, types))
     parts = (f"{_listed(names)} ({reason})" for reason, names in reasons.items())
     if reasons:

@@ -1,14 +1,20 @@
-"""Effects that pellicle does not ship, asked before a fit whether they keep their contract."""
+"""Effects that pellicle does not ship: asked before a fit, and named where one of them fails."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from functools import lru_cache
+from collections.abc import Callable, Iterable
+from functools import lru_cache, wraps
+from inspect import getsourcefile
+from traceback import extract_tb
+from typing import ParamSpec, TypeVar
 
 from pellicle import registry
-from pellicle.errors import PluginError
+from pellicle.errors import PellicleError, PluginError
 
 from .effect import Effect
+
+_Arguments = ParamSpec("_Arguments")
+_Value = TypeVar("_Value")
 
 
 def refuse_broken(effects: Iterable[Effect]) -> None:
@@ -19,11 +25,8 @@ def refuse_broken(effects: Iterable[Effect]) -> None:
     PluginError
         An effect breaks one of them.
     """
-    shipped = {
-        entry.component
-        for entry in registry().components[Effect.family].values()
-        if entry.origin.is_own
-    }
+    installed = registry().components[Effect.family].values()
+    shipped = {entry.component for entry in installed if entry.origin.is_own}
     for effect in effects:
         if type(effect) not in shipped:
             _asked(effect)
@@ -41,3 +44,26 @@ def _asked(effect: Effect) -> None:
     except AssertionError as error:
         broken = "; ".join(str(error).splitlines())
         raise PluginError(f"effect {effect.type_name!r}: {broken}") from error
+
+
+def naming_strangers(
+    function: Callable[_Arguments, _Value],
+) -> Callable[_Arguments, _Value]:
+    """Return a function that names the stranger's effect and its line in exceptions."""
+
+    @wraps(function)
+    def named(*arguments: _Arguments.args, **options: _Arguments.kwargs) -> _Value:
+        try:
+            return function(*arguments, **options)
+        except PellicleError:
+            raise
+        except Exception as error:
+            # The command line prints the note instead of a traceback.
+            lines = {frame.filename: frame.lineno for frame in extract_tb(error.__traceback__)}
+            for type_, entry in registry().components[Effect.family].items():
+                file = getsourcefile(entry.component)
+                if file in lines and not entry.origin.is_own:
+                    error.add_note(f"effect {type_!r} failed ({file}, line {lines[file]})")
+            raise
+
+    return named

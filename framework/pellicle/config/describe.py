@@ -220,7 +220,7 @@ def _default_of(info: FieldInfo) -> str:
         return "from other fields"
     value = info.get_default(call_default_factory=True)
     if value is None or value in ((), "", {}):
-        return "none"
+        return getattr(quantity_of(info), "left_out", "none")
     if isinstance(value, Component):
         return value.type_name
     if isinstance(value, BaseModel):

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 from functools import cached_property
 from numbers import Real
-from typing import TYPE_CHECKING, Annotated, Any, Final, get_args
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, get_args
 
 from pydantic_core import core_schema
 
@@ -84,6 +84,8 @@ class Quantity:
     below: float | None = None
     at_most: float | None = None
     hint: str = ""
+    left_out: ClassVar[str] = "none"
+    """What a value that is not given is, in words."""
 
     def __call__(self, value: object) -> float:
         """Return ``value`` in SI.

@@ -139,7 +139,7 @@ def test_options_of_the_question(cli: Cli) -> None:
     assert found["reduced_modulus"]["held"]
     (relaxing,) = (e for e in found["explanations"] if e["effects"] == ["power_law"])
     assert relaxing["parameters"]["relaxation_exponent"]["value"] == 0.1
-    assert found["calibration"] == "calibration weighed: radius to 0.03 and sensitivity to 0.05"
+    assert found["calibration"] == "calibration weighed: radius to 3 % and sensitivity to 5 %"
     configuration = found["configuration"]
     assert configuration["fix"] == {"relaxation_exponent": 0.1, "reduced_modulus": 6e3}
     assert configuration["uncertainty"] == {"radius": 0.03, "sensitivity": 0.05}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -455,6 +456,25 @@ def test_a_fit_refuses_what_is_broken() -> None:
     with pytest.raises(pl.PluginError, match="effect 'push': Liar breaks the rule returns_a_num"):
         answer([curve], [Tension()], [[Liar()]])
     assert answer([curve], [], [[Push()]]).verdict is Verdict.NO_SIGN
+
+
+def test_what_fails_at_work_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The note that the command line prints has the stranger's effect, its file and its line."""
+
+    class Late(Push):
+        """Force that fails on longer curves than those of the kit."""
+
+        def force(self, contact: Contact, curve: Curve, depth: Array) -> Array:
+            """Return the force [N]."""
+            return super().force(contact, curve, depth if curve.span < 1.55e-6 else depth[10**9])
+
+    entry = SimpleNamespace(component=Late, origin=SimpleNamespace(is_own=False))
+    installed = SimpleNamespace(components={"effect": {"push": entry}})
+    monkeypatch.setattr("pellicle_fit.strangers.registry", lambda: installed)
+    with pytest.raises(IndexError) as caught:
+        answer([bead(stiffness=0.05)], [], [[Late()]])
+    (note,) = caught.value.__notes__
+    assert note.startswith(f"effect 'push' failed ({__file__}, line ")
 
 
 def test_each_rule_refuses_one() -> None:
