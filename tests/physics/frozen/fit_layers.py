@@ -122,12 +122,8 @@ def fit(name: str) -> Any:
 
 def _excluded(curve: Case, effects: Collection[str]) -> bool:
     """Return whether a model is of those that are not frozen, by the list in `not_frozen`."""
-    baseline = curve.options.get("baseline") in ("offset", "slope")
-    two_instruments = baseline and "spring_constant" in curve.options and "adhesion" in effects
     unloads = curve.options.get("segment") == "both"
-    return two_instruments or (
-        unloads and "tension" in effects and not RELAXING.isdisjoint(effects)
-    )
+    return unloads and "tension" in effects and not RELAXING.isdisjoint(effects)
 
 
 def _name(effects: Collection[str]) -> str:

@@ -14,17 +14,7 @@ VARIABLES: Final = {
 CASES: Final = {
     "line contacts that stick": "they stall, and are mended with the adhesive solver",
     "the major axis of a round contact": "any direction is one",
-    "two intervals of one parameter from two noises": (
-        "left for the rewrite of fits; the headline's are left out where its noise is another than "
-        "that of the comparison"
-    ),
-    "parameters of explanations far behind the best": (
-        "their intervals are those of a curvature, which has no digits where an effect is 0"
-    ),
-    'the offset under `baseline = "offset"`': (
-        "it is another instrument for adhesion than for its rivals, under a cantilever; left for "
-        "the rewrite of fits"
-    ),
+    "explanations far behind the best": "they are not sought to the end",
     "tension beside relaxation on unloading rows": (
         "its force is not known, and fits do not try it; the formula was off by 8 to 37 %"
     ),
