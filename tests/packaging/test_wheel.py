@@ -28,14 +28,13 @@ DATA = {
     "pellicle_explore/py.typed",
     "pellicle_explore/start.toml",
     "pellicle_fit/__init__.pyi",
-    "pellicle_fit/examples/fit/fit-curve.csv",
-    "pellicle_fit/examples/fit/fit.toml",
     "pellicle_fit/py.typed",
     "pellicle_plugins/py.typed",
 } | {
-    path.relative_to(ROOT / "framework").as_posix()
+    path.relative_to((ROOT / package).parent).as_posix()
+    for package in PACKAGES
     for folder in ("examples", "templates", "report")
-    for path in (ROOT / "framework/pellicle" / folder).rglob("*")
+    for path in (ROOT / package / folder).rglob("*")
     if path.is_file() and path.suffix != ".py" and path.parent.name != "__pycache__"
 }
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
 
 from pellicle_fit.effect import Array, Contact, Curve, Responds, Response
 
@@ -135,17 +136,32 @@ def _shrinking(
     down = np.interp(out, np.append(t[-1], back[0]), np.append(z[-1], back[1]))
     weights = _weights(u, t, primitive)
     unloaded = (_weights(u, out, primitive) * _rates(out, down)).sum(axis=1)
-    to_end = np.cumsum((weights * _rates(t, z))[:, ::-1], axis=1)
-    force = np.cumsum(weights * _rates(t, area), axis=1)
-    equal, share = np.full(out.size, z[-1]), np.empty(out.size)
-    share[0] = (_weights(t[-1:], t, primitive) @ _rates(t, area))[0] / area[-1]
-    for i, tail in enumerate(to_end, start=1):
-        earlier = np.interp(-unloaded[i - 1], np.append(0.0, tail), t[::-1])
-        equal[i] = np.interp(earlier, t, z)
-        total = np.interp(earlier, t, np.append(0.0, force[i - 1]))
-        grown_area = np.interp(earlier, t, area)
-        share[i] = total / grown_area if grown_area > 1e-9 * area[-1] else share[i - 1]
+    none = np.zeros((u.size, 1))
+    to_end = np.append(none, np.cumsum((weights * _rates(t, z))[:, ::-1], axis=1), axis=1)
+    force = np.append(none, np.cumsum(weights * _rates(t, area), axis=1), axis=1)
+    row = np.arange(u.size)
+    index, part = _at(to_end, -unloaded)
+    back_in_time = t[::-1]
+    earlier = back_in_time[index] + part * (back_in_time[index + 1] - back_in_time[index])
+    index, part = _at(np.broadcast_to(t, force.shape), earlier)
+    total = force[row, index] + part * (force[row, index + 1] - force[row, index])
+    grown_area = np.interp(earlier, t, area)
+    counts = grown_area > 1e-9 * area[-1]
+    first = (_weights(t[-1:], t, primitive) @ _rates(t, area))[0] / area[-1]
+    share = np.append(first, np.where(counts, total / np.where(counts, grown_area, 1.0), 0.0))
+    # As the contact ends, the modulus is the last that there was.
+    last = np.maximum.accumulate(np.where(np.append(True, counts), np.arange(share.size), 0))
+    share, equal = share[last], np.append(z[-1], np.interp(earlier, t, z))
     return np.interp(back[0], out, share), np.interp(back[0], out, equal)
+
+
+def _at(rows: Array, values: Array) -> tuple[NDArray[np.intp], Array]:
+    """Return where a value lies in each growing row: after which entry, and by which part."""
+    index = np.clip((rows < values[:, None]).sum(axis=1) - 1, 0, rows.shape[1] - 2)
+    row = np.arange(values.size)
+    left, right = rows[row, index], rows[row, index + 1]
+    part: Array = (values - left) / np.maximum(right - left, 1e-300)
+    return index, np.clip(part, 0.0, 1.0)
 
 
 def _weights(at: Array, times: Array, primitive: Primitive) -> Array:

@@ -36,7 +36,6 @@ from tests.physics.frozen.not_frozen import VARIABLES
 Array = NDArray[np.float64]
 
 
-
 @contextmanager
 def _caveats_hidden() -> Iterator[None]:
     with warnings.catch_warnings():
