@@ -69,6 +69,8 @@ def comparison(answer: Answer) -> str:
     (verdict, *sides, lead), word = answer.decision, answer.question.word
     asked, other, none = (fits[types] for types in (*sides, NONE))
     subject = words(fits[word]) if word else "an elastic half-space"
+    if answer.question.kept and not word:
+        subject += f" with {_in_words(answer.question.kept)}"
     gain = decimal(none.chi_squared - asked.chi_squared, 3), decimal(none.aic - asked.aic, 3)
     figures = "Δχ² = {}, ΔAIC = {}".format(*gain)
     if verdict is Verdict.UNDESCRIBED:
