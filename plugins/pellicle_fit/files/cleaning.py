@@ -27,9 +27,9 @@ _SIGNIFICANT = 4.0
 def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
     """Return the rows of one pass into the solid (or out of it), or of both.
 
-    Rows are in order of time, but those of an approach in order of position.  A speed is replaced
-    by the time that follows from it.  Where the spring constant is known, the passes are told apart
-    by the position of the cantilever's base, which has no noise.
+    Rows are in order of time.  A speed is replaced by the time that follows from it.  Where the
+    spring constant is known, the passes are told apart by the position of the cantilever's base,
+    which has no noise.
 
     Raises
     ------
@@ -66,9 +66,6 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
         messages.append("a retract is fitted as if nothing adhered: compare with the approach")
     rows = np.arange(first, last + 1)
     _check_count(rows.size, "it" if segment == "both" else f"its {segment}")
-    if segment == "approach":
-        # The position of a tip holds the noise of the force: sorted by it, the noise has a slope.
-        rows = rows[np.argsort(base[rows], kind="stable")]
     if rows.size < _FEW:
         messages.append(f"only {rows.size} points: expect wide intervals")
     if (count := np.unique(z[rows]).size) < _FEWEST:

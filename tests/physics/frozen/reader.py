@@ -25,6 +25,8 @@ from pellicle_fit.config import FitConfig
 from pellicle_fit.curve import Curve
 from pellicle_fit.effect import Effect, Sizes
 from pellicle_fit.explanation import Explanation, Solid
+from pellicle_fit.files.cleaning import clean
+from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.intervals import Estimate
 from pellicle_fit.objective import Minimum, Objective
 from pellicle_fit.recipe import answer
@@ -146,19 +148,17 @@ def _curves(case: Case) -> tuple[Curve, ...]:
     options = {"indenter": "paraboloid", "radius": RADIUS, **case.options}
     shape = {k: options[k] for k in ("radius", "half_angle") if options.get(k) is not None}
     body: Any = pl.indenter(options["indenter"], **shape)
-    segment = options.get("segment", "approach")
     curves = []
     for curve in case.curves:
-        deepest = curve.position >= curve.position.max() * (1 - 1e-9)
-        turn = int(np.flatnonzero(deepest)[-1])
-        first = int(np.flatnonzero(deepest)[0])
-        rows = np.arange(curve.force.size)
-        # An approach ends where a dwell begins.
-        kept = rows <= first if segment == "approach" else rows >= 0
-        out = rows > turn if segment == "both" else np.full(rows.size, segment == "retract")
-        position, force, time = (a[kept] for a in (curve.position, curve.force, curve.time))
-        stiffness = options.get("spring_constant")
-        curves.append(Curve(position, force, body, time, out[kept], stiffness))
+        raw = Measurement(
+            curve.position,
+            curve.force,
+            time=curve.time,
+            stiffness=options.get("spring_constant"),
+        )
+        seen = clean(raw, options.get("segment", "approach"))
+        arrays = seen.position, seen.force, body, seen.time, seen.unloading, seen.stiffness
+        curves.append(Curve(*arrays))
     return tuple(curves)
 
 
