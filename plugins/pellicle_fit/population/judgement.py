@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from functools import cached_property
 from itertools import compress
@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pellicle.errors import ConfigError, StorageError, shown
+from pellicle.errors import ConfigError, StorageError, first_of, shown
 from pellicle.files import read_text
 from pellicle_fit.objective import MODULUS
 
@@ -28,19 +28,19 @@ _NORMAL = 1.4826
 """Standard deviation of a normal distribution over its median absolute deviation."""
 _LIMIT = 3.5
 """Distance from the median, in these deviations, beyond which a curve stands out."""
-_NAMED = 5
-"""Curves that stand out and are named."""
 _HEADS = ("curve", "name", "file")
 _PATTERN = re.compile(r"[*?[]")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass
 class Names:
     """A list of curves in a file."""
 
     path: Path
     reasons: Mapping[str, str]
     """What follows each name on its line."""
+    used: set[str] = field(default_factory=set)
+    """Names that mean a curve."""
 
     @cached_property
     def _patterns(self) -> list[str]:
@@ -55,7 +55,10 @@ class Names:
         starts = [0, *(match.end() for match in re.finditer("/", path))]
         ends = (path[start:] for start in starts)
         patterns = (n for n in self._patterns if fnmatchcase(f"/{path}", f"*/{n}"))
-        return next((end for end in ends if end in self.reasons), next(patterns, None))
+        entry = next((end for end in ends if end in self.reasons), None) or next(patterns, None)
+        if entry:
+            self.used.add(entry)
+        return entry
 
 
 def read_names(path: Path | None) -> Names | None:
@@ -117,16 +120,15 @@ def judge(
     accepted ones if there is one, and obeys all rules.  Outliers stay accepted.
     """
     checks = [Rule(text) for text in rules]
-    used: set[tuple[Path, str]] = set()
     for row in rows:
-        row.reason = _reason(row, checks, accepted, rejected, used)
+        row.reason = _reason(row, checks, accepted, rejected)
         row.accepted, row.outlier = not row.reason, False
     notes = [
         f"{names.path} names {shown(name)}, which is none of the curves"
         for names in (accepted, rejected)
         if names is not None
         for name in names.reasons
-        if (names.path, name) not in used
+        if name not in names.used
     ]
     whole = [row for row in rows if row.accepted]
     lost = sum(row.is_fitted for row in rows) - len(whole)
@@ -135,35 +137,26 @@ def judge(
     elif lost:
         curves = "curve was" if lost == 1 else "curves were"
         notes.append(f"{lost} fitted {curves} rejected; the table says why")
-    for row in outliers(whole):
-        row.outlier = True
-    names_of = [row.name for row in rows if row.outlier]
-    if names_of:
-        more = f" and {len(names_of) - _NAMED} more" if len(names_of) > _NAMED else ""
+    if far := outliers(whole):
+        for row in far:
+            row.outlier = True
         notes.append(
-            f"the modulus of {len(names_of)} of {len(whole)} accepted curves stands out from that "
-            f"of the others in the group; nothing was left out: "
-            f"{', '.join(names_of[:_NAMED])}{more}"
+            f"the modulus of {len(far)} of {len(whole)} accepted curves stands out from that of "
+            f"the others in the group; nothing was left out: {first_of([row.name for row in far])}"
         )
     return notes
 
 
-def _reason(
-    row: Row,
-    rules: Sequence[Rule],
-    accepted: Names | None,
-    rejected: Names | None,
-    used: set[tuple[Path, str]],
-) -> str:
+def _reason(row: Row, rules: Sequence[Rule], accepted: Names | None, rejected: Names | None) -> str:
     """Return why a curve is not accepted; empty if it is."""
-    entries = {names: names.entry(row.name) for names in (accepted, rejected) if names is not None}
-    used |= {(names.path, entry) for names, entry in entries.items() if entry is not None}
+    wanted = accepted is None or accepted.entry(row.name) is not None
+    entry = None if rejected is None else rejected.entry(row.name)
     if not row.is_fitted:
         return row.status
-    if rejected is not None and (entry := entries[rejected]) is not None:
+    if rejected is not None and entry is not None:
         why = rejected.reasons[entry]
         return f"in {rejected.path.name}{f': {why}' if why else ''}"
-    if accepted is not None and entries[accepted] is None:
+    if accepted is not None and not wanted:
         return f"not in {accepted.path.name}"
     return "; ".join(filter(None, (rule.objection(row) for rule in rules)))
 
