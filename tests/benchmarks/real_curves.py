@@ -123,7 +123,9 @@ def outcome(curve: Measurement | PellicleError) -> Outcome:
         return Outcome(process_time() - began, str(error))
     seconds = process_time() - began
     rows = clean(replace(curve, stiffness=None, time=None, speed=None))
-    hertz = pl.fit(rows.position, rows.force, baseline="offset", fix={"tension": 0}, **options)
+    hertz = pl.fit(
+        rows.position, rows.force, baseline="offset", fix={"tension": 0}, rivals=[], **options
+    )
     assert hertz.youngs_modulus is not None
     modulus, total = nanite_fit(rows)
     squares = hertz.chi_squared * hertz.answer.chosen.objective.noise[0] ** 2

@@ -222,17 +222,14 @@ def _index(path: Path, cells: Cells, name: str) -> int:
     if not matches and name.isdecimal() and 1 <= int(name) <= width:
         return int(name) - 1
     has = ", ".join(map(shown, [head.text for head in cells.heads] or cells.rows[0]))
-    if not matches:
-        raise ConfigError(
-            f"{path}: has no column {name!r} (it has {has}); give a name of one column, or its "
-            f"number from 1 to {width}",
-            "columns",
+    problem, advice = f"no column {name!r}", "give a name of one column, or its number from 1 to"
+    if matches:
+        problem = f"{len(matches)} columns {name!r}"
+        advice = (
+            f"give one curve to a file, tell curves apart by a column {LABEL}, or choose columns "
+            "by their numbers (--columns on the command line), from 1 to"
         )
-    raise ConfigError(
-        f"{path}: has {len(matches)} columns {name!r} (it has {has}); give one curve to a file, "
-        f"tell curves apart by a column {LABEL}, or choose columns by their numbers (--columns on "
-        "the command line)"
-    )
+    raise ConfigError(f"{path}: has {problem} (it has {has}); {advice} {width}", "columns")
 
 
 def _numbers(cells: list[str], separator: str, column: str) -> Array:
