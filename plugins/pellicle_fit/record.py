@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from itertools import chain
 from pathlib import Path
 from time import perf_counter
 from typing import Any, NamedTuple
@@ -75,7 +76,7 @@ def components_of(config: FitConfig) -> set[type[Component]]:
         for name, registered in family.items()
         if name in types
     }
-    objects = (config.indenter, config.executor)
+    objects = config.indenter, config.executor, *config.model, *chain(*config.rivals)
     return named | {type(entry) for entry in objects if isinstance(entry, Component)}
 
 

@@ -15,6 +15,7 @@ from click.testing import Result
 from jsonschema import Draft202012Validator
 
 import pellicle as pl
+from pellicle_fit.record import components_of
 
 Cli = Callable[..., Result]
 OPTIONS: dict[str, Any] = {
@@ -70,6 +71,9 @@ def test_three_ways_make_one_object(tmp_path: Path) -> None:
     (tmp_path / "again.toml").write_text(config.to_toml(), encoding="utf-8")
     assert config == pl.FitConfig.from_toml(tmp_path / "again.toml")
     assert config == pickle.loads(pickle.dumps(config))
+    # Versions are recorded of whose components a fit uses, its effects among them.
+    used = {component.__name__ for component in components_of(config)}
+    assert {"Sphere", "Tension", "Drag", "PowerLaw", "Offset", "Slope", "Layer"} <= used
 
 
 def test_paths_start_from_the_folder_of_the_file(tmp_path: Path) -> None:
