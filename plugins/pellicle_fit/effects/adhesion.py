@@ -70,7 +70,7 @@ class Adhesion(Responds):
         branch = self._branch(contact, float(np.max(path + softness * curve.smoothed)), softness)
         end = branch.position[0]
         root = np.sqrt(np.maximum(branch.position - end, 0.0))
-        keep = np.append(True, root[1:] > np.maximum.accumulate(root)[:-1])
+        keep = np.append(True, root[1:] > np.maximum.accumulate(root)[:-1] + 1e-9 * root[-1])
         spline = CubicSpline(root[keep], branch.force[keep])
 
         def response(depth: Array) -> Array:
