@@ -43,6 +43,8 @@ _WIDER, _NARROW = 12, 1e-4
 """How often the bracket of a balance doubles, and its least width then over the largest way."""
 _NODES = 200
 """Nodes of the table from which searches for a balance start."""
+_SHALLOW = 1e-6
+"""Least depth that is tabulated, over the range of positions."""
 _DEEPER = 2.0
 """Depth up to which the force is known while a balance is sought, over the deepest of the path."""
 
@@ -154,7 +156,8 @@ class Explanation:
         in_series = bool(softness or yields)
         path = depth - give(curve.smoothed) if in_series else depth
         if in_series:
-            deepest = float(max(np.max(depth), np.max(path)))
+            # A search may try contact points that no row reaches.
+            deepest = float(max(np.max(depth), np.max(path), _SHALLOW * curve.span))
             contact = contact.tabulated(min(_DEEPER * deepest, contact.depth_limit))
         response: Response = contact.force
         balances = False
