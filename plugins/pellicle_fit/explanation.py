@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, ClassVar, Literal, TypeVar
+from typing import Annotated, ClassVar, TypeVar
 
 import numpy as np
 
@@ -53,7 +53,6 @@ class Solid(Fittable):
     """Elastic half-space, and where the indenter touches it first."""
 
     family: ClassVar[str] = "solid"
-    type: Literal["solid"] = "solid"
     reduced_modulus: Annotated[float, Fitted("Pa", above=0, log=True)] = fitted(
         "reduced modulus E*"
     )
