@@ -230,6 +230,7 @@ def test_a_fault_of_pellicle_has_an_exit_code_of_its_own(
     assert done.stdout == ""
 
 
+@pytest.mark.slow
 def test_fit_tells_failed_curves_from_unusable_input(cli: Cli, folder: Path) -> None:
     """1: some curves could not be fitted; 2: nothing could be read; ``--quiet`` prints why only."""
     depth = np.linspace(-0.5, 1.5, 60)

@@ -91,6 +91,7 @@ def test_paths_start_from_the_folder_of_the_file(tmp_path: Path) -> None:
     assert config.cache == folder / "studies"
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_rivals")
 def test_options_replace_values_of_the_file(cli: Cli) -> None:
     """The command line wins over the file, and --set over the other options."""
@@ -124,6 +125,7 @@ def test_radius_of_each_file(cli: Cli) -> None:
     assert [curve["indenter"]["radius"] for curve in curves] == [5e-6, 20e-6]
 
 
+@pytest.mark.slow
 def test_options_of_the_question(cli: Cli) -> None:
     """Model, rivals, fixed quantities and uncertainties are given on the command line."""
     measure(Path("a.csv"))

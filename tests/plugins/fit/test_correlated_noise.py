@@ -61,7 +61,8 @@ def test_a_bent_baseline_is_not_the_noise_of_the_contact() -> None:
         indenter="paraboloid",
         radius=radius,
         baseline="offset",
-        fix={"tension": 0},
+        model=(),
+        rivals=(),
     )
     assert fit.reduced_modulus.value == pytest.approx(modulus, rel=0.1)
     assert Flaw.MISFIT in fit.answer.judgements[0].flaws

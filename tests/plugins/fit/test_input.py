@@ -64,6 +64,7 @@ def test_command_gives_json(cli: Cli) -> None:
     assert "Cramér–Rao" in report["advice"]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_rivals")
 def test_command_leaves_files(cli: Cli) -> None:
     """A folder gets JSON and figure, named after the curve."""
@@ -85,6 +86,7 @@ def test_rows_at_the_turn_belong_to_the_pass_that_has_them(dwell: int) -> None:
     assert np.array_equal(clean(Measurement(*both), "retract").force, relaxed)
 
 
+@pytest.mark.slow
 def test_held_parameters(cli: Cli) -> None:
     """What is fixed stays, with its unit, and is said to be held; Hertz is the fit without."""
     _write(*_curve())

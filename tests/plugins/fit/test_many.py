@@ -62,6 +62,7 @@ def folder(tmp_path: Path) -> Path:
     return day
 
 
+@pytest.mark.slow
 def test_folder(cli: Cli, tmp_path: Path) -> None:
     """A row for each file; those that cannot be fitted say why, and the exit code does."""
     folder(tmp_path)
@@ -89,6 +90,7 @@ def test_folder(cli: Cli, tmp_path: Path) -> None:
     assert page.count(">failed</td>") == 4
 
 
+@pytest.mark.slow
 def test_what_is_done_is_kept(cli: Cli, tmp_path: Path) -> None:
     """The same command goes on; another question is asked anew."""
     for seed, name in enumerate(("a", "b")):
@@ -191,6 +193,7 @@ class Stops(Executor):
         raise KeyboardInterrupt
 
 
+@pytest.mark.slow
 def test_interrupted(tmp_path: Path) -> None:
     """What was finished is in the table, and the rest is said not to have run."""
     curves = {str(seed): curve(seed) for seed in range(3)}

@@ -125,6 +125,7 @@ def test_curves_that_disagree() -> None:
     assert fit.answer.threshold > 40
 
 
+@pytest.mark.slow
 def test_hertz_and_baseline(measured: dict[str, tuple[Array, Array]]) -> None:
     """A tension that is held is held for all; each curve has its own baseline."""
     position, force = measured["40 um"]
@@ -138,6 +139,7 @@ def test_hertz_and_baseline(measured: dict[str, tuple[Array, Array]]) -> None:
     assert fixed.reduced_modulus.value == pytest.approx(TRUE_MODULUS, rel=0.02)
 
 
+@pytest.mark.slow
 def test_weighed_radii(measured: dict[str, tuple[Array, Array]]) -> None:
     """Radii that are off are held by their uncertainty, each bead's its own."""
     wrong = [1.06 * RADII[0], 0.95 * RADII[1]]
@@ -159,6 +161,7 @@ def test_bad_pools(measured: dict[str, tuple[Array, Array]]) -> None:
         pooled(measured, fix={"contact_point": 0})
 
 
+@pytest.mark.slow
 def test_command(measured: dict[str, tuple[Array, Array]], cli: Callable[..., Result]) -> None:
     """``--pool`` prints what all curves say, and leaves JSON and a figure."""
     for number, (position, force) in enumerate(measured.values()):

@@ -169,6 +169,7 @@ def test_nothing_is_left() -> None:
     assert len(sheets(rows * 30)) == 3
 
 
+@pytest.mark.slow
 def test_files(cli: Cli, tmp_path: Path) -> None:
     """Tables, sheet, distributions and page have every curve, with its group and its judgement."""
     for name, seed, scale in (
@@ -240,6 +241,7 @@ def test_group_by_column(tmp_path: Path) -> None:
     assert (table["status"] == "fitted").all()
 
 
+@pytest.mark.slow
 def test_curves_do_not_pile_up(monkeypatch: pytest.MonkeyPatch) -> None:
     """Only a batch of curves is in memory at once, and the table is that of all at once."""
     curves: list[weakref.ref[NDArray[np.float64]]] = []
@@ -266,6 +268,7 @@ def test_curves_do_not_pile_up(monkeypatch: pytest.MonkeyPatch) -> None:
     assert most <= 5
 
 
+@pytest.mark.slow
 def test_two_at_once(cli: Cli, tmp_path: Path) -> None:
     """A second process in the folder is refused in words, and nothing of the first is touched."""
     save(tmp_path / "day" / "a.csv", *curve(1))
@@ -278,6 +281,7 @@ def test_two_at_once(cli: Cli, tmp_path: Path) -> None:
     assert Path("out/fits-curves.pdf").is_file()
 
 
+@pytest.mark.slow
 def test_full_disk(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A full disk ends the fits in words; what was written stays, and the same command goes on."""
     for seed in range(3):

@@ -103,6 +103,7 @@ def test_three_ways_give_the_same_bytes(cli: Cli) -> None:
     assert arrays == other
 
 
+@pytest.mark.slow
 def test_record(cli: Cli) -> None:
     """JSON has file, hash, columns, calibration, segment, baseline, versions and options."""
     measure(FILE)

@@ -24,6 +24,7 @@ def single() -> pl.Fit:
     return pl.fit(*curve(1), **BEAD, rivals=["offset"], poissons_ratio=0.5)
 
 
+@pytest.mark.slow
 def test_page(single: pl.Fit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The page of a fit has its sentence, verdict, explanations and figures; so has a notebook."""
     sentence = sentence_of_fit(single)
@@ -38,6 +39,7 @@ def test_page(single: pl.Fit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert save_figure(single, tmp_path / "fit.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_page_of_a_pool(tmp_path: Path) -> None:
     """The page of a pool says that curves of two gels do not agree; a Hertz fit has no map."""
     position, force = curve(1)
