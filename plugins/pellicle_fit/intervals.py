@@ -61,27 +61,34 @@ def estimates(
 
     A quantity of one of several curves has the number of the curve behind its name.
     """
+
+    def found(improvement: float) -> dict[str, Estimate]:
+        return {
+            slot.name if not slot.curve else f"{slot.name}_{slot.curve}": _estimate(
+                objective, minimum, k, threshold, improvement
+            )
+            for k, slot in enumerate(objective.slots)
+            if not names or slot.name in names
+        }
+
     for _ in range(_RESTARTS):
         try:
-            return minimum, {
-                slot.name if not slot.curve else f"{slot.name}_{slot.curve}": _estimate(
-                    objective, minimum, k, threshold
-                )
-                for k, slot in enumerate(objective.slots)
-                if not names or slot.name in names
-            }
+            return minimum, found(_IMPROVEMENT)
         except Better as better:
             minimum = objective.minimise(better.minimum.at)
-    return minimum, {}
+    # Where χ² jumps, every way may end a little lower.
+    return minimum, found(np.inf)
 
 
-def _estimate(objective: Objective, minimum: Minimum, k: int, threshold: float) -> Estimate:
+def _estimate(
+    objective: Objective, minimum: Minimum, k: int, threshold: float, improvement: float
+) -> Estimate:
     """Return a quantity, with the ends at which χ² has risen by the threshold.
 
     Raises
     ------
     Better
-        χ² is smaller on the way.
+        χ² is smaller on the way, by the improvement.
     """
     jacobian = objective.jacobian(minimum.at, range(minimum.at.size))
     others = [i for i in range(minimum.at.size) if i != k]
@@ -92,7 +99,9 @@ def _estimate(objective: Objective, minimum: Minimum, k: int, threshold: float) 
         along[others] = -np.linalg.lstsq(jacobian[:, others], jacobian[:, k], rcond=1e-12)[0]
     rise = float(np.linalg.norm(jacobian @ along))
     slot = objective.slots[k]
-    low, high = (_end(objective, minimum, k, threshold, sign, along, rise) for sign in (-1, 1))
+    low, high = (
+        _end(objective, minimum, k, threshold, sign, along, rise, improvement) for sign in (-1, 1)
+    )
     return Estimate(
         slot.value(minimum.at[k]),
         None if low is None else slot.value(low),
@@ -109,6 +118,7 @@ def _end(
     sign: int,
     along: Array,
     rise: float,
+    improvement: float,
 ) -> float | None:
     """Return one end of an interval."""
     if not np.isfinite(threshold):
@@ -126,7 +136,7 @@ def _end(
             start[k] = best + sign * distance
             reached[distance] = objective.minimise(start, (k,))
         chi_squared = reached[distance].chi_squared
-        if chi_squared < minimum.chi_squared - _IMPROVEMENT:
+        if chi_squared < minimum.chi_squared - improvement:
             raise Better(reached[distance])
         return float(np.sqrt(max(chi_squared - minimum.chi_squared, 0)) - threshold**0.5)
 

@@ -11,7 +11,7 @@ from scipy.special import chdtrc
 
 from pellicle.arrays import Array
 
-_FEWEST = 100
+_FEWEST = 60
 """Least number of rows from which an exponent is estimated."""
 _LEAST, _MOST = 0.1, 0.95
 """Exponents d that count: below, noise is nearly independent; 1/f noise has 1/2."""

@@ -269,7 +269,7 @@ _WORDS = ["check c.toml", "explain tensed_membrane", "show a.h5", "show study"]
         (
             "ascii",
             ["new --example fit", "fit fit.toml"],
-            ["depth [?m]", "[mm?]", "title:    ? layer", "Cram?r?Rao", " pN, from"],
+            ["depth [?m]", "[mm?]", "title:    ? layer", "??? = ", "taken as exact"],
         ),
         (
             "cp1252",
