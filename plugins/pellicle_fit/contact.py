@@ -117,7 +117,7 @@ class Contact:
         """
         length, bare = 2 * self.tension / self.modulus, self.area
         # Rounded up, so that the table serves the next contact point too.
-        deepest = _RATIO ** np.ceil(np.log(max(deepest, 1e-300)) / np.log(_RATIO))
+        deepest = _RATIO ** np.ceil(np.log(max(deepest, 1e-60)) / np.log(_RATIO))
         limit = min(float(deepest), self.depth_limit)
         spline = _spline(bare, length, limit)
 
