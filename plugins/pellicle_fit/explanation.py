@@ -10,7 +10,6 @@ from typing import Annotated, ClassVar, TypeVar
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.components import words_of_type
 from pellicle.errors import ConvergenceError
 
 from .contact import Contact
@@ -75,12 +74,6 @@ class Explanation:
     def types(self) -> frozenset[str]:
         """Types of the effects."""
         return frozenset(effect.type_name for effect in self.effects)
-
-    @property
-    def words(self) -> str:
-        """The effects in words."""
-        words = (words_of_type(type(effect), effect.type_name) for effect in self.effects)
-        return " and ".join(words) or "no effect"
 
     def of(self, kind: type[_Kind]) -> list[_Kind]:
         """Return the effects in one of the five places, in the order in which they act."""

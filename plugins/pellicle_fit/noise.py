@@ -36,17 +36,26 @@ _LEAST = 1e-6
 
 
 class Flaw(Enum):
-    """What contradicts an explanation, or only the noise."""
+    """What contradicts an explanation, or only the noise; the value is its code."""
 
-    DIP = "the force dips before contact"
-    OFFSET = "the force before contact is not 0"
-    DRIFT = "the force before contact has a slope"
-    SLOW = "the noise is correlated"
-    SPIKES = "single rows lie far from their neighbours"
-    STEPS = "the detector's steps are coarser than the noise"
-    MISFIT = "in contact the residuals exceed the noise"
-    PATTERN = "in contact the residuals follow a pattern"
-    TOO_DEEP = "the force of this contact is not known at the largest depth"
+    DIP = "dip"
+    """The force dips before contact."""
+    OFFSET = "offset"
+    """The force before contact is not 0."""
+    DRIFT = "drift"
+    """The force before contact has a slope."""
+    SLOW = "slow"
+    """The noise is correlated."""
+    SPIKES = "spikes"
+    """Single rows lie far from their neighbours."""
+    STEPS = "steps"
+    """The detector's steps are coarser than the noise."""
+    MISFIT = "misfit"
+    """In contact the residuals exceed the noise."""
+    PATTERN = "pattern"
+    """In contact the residuals follow a pattern."""
+    TOO_DEEP = "too_deep"
+    """The force of this contact is not known at the largest depth."""
 
 
 class Noise(NamedTuple):
@@ -67,6 +76,8 @@ class Judged(NamedTuple):
 
     noise: Noise
     flaws: frozenset[Flaw]
+    memory: float = 0.0
+    """Exponent d of correlated noise that was taken as white; 0 if it is not of that kind."""
 
     @property
     def describes(self) -> bool:
@@ -119,14 +130,8 @@ def judged(
         noise = max(noise, Noise(sums.deviation, sums.freedom))
     elif sums and Flaw.SLOW in flaws:
         noise = max(noise, usual, sums)
-    return Judged(noise, frozenset(flaws))
-
-
-def memory_of(curve: Curve, residuals: Array, depth: Array, flaws: frozenset[Flaw]) -> float:
-    """Return the exponent of correlated noise before contact; 0 if it is not of that kind."""
-    before = (depth < -_NEAR * curve.span) & curve.first_pass
-    slow = Flaw.SLOW in flaws and Flaw.DIP not in flaws
-    return exponent_of(residuals[before]) if slow else 0.0
+    slow = Flaw.SLOW in flaws and Flaw.DIP not in flaws and not memory
+    return Judged(noise, frozenset(flaws), exponent_of(residuals[before]) if slow else 0.0)
 
 
 def _before_contact(force: Array, base: Array, least: float) -> tuple[set[Flaw], Noise, Noise]:

@@ -100,6 +100,12 @@ class Objective:
     """Whether the modulus is that at the end of the loading, and not E*."""
 
     @cached_property
+    def searched(self) -> int:
+        """As how many quantities criteria count discrete choices in the curves."""
+        effects = self.explanation.effects
+        return sum(effect.searched(curve) for effect in effects for curve in self.curves)
+
+    @cached_property
     def loading_time(self) -> float:
         """Time of loading [s], the geometric mean over the curves."""
         return float(np.exp(np.mean([np.log(curve.loading_time) for curve in self.curves])))

@@ -131,19 +131,14 @@ class Agreement(NamedTuple):
 
 def agreement_of(fit: Explained) -> Agreement:
     """Return whether curves agree on the quantities that they share."""
-    objective, count = replace(fit.objective, curves=fit.whole), len(fit.whole)
+    objective, count = fit.of_rows, len(fit.whole)
     shared = sum(slot.curve is None for slot in objective.slots)
     if count == 1 or not shared:
         return Agreement(0.0, 0, 0)
     values, rises = objective.values(fit.minimum.at), []
     for i in range(count):
-        memory = objective.memory[i : i + 1]
-        one = replace(
-            objective,
-            curves=objective.curves[i : i + 1],
-            noise=objective.noise[i : i + 1],
-            memory=memory,
-        )
+        names = ("curves", "noise", "memory")
+        one = replace(objective, **{name: getattr(objective, name)[i : i + 1] for name in names})
         own = {(n, None if c is None else 0): v for (n, c), v in values.items() if c in (None, i)}
         start = one.at_values(own)
         rises.append(one.chi_squared(start) - one.minimise(start).chi_squared)

@@ -18,7 +18,7 @@ from .curve import Curve
 from .effect import Effect, Responds, Sizes
 from .explanation import Explanation, Solid
 from .intervals import Estimate
-from .noise import Flaw, Judged, judged, memory_of, neighbour_noise
+from .noise import Flaw, Judged, judged, neighbour_noise
 from .objective import ROUGH, Minimum, Objective
 from .starts import starts
 
@@ -69,23 +69,23 @@ class Explained:
     """Of the chosen explanation all, of those tied with it modulus and tension."""
 
     @property
-    def words(self) -> str:
-        """Its effects in words."""
-        return self.objective.explanation.words
-
-    @property
     def aic(self) -> float:
         """Akaike's criterion, less a constant of the curves."""
         return criterion(self.objective, self.chi_squared)
 
     @cached_property
+    def of_rows(self) -> Objective:
+        """χ² of all rows as a function of its quantities."""
+        return replace(self.objective, curves=self.whole)
+
+    @cached_property
     def chi_squared(self) -> float:
         """χ² of all rows."""
-        return replace(self.objective, curves=self.whole).chi_squared(self.minimum.at)
+        return self.of_rows.chi_squared(self.minimum.at)
 
     def forces(self) -> list[Array]:
         """Return the force [N] at all rows of each curve."""
-        return replace(self.objective, curves=self.whole).forces(self.minimum.at)
+        return self.of_rows.forces(self.minimum.at)
 
     def refined(self) -> Explained:
         """Return the same at the least χ² of all rows, from means that lack nothing of it.
@@ -121,8 +121,7 @@ class Explained:
     def judgements(self) -> list[Judged]:
         """Noise and flaws of each curve under it, from all rows."""
         at, memory = self.minimum.at, self.objective.memory
-        objective = replace(self.objective, curves=self.whole, memory=())
-        forces = objective.forces(at)
+        objective, forces = replace(self.of_rows, memory=()), self.forces()
         jacobian = objective.jacobian(at, range(at.size))
         # A coordinate at its limit is none that the fit could use.
         low, high = objective.limits
@@ -274,7 +273,8 @@ def fitted_all(
     """
     white = (0.0,) * len(curves)
     simple, _ = compared(question, curves, white, simple=True)
-    memory = _memory_of(min(simple, key=lambda fit: fit.aic))
+    best = min(simple, key=lambda fit: fit.aic)
+    memory = tuple(judged.memory for judged in best.judgements)
     if any(memory):
         fits, excused = compared(question, curves, memory)
         if all(judged.describes for judged in min(fits, key=lambda fit: fit.aic).judgements):
@@ -312,9 +312,10 @@ def compared(
             continue
         if types in others:
             noise = list(min(fits.values(), key=lambda fit: fit.aic).objective.noise)
-        jumps = any(effect.searched(c) for effect in explanation.effects for c in curves)
-        rows = curves if jumps else means
-        objective = Objective(explanation, rows, tuple(noise), sizes, memory)
+        objective = Objective(explanation, curves, tuple(noise), sizes, memory)
+        # No mean stands for rows of which some touch and others do not.
+        jumps = objective.searched > 0
+        objective = objective if jumps else replace(objective, curves=means)
         parts = [(fit.objective, fit.minimum) for part, fit in fits.items() if part < types]
         # A pair starts from its parts.
         scan = not word < types or not word
@@ -356,9 +357,7 @@ def _idle(
 
 def criterion(objective: Objective, chi_squared: float) -> float:
     """Return Akaike's criterion, less a constant of the curves."""
-    effects, curves = objective.explanation.effects, objective.curves
-    searched = sum(effect.searched(curve) for effect in effects for curve in curves)
-    return chi_squared + 2 * (len(objective.slots) + searched)
+    return chi_squared + 2 * (len(objective.slots) + objective.searched)
 
 
 def at_common_noise(fits: Collection[Explained]) -> dict[Types, Explained]:
@@ -375,18 +374,6 @@ def at_common_noise(fits: Collection[Explained]) -> dict[Types, Explained]:
         if passes:
             break
     return {fit.types: fit.at_noise(noise) for fit in fits}
-
-
-def _memory_of(fit: Explained) -> tuple[float, ...]:
-    """Return the exponent of the noise of each curve before contact."""
-    forces = replace(fit.objective, curves=fit.whole).forces(fit.minimum.at)
-    found = []
-    for i, (curve, force, judgement) in enumerate(
-        zip(fit.whole, forces, fit.judgements, strict=True)
-    ):
-        depth = curve.base - fit.objective.known(fit.minimum.at, i).solid.contact_point
-        found.append(memory_of(curve, curve.force - force, depth, judgement.flaws))
-    return tuple(found)
 
 
 def _restarted(fit: Explained, fits: Mapping[Types, Explained]) -> Explained:

@@ -75,7 +75,7 @@ def comparison(answer: Answer) -> str:
     figures = "Δχ² = {}, ΔAIC = {}".format(*gain)
     if verdict is Verdict.UNDESCRIBED:
         flaws = {flaw for one in answer.judgements if not one.describes for flaw in one.flaws}
-        codes = ", ".join(code(flaw) for flaw in Flaw if flaw in flaws)
+        codes = ", ".join(flaw.value for flaw in Flaw if flaw in flaws)
         text = (
             f"no model describes {curves}: that of least AIC is {words(answer.explanations[0])}, "
             f"and it fails a check ({codes})"
@@ -149,16 +149,11 @@ def agreement(answer: Answer, names: Sequence[str]) -> str:
     )
 
 
-def code(flaw: Flaw) -> str:
-    """Return the code of a check in JSON and tables."""
-    return flaw.name.lower()
-
-
 def failed_checks(judged: Judged) -> list[tuple[str, str]]:
     """Return the code of each check that a curve fails, and what it says."""
     noise = readable(judged.noise.deviation, "N", 3)
     failed = [flaw for flaw in Flaw if flaw in judged.flaws]
-    return [(code(flaw), f"{_CHECKS[flaw]} (noise {noise})") for flaw in failed]
+    return [(flaw.value, f"{_CHECKS[flaw]} (noise {noise})") for flaw in failed]
 
 
 def remarks(answer: Answer) -> Iterator[str]:
