@@ -18,20 +18,20 @@ from pathlib import Path
 from time import process_time
 from typing import Any, NamedTuple
 
+sys.path.insert(0, str(Path(__file__).parents[2]))
+
 import numpy as np
-from numpy.typing import NDArray
-from scipy.special import beta, betainc
 from tables import print_head, print_row
 
 import pellicle as pl
 from pellicle_fit.recipe import Answer
 from pellicle_fit.rivals import Explained, Verdict
+from tests.physics.frozen.fit_curves import MODULUS, RADIUS, Array, path
+from tests.physics.frozen.fit_curves import Path as Rows
+from tests.physics.frozen.fit_curves import force as force_of
 
-Array = NDArray[np.float64]
-RADIUS, MODULUS = 5e-6, 2e3
-"""R [m] and E* [Pa]."""
-ROWS, BEFORE = 350, 0.3
-"""Rows of a pass, and range before contact over that in it."""
+ROWS = 350
+"""Rows of a pass."""
 NOISE = 0.003, 0.01
 """Least and greatest noise, over the largest force."""
 PROTOCOLS = ("approach", "both", "speeds")
@@ -40,15 +40,6 @@ EXPECTED = 12.0
 """Expected Δχ² from which on a tension has to be found."""
 MOST = 20
 """Steps that a search for an expected χ² takes."""
-
-
-class Rows(NamedTuple):
-    """A path: depth [m], time since first touch over that of the first approach, motion."""
-
-    depth: Array
-    time: Array
-    sense: Array
-    rate: float = 1.0
 
 
 class Truth(NamedTuple):
@@ -68,14 +59,10 @@ class Truth(NamedTuple):
 
 def rows_of(protocol: str, deepest: float) -> list[Rows]:
     """Return the paths of a protocol."""
-    down = np.linspace(-BEFORE, 1.0, ROWS)
-    ones = np.ones(ROWS)
     if protocol == "both":
-        there = np.append(down, down[::-1])
-        time = np.append(down, 2 - down[::-1])
-        return [Rows(deepest * there, time, np.append(ones, -ones))]
+        return [path("both", 2 * ROWS, deepest)]
     rates = (1.0, 0.1) if protocol == "speeds" else (1.0,)
-    return [Rows(deepest * down, down / rate, ones, rate) for rate in rates]
+    return [path("approach", ROWS, deepest, rate) for rate in rates]
 
 
 # --- Solids ----------------------------------------------------------------------------------
@@ -98,49 +85,9 @@ def in_series(
     return force((low + high) / 2)
 
 
-def relaxed(
-    rows: Rows, response: Callable[[Array, Array], Array], primitive: Callable[[Array], Array]
-) -> Array:
-    """Return the force of a solid that relaxes, by Lee & Radok and Ting.
-
-    ``response(t, t1)`` is ∫ E(t − t′) d(t′^1.5) up to t1, in units of the approach.
-    """
-    time, top = np.maximum(rows.time, 0.0), 1 / rows.rate
-    last, out = np.minimum(time, top), rows.sense < 0
-    low, high = np.full(out.sum(), -1e-9), np.full(out.sum(), top)
-    for _ in range(60):
-        middle = (low + high) / 2
-        growth = primitive(time[out] - middle) - 2 * primitive(time[out] - top)
-        low, high = np.where(growth > 0, middle, low), np.where(growth > 0, high, middle)
-    last[out] = np.maximum(low, 0.0)
-    force = hertz(rows.depth.max()) * rows.rate**1.5 * response(time, last)
-    return np.where(rows.time > 0, force, 0.0)
-
-
-def power_law(exponent: float) -> Callable[[Rows], Array]:
-    """Return forces of E(t) = E* t^−α, of time over that of the approach."""
-    whole = 1.5 * beta(1.5, 1 - exponent)
-
-    def response(t: Array, t1: Array) -> Array:
-        share = np.divide(t1, t, out=np.zeros_like(t), where=t > 0)
-        return np.asarray(t ** (1.5 - exponent) * whole * betainc(1.5, 1 - exponent, share))
-
-    return lambda rows: relaxed(rows, response, lambda t: t ** (1 - exponent))
-
-
-def standard_linear(share: float, constant: float) -> Callable[[Rows], Array]:
-    """Return forces of E(t) = E* (1 − g + g e^(−t/T))."""
-    nodes, weights = np.polynomial.legendre.leggauss(80)
-    u, weights = (nodes[:, None] + 1) / 2, weights / 2
-
-    def response(t: Array, t1: Array) -> Array:
-        kept = 1 - share + share * np.exp(-(t - t1 * u**2) / constant)
-        return np.asarray(t1**1.5 * (weights @ (3 * u**2 * kept)))
-
-    def primitive(t: Array) -> Array:
-        return (1 - share) * t - share * constant * np.expm1(-t / constant)
-
-    return lambda rows: relaxed(rows, response, primitive)
+def closed_form(effect: str, **values: float) -> Callable[[Rows], Array]:
+    """Return forces of a solid with one effect, of which the freeze of fits has closed forms."""
+    return lambda rows: force_of(rows, frozenset({effect}), values)
 
 
 def worn(flat: float) -> Callable[[Rows], Array]:
@@ -159,21 +106,6 @@ def graded(gain: float, reach: float) -> Callable[[Rows], Array]:
     steps = (stiffness[1:] + stiffness[:-1]) / 2 * np.diff(depth)
     force = np.append(0.0, np.cumsum(steps))
     return lambda rows: np.interp(rows.depth, depth, force, left=0.0)
-
-
-def adhesive(work: float) -> Callable[[Rows], Array]:
-    """Return forces of Johnson, Kendall & Roberts down to the end of the stable branch."""
-    radius = np.geomspace(1e-3, 1.5, 6000) * RADIUS
-    depth = radius**2 / RADIUS - np.sqrt(2 * np.pi * work * radius / MODULUS)
-    force = 4 / 3 * MODULUS * radius**3 / RADIUS - np.sqrt(8 * np.pi * work * MODULUS * radius**3)
-    stable = slice(int(np.argmin(depth)), None)
-    depth, force = depth[stable], force[stable]
-
-    def of(rows: Rows) -> Array:
-        touches = np.where(rows.sense < 0, rows.depth > depth[0], rows.depth > 0)
-        return np.where(touches, np.interp(rows.depth, depth, force), 0.0)
-
-    return of
 
 
 def tensed(tension: float) -> Callable[[Rows], Array]:
@@ -220,20 +152,17 @@ def truth_of(kind: str, random: np.random.Generator) -> Truth:
         case "hertz" | "1/f noise":
             return of(lambda rows: hertz(rows.depth), coloured=kind != "hertz")
         case "power law":
-            return of(power_law(uniform(0.05, 0.3)), "power_law")
+            return of(closed_form("power_law", relaxation_exponent=uniform(0.05, 0.3)), "power_law")
         case "standard linear":
-            return of(standard_linear(uniform(0.15, 0.6), 10 ** uniform(-1.3, 0)), kind_of(kind))
+            sizes = {"relaxed_share": uniform(0.15, 0.6), "relaxation_time": 10 ** uniform(-1.3, 0)}
+            return of(closed_form("standard_linear", **sizes), "standard_linear")
         case "adhesion":
-            return of(adhesive(uniform(0.02, 0.1) * largest / (1.5 * np.pi * RADIUS)), "adhesion")
+            work = uniform(0.02, 0.1) * largest / (1.5 * np.pi * RADIUS)
+            return of(closed_form("adhesion", work_of_adhesion=work), "adhesion")
         case "drag":
-            drag = uniform(0.02, 0.15) * largest / np.sqrt(TOP)
-            return of(
-                lambda rows: (
-                    hertz(rows.depth)
-                    + drag * rows.rate * rows.sense * np.sqrt(np.maximum(rows.depth, 0.0))
-                ),
-                "drag",
-            )
+            # The approach takes 1 s from first touch on.
+            drag = uniform(0.02, 0.15) * largest / (np.sqrt(RADIUS * TOP) * TOP)
+            return of(closed_form("drag", drag=drag), "drag")
         case "slope":
             slope = sign * uniform(0.01, 0.05) * largest / TOP
             return of(lambda rows: hertz(rows.depth) + slope * rows.depth, "offset", "slope")
@@ -259,11 +188,6 @@ def truth_of(kind: str, random: np.random.Generator) -> Truth:
                 lambda rows: hertz(rows.depth) * (1 - share * rows.depth / TOP), kind, None
             )
     raise ValueError(kind)
-
-
-def kind_of(words: str) -> str:
-    """Return the type of an effect that has the name of a kind."""
-    return words.replace(" ", "_")
 
 
 KINDS = (

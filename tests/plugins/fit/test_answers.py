@@ -8,7 +8,7 @@ from typing import Any, cast
 import fit_verdicts
 import numpy as np
 import pytest
-from fit_verdicts import MODULUS, NOISE, RADIUS, TOP, Array, outcome, pink, truth_of
+from fit_verdicts import NOISE, TOP, outcome, pink, truth_of
 from scipy.optimize import minimize
 
 import pellicle as pl
@@ -16,6 +16,7 @@ from pellicle_fit import rivals as comparison
 from pellicle_fit.noise import Flaw
 from pellicle_fit.rivals import Explained, Verdict, decided
 from pellicle_plugins.indenters.of_revolution import Cone, FlatPunch, Paraboloid, Sphere
+from tests.physics.frozen.fit_curves import MODULUS, RADIUS, Array
 from tests.plugins.fit.conftest import ends_of, holds
 
 TENSION = 0.3 * RADIUS * MODULUS / 2
@@ -303,7 +304,9 @@ def test_noise_of_1_over_f_is_taken_so() -> None:
 def test_relaxation_beside_a_tension_has_no_model_of_retraction() -> None:
     """Where no explanation describes both passes and that one was not tried, nothing is bounded."""
     (rows,) = fit_verdicts.rows_of("both", TOP)
-    force = fit_verdicts.power_law(0.2)(rows) + fit_verdicts.tensed(TENSION)(rows)
+    force = fit_verdicts.closed_form("power_law", relaxation_exponent=0.2)(
+        rows
+    ) + fit_verdicts.tensed(TENSION)(rows)
     force = force + 0.003 * force.max() * np.random.default_rng(2).standard_normal(force.size)
     found = fit(
         rows.depth, force, time=rows.time - rows.time[0], rivals=["power_law"], segment="both"
@@ -318,7 +321,7 @@ def test_work_of_adhesion_is_held() -> None:
     """Where the jump stands out of the noise, modulus and work lie within their intervals."""
     work = 0.1 * float(fit_verdicts.hertz(TOP)) / (1.5 * np.pi * RADIUS)
     (rows,) = fit_verdicts.rows_of("both", TOP)
-    force, held = fit_verdicts.adhesive(work)(rows), []
+    force, held = fit_verdicts.closed_form("adhesion", work_of_adhesion=work)(rows), []
     for seed in range(10):
         noise = 0.005 * force.max() * np.random.default_rng(seed).standard_normal(force.size)
         found = fit(rows.depth, force + noise, model=["adhesion"], segment="both")
