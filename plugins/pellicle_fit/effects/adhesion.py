@@ -19,6 +19,8 @@ _DECADES = 7.0
 """How far below the largest contact the end is sought."""
 _PENALTY = 30.0
 """Slope of the force below the end of the branch, over the mean slope of the curve."""
+_RAMP = 4.0
+"""Rows over which a touch that no jump tells comes about."""
 _CHANGE_POINT = 3
 """Quantities as which the choice of the rows that touch counts (Ninomiya 2015)."""
 _WIDTH, _JUMP = 3, 6.0
@@ -39,7 +41,8 @@ class Adhesion(Responds):
 
     With force F₁, depth δ₁, stiffness k₁ and radius a of the contact without adhesion the
     equilibria are F = F₁ − k₁D, δ = δ₁ − D, D = √(4πa w / (dk₁/da)) (Johnson, Kendall & Roberts
-    1971).  An approach touches at δ = 0; where the curve itself jumps, that decides.
+    1971).  An approach touches at δ = 0; where the curve itself jumps, that decides, and else the
+    touch comes about over a few rows, so that χ² is continuous.
     """
 
     type: Literal["adhesion"] = "adhesion"
@@ -73,15 +76,17 @@ class Adhesion(Responds):
         keep = np.append(True, root[1:] > np.maximum.accumulate(root)[:-1] + 1e-9 * root[-1])
         spline = CubicSpline(root[keep], branch.force[keep])
 
+        ramp = _RAMP * curve.span / curve.passes[0].size
+
         def response(depth: Array) -> Array:
             beyond = depth - end
-            touches = np.where(curve.moves_out, beyond >= 0, depth > 0)
+            over = np.where(curve.moves_out, beyond, depth)
+            touches, steep = np.clip(0.5 + over / ramp, 0.0, 1.0), np.zeros_like(depth)
             for rows, touching in jumps(curve):
                 touches[rows] = touching
-            # Below its end the branch goes on steeply, so that rows in contact pull it along.
-            steep = _PENALTY * curve.largest / curve.span * np.minimum(beyond, 0.0)
+                steep[rows] = _PENALTY * curve.largest / curve.span * np.minimum(beyond[rows], 0.0)
             at = np.sqrt(np.clip(beyond, 0.0, root[-1] ** 2))
-            return np.where(touches, spline(at) + steep, 0.0)
+            return touches * (spline(at) + steep)
 
         return response
 

@@ -186,12 +186,14 @@ def test_adhesion(stiffness: float | None) -> None:
     out = np.linspace(1.2e-6, -0.9e-6, 300)
     curve = replace(bead(out), stiffness=stiffness, unloading=np.full(out.size, True))
     found = force(curve, effect("adhesion", work_of_adhesion=work))
-    touches = curve.base > base.min()
+    # The touch, which this curve does not show, comes about over four rows.
+    over, half = curve.base - base.min(), 2 * np.ptp(curve.position) / curve.base.size
+    touches, apart = over > half, over < -half
     expected = np.interp(curve.base, base[stable], pull[stable])
     np.testing.assert_allclose(found[touches], expected[touches], atol=2e-4 * pull.max())
-    assert not found[~touches].any()
+    assert not found[apart].any()
     assert touches.any()
-    assert not touches.all()
+    assert apart.any()
 
 
 def test_of_the_instrument() -> None:
