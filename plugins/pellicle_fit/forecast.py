@@ -13,9 +13,9 @@ from pellicle.arrays import Array, Mask
 from pellicle.errors import PellicleError
 from pellicle.units import readable
 
+from .candidate import Candidate
 from .curve import Curve
 from .objective import CONTACT_POINT, ROUGH
-from .rivals import Explained
 
 _ROWS = 150
 """Rows of each pass of a forecast."""
@@ -57,7 +57,7 @@ class Advice:
     """How many curves of this kind it takes."""
 
 
-def telling(asked: Explained, others: Sequence[Explained]) -> Advice:
+def telling(asked: Candidate, others: Sequence[Candidate]) -> Advice:
     """Return the measurement that tells an explanation from others that are as good now.
 
     Each explanation makes the measurement that it predicts, without noise, and the rest are fitted
@@ -78,7 +78,7 @@ def telling(asked: Explained, others: Sequence[Explained]) -> Advice:
     return best if best.count <= _MANY else Advice("")
 
 
-def tightening(fit: Explained, names: Sequence[str]) -> Advice:
+def tightening(fit: Candidate, names: Sequence[str]) -> Advice:
     """Return the measurement after which some quantities have smaller errors.
 
     What counts is the greatest of their Cramér–Rao bounds, each over that of the curve alone.
@@ -96,7 +96,7 @@ def tightening(fit: Explained, names: Sequence[str]) -> Advice:
     return best
 
 
-def measurements(fit: Explained) -> Iterator[Measurement]:
+def measurements(fit: Candidate) -> Iterator[Measurement]:
     """Yield measurements, the easiest first, that go beyond the first curve."""
     curve, point = fit.whole[0], _point(fit)
     low, high = float(curve.base.min()) - point, float(curve.base.max()) - point
@@ -125,18 +125,18 @@ def measurements(fit: Explained) -> Iterator[Measurement]:
             yield Measurement(words, down, forth, inward, factor)
 
 
-def _point(fit: Explained) -> float:
+def _point(fit: Candidate) -> float:
     """Return the contact point of the first curve [m]."""
     return fit.objective.known(fit.minimum.at, 0).solid.contact_point
 
 
-def _again(fit: Explained) -> Measurement:
+def _again(fit: Candidate) -> Measurement:
     """Return the measurement that the first curve is."""
     curve = fit.whole[0].binned(_ROWS)
     return Measurement("", curve.base - _point(fit), curve.clock, curve.moves_out)
 
 
-def _predicted(fit: Explained, measurement: Measurement) -> Curve:
+def _predicted(fit: Candidate, measurement: Measurement) -> Curve:
     """Return the curve that an explanation predicts, of contact point 0 and without noise."""
     curve, known = fit.whole[0], fit.objective.known(fit.minimum.at, 0)
     known = replace(known, solid=known.solid.model_copy(update={CONTACT_POINT: 0.0}))
@@ -155,12 +155,12 @@ def _predicted(fit: Explained, measurement: Measurement) -> Curve:
     return replace(planned, force=force, position=position)
 
 
-def _noise(fit: Explained) -> float:
+def _noise(fit: Candidate) -> float:
     """Return the noise of a mean of rows of the first curve [N]."""
     return float(fit.objective.noise[0] * np.sqrt(_ROWS / fit.whole[0].passes[0].size))
 
 
-def _separation(measurement: Measurement, truth: Explained, guess: Explained) -> float:
+def _separation(measurement: Measurement, truth: Candidate, guess: Candidate) -> float:
     """Return the least χ² of an explanation on curves that another predicts.
 
     A measurement that cannot be predicted, as by a cantilever that jumps, is worth nothing.
@@ -172,7 +172,7 @@ def _separation(measurement: Measurement, truth: Explained, guess: Explained) ->
     return 0.0
 
 
-def _bounds(fit: Explained, curves: Sequence[Curve], names: Sequence[str]) -> Array:
+def _bounds(fit: Candidate, curves: Sequence[Curve], names: Sequence[str]) -> Array:
     """Return the Cramér–Rao bounds of quantities from curves of one noise."""
     noise = (_noise(fit),) * len(curves)
     objective = replace(fit.objective, curves=tuple(curves), noise=noise, memory=())
@@ -180,7 +180,7 @@ def _bounds(fit: Explained, curves: Sequence[Curve], names: Sequence[str]) -> Ar
     return np.array([bounds[k] for k, slot in enumerate(objective.slots) if slot.name in names])
 
 
-def _start(fit: Explained, slots: Sequence[Any]) -> Array:
+def _start(fit: Candidate, slots: Sequence[Any]) -> Array:
     """Return the coordinates of the first curve for all curves, which touch at 0."""
     values = fit.objective.values(fit.minimum.at)
     return np.array(

@@ -254,7 +254,9 @@ class Objective:
                 break
         return Minimum(full(at), 2 * float(found.cost), bool(found.success))
 
-    def best(self, starts: Iterable[Array], idle: tuple[float, float]) -> Minimum:
+    def best(
+        self, starts: Iterable[Array], idle: tuple[float, float] = (np.inf, np.inf)
+    ) -> Minimum:
         """Return the least minimum from several starts: few steps of all, more of the best.
 
         One whose χ² is then in an ``idle`` range is not sought to the end.

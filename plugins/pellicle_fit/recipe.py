@@ -12,43 +12,31 @@ from scipy.special import chdtrc
 
 from pellicle.errors import ConfigError
 
+from .candidate import Candidate, Types
 from .curve import Curve
 from .effect import Effect, Records, quantities
 from .explanation import Solid
 from .intervals import Estimate, estimates, threshold_of
 from .noise import CHANCE, Judged
 from .objective import MODULUS
-from .rivals import (
-    MARGIN,
-    Decision,
-    Explained,
-    Question,
-    Types,
-    Verdict,
-    chosen_of,
-    decided,
-    doubtful,
-    fitted_all,
-    lenders,
-)
+from .rivals import Question, comparison
 from .strangers import naming_strangers, refuse_broken
+from .verdict import MARGIN, SMALL, Decision, Verdict, choice, decision, doubtful, ties
 
 TENSION = "tension"
-_SMALL = 0.2
-"""Share of the moduli of all others below which an explanation says that E* is not held."""
 
 
 @dataclass(frozen=True, eq=False)
 class Answer:
     """What curves say about a solid, and about rivals of the model."""
 
-    explanations: tuple[Explained, ...]
+    explanations: tuple[Candidate, ...]
     """Best first; estimates of those in `tied`."""
     question: Question
     decision: Decision
-    chosen: Explained
+    chosen: Candidate
     """The explanation whose estimates count."""
-    tied: tuple[Explained, ...]
+    tied: tuple[Candidate, ...]
     """What the curves cannot tell from it, itself included."""
     excused: Mapping[Types, str]
     """Why explanations could not be compared."""
@@ -87,7 +75,7 @@ class Answer:
         return self.chosen.estimates
 
     @property
-    def not_held(self) -> tuple[Explained, ...]:
+    def not_held(self) -> tuple[Candidate, ...]:
         """Tied explanations of so small a modulus that the curves do not hold it."""
         moduli = {
             fit: fit.estimates[MODULUS].value for fit in self.tied if MODULUS in fit.estimates
@@ -96,7 +84,7 @@ class Answer:
             fit
             for fit, modulus in moduli.items()
             if fit is not self.chosen
-            and modulus < _SMALL * min((m for f, m in moduli.items() if f is not fit), default=0.0)
+            and modulus < SMALL * min((m for f, m in moduli.items() if f is not fit), default=0.0)
         )
 
     def _over_tied(self, name: str) -> Estimate:
@@ -129,7 +117,7 @@ class Agreement(NamedTuple):
         return max(self.chi_squared / self.degrees, 1.0)
 
 
-def agreement_of(fit: Explained) -> Agreement:
+def agreement_of(fit: Candidate) -> Agreement:
     """Return whether curves agree on the quantities that they share."""
     objective, count = fit.of_rows, len(fit.whole)
     shared = sum(slot.curve is None for slot in objective.slots)
@@ -158,7 +146,7 @@ def timed(curves: Sequence[Curve]) -> tuple[Curve, ...]:
     )
 
 
-def _held(fit: Explained, name: str) -> Estimate:
+def _held(fit: Candidate, name: str) -> Estimate:
     """Return a quantity that an explanation does not fit: as given, or 0 where it has none."""
     for part in fit.objective.explanation.parts:
         if (quantity := quantities(type(part)).get(name)) is not None:
@@ -213,15 +201,19 @@ def answer(
     asked = next((effect for effect in model if not isinstance(effect, Records)), None)
     kept = (*kept, *(effect for effect in model if effect is not asked))
     question = Question(Solid.model_validate(dict(fix or {})), asked, kept, sets)
-    fits, excused = fitted_all(question, curves)
-    if question.word in excused:
-        raise ConfigError(f"cannot be fitted to this curve: {excused[question.word]}", "model")
-    best = min(fits, key=lambda fit: fit.aic)
+    candidates, word = question.candidates(), question.word
+    reasons = {types: candidate.excuse(curves) for types, candidate in candidates.items()}
+    excused = {types: reason for types, reason in reasons.items() if reason}
+    if word in excused:
+        raise ConfigError(f"cannot be fitted to this curve: {excused[word]}", "model")
+    candidates = {types: one for types, one in candidates.items() if types not in excused}
+    fits = comparison(question, candidates, curves)
+    best = min(fits.values(), key=lambda fit: fit.aic)
     threshold = threshold_of(min(judged.noise.freedom for judged in best.judgements))
-    margin, word = max(MARGIN, threshold), question.word
-    decision = decided(word, fits, doubted=doubtful(best.judgements), margin=margin)
-    chosen = chosen_of(word, decision, fits, margin)
-    agreement = agreement_of(next(fit for fit in fits if fit.types == chosen))
+    margin = max(MARGIN, threshold)
+    decided = decision(fits, word, doubted=doubtful(best.judgements), margin=margin)
+    chosen = choice(fits, word, decided, margin)
+    agreement = agreement_of(fits[chosen])
     threshold *= agreement.factor
     untried = tuple(
         types
@@ -229,22 +221,19 @@ def answer(
         if word < types and types - word not in excused and question.responds(types - word)
     )
     # What may be right and has no model leaves nothing to bound.
-    ends = not (untried and decision.verdict is Verdict.UNDESCRIBED)
-    tied = [fit.types for fit in lenders(word, decision, chosen, fits, margin)]
-    found = {
-        fit.types: with_estimates(
-            fit, threshold if ends else np.inf, uncertainty, full or fit.types == chosen
+    ends = not (untried and decided.verdict is Verdict.UNDESCRIBED)
+    tied = ties(fits, word, decided, chosen, margin)
+    for types in fits if full else tied:
+        wanted = full or types == chosen
+        fits[types] = with_estimates(
+            fits[types], threshold if ends else np.inf, uncertainty, everything=wanted
         )
-        for fit in fits
-        if full or fit.types in tied
-    }
-    ranked = sorted((found.get(fit.types, fit) for fit in fits), key=lambda fit: fit.aic)
     return Answer(
-        tuple(ranked),
+        tuple(sorted(fits.values(), key=lambda fit: fit.aic)),
         question,
-        decision,
-        found[chosen],
-        tuple(found[types] for types in tied),
+        decided,
+        fits[chosen],
+        tuple(fits[types] for types in tied),
         excused,
         tuple(best.judgements),
         threshold,
@@ -254,8 +243,8 @@ def answer(
 
 
 def with_estimates(
-    fit: Explained, threshold: float, extra: Sequence[Effect], everything: bool
-) -> Explained:
+    fit: Candidate, threshold: float, extra: Sequence[Effect], *, everything: bool
+) -> Candidate:
     """Return an explanation with its estimates: all, or modulus and tension."""
     fit = fit.refined()
     objective, minimum = fit.objective, fit.minimum

@@ -11,6 +11,7 @@ from pellicle.arrays import Array
 from pellicle.files import json_text, write_json
 
 from . import sentences
+from .candidate import Candidate
 from .config import FitConfig, described
 from .curve import Curve
 from .effect import quantities
@@ -18,7 +19,7 @@ from .files.measurement import Note
 from .intervals import CONFIDENCE, Estimate
 from .recipe import Answer
 from .record import Record
-from .rivals import MARGIN, Explained, Verdict
+from .verdict import MARGIN, Verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -145,7 +146,7 @@ class Fit:
         """Return the force [N] of the chosen explanation at the rows of each curve."""
         return self.answer.chosen.forces()
 
-    def explained(self, *types: str) -> Explained | None:
+    def explained(self, *types: str) -> Candidate | None:
         """Return an explanation by the types of its effects; None if it was not compared."""
         found = (fit for fit in self.answer.explanations if fit.types == frozenset(types))
         return next(found, None)
@@ -184,7 +185,7 @@ class Fit:
             result["configuration"] = self.config.to_dict()
         return result | (self.record.to_dict() if self.record else {})
 
-    def _explanation(self, fit: Explained) -> dict[str, Any]:
+    def _explanation(self, fit: Candidate) -> dict[str, Any]:
         """Return one of the explanations; quantities whose intervals were not sought lack ends."""
         best = self.answer.explanations[0]
         ends = fit.estimates
@@ -257,7 +258,7 @@ def name_of(name: str, curve: int | None) -> str:
     return f"{name}_{curve}" if curve else name
 
 
-def parameters_of(fit: Explained) -> dict[str, Estimate]:
+def parameters_of(fit: Candidate) -> dict[str, Estimate]:
     """Return all quantities of an explanation, fitted and given, by name.
 
     Those whose intervals were not sought have no ends.

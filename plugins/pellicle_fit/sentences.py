@@ -9,13 +9,14 @@ import numpy as np
 from pellicle.components import words_of_type
 from pellicle.units import decimal, readable
 
+from .candidate import NONE, Candidate, Types
 from .effect import Effect
 from .files.measurement import Note
 from .forecast import telling, tightening
 from .noise import Flaw, Judged
 from .objective import MODULUS
 from .recipe import TENSION, Answer
-from .rivals import EFFECT_MARGIN, MARGIN, NONE, Explained, Types, Verdict
+from .verdict import EFFECT_MARGIN, MARGIN, Verdict
 
 _CHECKS = {
     Flaw.DIP: "the force dips before contact: something attracts, or the baseline bends",
@@ -38,7 +39,7 @@ _PLAUSIBLE_DEPTH = 1e-5, 10.0
 """Depths over the radius likewise."""
 
 
-def words(fit: Explained) -> str:
+def words(fit: Candidate) -> str:
     """Return the effects of an explanation in words, but for those that all have."""
     effects = fit.objective.explanation.effects
     return _in_words([effect for effect in effects if effect.type_name in fit.types])
@@ -194,7 +195,7 @@ def remarks(answer: Answer) -> Iterator[str]:
         yield Note(f"not compared: {'; '.join(parts)}")
 
 
-def _tied_without(answer: Answer) -> list[Explained]:
+def _tied_without(answer: Answer) -> list[Candidate]:
     """Return what explains the curves as well as the best with what is asked for, without it."""
     margin, word = max(MARGIN, answer.threshold), answer.question.word
     asked = next(fit for fit in answer.explanations if fit.types == answer.decision.asked)

@@ -24,8 +24,9 @@ import numpy as np
 from tables import print_head, print_row
 
 import pellicle as pl
+from pellicle_fit.candidate import Candidate
 from pellicle_fit.recipe import Answer
-from pellicle_fit.rivals import Explained, Verdict
+from pellicle_fit.verdict import Verdict
 from tests.physics.frozen.fit_curves import MODULUS, RADIUS, Array, path
 from tests.physics.frozen.fit_curves import Path as Rows
 from tests.physics.frozen.fit_curves import force as force_of
@@ -234,7 +235,7 @@ def expected(answer: Answer, truth: Truth, protocol: str) -> float:
     """Return χ² without noise of the best explanation that has no tension."""
     paths = rows_of(protocol, TOP)
 
-    def least(fit: Explained) -> float:
+    def least(fit: Candidate) -> float:
         exact = [
             replace(curve, force=truth.force(rows), counts=None)
             for curve, rows in zip(fit.whole, paths, strict=True)

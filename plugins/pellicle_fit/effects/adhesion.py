@@ -86,7 +86,8 @@ class Adhesion(Responds):
                 touches[rows] = touching
                 steep[rows] = _PENALTY * curve.largest / curve.span * np.minimum(beyond[rows], 0.0)
             at = np.sqrt(np.clip(beyond, 0.0, root[-1] ** 2))
-            return touches * (spline(at) + steep)
+            force: Array = touches * (spline(at) + steep)
+            return force
 
         return response
 

@@ -13,13 +13,13 @@ from pellicle.arrays import Array
 from pellicle.show import LINES
 from pellicle.show import save_figure as save_drawing
 from pellicle.units import axis_unit
+from pellicle_fit.candidate import Candidate
 from pellicle_fit.intervals import Estimate
 from pellicle_fit.many import ManyFits
 from pellicle_fit.objective import MODULUS
 from pellicle_fit.population.row import Row
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import Fit, parameters_of
-from pellicle_fit.rivals import Explained
 from pellicle_fit.sentences import words as words_of
 from pellicle_fit.wording import words
 
@@ -83,7 +83,7 @@ def panels(fit: Fit | ManyFits) -> list[Panel]:
     return drawings
 
 
-def _other(fit: Fit) -> Explained:
+def _other(fit: Fit) -> Candidate:
     """Return the best explanation without what is asked for, or with it if that one is chosen."""
     decision, chosen = fit.answer.decision, fit.answer.chosen.types
     types = decision.asked if chosen == decision.other else decision.other
@@ -158,7 +158,7 @@ def _upper_and_lower(figure: FigureBase) -> tuple[Axes, Axes]:
     return upper, lower
 
 
-def _curve(fit: Fit, other: Explained, figure: FigureBase) -> None:
+def _curve(fit: Fit, other: Candidate, figure: FigureBase) -> None:
     """Draw force against position: data, another explanation and the fit; below, residuals."""
     upper, lower = _upper_and_lower(figure)
     (curve,), (noise,) = fit.answer.chosen.whole, fit.answer.chosen.objective.noise

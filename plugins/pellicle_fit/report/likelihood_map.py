@@ -8,10 +8,10 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.units import axis_unit
+from pellicle_fit.candidate import Candidate
 from pellicle_fit.objective import MODULUS
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import parameters_of
-from pellicle_fit.rivals import Explained
 
 if TYPE_CHECKING:
     from matplotlib.figure import FigureBase
@@ -26,7 +26,7 @@ _FURTHEST = np.log(10.0)
 """Moduli drawn to either side at most, as a logarithm."""
 
 
-def likelihood_map(explained: Explained, figure: FigureBase) -> None:
+def likelihood_map(explained: Candidate, figure: FigureBase) -> None:
     """Draw √Δχ² over modulus and tension of an explanation, minimised over the rest."""
     moduli, tensions, rises = _grid(explained)
     estimates, axes = parameters_of(explained), figure.add_subplot()
@@ -52,7 +52,7 @@ def likelihood_map(explained: Explained, figure: FigureBase) -> None:
     figure.colorbar(filled, ax=axes, label="√Δχ²")
 
 
-def _grid(explained: Explained) -> tuple[Array, Array, Array]:
+def _grid(explained: Candidate) -> tuple[Array, Array, Array]:
     """Return moduli [Pa], tensions [N/m] and Δχ², each of shape (moduli, tensions).
 
     The tensions of a row surround the best tension at its modulus, so that the grid follows a

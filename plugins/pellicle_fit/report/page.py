@@ -15,7 +15,7 @@ from pellicle.units import readable
 from pellicle_fit.config import FitConfig
 from pellicle_fit.many import ManyFits
 from pellicle_fit.result import Fit
-from pellicle_fit.rivals import Verdict
+from pellicle_fit.verdict import Verdict
 from pellicle_fit.wording import words
 
 from . import tables

@@ -12,9 +12,9 @@ from pellicle_fit.population.row import FITTED, Row
 from pellicle_fit.population.summary import summary
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import Fit, name_of, parameters_of
-from pellicle_fit.rivals import MARGIN
 from pellicle_fit.sentences import failed_checks
 from pellicle_fit.sentences import words as words_of
+from pellicle_fit.verdict import MARGIN
 from pellicle_fit.wording import column_scale, interval, interval_text, scale, words
 
 _INTERVAL = f"{100 * CONFIDENCE:.0f} % interval"

@@ -21,6 +21,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import pellicle as pl
+from pellicle_fit.candidate import Candidate
 from pellicle_fit.config import FitConfig
 from pellicle_fit.curve import Curve
 from pellicle_fit.effect import Effect, Sizes
@@ -30,7 +31,6 @@ from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.intervals import Estimate
 from pellicle_fit.objective import Minimum, Objective
 from pellicle_fit.recipe import answer
-from pellicle_fit.rivals import Explained
 from tests import adhesive_paths
 from tests.physics.frozen.fit_curves import RADIUS, Case
 from tests.physics.frozen.not_frozen import VARIABLES
@@ -215,7 +215,7 @@ def noise(case: Case, effects: Collection[str], values: Mapping[str, float]) -> 
     They are about a model at given values.
     """
     objective, at = _objective(case, effects, values)
-    fit = Explained(frozenset(effects), objective, Minimum(at, 0.0), objective.curves)
+    fit = Candidate(frozenset(effects), objective, Minimum(at, 0.0), objective.curves)
     judged = fit.judgements[0]
     return {
         "deviation": judged.noise.deviation,

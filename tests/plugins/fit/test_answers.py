@@ -12,9 +12,10 @@ from fit_verdicts import NOISE, TOP, outcome, pink, truth_of
 from scipy.optimize import minimize
 
 import pellicle as pl
-from pellicle_fit import rivals as comparison
+from pellicle_fit import verdict as comparison
+from pellicle_fit.candidate import Candidate
 from pellicle_fit.noise import Flaw
-from pellicle_fit.rivals import Explained, Verdict, decided
+from pellicle_fit.verdict import Verdict, decision
 from pellicle_plugins.indenters.of_revolution import Cone, FlatPunch, Paraboloid, Sphere
 from tests.physics.frozen.fit_curves import MODULUS, RADIUS, Array
 from tests.plugins.fit.conftest import ends_of, holds
@@ -185,13 +186,13 @@ def test_means_of_rows_answer_as_all_rows_do(
 )
 def test_verdicts_follow_from_criteria(aic: dict[str, float], verdict: Verdict) -> None:
     """At the margins the verdict changes, and where the best fails its checks there is none."""
-    fits = cast(
-        "list[Explained]",
-        [SimpleNamespace(types=frozenset(key), aic=value) for key, value in aic.items()],
-    )
+    fits = {
+        frozenset(key): cast("Candidate", SimpleNamespace(types=frozenset(key), aic=v, modulus=1.0))
+        for key, v in aic.items()
+    }
     word = frozenset("a")
-    assert decided(word, fits, doubted=False, margin=4.0).verdict is verdict
-    assert decided(word, fits, doubted=True, margin=4.0).verdict is Verdict.UNDESCRIBED
+    assert decision(fits, word, doubted=False, margin=4.0).verdict is verdict
+    assert decision(fits, word, doubted=True, margin=4.0).verdict is Verdict.UNDESCRIBED
 
 
 @pytest.mark.parametrize("separation", [1.0, 4.0, 9.0, 16.0])

@@ -33,8 +33,8 @@ from pellicle_fit.effect import (
 from pellicle_fit.effects.tension import Tension
 from pellicle_fit.explanation import Explanation, Solid
 from pellicle_fit.recipe import answer
-from pellicle_fit.rivals import Verdict
 from pellicle_fit.testing import check_effect
+from pellicle_fit.verdict import Verdict
 
 R, E = 5e-6, 2e3
 DEPTH = np.linspace(-0.4e-6, 1.2e-6, 81)

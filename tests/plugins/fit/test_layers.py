@@ -14,8 +14,8 @@ from click.testing import Result
 
 import pellicle as pl
 from pellicle.arrays import Array
-from pellicle_fit.rivals import Verdict
 from pellicle_fit.simulated import simulation
+from pellicle_fit.verdict import Verdict
 
 Cli = Callable[..., Result]
 TRUE_MODULUS, TRUE_TENSION, THICK, RATIO, RADIUS = 3e3, 2e-3, 4e-6, 0.5, 5e-6

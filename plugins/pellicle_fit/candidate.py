@@ -1,0 +1,123 @@
+"""An explanation of curves at its least χ², as those that are compared are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from pellicle.arrays import Array
+
+from .curve import Curve
+from .intervals import Estimate
+from .noise import Flaw, Judged, judged
+from .objective import MODULUS, Minimum, Objective
+
+ROWS = 250
+"""Means that stand for the rows of each pass, where the force has no jumps."""
+_CORRECTIONS = 2
+"""How often means are corrected by the explanation that is fitted to them."""
+Types = frozenset[str]
+"""Types of a set of effects."""
+NONE: Types = frozenset()
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """An explanation at its least χ²."""
+
+    types: Types
+    """Types of its effects, but for those that all explanations have."""
+    objective: Objective
+    minimum: Minimum
+    whole: tuple[Curve, ...]
+    """The curves with all their rows."""
+    estimates: Mapping[str, Estimate] = field(default_factory=dict)
+    """Of the chosen explanation all, of those tied with it modulus and tension."""
+
+    @property
+    def aic(self) -> float:
+        """Akaike's criterion, less a constant of the curves."""
+        return criterion(self.objective, self.chi_squared)
+
+    @property
+    def modulus(self) -> float | None:
+        """E* at the end of the loading [Pa]; None if it is given."""
+        return self.objective.values(self.minimum.at).get((MODULUS, None))
+
+    @cached_property
+    def of_rows(self) -> Objective:
+        """χ² of all rows as a function of its quantities."""
+        return replace(self.objective, curves=self.whole)
+
+    @cached_property
+    def chi_squared(self) -> float:
+        """χ² of all rows."""
+        return self.of_rows.chi_squared(self.minimum.at)
+
+    def forces(self) -> list[Array]:
+        """Return the force [N] at all rows of each curve."""
+        return self.of_rows.forces(self.minimum.at)
+
+    def refined(self) -> Candidate:
+        """Return the same at the least χ² of all rows, from means that lack nothing of it.
+
+        A mean of a curved force is not the force at the mean position: what the explanation itself
+        has in excess there is taken out of the measured means.
+        """
+        fit = self
+        for _ in range(_CORRECTIONS):
+            objective, at = fit.objective, fit.minimum.at
+            rows, means = fit.forces(), objective.forces(at)
+            curves = []
+            parts = zip(fit.whole, objective.curves, rows, means, strict=True)
+            for whole, curve, force, mean in parts:
+                if curve.counts is None:
+                    curves.append(whole)
+                    continue
+                left = replace(whole, force=whole.force - force, stiffness=None)
+                measured = mean + left.binned(ROWS).force
+                tip = curve.base - (measured / curve.stiffness if curve.stiffness else 0.0)
+                curves.append(replace(curve, force=measured, position=tip))
+            objective = replace(objective, curves=tuple(curves))
+            fit = replace(fit, objective=objective, minimum=objective.minimise(at))
+        return fit
+
+    def at_noise(self, noise: Sequence[float]) -> Candidate:
+        """Return the same at another noise [N] of each curve."""
+        objective = self.objective.with_noise(noise)
+        minimum = self.minimum._replace(chi_squared=objective.chi_squared(self.minimum.at))
+        return replace(self, objective=objective, minimum=minimum)
+
+    @cached_property
+    def judgements(self) -> list[Judged]:
+        """Noise and flaws of each curve under it, from all rows."""
+        at, memory = self.minimum.at, self.objective.memory
+        objective, forces = replace(self.of_rows, memory=()), self.forces()
+        jacobian = objective.jacobian(at, range(at.size))
+        # A coordinate at its limit is none that the fit could use.
+        low, high = objective.limits
+        jacobian = jacobian[:, (at > low) & (at < high)]
+        found, row = [], 0
+        rows_of = zip(objective.curves, forces, objective.noise, strict=True)
+        for i, (curve, force, noise) in enumerate(rows_of):
+            rows = slice(row, row + force.size)
+            known = objective.known(at, i)
+            depth = curve.base - known.solid.contact_point
+            d = memory[i] if memory else 0.0
+            one = judged(curve, curve.force - force, jacobian[rows] * noise, depth, d)
+            if (
+                np.max(curve.position) - known.solid.contact_point
+                > known.contact(curve).depth_limit
+            ):
+                one = one._replace(flaws=one.flaws | {Flaw.TOO_DEEP})
+            found.append(one)
+            row += force.size
+        return found
+
+
+def criterion(objective: Objective, chi_squared: float) -> float:
+    """Return Akaike's criterion, less a constant of the curves."""
+    return chi_squared + 2 * (len(objective.slots) + objective.searched)
