@@ -148,8 +148,11 @@ def _below(heads: tuple[Head, ...], lines: list[str], separator: str) -> Cells:
     rows = _split(lines, separator)
     if not heads:
         return Cells(heads, rows, separator)
+    names = {head.name.lower() for head in heads}
+    # The rows of a list of files may hold no number either.
+    most = 0 if FILE in names and not is_curve(names) else min(_UNIT_ROWS, len(rows))
     units = 0
-    while units < min(_UNIT_ROWS, len(rows)) and not any(map(_is_number, rows[units])):
+    while units < most and not any(map(_is_number, rows[units])):
         units += 1
 
     def unit(index: int) -> str:
@@ -205,7 +208,8 @@ def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, 
         for role, index in roles.items():
             name, _, unit = role.partition(" ")
             if name != LABEL:
-                head = cells.heads[index] if cells.heads else Head("", str(index + 1), "")
+                heads = cells.heads[index : index + 1] or (Head("", str(index + 1), ""),)
+                (head,) = heads
                 texts = [row[index].strip() if index < len(row) else "" for row in rows]
                 values = _numbers(texts, cells.separator, f"{path}: column {head.name}")
                 columns[name] = Channel(unit or head.unit, values, head.name)

@@ -114,6 +114,21 @@ def test_decimal_commas_between_commas_are_refused(tmp_path: Path) -> None:
     assert curves(path)[""].force == pytest.approx([2.7e-9, 2.9e-9])
 
 
+def test_list_of_files_without_numbers(tmp_path: Path) -> None:
+    """Its rows are not those of units, which have no number either."""
+    for name in "ab":
+        (tmp_path / f"{name}.csv").write_text(f"position [um],force [nN]\n{rows()}")
+    (tmp_path / "list.csv").write_text("file,day\na.csv,Monday\nb.csv,Tuesday\n")
+    assert [Path(name).stem for name in pl.read_curves(tmp_path / "list.csv")] == ["a", "b"]
+
+
+def test_column_without_a_name(tmp_path: Path) -> None:
+    """A column beyond those of the header has a number."""
+    path = tmp_path / "a.csv"
+    path.write_text(f"a;b\n{rows(';').replace(';', ';0;')}")
+    assert is_the_curve(curves(path, "1 = position um, 3 = force nN")[""])
+
+
 def test_thousands_that_may_be_decimals_are_refused(tmp_path: Path) -> None:
     """Whole nanometres up to 1,200 are not read as 1.2 nm, which would leave the deep rows out."""
     path = tmp_path / "a.tsv"
