@@ -20,15 +20,8 @@ from .columns import Calibration, Channel, from_columns
 from .measurement import Axis, Measurement, Readers, Site
 from .passes import labelled
 
-SUFFIXES = (
-    ".jpk-force",
-    ".jpk-force-map",
-    ".jpk-qi-data",
-    ".jpk-qi-series",
-    ".ibw",
-    ".tab",
-    ".zip",
-)
+_JPK = (".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series")
+SUFFIXES = (*_JPK, ".ibw", ".tab", ".zip")
 """Suffixes that only instrument files have; .h5, .csv and .txt may be an instrument's too."""
 INSTALL = "such files are read by afmformats: install it with pip install 'pellicle[afm]'"
 _CALIBRATION = ("spring_constant", "sensitivity")
@@ -46,13 +39,6 @@ def read_instrument(path: Path, calibration: Calibration, segment: str) -> Reade
     """Return what reads the ``segment`` of each curve, by its number.
 
     The curves of a force map do not have to fit in memory.
-
-    Raises
-    ------
-    ConfigError
-        The file holds no calibration and none is given, or its own differs from the given one.
-    StorageError
-        The file cannot be read, or afmformats is not installed.
     """
     if not installed():
         raise StorageError(f"{path}: is the file of an instrument; {INSTALL}")

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import nullcontext
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.errors import ConfigError, StorageError, shown
+from pellicle.errors import ConfigError, PellicleError, StorageError, shown
 from pellicle.schema import read_mat
 
 from .columns import NAMES, Channel, Columns
@@ -20,65 +22,43 @@ _DEEPEST = 8
 """Largest depth of folders that a message describes; links can make circles."""
 
 
-def read_hdf5(path: Path, mapped: Mapping[str, str]) -> dict[str, Columns]:
-    """Return the columns of each curve of an HDF5 file by its label.
+def read_tree(path: Path, mapped: Mapping[str, str]) -> dict[str, Columns]:
+    """Return the columns of each curve of an HDF5 or a MATLAB file by its label.
 
-    Raises
-    ------
-    StorageError
-        The file cannot be read.
-    ConfigError
-        A path in ``mapped`` leads to no array of numbers.
+    Without ``mapped`` columns, those of an HDF5 file are arrays of one axis with the names of
+    columns, at its root or else in groups, one for each curve.
     """
     import h5py
 
-    def standard(group: h5py.Group) -> Columns:
-        found = {name: group.get(name) for name in NAMES}
-        return {
-            name: Channel(_unit(dataset), np.asarray(dataset, dtype=float))
-            for name, dataset in found.items()
-            if isinstance(dataset, h5py.Dataset) and dataset.ndim == 1 and _kind(dataset) in "fiu"
-        }
-
+    is_matlab = path.suffix.lower() == ".mat"
     try:
-        with h5py.File(path) as file:
+        with nullcontext(read_mat(path)) if is_matlab else h5py.File(path) as root:
             if mapped:
-                return _mapped(path, file, mapped, first=False)
-            if columns := standard(file):
-                return {"": columns}
-            groups = {
-                str(name): standard(group)
-                for name, group in file.items()
-                if isinstance(group, h5py.Group)
-            }
-    except (OSError, RuntimeError) as error:
+                return _curves(path, root, mapped, is_matlab=is_matlab)
+            if is_matlab:
+                raise ConfigError(
+                    f"is missing: {path} does not hold units; it has {_content(root)}; say what "
+                    "they are, such as 'z = extension nm, d = deflection nm' (--columns on the "
+                    "command line)",
+                    "columns",
+                )
+            tables: dict[str, Columns] = {}
+            groups = {"": root} | {name: g for name, g in root.items() if isinstance(g, Mapping)}
+            for label, group in groups.items():
+                tables[str(label)] = {
+                    name: Channel(_unit(array), np.asarray(array, dtype=float))
+                    for name in NAMES
+                    if _kind(array := group.get(name)) in "fiu" and array.ndim == 1
+                }
+                if tables[""]:
+                    break
+    except PellicleError:
+        raise
+    except (OSError, RuntimeError, ValueError) as error:
+        kind = "a MATLAB" if is_matlab else "an HDF5"
         reason = getattr(error, "strerror", "") or error
-        raise StorageError(f"{path}: cannot be read as an HDF5 file ({reason})") from None
-    return {name: columns for name, columns in groups.items() if columns} or {"": {}}
-
-
-def read_matlab(path: Path, mapped: Mapping[str, str]) -> dict[str, Columns]:
-    """Return the columns of each curve of a MATLAB file by its label.
-
-    Raises
-    ------
-    StorageError
-        The file cannot be read.
-    ConfigError
-        No columns are ``mapped``, or a path leads to no array of numbers.
-    """
-    try:
-        content = read_mat(path)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", "") or error
-        raise StorageError(f"{path}: cannot be read as a MATLAB file ({reason})") from None
-    if not mapped:
-        raise ConfigError(
-            f"is missing: {path} does not hold units; it has {_content(content)}; say what they "
-            "are, such as 'z = extension nm, d = deflection nm' (--columns on the command line)",
-            "columns",
-        )
-    return _mapped(path, content, mapped, first=True)
+        raise StorageError(f"{path}: cannot be read as {kind} file ({reason})") from None
+    return {label: columns for label, columns in tables.items() if columns} or {"": {}}
 
 
 def _kind(array: Any) -> str:
@@ -88,14 +68,16 @@ def _kind(array: Any) -> str:
 
 def _unit(array: Any) -> str:
     attributes = getattr(array, "attrs", {})
-    unit = next((attributes[name] for name in ("units", "unit") if name in attributes), "")
+    unit = attributes.get("units", attributes.get("unit", ""))
     return unit.decode() if isinstance(unit, bytes) else str(unit)
 
 
-def _mapped(path: Path, root: Any, mapped: Mapping[str, str], *, first: bool) -> dict[str, Columns]:
+def _curves(
+    path: Path, root: Any, mapped: Mapping[str, str], *, is_matlab: bool
+) -> dict[str, Columns]:
     """Return the arrays whose paths are ``mapped``, by the labels of their curves.
 
-    The points of a curve are along the ``first`` axis of an array of several, or along the last.
+    The points of a curve are along the first axis of a matrix of MATLAB, or along the last.
     """
     channels: dict[str, dict[str, Channel]] = {}
     for pattern, text in mapped.items():
@@ -109,7 +91,7 @@ def _mapped(path: Path, root: Any, mapped: Mapping[str, str], *, first: bool) ->
             values: Array = np.asarray(array, dtype=float)
             rows = {"": values.ravel()}
             if values.squeeze().ndim > 1:
-                values = np.moveaxis(values, 0, -1) if first else values
+                values = np.moveaxis(values, 0, -1) if is_matlab else values
                 rows = {",".join(map(str, i)): values[i] for i in np.ndindex(values.shape[:-1])}
             for row, numbers in rows.items():
                 whole = "/".join(filter(None, (label, row)))
@@ -148,19 +130,15 @@ def _leaves(node: Any, parts: list[str], label: str = "") -> Iterator[tuple[str,
 
 def _content(root: Any) -> str:
     """Return the first paths of the arrays in a file as text."""
-    paths: list[str] = []
-
-    def visit(node: Mapping[str, Any], path: str) -> None:
-        for name in node:
-            if len(paths) > _SHOWN:
-                return
-            below = f"{path}/{name}" if path else str(name)
-            child = node.get(name)
-            if isinstance(child, Mapping) and below.count("/") < _DEEPEST:
-                visit(child, below)
-            elif _kind(child) in "fiuV":
-                paths.append(below)
-
-    visit(root, "")
+    paths = list(islice(_paths(root, _DEEPEST), _SHOWN + 1))
     names = ", ".join(map(shown, paths[:_SHOWN]))
     return f"{names}{', …' if len(paths) > _SHOWN else ''}" or "none"
+
+
+def _paths(node: Mapping[str, Any], depth: int) -> Iterator[str]:
+    for name in node:
+        child = node.get(name)
+        if isinstance(child, Mapping) and depth:
+            yield from (f"{name}/{path}" for path in _paths(child, depth - 1))
+        elif _kind(child) in "fiuV":
+            yield str(name)
