@@ -197,11 +197,8 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
     units, and empty cells are left out.
     """
     if path.is_dir():
-        files = sorted(
-            file
-            for file in path.iterdir()
-            if file.suffix.lower() in SUFFIXES and not file.name.startswith(".")
-        )
+        files = [file for file in sorted(path.iterdir()) if file.suffix.lower() in SUFFIXES]
+        files = [file for file in files if not file.name.startswith(".")]
         if not files:
             raise ConfigError(f"{path}: holds no file of a known kind ({', '.join(SUFFIXES)})")
         return [(file, {}, None) for file in files]
@@ -210,11 +207,8 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
         return [(path, {}, None)]
     listed: list[tuple[Path, dict[str, str], Path | None]] = []
     for row in cells.rows:
-        fields = {
-            head.name.lower(): f"{cell.strip()} {head.unit}".strip()
-            for head, cell in zip(cells.heads, row, strict=False)
-            if cell.strip()
-        }
+        named = zip(cells.names, cells.heads, map(str.strip, row), strict=False)
+        fields = {name: f"{cell} {head.unit}".strip() for name, head, cell in named if cell}
         if FILE not in fields:
             raise ConfigError(f"{path}: has a row without a file; name one in each row")
         listed.append((path.parent / fields.pop(FILE), fields, path))

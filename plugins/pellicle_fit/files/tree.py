@@ -33,32 +33,20 @@ def read_tree(path: Path, mapped: Mapping[str, str]) -> dict[str, Columns]:
     is_matlab = path.suffix.lower() == ".mat"
     try:
         with nullcontext(read_mat(path)) if is_matlab else h5py.File(path) as root:
-            if mapped:
+            if mapped or not is_matlab:
                 return _curves(path, root, mapped, is_matlab=is_matlab)
-            if is_matlab:
-                raise ConfigError(
-                    f"is missing: {path} does not hold units; it has {_content(root)}; say what "
-                    "they are, such as 'z = extension nm, d = deflection nm' (--columns on the "
-                    "command line)",
-                    "columns",
-                )
-            tables: dict[str, Columns] = {}
-            groups = {"": root} | {name: g for name, g in root.items() if isinstance(g, Mapping)}
-            for label, group in groups.items():
-                tables[str(label)] = {
-                    name: Channel(_unit(array), np.asarray(array, dtype=float))
-                    for name in NAMES
-                    if _kind(array := group.get(name)) in "fiu" and array.ndim == 1
-                }
-                if tables[""]:
-                    break
+            raise ConfigError(
+                f"is missing: {path} does not hold units; it has {_content(root)}; say what they "
+                "are, such as 'z = extension nm, d = deflection nm' (--columns on the command "
+                "line)",
+                "columns",
+            )
     except PellicleError:
         raise
     except (OSError, RuntimeError, ValueError) as error:
         kind = "a MATLAB" if is_matlab else "an HDF5"
         reason = getattr(error, "strerror", "") or error
         raise StorageError(f"{path}: cannot be read as {kind} file ({reason})") from None
-    return {label: columns for label, columns in tables.items() if columns} or {"": {}}
 
 
 def _kind(array: Any) -> str:
@@ -79,8 +67,9 @@ def _curves(
 
     The points of a curve are along the first axis of a matrix of MATLAB, or along the last.
     """
+    own = {name: name for name in NAMES if getattr(root.get(name), "ndim", 0) == 1}
     channels: dict[str, dict[str, Channel]] = {}
-    for pattern, text in mapped.items():
+    for pattern, text in (mapped or own or {f"*/{name}": name for name in NAMES}).items():
         role, _, unit = text.partition(" ")
         arrays = channels.setdefault(role, {})
         # The separators of a path are slashes or points.
@@ -88,6 +77,8 @@ def _curves(
         if len(parts) == 1 and parts[0] not in root:
             parts = parts[0].split(".")
         for label, array in _leaves(root, parts):
+            if not mapped and array.ndim != 1:
+                continue
             values: Array = np.asarray(array, dtype=float)
             rows = {"": values.ravel()}
             if values.squeeze().ndim > 1:
@@ -95,20 +86,19 @@ def _curves(
                 rows = {",".join(map(str, i)): values[i] for i in np.ndindex(values.shape[:-1])}
             for row, numbers in rows.items():
                 whole = "/".join(filter(None, (label, row)))
-                arrays[whole] = Channel(unit or _unit(array), numbers, pattern)
-        if not arrays:
+                arrays[whole] = Channel(unit or _unit(array), numbers, pattern if mapped else "")
+        if mapped and not arrays:
             raise ConfigError(
                 f"{path}: has no array of numbers at {pattern!r} (it has {_content(root)})",
                 "columns",
             )
-    curves: dict[str, Columns] = {}
-    for label in max(channels.values(), key=len):
-        # An array that all curves share, such as the time, has no label.
-        columns = {role: own.get(label) or own.get("") for role, own in channels.items()}
-        if missing := [role for role, column in columns.items() if column is None]:
-            raise ConfigError(f"{path}: curve {label} has no {missing[0]}", "columns")
-        curves[label] = {role: column for role, column in columns.items() if column is not None}
-    return curves
+    labels = dict.fromkeys(label for own in channels.values() for label in own if label)
+    # An array that all curves share, such as the time, has no label.
+    found = {
+        label: {role: own.get(label, own.get("")) for role, own in channels.items()}
+        for label in labels or [""]
+    }
+    return {label: {r: c for r, c in columns.items() if c} for label, columns in found.items()}
 
 
 def _leaves(node: Any, parts: list[str], label: str = "") -> Iterator[tuple[str, Any]]:

@@ -13,7 +13,7 @@ from scipy.io import savemat
 
 import pellicle as pl
 from pellicle_fit.files.cleaning import clean
-from pellicle_fit.files.columns import Calibration, column_map
+from pellicle_fit.files.columns import Calibration
 from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.files.readers import read
 
@@ -64,9 +64,7 @@ TABLES: dict[str, tuple[str, str | None]] = {
         f"position [um],force [nN]\r\n\r\n{rows(end=chr(13) + chr(10) * 2)}",
         None,
     ),
-    "mark of byte order": (f"\ufeffposition [um],force [nN]\n{rows()}", None),
     "Greek mu": (f"position [μm],force [nN]\n{rows()}", None),
-    "micro sign": (f"position [µm],force [nN]\n{rows()}", None),
     "names of the user": (f"Z,Defl\n{rows()}", "z = position um, Defl = force nN"),
     "unit of the header": (f"Z [um],Defl [nN]\n{rows()}", "Z = position, Defl = force"),
     "whole heads": (f"Z (raw) (um),x,\n{rows()}", "Z (raw) (um) = position um, 2 = force nN"),
@@ -84,13 +82,6 @@ def test_tables(tmp_path: Path, name: str) -> None:
     path.write_bytes(text.encode())
     (curve,) = curves(path, columns).values()
     assert is_the_curve(curve)
-
-
-def test_code_page_of_western_europe(tmp_path: Path) -> None:
-    """A micro sign of one byte is understood."""
-    path = tmp_path / "a.txt"
-    path.write_bytes(f"position [µm];force [nN]\n{rows(';')}".encode("latin-1"))
-    assert is_the_curve(curves(path)[""])
 
 
 @pytest.mark.parametrize("mark", ["\t", ";", ","])
@@ -273,8 +264,9 @@ def test_matlab(tmp_path: Path, write: Callable[[Path], str], count: int) -> Non
 def test_columns_have_one_order() -> None:
     """The same roles in another order or form are the same configuration."""
     text = 'Defl=deflection nm,  "Z" = Extension  nm'
-    assert column_map(text) == column_map({"Z": "extension nm", "Defl": "deflection nm"})
-    assert list(column_map(text)) == ["Z", "Defl"]
+    table = {"Z": "extension nm", "Defl": "deflection nm"}
+    for columns in (text, table, dict(reversed(table.items()))):
+        assert [*(Calibration(columns=columns).columns or {}).items()] == [*table.items()]
 
 
 def _ramp(pause: str, noise: float) -> tuple[Array, Array]:
