@@ -28,7 +28,6 @@ LABEL = "curve"
 """Name of the column that tells the curves of one table apart."""
 _UNITS = {"force": ("N", "nN"), "time": ("s", "ms")}
 """SI units of columns that are not lengths, and those of the examples in messages."""
-_MAP = "Z = extension nm, Defl = deflection nm"
 
 
 def column_map(value: object) -> dict[str, str] | None:
@@ -44,7 +43,10 @@ def column_map(value: object) -> dict[str, str] | None:
         entries = [text.rpartition("=") for text in texts]
         table = {name.strip().strip('"'): role for name, _, role in entries}
     if not isinstance(table, Mapping) or "" in table:
-        raise ConfigError(f"{shown(value)} is not of the form {_MAP!r}, or a table of the same")
+        raise ConfigError(
+            f"{shown(value)} is not of the form 'Z = extension nm, Defl = deflection nm', or a "
+            "table of the same"
+        )
     roles = (*NAMES, LABEL)
     by_role: dict[str, tuple[str, str]] = {}
     for column, text in table.items():

@@ -14,15 +14,13 @@ from . import afm
 from .columns import EXAMPLE, Calibration, Columns, from_columns, is_curve
 from .measurement import Measurement, Readers
 from .text_table import curves_of, read_cells
-from .tree import read_tree
+from .tree import SHOWN, read_tree
 
 TEXT = (".csv", ".tsv", ".txt")
 """Suffixes of tables."""
 _TREES = (".h5", ".hdf5", ".nc", ".mat")
 SUFFIXES = (*TEXT, *_TREES, *afm.SUFFIXES)
 """Suffixes of the files of a folder that are read."""
-_MANY = 8
-"""Largest number of texts of a line that a message quotes."""
 
 
 def read(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Readers:
@@ -34,13 +32,6 @@ def read(path: Path, calibration: Calibration | None = None, segment: str = "app
     attribute ``units``, or groups of them, one for each curve; a pellicle result is such a file.
     The columns of the calibration name other columns of a table, and the arrays of any HDF5 or
     MATLAB file.  Any other file is read by afmformats, which then selects the ``segment``.
-
-    Raises
-    ------
-    ConfigError
-        A column or a unit is missing, measures something else, or a column is repeated.
-    StorageError
-        The file cannot be read, or was replaced while it was read.
     """
 
     def state() -> tuple[int, ...]:
@@ -90,7 +81,7 @@ def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
             # Only afmformats can recognise the file of an instrument.
             hint = "" if afm.installed() else f"; if it is an instrument's: {afm.INSTALL}"
             if cells is not None:
-                first = ", ".join(map(shown, (cells.names or cells.rows[0])[:_MANY]))
+                first = ", ".join(map(shown, (cells.names or cells.rows[0])[:SHOWN]))
                 hint = f"; its first line is {first}, and --columns says what such names are{hint}"
     if not tables:
         raise StorageError(

@@ -9,11 +9,10 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 from numpy.typing import ArrayLike
 
-from pellicle.arrays import Array
 from pellicle.errors import ConfigError, PellicleError
 from pellicle.units import Quantity
 
@@ -23,6 +22,7 @@ from .readers import SUFFIXES, TEXT, read
 from .text_table import FILE, read_cells
 
 _PATTERN = re.compile(r"[*?[]")
+_ARRAYS = ("position", "force", "time")
 
 Curves = str | Path | Sequence[str | Path] | Mapping[str, Sequence[ArrayLike]]
 """A folder, a file, a table that lists files, several of these; or arrays of curves by name:
@@ -71,6 +71,7 @@ class CurveFile(NamedTuple):
             name: fields.pop(name, getattr(self.calibration, name))
             for name in Calibration.model_fields
         }
+        readers: Readers
         try:
             if {"x", "y"} <= fields.keys():
                 try:
@@ -78,7 +79,14 @@ class CurveFile(NamedTuple):
                 except ValueError as error:
                     raise ConfigError(f"x and y: {error}") from None
                 site = Site(x, y)
-            readers = self._readers(Calibration(**settings))
+            calibration = Calibration(**settings)
+            if self.numbers is None:
+                readers = read(self.path, calibration, self.segment)
+            else:
+                # `clean` checks the arrays.
+                arrays: Any = dict(zip(_ARRAYS, self.numbers, strict=False))
+                arrays |= {"stiffness": calibration.spring_constant, "speed": calibration.speed}
+                readers = {"": partial(Measurement, **arrays)}
         except PellicleError as error:
             readers = {"": partial(_raise, error)}
 
@@ -95,20 +103,6 @@ class CurveFile(NamedTuple):
                 yield Source(name, curve, fields, path, self.group, whole)
 
         return [*readers], sources()
-
-    def _readers(self, calibration: Calibration) -> Readers:
-        if self.numbers is None:
-            return read(self.path, calibration, self.segment)
-        # `clean` checks the arrays.
-        position, force, *time = (cast("Array", values) for values in self.numbers)
-        measured = Measurement(
-            position,
-            force,
-            stiffness=calibration.spring_constant,
-            speed=calibration.speed,
-            time=time[0] if time else None,
-        )
-        return {"": lambda: measured}
 
 
 def _raise(error: PellicleError) -> Measurement:

@@ -167,11 +167,11 @@ def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, 
                 )
     mapped = mapped or {name: name for name in cells.names if name in (*NAMES, LABEL)}
     roles = {text: _index(path, cells, name) for name, text in mapped.items()}
-    # Without other columns, a label is a table of something else.
-    label = roles.pop(LABEL, -1) if len(roles) > 1 else -1
+    label = roles.pop(LABEL, -1)
     curves: dict[str, list[list[str]]] = {} if rows else {"": []}
     for row in rows:
-        text = row[label].strip() if 0 <= label < len(row) else ""
+        # Without other columns, a column of labels is not one of curves.
+        text = row[label].strip() if roles and 0 <= label < len(row) else ""
         curves.setdefault(text, []).append(row)
     tables: dict[str, Columns] = {}
     for text, own in curves.items():
@@ -189,11 +189,11 @@ def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, 
 def _index(path: Path, cells: Cells, name: str) -> int:
     """Return the index of the column with a name or, if none has it, a number."""
     matches = [index for index, head in enumerate(cells.heads) if head.is_called(name)]
-    if len(matches) == 1:
-        return matches[0]
     width = max(len(cells.heads), *(len(row) for row in cells.rows[:1]), 0)
     if not matches and name.isdecimal() and 1 <= int(name) <= width:
-        return int(name) - 1
+        matches = [int(name) - 1]
+    if len(matches) == 1:
+        return matches[0]
     has = ", ".join(map(shown, [head.text for head in cells.heads] or cells.rows[0]))
     problem = f"{len(matches)} columns" if matches else "no column"
     hint = f" (or, for several curves, a column {LABEL}; or one curve to a file)" if matches else ""

@@ -16,8 +16,8 @@ from pellicle.schema import read_mat
 
 from .columns import NAMES, Channel, Columns
 
-_SHOWN = 8
-"""Largest number of arrays that a message names."""
+SHOWN = 8
+"""Largest number of arrays, or of columns, that a message names."""
 _DEEPEST = 8
 """Largest depth of folders that a message describes; links can make circles."""
 
@@ -120,9 +120,9 @@ def _leaves(node: Any, parts: list[str], label: str = "") -> Iterator[tuple[str,
 
 def _content(root: Any) -> str:
     """Return the first paths of the arrays in a file as text."""
-    paths = list(islice(_paths(root, _DEEPEST), _SHOWN + 1))
-    names = ", ".join(map(shown, paths[:_SHOWN]))
-    return f"{names}{', …' if len(paths) > _SHOWN else ''}" or "none"
+    paths = list(islice(_paths(root, _DEEPEST), SHOWN + 1))
+    names = ", ".join(map(shown, paths[:SHOWN]))
+    return f"{names}{', …' if len(paths) > SHOWN else ''}" or "none"
 
 
 def _paths(node: Mapping[str, Any], depth: int) -> Iterator[str]:
