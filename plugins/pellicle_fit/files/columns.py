@@ -41,7 +41,7 @@ def column_map(value: object) -> dict[str, str] | None:
     if isinstance(value, str):
         texts = [text for text in re.findall(r'(?:"[^"]*"|[^,"])+', value) if text.strip()]
         entries = [text.rpartition("=") for text in texts]
-        table = {name.strip().strip('"'): role for name, _, role in entries}
+        table = {name.strip().strip('"'): role for name, _, role in entries} or None
     if not isinstance(table, Mapping) or "" in table:
         raise ConfigError(
             f"{shown(value)} is not of the form 'Z = extension nm, Defl = deflection nm', or a "

@@ -196,7 +196,7 @@ def _index(path: Path, cells: Cells, name: str) -> int:
         return matches[0]
     has = ", ".join(map(shown, [head.text for head in cells.heads] or cells.rows[0]))
     problem = f"{len(matches)} columns" if matches else "no column"
-    hint = f" (or, for several curves, a column {LABEL}; or one curve to a file)" if matches else ""
+    hint = f"; the curves of a table are told apart by a column {LABEL}" if matches else ""
     raise ConfigError(
         f"{path}: has {problem} {name!r} (it has {has}); name one column, or give its number from "
         f"1 to {width} (--columns on the command line){hint}",
