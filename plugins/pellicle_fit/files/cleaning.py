@@ -89,8 +89,7 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
 
 def _array(values: ArrayLike, name: str) -> Array:
     with suppress(TypeError, ValueError):
-        array = np.asarray(values, dtype=float)
-        if array.ndim == 1 and not np.iscomplexobj(values):
+        if not np.iscomplexobj(values) and (array := np.asarray(values, dtype=float)).ndim == 1:
             return array
     raise ConfigError(
         f"{shown(values)} is not a list of real numbers; give SI values, one curve at a time", name

@@ -120,6 +120,15 @@ def test_column_without_a_name(tmp_path: Path) -> None:
     assert is_the_curve(curves(path, "1 = position um, 3 = force nN")[""])
 
 
+def test_a_depth_and_a_cell_without_a_number(tmp_path: Path) -> None:
+    """Between semicolons a comma is decimal, and what is empty is no number."""
+    (tmp_path / "a.csv").write_text("depth [nm];force [nN]\n1,5;2,25\n2,5;\n")
+    curve = curves(tmp_path / "a.csv")[""]
+    assert curve.is_depth
+    assert curve.position == pytest.approx([1.5e-9, 2.5e-9])
+    assert curve.force == pytest.approx([2.25e-9, np.nan], nan_ok=True)
+
+
 def test_thousands_that_may_be_decimals_are_refused(tmp_path: Path) -> None:
     """Whole nanometres up to 1,200 are not read as 1.2 nm, which would leave the deep rows out."""
     path = tmp_path / "a.tsv"
