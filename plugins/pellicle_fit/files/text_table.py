@@ -80,10 +80,10 @@ def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | N
     with suppress(csv.Error):
         mapped = mapped or {}
         likely = (*data[:_PREAMBLE], *reversed(range(data[0])))
-        found = [number for number in likely if _fits(_heads(lines[number]), mapped)][:1]
-        header = found[0] if found else data[0]
+        found = next((number for number in likely if _fits(_heads(lines[number]), mapped)), None)
+        header = data[0] if found is None else found
         heads = _heads(lines[header])
-        if not found and all(_is_number(head.text) for head in heads if head.text):
+        if found is None and all(_is_number(head.text) for head in heads if head.text):
             header -= 1
             above = _heads(lines[header]) if header >= 0 else []
             heads = above if len(above) == len(heads) else []
