@@ -222,6 +222,13 @@ def test_paths_that_lead_nowhere(tmp_path: Path) -> None:
         curves(path, "z = position um, f = force nN")
     with pytest.raises(pl.ConfigError, match="--columns"):
         curves(path)
+    # A curve that lacks an array fails alone.
+    with h5py.File(path, "r+") as file:
+        del file["curve0003/f"]
+    readers = read(path, Calibration(columns="*/z = position um, */f = force nN"))
+    assert is_the_curve(readers["curve0004"]())
+    with pytest.raises(pl.ConfigError, match="curve curve0003: has no column force"):
+        readers["curve0003"]()
 
 
 def _plain_mat(path: Path) -> str:
