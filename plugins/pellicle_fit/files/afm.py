@@ -20,19 +20,12 @@ from .columns import Calibration, Channel, from_columns
 from .measurement import Axis, Measurement, Readers, Site
 from .passes import labelled
 
-SUFFIXES = (
-    ".jpk-force",
-    ".jpk-force-map",
-    ".jpk-qi-data",
-    ".jpk-qi-series",
-    ".ibw",
-    ".tab",
-    ".zip",
-)
+_JPK = (".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series")
+SUFFIXES = (*_JPK, ".ibw", ".tab", ".zip")
 """Suffixes that only instrument files have; .h5, .csv and .txt may be an instrument's too."""
 INSTALL = "such files are read by afmformats: install it with pip install 'pellicle[afm]'"
-_CALIBRATION = ("spring_constant", "sensitivity")
-"""What files may hold, with a space in place of the underscore."""
+_CALIBRATION = {"spring constant": "spring_constant", "sensitivity": "sensitivity"}
+"""What files may hold, and its name here."""
 _TIP = "tip position"
 _HEIGHTS = ("height (measured)", "height (piezo)")
 
@@ -43,23 +36,13 @@ def installed() -> bool:
 
 
 def read_instrument(path: Path, calibration: Calibration, segment: str) -> Readers:
-    """Return what reads the ``segment`` of each curve, by its number.
-
-    The curves of a force map do not have to fit in memory.
-
-    Raises
-    ------
-    ConfigError
-        The file holds no calibration and none is given, or its own differs from the given one.
-    StorageError
-        The file cannot be read, or afmformats is not installed.
-    """
+    """Return what reads the ``segment`` of each curve, by its number, one at a time."""
     if not installed():
         raise StorageError(f"{path}: is the file of an instrument; {INSTALL}")
     from afmformats.formats import get_recipe
 
-    given = calibration.model_dump(include={*_CALIBRATION}, exclude_none=True)
-    overrides = {name.replace("_", " "): value for name, value in given.items()}
+    given = {words: getattr(calibration, name) for words, name in _CALIBRATION.items()}
+    overrides = {words: value for words, value in given.items() if value is not None}
     if not path.is_file():
         raise StorageError(f"{path}: cannot be read (no such file)")
     with _errors_and_warnings(path) as messages:
@@ -113,8 +96,8 @@ def _curve(
     with _errors_and_warnings(path) as own:
         data, metadata = recording["data"], recording["metadata"]
         known = {}
-        for name in _CALIBRATION:
-            given, words = getattr(calibration, name), name.replace("_", " ")
+        for words, name in _CALIBRATION.items():
+            given = getattr(calibration, name)
             known[name] = metadata.get(words, given)
             if given is not None and not np.isclose(known[name], given, rtol=1e-6):
                 raise ConfigError(

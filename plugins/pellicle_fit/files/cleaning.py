@@ -2,56 +2,62 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pellicle.arrays import Array, Mask
+from pellicle.arrays import Array
 from pellicle.errors import ConfigError, shown
 from pellicle.units import readable
 
 from .measurement import Measurement, Note, Segment, grows
-from .passes import Pass, first_out, passes
+from .passes import first_out, passes
 
 _FEWEST, _FEW = 8, 30
 """Least number of points of a fit, and the least that need no warning."""
-_LARGEST_RATIO = 1e6
+_RATIO_LIMIT = 1e6
 """Largest ratio of the stiffnesses of cantilever and curve, either way, that is fitted."""
-LARGEST = 1e30
+_LARGEST = 1e30
 """Largest SI value that is fitted; the smallest is one over this."""
 _SIGNIFICANT = 4.0
 """Standard errors that the rise of the force must exceed."""
 
 
 def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
-    """Return the rows of one pass into the solid (or out of it), or of both.
+    """Return the rows of one pass into the solid (or out of it), or of both, in order of time.
 
-    Rows are in order of time.  A speed is replaced by the time that follows from it.  Where the
-    spring constant is known, the passes are told apart by the position of the cantilever's base,
-    which has no noise.
-
-    Raises
-    ------
-    ConfigError
-        Shapes differ, there are too few points, several passes or only the other pass, or the
-        force falls, or does not rise, as the position grows.
+    A speed is replaced by the time that follows from it.  Where the spring constant is known, the
+    passes are told apart by the position of the cantilever's base, which has no noise.
     """
     z, f = _array(curve.position, "position"), _array(curve.force, "force")
-    if z.shape != f.shape:
-        raise ConfigError(
-            f"has {f.size} values and position {z.size}; give one for each position", "force"
-        )
+    t = None if curve.time is None else _array(curve.time, "time")
+    for name, values in (("force", f), ("time", t)):
+        if values is not None and values.shape != z.shape:
+            raise ConfigError(
+                f"has {values.size} values and position {z.size}; give one for each position", name
+            )
     messages = list(curve.messages)
     finite = np.isfinite(z) & np.isfinite(f)
     if missing := int(np.sum(~finite)):
         text = f"{missing} of {z.size} rows hold no finite number and were left out"
         messages.append(Note(text))
-    t = None if curve.time is None else _time(curve.time, finite)
-    z, f = z[finite], f[finite]
+    z, f, t = z[finite], f[finite], None if t is None else t[finite]
+    if t is not None and not grows(t):
+        raise ConfigError(
+            "falls, stands still or holds no finite number; give the time of each row [s] in order",
+            "time",
+        )
     _check_count(z.size, "the curve")
-    _check_si(z, "position", "m")
-    _check_si(f, "force", "N")
+    for name, unit, values in (("position", "m", z), ("force", "N", f)):
+        largest = float(np.max(np.abs(values)))
+        if largest and not 1 / _LARGEST <= largest <= _LARGEST:
+            raise ConfigError(
+                f"reaches {largest:.3g} {unit}, and must reach between {1 / _LARGEST:g} and "
+                f"{_LARGEST:g} {unit}: give SI values",
+                name,
+            )
     if not np.ptp(z):
         raise ConfigError(f"is {z[0]:g} m in every row; give a curve that moves", "position")
     base = z if curve.stiffness is None else _base(z, f, curve.stiffness)
@@ -81,37 +87,19 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
     )
 
 
-def _time(values: Array, rows: Mask) -> Array:
-    """Return the time of some rows; an error names what is wrong with it."""
-    time = _array(values, "time")
-    if time.shape != rows.shape:
-        raise ConfigError(f"has {time.size} values; give one for each of {rows.size} rows", "time")
-    if not grows(time[rows]):
-        raise ConfigError(
-            "falls, stands still or holds no finite number; give the time of each row [s] in order",
-            "time",
-        )
-    return time[rows]
-
-
 def _array(values: ArrayLike, name: str) -> Array:
-    if np.iscomplexobj(values):
-        raise ConfigError("holds complex numbers; give real values in SI", name)
-    try:
-        array = np.asarray(values, dtype=float)
-    except (TypeError, ValueError):
-        raise ConfigError(
-            f"{shown(values)} is not a list of numbers; give SI values", name
-        ) from None
-    if array.ndim != 1:
-        raise ConfigError(f"is of shape {array.shape}; give a list, one curve at a time", name)
-    return array
+    with suppress(TypeError, ValueError):
+        if not np.iscomplexobj(values) and (array := np.asarray(values, dtype=float)).ndim == 1:
+            return array
+    raise ConfigError(
+        f"{shown(values)} is not a list of real numbers; give SI values, one curve at a time", name
+    )
 
 
 def _base(z: Array, f: Array, stiffness: float) -> Array:
     """Return the position of the cantilever's base [m]."""
     slope = float(np.ptp(f)) / float(np.ptp(z))
-    if not 1 / _LARGEST_RATIO <= slope / stiffness <= _LARGEST_RATIO:
+    if not 1 / _RATIO_LIMIT <= slope / stiffness <= _RATIO_LIMIT:
         raise ConfigError(
             f"of {readable(stiffness, 'N/m', 3)} is far from the {readable(slope, 'N/m', 3)} of "
             "this curve itself, so that deflection and position differ by orders of magnitude; "
@@ -119,17 +107,6 @@ def _base(z: Array, f: Array, stiffness: float) -> Array:
             "spring_constant",
         )
     return z + f / stiffness
-
-
-def _check_si(values: Array, name: str, unit: str) -> None:
-    """Raise if values are too large or too small to be in SI units."""
-    largest = float(np.max(np.abs(values)))
-    if largest and not 1 / LARGEST <= largest <= LARGEST:
-        raise ConfigError(
-            f"reaches {largest:.3g} {unit}, and must reach between {1 / LARGEST:g} and "
-            f"{LARGEST:g} {unit}: give SI values",
-            name,
-        )
 
 
 def _check_count(count: int, which: str) -> None:
@@ -171,7 +148,6 @@ def _rows(base: Array, segment: Segment) -> tuple[int, int, int]:
             "curve at a time, its rows in order",
             "position",
         )
-    by_direction: dict[bool, Pass] = {one.inward: one for one in found}
     if segment == "both":
         if not found[0].inward:
             raise ConfigError(
@@ -181,13 +157,12 @@ def _rows(base: Array, segment: Segment) -> tuple[int, int, int]:
             )
         return 0, base.size - 1, first_out(base, found[1]) if len(found) > 1 else base.size
     is_approach = segment == "approach"
-    if is_approach not in by_direction:
-        article, other = ("a", "retract") if is_approach else ("an", "approach")
-        raise ConfigError(
-            f"only moves {'out of' if is_approach else 'into'} the solid: this is {article} "
-            f"{other}, and the {segment} is to be fitted; give the {segment}, or set segment to "
-            f"{other!r}",
-            "position",
-        )
-    first, last, _ = by_direction[is_approach]
-    return first, last, base.size if is_approach else first
+    for first, last, inward in found:
+        if inward == is_approach:
+            return first, last, base.size if is_approach else first
+    way, other = ("out of", "a retract") if is_approach else ("into", "an approach")
+    raise ConfigError(
+        f"only moves {way} the solid: this is {other}, and the {segment} is to be fitted; give the "
+        f"{segment}, or set segment to {other.split()[1]!r}",
+        "position",
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Set
+from contextlib import suppress
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -17,62 +18,47 @@ from pellicle.units import Quantity
 from .measurement import Measurement, Note, Origin, grows
 
 EXAMPLE = "position [um],force [nN]"
-_POSITIONS = {
-    "position": "position of the indenter, growing into the solid",
-    "depth": "position relative to first touch",
-    "height": "height of the cantilever's base, falling on approach",
-    "extension": "extension of the piezo, growing on approach",
-}
-"""Names of columns that hold a position, and what they are."""
-_OF_BASE = ("height", "extension")
-"""Positions from which the deflection must be subtracted."""
+_OF_TIP, _OF_BASE = ("position", "depth"), ("height", "extension")
+"""Positions of the indenter, and those from which the deflection must be subtracted."""
 _SIGNALS = ("force", "deflection")
 """Names of columns of which one gives the force."""
-NAMES = (*_POSITIONS, *_SIGNALS, "time")
+NAMES = (*_OF_TIP, *_OF_BASE, *_SIGNALS, "time")
 """Names of the columns that are read."""
 LABEL = "curve"
 """Name of the column that tells the curves of one table apart."""
 _UNITS = {"force": ("N", "nN"), "time": ("s", "ms")}
 """SI units of columns that are not lengths, and those of the examples in messages."""
-_MAP = "Z = extension nm, Defl = deflection nm"
 
 
-def column_map(value: object) -> dict[str, str]:
-    """Return the roles of columns, such as ``{"Z": "extension nm"}``, in the order of `NAMES`.
+def column_map(value: object) -> dict[str, str] | None:
+    """Return roles of columns such as ``{"Z": "extension nm"}`` in the order of `NAMES`.
 
-    Parameters
-    ----------
-    value
-        Such a table, or a text such as ``"Z = extension nm, Defl = deflection nm"``.
-
-    Raises
-    ------
-    ConfigError
-        A role or a unit is unknown, a role is given twice, or the text has another form.
+    The value is such a table, or a text such as ``"Z = extension nm, Defl = deflection nm"``.
     """
+    if value is None:
+        return None
+    table = value
     if isinstance(value, str):
-        texts = re.findall(r'(?:"[^"]*"|[^,"])+', value)
-        entries = [text.rpartition("=") for text in texts if text.strip()]
-        if not entries or not all(equals for _, equals, _ in entries):
-            raise ConfigError(f"{shown(value)} is not of the form {_MAP!r}")
-        pairs = [(name.strip().strip('"'), role) for name, _, role in entries]
-        if len(dict(pairs)) < len(pairs):
-            raise ConfigError(f"{shown(value)} names a column twice; give each column one role")
-        value = dict(pairs)
-    if not isinstance(value, Mapping):
-        raise ConfigError(f"{shown(value)} is not a table or a text such as {_MAP!r}")
+        texts = [text for text in re.findall(r'(?:"[^"]*"|[^,"])+', value) if text.strip()]
+        entries = [text.rpartition("=") for text in texts]
+        table = {name.strip().strip('"'): role for name, _, role in entries} or None
+    if not isinstance(table, Mapping) or "" in table:
+        raise ConfigError(
+            f"{shown(value)} is not of the form 'Z = extension nm, Defl = deflection nm', or a "
+            "table of the same"
+        )
     roles = (*NAMES, LABEL)
     by_role: dict[str, tuple[str, str]] = {}
-    for column, text in value.items():
-        if not isinstance(text, str) or not text.strip():
-            raise ConfigError(f"{shown(text)} is not a role with its unit; {_MAP!r}", column)
-        name, _, unit = text.strip().partition(" ")
+    for column, text in table.items():
+        name, _, unit = str(text).strip().partition(" ")
         role, unit = name.lower(), unit.strip()
         if role not in roles:
-            raise ConfigError(f"{shown(role)} is not a role; {nearest(role, roles)}")
+            raise ConfigError(f"{shown(role)} is not a role; {nearest(role, roles)}", str(column))
         if role in by_role:
             raise ConfigError(f"{by_role[role][0]!r} and {column!r} are both {role}")
-        if unit and role != LABEL:
+        if role == LABEL:
+            unit = ""
+        elif unit:
             _factor(role, unit)
         by_role[role] = str(column), f"{role} {unit}".strip()
     return dict(by_role[role] for role in roles if role in by_role)
@@ -92,10 +78,7 @@ class Calibration(Model):
     )
     columns: Annotated[
         dict[str, str] | None,
-        BeforeValidator(
-            lambda value: None if value is None else column_map(value),
-            json_schema_input_type=dict[str, str] | str | None,
-        ),
+        BeforeValidator(column_map, json_schema_input_type=dict[str, str] | str | None),
     ] = Field(
         None,
         description="roles of columns by name, by number or by path in the file: "
@@ -114,12 +97,11 @@ class Calibration(Model):
 
 
 class Channel(NamedTuple):
-    """Values of a column, of shape (n,), and their unit as text."""
+    """Values of a column, of shape (n,), their unit as text, and its name in the file."""
 
     unit: str
     values: Array
     name: str = ""
-    """Its name in the file."""
 
 
 Columns = Mapping[str, Channel]
@@ -128,7 +110,7 @@ Columns = Mapping[str, Channel]
 
 def is_curve(names: Set[str]) -> bool:
     """Return whether columns hold a force or deflection, and a position of some kind."""
-    return not names.isdisjoint(_SIGNALS) and not names.isdisjoint(_POSITIONS)
+    return not names.isdisjoint(_SIGNALS) and not names.isdisjoint((*_OF_TIP, *_OF_BASE))
 
 
 def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
@@ -137,11 +119,6 @@ def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
     Force is ``force``, or the spring constant times ``deflection``, which may be in volts if the
     sensitivity is known.  Position is ``position`` or ``depth``, or else that of the cantilever's
     base, ``extension`` or minus ``height``, less the deflection.
-
-    Raises
-    ------
-    ConfigError
-        A column, a unit or a calibration is missing, or a unit measures something else.
     """
     if columns.keys().isdisjoint(_SIGNALS):
         listing = ", ".join(columns) or "none that is known"
@@ -150,26 +127,38 @@ def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
             f"header such as {EXAMPLE!r}, or name its columns (--columns on the command line), "
             "which has to name each column that is read"
         )
-    names = [name for name in ("position", "depth") if name in columns] or [
-        name for name in _OF_BASE if name in columns
-    ]
+    of_tip, of_base = ([name for name in kind if name in columns] for kind in (_OF_TIP, _OF_BASE))
+    names = of_tip or of_base
     if len(names) != 1:
         both = f"both {' and '.join(names)}"
         problem = both if names else "no column position or depth, nor extension or height"
         raise ConfigError(f"has {problem}; give one of them, e.g. {EXAMPLE!r}")
+
+    def si(name: str) -> Array:
+        factor = _factor(name, columns[name].unit)
+        if si_unit(columns[name].unit) == "V":
+            if calibration.sensitivity is None:
+                raise ConfigError(
+                    f"is missing, and column deflection is in {shown(columns[name].unit)}; give it "
+                    "with its unit, such as '50 nm/V' (--sensitivity on the command line)",
+                    "sensitivity",
+                )
+            factor *= calibration.sensitivity
+        return factor * columns[name].values
+
     (name,) = names
-    position = _si(columns, name)
+    position = si(name)
     if "force" in columns:
-        force = _si(columns, "force")
+        force = si("force")
     else:
-        force = calibration.required_spring_constant() * _deflection(columns, calibration)
-    if name in _OF_BASE:
+        force = calibration.required_spring_constant() * si("deflection")
+    if not of_tip:
         if "deflection" in columns:
-            deflection = _deflection(columns, calibration)
+            deflection = si("deflection")
         else:
             deflection = force / calibration.required_spring_constant(
-                f", and column {name} is the {_POSITIONS[name]}, from which the deflection must be "
-                "subtracted"
+                f", and column {name} is that of the cantilever's base, from which the deflection "
+                "must be subtracted"
             )
         position = (position if name == "extension" else -position) - deflection
     time = None
@@ -178,7 +167,7 @@ def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
         unit, values, own_name = columns["time"]
         rows = np.isfinite(position) & np.isfinite(force)
         if unit and values.shape == rows.shape and grows(values[rows]):
-            time = _si(columns, "time")
+            time = si("time")
         else:
             reason = "falls, stands still or has a row without a number" if unit else "has no unit"
             text = f"column {own_name or 'time'} {reason}, so the curve is taken as one without"
@@ -199,58 +188,30 @@ def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
     )
 
 
-def _si(columns: Columns, name: str) -> Array:
-    """Return the values of a column in SI."""
-    return _factor(name, columns[name].unit) * columns[name].values
-
-
-def _deflection(columns: Columns, calibration: Calibration) -> Array:
-    """Return the deflection [m], also of a column in volts."""
-    unit, values, _ = columns["deflection"]
-    factor = _factor("deflection", unit)
-    if _is_voltage(unit):
-        if calibration.sensitivity is None:
-            raise ConfigError(
-                f"is missing, and column deflection is in {shown(unit)}; give it with its unit, "
-                "such as '50 nm/V' (--sensitivity on the command line)",
-                "sensitivity",
-            )
-        factor = calibration.sensitivity * factor
-    return factor * values
-
-
-def _is_voltage(unit: str) -> bool:
-    """Return whether a unit is one of voltage."""
-    try:
-        Quantity("V")(f"1 {unit}")
-    except ValueError:
-        return False
-    return True
+def si_unit(unit: str) -> str:
+    """Return the SI unit of a length, force, voltage or time; empty for anything else."""
+    for si in "mNVs":
+        with suppress(ValueError):
+            Quantity(si)(f"1 {unit}")
+            return si
+    return ""
 
 
 def _factor(name: str, unit: str) -> float:
-    """Return the factor from the unit of a column to SI; a deflection may be in volts.
-
-    Raises
-    ------
-    ConfigError
-        The column has no unit, or one that measures something else.
-    """
+    """Return the factor from the unit of a column to SI, of a deflection in volts to V."""
     if not unit:
         raise ConfigError(
             f"column {name} has no unit; write it in the header, e.g. {EXAMPLE!r}, or in columns "
             "(--columns on the command line)"
         )
-    si, typical = _UNITS.get(name, ("m", "nm"))
-    is_voltage = _is_voltage(unit)
-    try:
-        return Quantity("V" if is_voltage and name == "deflection" else si)(f"1 {unit}")
-    except ValueError:
-        hint = (
-            "; a signal in volts is a column deflection, which becomes a force by sensitivity "
-            "[m/V] and spring constant [N/m]"
-        )
-        raise ConfigError(
-            f"column {name} is in {shown(unit)}, which is not a unit of {name}; give it in "
-            f"{si} or a multiple, e.g. {f'{name} [{typical}]'!r}{hint if is_voltage else ''}"
-        ) from None
+    found, (si, typical) = si_unit(unit), _UNITS.get(name, ("m", "nm"))
+    if found == si or (name, found) == ("deflection", "V"):
+        return Quantity(found)(f"1 {unit}")
+    hint = (
+        "; a signal in volts is a column deflection, which becomes a force by sensitivity "
+        "[m/V] and spring constant [N/m]"
+    )
+    raise ConfigError(
+        f"column {name} is in {shown(unit)}, which is not a unit of {name}; give it in "
+        f"{si} or a multiple, e.g. {f'{name} [{typical}]'!r}{hint if found == 'V' else ''}"
+    )

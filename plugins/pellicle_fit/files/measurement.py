@@ -25,24 +25,19 @@ class Note(str):
 
 
 class Axis(NamedTuple):
-    """Evenly spaced positions along an edge of a force map."""
+    """Evenly spaced positions along an edge of a force map [m]: the first, and their distance."""
 
     start: float
-    """First position [m]."""
     pitch: float
-    """Distance of neighbours [m]."""
     pixels: int
 
 
 class Site(NamedTuple):
-    """Where on the sample a curve of a force map was measured."""
+    """Where on the sample a curve was measured [m], and the axes of its map if the file has it."""
 
     x: float
-    """[m]"""
     y: float
-    """[m]"""
     grid: tuple[Axis, Axis] | None = None
-    """The grid of the map along x and along y, if the file states it."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +48,6 @@ class Origin:
     curve: str | None = None
     """Label of the curve in a file that holds several."""
     sha256: str | None = None
-    """SHA-256 of the file."""
     columns: Mapping[str, str] = field(default_factory=dict)
     """Name and unit of the column in each role."""
     sensitivity: float | None = None

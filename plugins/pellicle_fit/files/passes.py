@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import compress, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -16,8 +17,6 @@ _SLOW, _FAST_QUANTILE = 0.1, 0.9
 """Largest speed in a pause over that quantile of all speeds."""
 _PAUSE_BLOCKS = 3
 """Least number of blocks of a pause; a position that turns as a sine is as slow in one."""
-
-
 _NORMAL = 1.4826 / np.sqrt(6)
 """Standard deviation of noise over the median size of its second differences."""
 _WILD = 4.0
@@ -51,7 +50,7 @@ def passes(base: Array) -> list[Pass]:
             turns += [low] if direction else []
             direction, high = 1, row
     found = []
-    for first, last in zip([0, *turns], [*turns, base.size - 1], strict=True):
+    for first, last in pairwise([0, *turns, base.size - 1]):
         inward = bool(base[last] > base[first])
         # Rows that rest at the turn precede the pass.
         while first and base[first + 1] == base[first]:
@@ -95,13 +94,9 @@ def labelled(position: Array, labels: Array, *, inward: bool) -> slice:
     largest motion, the retract the last that moves out by as much; without such segments they are
     the first and the last.
     """
-    ends = [*(np.flatnonzero(np.diff(labels)) + 1), labels.size]
-    segments = list(zip([0, *ends[:-1]], ends, strict=True))
+    ends = [0, *(np.flatnonzero(np.diff(labels)) + 1), labels.size]
+    segments = [*pairwise(ends)]
     motions = [float(position[last - 1] - position[first]) for first, last in segments]
     least = _TURN * max(map(abs, motions))
-    chosen = [
-        segment
-        for segment, motion in zip(segments, motions, strict=True)
-        if abs(motion) >= least and (motion > 0) == inward
-    ]
-    return slice(*((chosen or segments)[0 if inward else -1]))
+    moving = [abs(motion) >= least and (motion > 0) == inward for motion in motions]
+    return slice(*([*compress(segments, moving)] or segments)[0 if inward else -1])

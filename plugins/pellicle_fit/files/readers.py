@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -13,15 +14,13 @@ from . import afm
 from .columns import EXAMPLE, Calibration, Columns, from_columns, is_curve
 from .measurement import Measurement, Readers
 from .text_table import curves_of, read_cells
-from .tree import read_hdf5, read_matlab
+from .tree import SHOWN, read_tree
 
 TEXT = (".csv", ".tsv", ".txt")
 """Suffixes of tables."""
-_HDF5 = (".h5", ".hdf5", ".nc")
-SUFFIXES = (*TEXT, *_HDF5, ".mat", *afm.SUFFIXES)
+_TREES = (".h5", ".hdf5", ".nc", ".mat")
+SUFFIXES = (*TEXT, *_TREES, *afm.SUFFIXES)
 """Suffixes of the files of a folder that are read."""
-_MANY = 8
-"""Largest number of texts of a line that a message quotes."""
 
 
 def read(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Readers:
@@ -33,17 +32,16 @@ def read(path: Path, calibration: Calibration | None = None, segment: str = "app
     attribute ``units``, or groups of them, one for each curve; a pellicle result is such a file.
     The columns of the calibration name other columns of a table, and the arrays of any HDF5 or
     MATLAB file.  Any other file is read by afmformats, which then selects the ``segment``.
-
-    Raises
-    ------
-    ConfigError
-        A column or a unit is missing, measures something else, or a column is repeated.
-    StorageError
-        The file cannot be read, or was replaced while it was read.
     """
 
+    def state() -> tuple[int, ...]:
+        with suppress(OSError):
+            status = path.stat()
+            return status.st_ino, status.st_size, status.st_mtime_ns
+        return ()
+
     def check() -> None:
-        if _state(path) != state:
+        if state() != before:
             raise StorageError(f"{path}: was changed while it was read; read it again")
 
     def curve(label: str) -> Measurement:
@@ -52,7 +50,7 @@ def read(path: Path, calibration: Calibration | None = None, segment: str = "app
         origin = replace(measured.origin, file=str(path), curve=label or None, sha256=digest)
         return replace(measured, origin=origin)
 
-    state = _state(path)
+    before = state()
     readers = _readers(path, calibration or Calibration(), segment)
     digest = sha256(path)
     check()
@@ -60,13 +58,7 @@ def read(path: Path, calibration: Calibration | None = None, segment: str = "app
 
 
 def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
-    suffix = path.suffix.lower()
-    mapped = calibration.columns or {}
-    if suffix in (".xlsx", ".xlsm", ".xls", ".ods", ".numbers"):
-        raise StorageError(
-            f"{path}: is a spreadsheet; save the sheet of each curve as CSV (in Excel and "
-            f"LibreOffice: Save as), with a header such as {EXAMPLE!r}"
-        )
+    suffix, mapped = path.suffix.lower(), calibration.columns or {}
     # The columns of a table can be named though it is an instrument's.
     if suffix in afm.SUFFIXES and not (mapped and suffix == ".tab"):
         if mapped:
@@ -77,10 +69,8 @@ def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
             )
         return afm.read_instrument(path, calibration, segment)
     cells, hint = None, ""
-    if suffix in _HDF5:
-        tables = read_hdf5(path, mapped)
-    elif suffix == ".mat":
-        tables = read_matlab(path, mapped)
+    if suffix in _TREES:
+        tables = read_tree(path, mapped)
     else:
         cells = read_cells(path, mapped)
         tables = curves_of(path, cells, mapped) if cells else {}
@@ -91,12 +81,12 @@ def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
             # Only afmformats can recognise the file of an instrument.
             hint = "" if afm.installed() else f"; if it is an instrument's: {afm.INSTALL}"
             if cells is not None:
-                first = ", ".join(map(shown, (cells.names or cells.rows[0])[:_MANY]))
+                first = ", ".join(map(shown, (cells.names or cells.rows[0])[:SHOWN]))
                 hint = f"; its first line is {first}, and --columns says what such names are{hint}"
     if not tables:
         raise StorageError(
             f"{path}: is neither text, nor HDF5, nor a readable file of an instrument{hint}; "
-            f"export it as a table with a header such as {EXAMPLE!r}"
+            f"export it as a table (a sheet as CSV) with a header such as {EXAMPLE!r}"
         )
 
     def curve(label: str, columns: Columns) -> Measurement:
@@ -110,24 +100,9 @@ def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
 
 
 def sha256(path: Path) -> str:
-    """Return the SHA-256 of a file in hexadecimal digits.
-
-    Raises
-    ------
-    StorageError
-        The file cannot be read.
-    """
+    """Return the SHA-256 of a file in hexadecimal digits, or raise a StorageError."""
     try:
         with path.open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
     except OSError as error:
         raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
-
-
-def _state(path: Path) -> tuple[int, ...]:
-    """Return numbers that change if a file is written or replaced; none if it cannot be read."""
-    try:
-        status = path.stat()
-    except OSError:
-        return ()
-    return status.st_ino, status.st_size, status.st_mtime_ns

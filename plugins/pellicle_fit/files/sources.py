@@ -6,13 +6,13 @@ import re
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 from numpy.typing import ArrayLike
 
-from pellicle.arrays import Array
 from pellicle.errors import ConfigError, PellicleError
 from pellicle.units import Quantity
 
@@ -22,6 +22,7 @@ from .readers import SUFFIXES, TEXT, read
 from .text_table import FILE, read_cells
 
 _PATTERN = re.compile(r"[*?[]")
+_ARRAYS = ("position", "force", "time")
 
 Curves = str | Path | Sequence[str | Path] | Mapping[str, Sequence[ArrayLike]]
 """A folder, a file, a table that lists files, several of these; or arrays of curves by name:
@@ -43,17 +44,12 @@ class Source(NamedTuple):
     map: str = ""
     """File of the force map that the curve belongs to: its own, or the table of files."""
 
-    def reason(self, error: Exception) -> str:
-        """Return the message of an error without the name of the source in front."""
-        return str(error).removeprefix(f"{self.name}: ")
-
-    def named(self, error: ConfigError, hint: str = "") -> ConfigError:
-        """Return an error with the name of the source in front and a hint at the end."""
-        return ConfigError(f"{self.name}: {self.reason(error)}{hint}")
+    def named(self, error: PellicleError, hint: str = "") -> ConfigError:
+        """Return an error with the name of the source in front, once, and a hint at the end."""
+        return ConfigError(f"{self.name}: {str(error).removeprefix(f'{self.name}: ')}{hint}")
 
 
-@dataclass(frozen=True)
-class CurveFile:
+class CurveFile(NamedTuple):
     """A file of curves, or one curve given by its numbers; it is read only when it is opened."""
 
     path: Any
@@ -63,7 +59,6 @@ class CurveFile:
     fields: Mapping[str, Any]
     """Calibration, fields of the indenter, x and y that belong to this file alone."""
     group: str
-    """Text of the column of a table of files by which curves are grouped."""
     table: Path | None
     """The table of files that lists it."""
     segment: str
@@ -71,11 +66,12 @@ class CurveFile:
 
     def open(self) -> tuple[list[str], Iterator[Source]]:
         """Return the labels of its curves, and the curves, each read only as it is taken."""
-        fields, site = dict(self.fields), None
-        own = {name: fields.pop(name) for name in Calibration.model_fields if name in fields}
-        settings = {name: getattr(self.calibration, name) for name in Calibration.model_fields}
-        readers: Readers = {}
-        failure: PellicleError | None = None
+        fields, site, path = dict(self.fields), None, str(self.path)
+        settings = {
+            name: fields.pop(name, getattr(self.calibration, name))
+            for name in Calibration.model_fields
+        }
+        readers: Readers
         try:
             if {"x", "y"} <= fields.keys():
                 try:
@@ -83,28 +79,19 @@ class CurveFile:
                 except ValueError as error:
                     raise ConfigError(f"x and y: {error}") from None
                 site = Site(x, y)
-            calibration = Calibration(**settings | own)
+            calibration = Calibration(**settings)
             if self.numbers is None:
                 readers = read(self.path, calibration, self.segment)
             else:
                 # `clean` checks the arrays.
-                position, force, *time = (cast("Array", values) for values in self.numbers)
-                measured = Measurement(
-                    position,
-                    force,
-                    stiffness=calibration.spring_constant,
-                    speed=calibration.speed,
-                    time=time[0] if time else None,
-                )
-                readers = {"": lambda: measured}
+                arrays: Any = dict(zip(_ARRAYS, self.numbers, strict=False))
+                arrays |= {"stiffness": calibration.spring_constant, "speed": calibration.speed}
+                readers = {"": partial(Measurement, **arrays)}
         except PellicleError as error:
-            failure = error
+            readers = {"": partial(_raise, error)}
 
         def sources() -> Iterator[Source]:
-            path = str(self.path)
             whole = str(self.table) if site and self.table else path
-            if failure is not None:
-                yield Source(path, failure, fields, path, self.group, whole)
             for label, reader in readers.items():
                 curve: Measurement | PellicleError
                 try:
@@ -115,7 +102,11 @@ class CurveFile:
                 name = f"{path}:{label}" if label else path
                 yield Source(name, curve, fields, path, self.group, whole)
 
-        return [*readers] if failure is None else [""], sources()
+        return [*readers], sources()
+
+
+def _raise(error: PellicleError) -> Measurement:
+    raise error
 
 
 class SourceStream:
@@ -152,13 +143,6 @@ def gather(
     numbers); spring_constant and sensitivity among them, and in a table that lists files, replace
     those of the calibration.  In such a table, the columns x and y are the place on the sample, and
     the column ``label`` holds the group of each curve, and may be a field of the indenter as well.
-
-    Raises
-    ------
-    ConfigError
-        There is no curve, or a list of values does not have one for each file.
-    StorageError
-        A folder or a list of files cannot be read.
     """
     files: list[tuple[Any, dict[str, str], Path | None]]
     if isinstance(curves, Mapping):
@@ -207,11 +191,8 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
     units, and empty cells are left out.
     """
     if path.is_dir():
-        files = sorted(
-            file
-            for file in path.iterdir()
-            if file.suffix.lower() in SUFFIXES and not file.name.startswith(".")
-        )
+        files = [file for file in sorted(path.iterdir()) if file.suffix.lower() in SUFFIXES]
+        files = [file for file in files if not file.name.startswith(".")]
         if not files:
             raise ConfigError(f"{path}: holds no file of a known kind ({', '.join(SUFFIXES)})")
         return [(file, {}, None) for file in files]
@@ -220,11 +201,8 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
         return [(path, {}, None)]
     listed: list[tuple[Path, dict[str, str], Path | None]] = []
     for row in cells.rows:
-        fields = {
-            head.name.lower(): f"{cell.strip()} {head.unit}".strip()
-            for head, cell in zip(cells.heads, row, strict=False)
-            if cell.strip()
-        }
+        named = zip(cells.names, cells.heads, map(str.strip, row), strict=False)
+        fields = {name: f"{cell} {head.unit}".strip() for name, head, cell in named if cell}
         if FILE not in fields:
             raise ConfigError(f"{path}: has a row without a file; name one in each row")
         listed.append((path.parent / fields.pop(FILE), fields, path))
@@ -266,7 +244,7 @@ def read_curves(
         if isinstance(source.curve, Measurement):
             curves[source.name] = source.curve
         else:
-            errors.append(source.named(ConfigError(source.reason(source.curve))))
+            errors.append(source.named(source.curve))
     if not curves:
         raise ConfigError("\n".join(map(str, errors)))
     for error in errors:

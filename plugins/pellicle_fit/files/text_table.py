@@ -7,7 +7,7 @@ import re
 import unicodedata
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
 from typing import NamedTuple
 
@@ -16,9 +16,8 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.files import read_text
-from pellicle.units import Quantity
 
-from .columns import EXAMPLE, LABEL, NAMES, Channel, Columns, is_curve
+from .columns import EXAMPLE, LABEL, NAMES, Channel, Columns, is_curve, si_unit
 
 FILE = "file"
 """Name of the column of a table that lists files."""
@@ -36,10 +35,9 @@ _UNIT_ROWS = 3
 
 
 class Head(NamedTuple):
-    """The head of a column, such as ``position [um]``."""
+    """The head of a column, such as ``position [um]``, its name and its unit."""
 
     text: str
-    """All of it."""
     name: str
     unit: str
 
@@ -48,12 +46,10 @@ class Head(NamedTuple):
         return _plain(name).lower() in (self.text.lower(), self.name.lower())
 
 
-@dataclass(frozen=True)
-class Cells:
-    """The cells of a table as texts."""
+class Cells(NamedTuple):
+    """The cells of a table as texts, below its heads if there are any."""
 
-    heads: tuple[Head, ...]
-    """Heads of the columns; none if the table begins with numbers."""
+    heads: list[Head]
     rows: list[list[str]]
     separator: str
 
@@ -67,14 +63,8 @@ def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | N
     """Return the cells of a table; None if the file is not text.
 
     The header is the first line that has the ``mapped`` columns or, without them, those of a curve
-    or of a list of files; else the last comment above numbers; else the first line.
-
-    Raises
-    ------
-    StorageError
-        The file cannot be read.
-    ConfigError
-        The file is empty.
+    or of a list of files, or the last such comment above it; else the last comment above numbers;
+    else the first line.
     """
     try:
         text = read_text(path)
@@ -83,27 +73,40 @@ def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | N
     except ValueError:
         return None
     lines = [line for line in text.splitlines() if line.strip()]
-    data = [line for line in lines if not line.startswith(_COMMENT)]
+    data = [number for number, line in enumerate(lines) if not line.startswith(_COMMENT)]
     if not data:
         raise ConfigError(f"{path}: is empty; give a table with the header {EXAMPLE!r}")
     # A cell that is longer than any number is no text.
     with suppress(csv.Error):
-        for number, line in enumerate(data[:_PREAMBLE]):
-            if _fits(heads := _heads(line), mapped or {}):
-                return _below(heads, data[number + 1 :], _separator(line))
-        separator = _separator(data[0])
-        (first,) = _split(data[:1], separator)
-        if not all(_is_number(cell) for cell in first if cell.strip()):
-            return _below(_heads(data[0]), data[1:], separator)
-        above = reversed(lines[: lines.index(data[0])])
-        comments = [_heads(line.lstrip("".join(_COMMENT))) for line in above]
-        likely = [heads for heads in comments if _fits(heads, mapped or {})]
-        likely += [heads for heads in comments[:1] if len(heads) == len(first)]
-        return _below(next(iter(likely), ()), data, separator)
+        mapped = mapped or {}
+        likely = (*data[:_PREAMBLE], *reversed(range(data[0])))
+        found = next((number for number in likely if _fits(_heads(lines[number]), mapped)), None)
+        header = data[0] if found is None else found
+        heads = _heads(lines[header])
+        if found is None and all(_is_number(head.text) for head in heads if head.text):
+            header -= 1
+            above = _heads(lines[header]) if header >= 0 else []
+            heads = above if len(above) == len(heads) else []
+        below = [lines[number] for number in data if number > header]
+        # The heads of a table may be separated by other signs than its numbers.
+        separator = _separator(below[0] if header < data[0] else lines[header])
+        if below and separator == " ":
+            separator = _separator(below[-1])
+        rows = _split(below, separator)
+        names = {head.name.lower() for head in heads}
+        # The rows of a list of files may have no number either.
+        has_units = heads and (mapped or FILE not in names or is_curve(names))
+        likely_units = rows[: _UNIT_ROWS if has_units else 0]
+        units = [*takewhile(lambda row: not any(map(_is_number, row)), likely_units)]
+        for index, head in enumerate(heads):
+            cells = [_plain(row[index]).strip("[]()") for row in units if index < len(row)]
+            unit = head.unit or next(filter(si_unit, cells), "")
+            heads[index] = head._replace(unit=unit)
+        return Cells(heads, rows[len(units) :], separator)
     return None
 
 
-def _fits(heads: tuple[Head, ...], mapped: Mapping[str, str]) -> bool:
+def _fits(heads: Sequence[Head], mapped: Mapping[str, str]) -> bool:
     """Return whether heads are those of the table that is sought."""
     if not mapped:
         names = {head.name.lower() for head in heads}
@@ -112,7 +115,8 @@ def _fits(heads: tuple[Head, ...], mapped: Mapping[str, str]) -> bool:
     return bool(named) and all(any(head.is_called(name) for head in heads) for name in named)
 
 
-def _heads(line: str) -> tuple[Head, ...]:
+def _heads(line: str) -> list[Head]:
+    line = line.lstrip("".join(_COMMENT))
     separator = _separator(line)
     cells = _WORD.findall(line) if separator == " " else _split([line], separator)[0]
     heads = []
@@ -120,7 +124,7 @@ def _heads(line: str) -> tuple[Head, ...]:
         match = _HEAD.fullmatch(text)
         name, unit = match.groups(default="") if match else (text, "")
         heads.append(Head(text, name.strip(), unit.strip()))
-    return tuple(heads)
+    return heads
 
 
 def _plain(text: str) -> str:
@@ -141,30 +145,6 @@ def _split(lines: Sequence[str], separator: str) -> list[list[str]]:
     return list(csv.reader(lines, delimiter=separator))
 
 
-def _below(heads: tuple[Head, ...], lines: list[str], separator: str) -> Cells:
-    """Return the table below its header, after the rows that hold units."""
-    if lines and separator == " ":
-        separator = _separator(lines[-1])
-    rows = _split(lines, separator)
-    if not heads:
-        return Cells(heads, rows, separator)
-    units = 0
-    while units < min(_UNIT_ROWS, len(rows)) and not any(map(_is_number, rows[units])):
-        units += 1
-
-    def unit(index: int) -> str:
-        cells = [_plain(row[index]).strip("[]()") for row in rows[:units] if index < len(row)]
-        for cell in cells:
-            for dimension in "mNVs":
-                with suppress(ValueError):
-                    Quantity(dimension)(f"1 {cell}")
-                    return cell
-        return ""
-
-    heads = tuple(h if h.unit else h._replace(unit=unit(i)) for i, h in enumerate(heads))
-    return Cells(heads, rows[units:], separator)
-
-
 def _is_number(cell: str) -> bool:
     try:
         float(cell.replace(",", ".", 1))
@@ -174,41 +154,34 @@ def _is_number(cell: str) -> bool:
 
 
 def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, Columns]:
-    """Return the known columns of each curve of a table, or those that ``mapped`` names.
-
-    Raises
-    ------
-    ConfigError
-        A column is missing, or several have its name, or the commas of one are ambiguous.
-    """
-    names = cells.names
-    if not mapped and cells.separator == "," and _fits(cells.heads, {}):
-        for row in cells.rows:
-            if len(row) > len(names) and all(map(_is_number, row)):
+    """Return the known columns of each curve of a table, or those that ``mapped`` names."""
+    heads, rows, separator = cells
+    if not mapped and separator == "," and _fits(heads, mapped):
+        for row in rows:
+            if len(row) > len(heads) and all(map(_is_number, row)):
                 raise ConfigError(
-                    f"{path}: has {len(row)} numbers below {len(names)} names ({','.join(row)}), "
+                    f"{path}: has {len(row)} numbers below {len(heads)} names ({','.join(row)}), "
                     "as where commas are decimal and separate columns too; export it with "
                     "semicolons, tabs or decimal points, or choose columns by their numbers "
                     "(--columns on the command line)"
                 )
-    mapped = mapped or {name: name for name in names if name in (*NAMES, LABEL)}
+    mapped = mapped or {name: name for name in cells.names if name in (*NAMES, LABEL)}
     roles = {text: _index(path, cells, name) for name, text in mapped.items()}
-    label = next((index for role, index in roles.items() if role.split()[0] == LABEL), None)
-    curves: dict[str, list[list[str]]] = {"": cells.rows}
-    if label is not None and len(roles) > 1:
-        curves = {}
-        for row in cells.rows:
-            curves.setdefault(row[label].strip() if label < len(row) else "", []).append(row)
+    label = roles.pop(LABEL, -1)
+    curves: dict[str, list[list[str]]] = {} if rows else {"": []}
+    for row in rows:
+        # Without other columns, a column of labels is not one of curves.
+        text = row[label].strip() if roles and 0 <= label < len(row) else ""
+        curves.setdefault(text, []).append(row)
     tables: dict[str, Columns] = {}
-    for text, rows in curves.items():
+    for text, own in curves.items():
         columns = {}
         for role, index in roles.items():
             name, _, unit = role.partition(" ")
-            if name != LABEL:
-                head = cells.heads[index] if cells.heads else Head("", str(index + 1), "")
-                texts = [row[index].strip() if index < len(row) else "" for row in rows]
-                values = _numbers(texts, cells.separator, f"{path}: column {head.name}")
-                columns[name] = Channel(unit or head.unit, values, head.name)
+            head = heads[index] if index < len(heads) else Head("", str(index + 1), "")
+            texts = [row[index].strip() if index < len(row) else "" for row in own]
+            values = _numbers(texts, separator, f"{path}: column {head.name}")
+            columns[name] = Channel(unit or head.unit, values, head.name)
         tables[text] = columns
     return tables
 
@@ -216,20 +189,19 @@ def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, 
 def _index(path: Path, cells: Cells, name: str) -> int:
     """Return the index of the column with a name or, if none has it, a number."""
     matches = [index for index, head in enumerate(cells.heads) if head.is_called(name)]
-    if len(matches) == 1:
-        return matches[0]
     width = max(len(cells.heads), *(len(row) for row in cells.rows[:1]), 0)
     if not matches and name.isdecimal() and 1 <= int(name) <= width:
-        return int(name) - 1
+        matches = [int(name) - 1]
+    if len(matches) == 1:
+        return matches[0]
     has = ", ".join(map(shown, [head.text for head in cells.heads] or cells.rows[0]))
-    problem, advice = f"no column {name!r}", "give a name of one column, or its number from 1 to"
-    if matches:
-        problem = f"{len(matches)} columns {name!r}"
-        advice = (
-            f"give one curve to a file, tell curves apart by a column {LABEL}, or choose columns "
-            "by their numbers (--columns on the command line), from 1 to"
-        )
-    raise ConfigError(f"{path}: has {problem} (it has {has}); {advice} {width}", "columns")
+    problem = f"{len(matches)} columns" if matches else "no column"
+    hint = f"; the curves of a table are told apart by a column {LABEL}" if matches else ""
+    raise ConfigError(
+        f"{path}: has {problem} {name!r} (it has {has}); name one column, or give its number from "
+        f"1 to {width} (--columns on the command line){hint}",
+        "columns",
+    )
 
 
 def _numbers(cells: list[str], separator: str, column: str) -> Array:

@@ -3,82 +3,50 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import nullcontext
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.errors import ConfigError, StorageError, shown
+from pellicle.errors import ConfigError, PellicleError, StorageError, shown
 from pellicle.schema import read_mat
 
 from .columns import NAMES, Channel, Columns
 
-_SHOWN = 8
-"""Largest number of arrays that a message names."""
+SHOWN = 8
+"""Largest number of arrays, or of columns, that a message names."""
 _DEEPEST = 8
 """Largest depth of folders that a message describes; links can make circles."""
 
 
-def read_hdf5(path: Path, mapped: Mapping[str, str]) -> dict[str, Columns]:
-    """Return the columns of each curve of an HDF5 file by its label.
+def read_tree(path: Path, mapped: Mapping[str, str]) -> dict[str, Columns]:
+    """Return the columns of each curve of an HDF5 or a MATLAB file by its label.
 
-    Raises
-    ------
-    StorageError
-        The file cannot be read.
-    ConfigError
-        A path in ``mapped`` leads to no array of numbers.
+    Without ``mapped`` columns, those of an HDF5 file are arrays of one axis with the names of
+    columns, at its root or else in groups, one for each curve.
     """
     import h5py
 
-    def standard(group: h5py.Group) -> Columns:
-        found = {name: group.get(name) for name in NAMES}
-        return {
-            name: Channel(_unit(dataset), np.asarray(dataset, dtype=float))
-            for name, dataset in found.items()
-            if isinstance(dataset, h5py.Dataset) and dataset.ndim == 1 and _kind(dataset) in "fiu"
-        }
-
+    is_matlab = path.suffix.lower() == ".mat"
     try:
-        with h5py.File(path) as file:
-            if mapped:
-                return _mapped(path, file, mapped, first=False)
-            if columns := standard(file):
-                return {"": columns}
-            groups = {
-                str(name): standard(group)
-                for name, group in file.items()
-                if isinstance(group, h5py.Group)
-            }
-    except (OSError, RuntimeError) as error:
+        with nullcontext(read_mat(path)) if is_matlab else h5py.File(path) as root:
+            if mapped or not is_matlab:
+                return _curves(path, root, mapped, is_matlab=is_matlab)
+            raise ConfigError(
+                f"is missing: {path} does not hold units; it has {_content(root)}; say what they "
+                "are, such as 'z = extension nm, d = deflection nm' (--columns on the command "
+                "line)",
+                "columns",
+            )
+    except PellicleError:
+        raise
+    except (OSError, RuntimeError, ValueError) as error:
+        kind = "a MATLAB" if is_matlab else "an HDF5"
         reason = getattr(error, "strerror", "") or error
-        raise StorageError(f"{path}: cannot be read as an HDF5 file ({reason})") from None
-    return {name: columns for name, columns in groups.items() if columns} or {"": {}}
-
-
-def read_matlab(path: Path, mapped: Mapping[str, str]) -> dict[str, Columns]:
-    """Return the columns of each curve of a MATLAB file by its label.
-
-    Raises
-    ------
-    StorageError
-        The file cannot be read.
-    ConfigError
-        No columns are ``mapped``, or a path leads to no array of numbers.
-    """
-    try:
-        content = read_mat(path)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", "") or error
-        raise StorageError(f"{path}: cannot be read as a MATLAB file ({reason})") from None
-    if not mapped:
-        raise ConfigError(
-            f"is missing: {path} does not hold units; it has {_content(content)}; say what they "
-            "are, such as 'z = extension nm, d = deflection nm' (--columns on the command line)",
-            "columns",
-        )
-    return _mapped(path, content, mapped, first=True)
+        raise StorageError(f"{path}: cannot be read as {kind} file ({reason})") from None
 
 
 def _kind(array: Any) -> str:
@@ -88,17 +56,20 @@ def _kind(array: Any) -> str:
 
 def _unit(array: Any) -> str:
     attributes = getattr(array, "attrs", {})
-    unit = next((attributes[name] for name in ("units", "unit") if name in attributes), "")
+    unit = attributes.get("units", attributes.get("unit", ""))
     return unit.decode() if isinstance(unit, bytes) else str(unit)
 
 
-def _mapped(path: Path, root: Any, mapped: Mapping[str, str], *, first: bool) -> dict[str, Columns]:
+def _curves(
+    path: Path, root: Any, mapped: Mapping[str, str], *, is_matlab: bool
+) -> dict[str, Columns]:
     """Return the arrays whose paths are ``mapped``, by the labels of their curves.
 
-    The points of a curve are along the ``first`` axis of an array of several, or along the last.
+    The points of a curve are along the first axis of a matrix of MATLAB, or along the last.
     """
+    own = {name: name for name in NAMES if getattr(root.get(name), "ndim", 0) == 1}
     channels: dict[str, dict[str, Channel]] = {}
-    for pattern, text in mapped.items():
+    for pattern, text in (mapped or own or {f"*/{name}": name for name in NAMES}).items():
         role, _, unit = text.partition(" ")
         arrays = channels.setdefault(role, {})
         # The separators of a path are slashes or points.
@@ -106,27 +77,28 @@ def _mapped(path: Path, root: Any, mapped: Mapping[str, str], *, first: bool) ->
         if len(parts) == 1 and parts[0] not in root:
             parts = parts[0].split(".")
         for label, array in _leaves(root, parts):
+            if not mapped and array.ndim != 1:
+                continue
             values: Array = np.asarray(array, dtype=float)
             rows = {"": values.ravel()}
             if values.squeeze().ndim > 1:
-                values = np.moveaxis(values, 0, -1) if first else values
+                values = np.moveaxis(values, 0, -1) if is_matlab else values
                 rows = {",".join(map(str, i)): values[i] for i in np.ndindex(values.shape[:-1])}
             for row, numbers in rows.items():
                 whole = "/".join(filter(None, (label, row)))
-                arrays[whole] = Channel(unit or _unit(array), numbers, pattern)
-        if not arrays:
+                arrays[whole] = Channel(unit or _unit(array), numbers, pattern if mapped else "")
+        if mapped and not arrays:
             raise ConfigError(
                 f"{path}: has no array of numbers at {pattern!r} (it has {_content(root)})",
                 "columns",
             )
-    curves: dict[str, Columns] = {}
-    for label in max(channels.values(), key=len):
-        # An array that all curves share, such as the time, has no label.
-        columns = {role: own.get(label) or own.get("") for role, own in channels.items()}
-        if missing := [role for role, column in columns.items() if column is None]:
-            raise ConfigError(f"{path}: curve {label} has no {missing[0]}", "columns")
-        curves[label] = {role: column for role, column in columns.items() if column is not None}
-    return curves
+    labels = dict.fromkeys(label for own in channels.values() for label in own if label)
+    # An array that all curves share, such as the time, has no label.
+    found = {
+        label: {role: own.get(label, own.get("")) for role, own in channels.items()}
+        for label in labels or [""]
+    }
+    return {label: {r: c for r, c in columns.items() if c} for label, columns in found.items()}
 
 
 def _leaves(node: Any, parts: list[str], label: str = "") -> Iterator[tuple[str, Any]]:
@@ -148,19 +120,15 @@ def _leaves(node: Any, parts: list[str], label: str = "") -> Iterator[tuple[str,
 
 def _content(root: Any) -> str:
     """Return the first paths of the arrays in a file as text."""
-    paths: list[str] = []
+    paths = list(islice(_paths(root, _DEEPEST), SHOWN + 1))
+    names = ", ".join(map(shown, paths[:SHOWN]))
+    return f"{names}{', …' if len(paths) > SHOWN else ''}" or "none"
 
-    def visit(node: Mapping[str, Any], path: str) -> None:
-        for name in node:
-            if len(paths) > _SHOWN:
-                return
-            below = f"{path}/{name}" if path else str(name)
-            child = node.get(name)
-            if isinstance(child, Mapping) and below.count("/") < _DEEPEST:
-                visit(child, below)
-            elif _kind(child) in "fiuV":
-                paths.append(below)
 
-    visit(root, "")
-    names = ", ".join(map(shown, paths[:_SHOWN]))
-    return f"{names}{', …' if len(paths) > _SHOWN else ''}" or "none"
+def _paths(node: Mapping[str, Any], depth: int) -> Iterator[str]:
+    for name in node:
+        child = node.get(name)
+        if isinstance(child, Mapping) and depth:
+            yield from (f"{name}/{path}" for path in _paths(child, depth - 1))
+        elif _kind(child) in "fiuV":
+            yield str(name)

@@ -13,7 +13,7 @@ from scipy.io import savemat
 
 import pellicle as pl
 from pellicle_fit.files.cleaning import clean
-from pellicle_fit.files.columns import Calibration, column_map
+from pellicle_fit.files.columns import Calibration
 from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.files.readers import read
 
@@ -64,9 +64,7 @@ TABLES: dict[str, tuple[str, str | None]] = {
         f"position [um],force [nN]\r\n\r\n{rows(end=chr(13) + chr(10) * 2)}",
         None,
     ),
-    "mark of byte order": (f"\ufeffposition [um],force [nN]\n{rows()}", None),
     "Greek mu": (f"position [μm],force [nN]\n{rows()}", None),
-    "micro sign": (f"position [µm],force [nN]\n{rows()}", None),
     "names of the user": (f"Z,Defl\n{rows()}", "z = position um, Defl = force nN"),
     "unit of the header": (f"Z [um],Defl [nN]\n{rows()}", "Z = position, Defl = force"),
     "whole heads": (f"Z (raw) (um),x,\n{rows()}", "Z (raw) (um) = position um, 2 = force nN"),
@@ -84,13 +82,6 @@ def test_tables(tmp_path: Path, name: str) -> None:
     path.write_bytes(text.encode())
     (curve,) = curves(path, columns).values()
     assert is_the_curve(curve)
-
-
-def test_code_page_of_western_europe(tmp_path: Path) -> None:
-    """A micro sign of one byte is understood."""
-    path = tmp_path / "a.txt"
-    path.write_bytes(f"position [µm];force [nN]\n{rows(';')}".encode("latin-1"))
-    assert is_the_curve(curves(path)[""])
 
 
 @pytest.mark.parametrize("mark", ["\t", ";", ","])
@@ -112,6 +103,30 @@ def test_decimal_commas_between_commas_are_refused(tmp_path: Path) -> None:
         curves(path)
     path.write_text("position [um],force [nN]\n1.5,2.7,,a remark\n1.6,2.9\n", encoding="utf-8")
     assert curves(path)[""].force == pytest.approx([2.7e-9, 2.9e-9])
+
+
+def test_list_of_files_without_numbers(tmp_path: Path) -> None:
+    """Its rows are not those of units, which have no number either."""
+    for name in "ab":
+        (tmp_path / f"{name}.csv").write_text(f"position [um],force [nN]\n{rows()}")
+    (tmp_path / "list.csv").write_text("file,day\na.csv,Monday\nb.csv,Tuesday\n")
+    assert [Path(name).stem for name in pl.read_curves(tmp_path / "list.csv")] == ["a", "b"]
+
+
+def test_column_without_a_name(tmp_path: Path) -> None:
+    """A column beyond those of the header has a number."""
+    path = tmp_path / "a.csv"
+    path.write_text(f"a;b\n{rows(';').replace(';', ';0;')}")
+    assert is_the_curve(curves(path, "1 = position um, 3 = force nN")[""])
+
+
+def test_a_depth_and_a_cell_without_a_number(tmp_path: Path) -> None:
+    """Between semicolons a comma is decimal, and what is empty is no number."""
+    (tmp_path / "a.csv").write_text("depth [nm];force [nN]\n1,5;2,25\n2,5;\n")
+    curve = curves(tmp_path / "a.csv")[""]
+    assert curve.is_depth
+    assert curve.position == pytest.approx([1.5e-9, 2.5e-9])
+    assert curve.force == pytest.approx([2.25e-9, np.nan], nan_ok=True)
 
 
 def test_thousands_that_may_be_decimals_are_refused(tmp_path: Path) -> None:
@@ -207,6 +222,13 @@ def test_paths_that_lead_nowhere(tmp_path: Path) -> None:
         curves(path, "z = position um, f = force nN")
     with pytest.raises(pl.ConfigError, match="--columns"):
         curves(path)
+    # A curve that lacks an array fails alone.
+    with h5py.File(path, "r+") as file:
+        del file["curve0003/f"]
+    readers = read(path, Calibration(columns="*/z = position um, */f = force nN"))
+    assert is_the_curve(readers["curve0004"]())
+    with pytest.raises(pl.ConfigError, match="curve curve0003: has no column force"):
+        readers["curve0003"]()
 
 
 def _plain_mat(path: Path) -> str:
@@ -258,8 +280,9 @@ def test_matlab(tmp_path: Path, write: Callable[[Path], str], count: int) -> Non
 def test_columns_have_one_order() -> None:
     """The same roles in another order or form are the same configuration."""
     text = 'Defl=deflection nm,  "Z" = Extension  nm'
-    assert column_map(text) == column_map({"Z": "extension nm", "Defl": "deflection nm"})
-    assert list(column_map(text)) == ["Z", "Defl"]
+    table = {"Z": "extension nm", "Defl": "deflection nm"}
+    for columns in (text, table, dict(reversed(table.items()))):
+        assert [*(Calibration(columns=columns).columns or {}).items()] == [*table.items()]
 
 
 def _ramp(pause: str, noise: float) -> tuple[Array, Array]:

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 import pellicle as pl
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.measurement import Measurement
-from pellicle_fit.files.readers import read
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.pictures import drawn_width
 
@@ -92,16 +91,6 @@ def test_held_parameters(cli: Cli) -> None:
     assert _holds(report["reduced_modulus"], MODULUS)
     hertz = json.loads(cli("curve.csv", *OPTIONS, "--fix", "tension=0", "--json").stdout)
     assert hertz["reduced_modulus"]["value"] > 1.2 * MODULUS
-
-
-@pytest.mark.usefixtures("no_rivals")
-def test_decimal_commas(cli: Cli) -> None:
-    """Between semicolons a comma is decimal."""
-    Path("curve.csv").write_text("depth [nm];force [nN]\n1,5;2,25\n2,5;\n", encoding="utf-8")
-    measured = read(Path("curve.csv"))[""]()
-    assert measured.is_depth
-    assert measured.position == pytest.approx([1.5e-9, 2.5e-9])
-    assert measured.force == pytest.approx([2.25e-9, np.nan], nan_ok=True)
 
 
 @pytest.mark.usefixtures("no_rivals")
@@ -181,55 +170,37 @@ def test_wrong_radius_is_noticed(indenter: str) -> None:
     assert any("are radius and units right?" in message for message in fit.messages)
 
 
-def _changed(what: str) -> tuple[Array, Array]:
-    position, force = _curve()
-    match what:
-        case "retract":
-            return position[::-1], force[::-1]
-        case "pulls":
-            return position, -force
-        case "backwards":
-            return -position, force
-        case "flat":
-            return position, 1e-9 * np.random.default_rng(1).standard_normal(position.size)
-        case "still":
-            return np.full_like(position, 1e-6), force
-        case "several":
-            return np.tile(position, 3), np.tile(force, 3)
-        case "few":
-            return position[-5:], force[-5:]
-        case "zero":
-            return position, np.zeros_like(force)
-        case "nan":
-            return position, np.full_like(force, np.nan)
-    raise AssertionError(what)
+BAD: list[tuple[str, Callable[[Array, Array], tuple[Array, Array]]]] = [
+    ("this is a retract", lambda z, f: (z[::-1], f[::-1])),
+    ("negative stiffness", lambda z, f: (z, -f)),
+    ("negative stiffness", lambda z, f: (-z, f)),
+    ("no contact in the curve", lambda z, f: (z, 1e-9 * np.random.default_rng(1).random(z.size))),
+    ("no contact in the curve", lambda z, f: (z, 0 * f)),
+    ("give a curve that moves", lambda z, f: (np.full_like(z, 1e-6), f)),
+    ("several curves", lambda z, f: (np.tile(z, 3), np.tile(f, 3))),
+    ("at least 8", lambda z, f: (z[-5:], f[-5:])),
+    ("at least 8", lambda z, f: (z, np.nan * f)),
+    ("give SI values", lambda z, f: (1e40 * z, f)),
+    ("one curve at a time", lambda z, f: (np.tile(z, (2, 1)), f)),
+    ("a list of real numbers", lambda z, f: (z, 1j * f)),  # type: ignore[list-item, return-value]
+    ("has 299 values and position 300", lambda z, f: (z, f[1:])),
+]
 
 
-@pytest.mark.parametrize(
-    ("what", "words"),
-    [
-        ("retract", "this is a retract"),
-        ("pulls", "negative stiffness"),
-        ("backwards", "negative stiffness"),
-        ("flat", "no contact in the curve"),
-        ("still", "give a curve that moves"),
-        ("several", "several curves"),
-        ("few", "at least 8"),
-        ("zero", "no contact in the curve"),
-        ("nan", "at least 8"),
-    ],
-)
-def test_bad_curves(cli: Cli, what: str, words: str) -> None:
+@pytest.mark.parametrize(("words", "change"), BAD)
+def test_bad_curves(words: str, change: Callable[[Array, Array], tuple[Array, Array]]) -> None:
     """A curve that cannot be fitted is refused in words."""
-    _write(*_changed(what))
-    assert words in cli("curve.csv", *OPTIONS, code=2).stderr
+    with pytest.raises(pl.ConfigError, match=words):
+        clean(Measurement(*change(*_curve())))
 
 
 @pytest.mark.usefixtures("no_rivals")
 def test_retract_on_request() -> None:
     """A retract is fitted if asked for, with a caution."""
-    fit = pl.fit(*_changed("retract"), indenter="paraboloid", radius=RADIUS, segment="retract")
+    position, force = _curve()
+    options: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS, "segment": "retract"}
+    fit = pl.fit(position[::-1], force[::-1], **options)
     assert _holds(vars(fit.tension), TENSION)
     assert any("adhered" in message for message in fit.messages)
     with pytest.raises(pl.ConfigError, match="into the solid: this is an approach, and"):
-        pl.fit(*_curve(), indenter="paraboloid", radius=RADIUS, segment="retract")
+        pl.fit(position, force, **options)

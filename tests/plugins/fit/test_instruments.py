@@ -178,9 +178,3 @@ def test_noise_of_the_deflection_is_in_the_position_too() -> None:
     assert holds(fit.tension, MODULUS * LENGTH / 2)
     blind = pl.fit(*SEEN, indenter=BEAD)
     assert blind.warnings
-
-
-def test_bad_calibration() -> None:
-    """A calibration of another dimension is refused."""
-    with pytest.raises(pl.ConfigError, match="is a length; give"):
-        Calibration(spring_constant="5 um")
