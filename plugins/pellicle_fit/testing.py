@@ -179,8 +179,9 @@ def returns_a_number_for_each_row(case: Case) -> str:
 @_in_each_case
 def is_finite_everywhere(case: Case) -> str:
     """It is finite before contact, at tiny and at large forces, and down to the depth limit."""
-    bends = isinstance(case.effect, Bends)
-    deepest = case.effect.contact(case.contact).depth_limit if bends else np.inf
+    effect, deepest = case.effect, np.inf
+    if isinstance(effect, Bends):
+        deepest = effect.contact(case.contact).depth_limit
     ends, largest = case.rows.copy(), float(case.rows.max())
     ends[:4] = [0.0, 1e-9 * largest, -largest, min(10 * largest, deepest)]
     finite = np.isfinite(case.given(ends))
@@ -205,9 +206,10 @@ def depths_grow(case: Case) -> str:
 
     The depth of the base, δ + u(F), grows with that of the solid.
     """
-    bends, contact = isinstance(case.effect, Bends), case.contact
-    contact = case.effect.contact(contact) if bends else contact
-    deepest = min(2 * float(_DEPTHS[-1]), contact.depth_limit if bends else np.inf)
+    contact, deepest = case.contact, 2 * float(_DEPTHS[-1])
+    if isinstance(case.effect, Bends):
+        contact = case.effect.contact(contact)
+        deepest = min(deepest, contact.depth_limit)
     depth = deepest * np.linspace(-1.0, 1.0, 201)
     force = contact.force(depth)
     if np.any(force[:101] != 0) or not np.all(np.diff(force[100:]) > 0):
