@@ -122,16 +122,6 @@ def _uncertain(value: object) -> dict[str, float | str]:
     return found
 
 
-def _thickness(value: object) -> float | str:
-    """Return a thickness in m, or "free"."""
-    if value == FREE:
-        return FREE
-    try:
-        return Quantity("m", above=0)(value)
-    except ValueError as error:
-        raise ConfigError(f'{error}; or "{FREE}"') from None
-
-
 class FitConfig(FromFile, Calibration):
     """Configuration of a fit: curves, indenter, solid, and options.
 
@@ -166,14 +156,11 @@ class FitConfig(FromFile, Calibration):
         BeforeValidator(_component, json_schema_input_type=dict[str, Any] | str | None),
         Field(description="the solid without its modulus and tension; a half-space if not given"),
     ] = None
-    thickness: Annotated[
-        float | str | None,
-        PlainValidator(_thickness, json_schema_input_type=float | str | None),
-        Field(
-            description="of a layer bonded to a rigid base, in place of a half-space; "
-            f'"{FREE}" fits it. It needs poissons_ratio'
-        ),
-    ] = None
+    thickness: Annotated[float, Quantity("m", above=0)] | Literal["free"] | None = Field(
+        None,
+        description="of a layer bonded to a rigid base, in place of a half-space; "
+        f'"{FREE}" fits it. It needs poissons_ratio',
+    )
     model: Annotated[
         tuple[_OneEffect, ...],
         _list(_Effects),
