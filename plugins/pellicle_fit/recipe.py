@@ -31,7 +31,7 @@ from .rivals import (
     fitted_all,
     lenders,
 )
-from .strangers import naming_strangers, refuse_broken
+from .strangers import refuse_broken, strangers_named
 
 TENSION = "tension"
 _SMALL = 0.2
@@ -167,7 +167,7 @@ def _held(fit: Explained, name: str) -> Estimate:
     return Estimate(0.0, 0.0, 0.0, "N/m" if name == TENSION else "1", held=True)
 
 
-@naming_strangers
+@strangers_named()
 def answer(
     curves: Sequence[Curve],
     model: Sequence[Effect],
