@@ -108,12 +108,12 @@ class Fitted(Quantity):
         return {"anyOf": [held, weighed], "unit": self.unit}
 
 
-def fitted(description: str, examples: list[Any] | None = None) -> Any:
+def fitted(description: str) -> Any:
     """Return the field of a quantity annotated with `Fitted`.
 
     It is annotated as ``float``: the methods of a component are called with all of them known.
     """
-    return Field(default=None, description=description, examples=examples)
+    return Field(default=None, description=description)
 
 
 class Fittable(Component):

@@ -59,12 +59,12 @@ class Case(NamedTuple):
 
     def scaled(self, length: float, force: float, time: float) -> Case:
         """Return the case with lengths, forces and times times factors, and so all quantities."""
-        update, curve, body = {}, self.curve, self.curve.indenter
+        factor, update = Sizes(length, force, time, 0).of, {}
+        curve, body = self.curve, self.curve.indenter
         for name, info in type(self.effect).model_fields.items():
             quantity, value = quantity_of(info), getattr(self.effect, name)
             if quantity is not None and value is not None:
-                newton, metre, second = quantity.powers()
-                update[name] = value * force**newton * length**metre * time**second
+                update[name] = value * factor(quantity.unit)
         if radius := getattr(body, "radius", None):
             body = _body("paraboloid", radius=length * radius)
         curve = replace(
@@ -73,10 +73,10 @@ class Case(NamedTuple):
             force=force * curve.force,
             indenter=body,
             time=time * curve.clock,
-            stiffness=_STIFFNESS * force / length,
+            stiffness=_STIFFNESS * factor("N/m"),
         )
         effect = self.effect.model_copy(update=update)
-        return Case(self.words, effect, curve, self.modulus * force / length**2)
+        return Case(self.words, effect, curve, self.modulus * factor("Pa"))
 
     def given(self, rows: Array) -> Array:
         """Return what the effect itself makes of depths [m] or, of an instrument, forces [N]."""
