@@ -13,6 +13,8 @@ import pellicle as pl
 from pellicle.cli import INTERRUPTED, NOT_CONVERGED, echo, print_json
 from pellicle.errors import ConfigError
 
+from .print_fits import print_fit, print_fits, print_notes, show_fits
+
 if TYPE_CHECKING:
     from pellicle_fit.config import FitConfig
     from pellicle_fit.many import ManyFits
@@ -132,7 +134,6 @@ def fit(
     """
     from pellicle_fit.config import FitConfig
     from pellicle_fit.many import ManyFits
-    from pellicle_fit.print_fits import print_fit, print_fits, print_notes
     from pellicle_fit.record import repetition
     from pellicle_fit.report.figures import save_figure
     from pellicle_fit.report.page import save_report
@@ -147,11 +148,11 @@ def fit(
     repeated = None if again is None else repetition(again)
     if repeated is not None and configs:
         raise ConfigError(f"{configs[0]}: --again has a configuration of its own; leave one out")
-    tables = {"fix": fix, "uncertainty": uncertainty}
     config = FitConfig.merged(
         configs[0] if configs else repeated and repeated.config,
         [
-            *(_override(k, text) for k, texts in tables.items() for text in texts or ()),
+            *(_override("fix", text) for text in fix or ()),
+            *(_override("uncertainty", text) for text in uncertainty or ()),
             *(set_ or ()),
         ],
         curves=tuple(path for path in files if path not in configs) or None,
@@ -200,14 +201,7 @@ def fit(
 @pl.hookimpl
 def register_commands(register: pl.RegisterCommand) -> None:
     """Register the command."""
-    register(fit, file="pellicle_fit.config:FitConfig", show=_show)
-
-
-def _show(directory: Path, si: bool, json: bool) -> bool:
-    """Print what the command left in a folder; return False if it left nothing."""
-    from pellicle_fit.print_fits import show_fits
-
-    return show_fits(directory, si, json)
+    register(fit, file="pellicle_fit.config:FitConfig", show=show_fits)
 
 
 def _fit(

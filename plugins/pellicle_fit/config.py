@@ -51,17 +51,30 @@ DEFAULT_RIVALS: tuple[str | list[str], ...] = (
     *("brush", "compliance", "rough_toe"),
 )
 """What bends a curve as a tension does, and is compared unless a configuration says otherwise."""
-UNCERTAIN = {"spring_constant": "N/m", "sensitivity": "m/V", "radius": "m"}
-"""What may be known to an uncertainty, and its unit."""
+UNCERTAIN = {
+    "spring_constant": ("N/m", "spring"),
+    "sensitivity": ("m/V", "sensitivity"),
+    "radius": ("m", "size"),
+}
+"""What may be known to an uncertainty, its unit, and the effect whose error that is."""
 MODULUS, TENSION = "reduced_modulus", "tension"
 FREE = "free"
 """Thickness that the fit determines."""
-_COMPONENTS = ("indenter", "kernel", "executor")
 
 
 def _component(value: object) -> object:
     """Return the type of a component as its table; any other value unchanged."""
     return {"type": value} if isinstance(value, str) else value
+
+
+def _as_list(value: object) -> Any:
+    """Return a value that may stand for a list of one as that list."""
+    return value if isinstance(value, (list, tuple)) else [value]
+
+
+def _list(entries: Any) -> BeforeValidator:
+    """Return the annotation of a list, in whose place one of its entries may stand."""
+    return BeforeValidator(_as_list, json_schema_input_type=entries)
 
 
 _Effects = list[str | dict[str, Any]]
@@ -91,11 +104,6 @@ def described(indenter: object) -> dict[str, Any]:
     return dict(indenter) if isinstance(indenter, Mapping) else {"type": type(indenter).__name__}
 
 
-def _as_list(value: object) -> Any:
-    """Return a value that may stand for a list of one as that list."""
-    return value if isinstance(value, (list, tuple)) else [value]
-
-
 def _uncertain(value: object) -> dict[str, float | str]:
     """Return shares as numbers, and quantities as they are written, once they are checked."""
     if not isinstance(value, Mapping):
@@ -105,23 +113,13 @@ def _uncertain(value: object) -> dict[str, float | str]:
         if name not in UNCERTAIN:
             raise ConfigError(f"is not one of {', '.join(UNCERTAIN)}", str(name))
         percent = isinstance(entry, str) and entry.rstrip().endswith("%")
-        unit = UNCERTAIN[name] if isinstance(entry, str) and not percent else "1"
+        unit = UNCERTAIN[name][0] if isinstance(entry, str) and not percent else "1"
         try:
             number = Quantity(unit, above=0)(entry.rstrip(" %") if percent else entry)
         except ValueError as error:
             raise ConfigError(f'{error}; or a share such as "5 %"', name) from None
         found[name] = number / 100 if percent else number if unit == "1" else entry
     return found
-
-
-def _thickness(value: object) -> float | str:
-    """Return a thickness in m, or "free"."""
-    if value == FREE:
-        return FREE
-    try:
-        return Quantity("m", above=0)(value)
-    except ValueError as error:
-        raise ConfigError(f'{error}; or "{FREE}"') from None
 
 
 class FitConfig(FromFile, Calibration):
@@ -141,7 +139,7 @@ class FitConfig(FromFile, Calibration):
 
     curves: Annotated[
         tuple[Path, ...],
-        BeforeValidator(_as_list, json_schema_input_type=tuple[Path, ...] | Path),
+        _list(tuple[Path, ...] | Path),
         Field(description="files, folders, patterns such as beads/*.csv, or tables of files"),
     ] = ()
     indenter: Annotated[
@@ -158,17 +156,14 @@ class FitConfig(FromFile, Calibration):
         BeforeValidator(_component, json_schema_input_type=dict[str, Any] | str | None),
         Field(description="the solid without its modulus and tension; a half-space if not given"),
     ] = None
-    thickness: Annotated[
-        float | str | None,
-        PlainValidator(_thickness, json_schema_input_type=float | str | None),
-        Field(
-            description="of a layer bonded to a rigid base, in place of a half-space; "
-            f'"{FREE}" fits it. It needs poissons_ratio'
-        ),
-    ] = None
+    thickness: Annotated[float, Quantity("m", above=0)] | Literal["free"] | None = Field(
+        None,
+        description="of a layer bonded to a rigid base, in place of a half-space; "
+        f'"{FREE}" fits it. It needs poissons_ratio',
+    )
     model: Annotated[
         tuple[_OneEffect, ...],
-        BeforeValidator(_as_list, json_schema_input_type=_Effects),
+        _list(_Effects),
         Field(
             description="effects that the force has; whether the first is needed is the question. "
             "Without any, whether a curve shows more than an elastic half-space",
@@ -177,7 +172,7 @@ class FitConfig(FromFile, Calibration):
     ] = (TENSION,)  # type: ignore[assignment]
     rivals: Annotated[
         tuple[Annotated[tuple[_OneEffect, ...], BeforeValidator(_as_list)], ...],
-        BeforeValidator(_as_list, json_schema_input_type=list[str | dict[str, Any] | _Effects]),
+        _list(list[str | dict[str, Any] | _Effects]),
         Field(
             description="effects, or lists of effects that act together, that are compared with "
             "the model, each alone and beside it",
@@ -212,7 +207,7 @@ class FitConfig(FromFile, Calibration):
     )
     accept: Annotated[
         tuple[str, ...],
-        BeforeValidator(_as_list, json_schema_input_type=tuple[str, ...] | str),
+        _list(tuple[str, ...] | str),
         AfterValidator(rules),
         Field(description="rules for the curves of a population, such as r_squared > 0.95"),
     ] = ()
@@ -305,10 +300,9 @@ class FitConfig(FromFile, Calibration):
         ConfigError
             The text is not JSON, or holds no configuration.
         """
-        with suppress(ValueError):
-            data = json.loads(text)
-            if isinstance(data, dict) and isinstance(data.get("configuration"), dict):
-                text = json.dumps(data["configuration"])
+        with suppress(ValueError, AttributeError):
+            if isinstance(of_fit := json.loads(text).get("configuration"), dict):
+                text = json.dumps(of_fit)
         return super().from_json(text)
 
     @classmethod
@@ -329,11 +323,11 @@ class FitConfig(FromFile, Calibration):
         ConfigError, PluginError
             A value is not allowed, or the file cannot be read.
         """
+        options = {name: value for name, value in options.items() if value is not None}
         if isinstance(base, (str, Path)):
             folder, data = Path(base).parent, read_toml(Path(base))
-            given = data.pop("curves", None)
-            if options.get("curves") is None and given is not None:
-                paths = _as_list(given)
+            if "curves" in data.keys() - options.keys():
+                paths = _as_list(data["curves"])
                 if all(isinstance(path, str) for path in paths):
                     paths = [one for path in paths for one in expanded(path, folder)]
                 data["curves"] = paths
@@ -343,18 +337,18 @@ class FitConfig(FromFile, Calibration):
                 return cls.merged(data, overrides, **options)
         if isinstance(base, FitConfig):
             base = {name: getattr(base, name) for name in base.model_fields_set}
-        options = {name: value for name, value in options.items() if value is not None}
-        shared = cls.model_fields.keys() - Calibration.model_fields.keys()
-        data = {**(base or {}), **{name: options[name] for name in shared & options.keys()}}
-        data |= {name: _component(data[name]) for name in _COMPONENTS if name in data}
-        for name in [name for name in options if name not in shared]:
-            if isinstance(options[name], (list, tuple)):
-                data = replaced(data, f"per_file.{name}", options[name])
+        own = cls.model_fields.keys() - Calibration.model_fields.keys()
+        data = {**(base or {}), **{name: options.pop(name) for name in own & options.keys()}}
+        for name in data.keys() & {"indenter", "kernel", "executor"}:
+            data[name] = _component(data[name])
+        for name, value in options.items():
+            if isinstance(value, (list, tuple)):
+                data = replaced(data, f"per_file.{name}", value)
                 continue
-            if isinstance(data.get("per_file"), Mapping):
-                data["per_file"] = {k: v for k, v in data["per_file"].items() if k != name}
+            if isinstance(per_file := data.get("per_file"), Mapping):
+                data["per_file"] = {k: v for k, v in per_file.items() if k != name}
             key = name if name in cls.model_fields else f"indenter.{name}"
-            data = replaced(data, key, options[name])
+            data = replaced(data, key, value)
         return cls(**overridden(data, overrides))
 
     def to_dict(self) -> dict[str, Any]:
@@ -363,14 +357,12 @@ class FitConfig(FromFile, Calibration):
 
     def files(self, curves: Curves | None = None) -> list[CurveFile]:
         """Return the files of ``curves``, or of those of the configuration if None."""
-        chosen, indenter = self.curves if curves is None else curves, self.indenter
-        kind = (
-            registry().find(Indenter.family, indenter["type"])
-            if isinstance(indenter, Mapping)
-            else type(indenter)
-        )
+        kind: type = type(self.indenter)
+        if isinstance(self.indenter, Mapping):
+            kind = registry().find(Indenter.family, self.indenter["type"])
         fields = {*getattr(kind, "model_fields", ()), *Calibration.model_fields}
         column = self.group_by
+        chosen = self.curves if curves is None else curves
         return gather(chosen, self.segment, self, self.per_file, column, column in fields)
 
     def sources(self, curves: Curves | None = None) -> list[Source]:

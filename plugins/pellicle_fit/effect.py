@@ -14,6 +14,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
+from itertools import product
 from typing import Any, ClassVar, Literal, NamedTuple, Self
 
 from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -57,11 +58,17 @@ class Fitted(Quantity):
     scope
         What has a value of its own in a pool: all curves share one, those of each indenter, or each
         curve has one.
+    starts
+        Values from which searches start, over the size that such a quantity has in a curve.
+    limits
+        Between which values, over that size, a curve can tell anything of it.
     """
 
     left_out: ClassVar[str] = "fitted"
     log: bool = False
     scope: Literal["all", "indenter", "curve"] = "all"
+    starts: tuple[float, ...] = (0.1,)
+    limits: tuple[float, float] | None = None
 
     def given(self, value: object) -> float | None:
         """Return a value in SI, `Weighed` if it comes with a deviation; None if it is left out."""
@@ -101,12 +108,12 @@ class Fitted(Quantity):
         return {"anyOf": [held, weighed], "unit": self.unit}
 
 
-def fitted(description: str, examples: list[Any] | None = None) -> Any:
+def fitted(description: str) -> Any:
     """Return the field of a quantity annotated with `Fitted`.
 
     It is annotated as ``float``: the methods of a component are called with all of them known.
     """
-    return Field(default=None, description=description, examples=examples)
+    return Field(default=None, description=description)
 
 
 class Fittable(Component):
@@ -115,15 +122,12 @@ class Fittable(Component):
     @property
     def open(self) -> Mapping[str, Fitted]:
         """The quantities that a fit determines, by name."""
-        return {
-            name: quantity
-            for name, quantity in quantities(type(self)).items()
-            if self._is_open(name)
-        }
-
-    def _is_open(self, name: str) -> bool:
-        value = getattr(self, name)
-        return value is None or isinstance(value, Weighed)
+        found = {}
+        for name, quantity in quantities(type(self)).items():
+            value = getattr(self, name)
+            if value is None or isinstance(value, Weighed):
+                found[name] = quantity
+        return found
 
     def at(self, values: Values) -> Self:
         """Return the component with values of its open quantities."""
@@ -174,26 +178,33 @@ class Effect(Fittable):
     """Order in which effects of one place act."""
     holds_modulus: ClassVar[bool] = True
     """Whether E* beside it is that of the solid, and not up to an unknown factor."""
+    absorbed: ClassVar[str] = ""
+    """What makes up for its quantities, so that they need deviations; empty if nothing does."""
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Return why it cannot act on a curve beside effects of some types; empty if it can.
 
         ``contact`` is what it acts on, of modulus 1 Pa: bent by those that bend it before.
         """
-        return ""
+        free = not all(isinstance(getattr(self, name), Weighed) for name in self.open)
+        return f"needs a deviation: {self.absorbed}" if self.absorbed and free else ""
 
     def starts(self, sizes: Sizes) -> Iterable[Values]:
         """Yield values of its quantities from which searches start."""
-        yield {name: 0.1 * sizes.of(quantity.unit) for name, quantity in self.open.items()}
+        scales = {name: sizes.of(quantity.unit) for name, quantity in self.open.items()}
+        for shares in product(*(quantity.starts for quantity in self.open.values())):
+            pairs = zip(scales.items(), shares, strict=True)
+            yield {name: share * scale for (name, scale), share in pairs}
 
     def known(self, sizes: Sizes) -> Self:
         """Return it with its open quantities at the first of its starts."""
-        usual = {name: 0.1 * sizes.of(quantity.unit) for name, quantity in self.open.items()}
+        usual = next(iter(Effect.starts(self, sizes)))
         return self.at({**usual, **next(iter(self.starts(sizes)), {})})
 
     def limits(self, sizes: Sizes) -> Mapping[str, tuple[float, float]]:
         """Return between which values [SI] such a curve can tell anything of a quantity."""
-        return {}
+        known = {name: (q.limits, sizes.of(q.unit)) for name, q in self.open.items()}
+        return {n: (ends[0] * size, ends[1] * size) for n, (ends, size) in known.items() if ends}
 
     def accuracy(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> float:
         """Return the error of its force over the largest one; intervals are wider by it."""

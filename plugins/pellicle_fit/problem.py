@@ -30,12 +30,6 @@ from .simulated.body import body_of, layer_of, layer_table
 from .simulated.simulation import Simulation
 
 _BASELINES = {"none": (), "offset": ("offset",), "slope": ("offset", "slope")}
-_EFFECTS = {
-    "spring_constant": ("spring", "spring_error"),
-    "sensitivity": ("sensitivity", "sensitivity_error"),
-    "radius": ("size", "size_error"),
-}
-"""Effect and quantity that an uncertainty is of."""
 _REACH = 1.5
 """Depth down to which a force is simulated where the contact is not known, over the range."""
 _RATIO = "poissons_ratio"
@@ -96,19 +90,14 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
     if True in depths:
         fix[CONTACT_POINT] = 0.0
     bodies, layers, ratio = _on_solid(config, indenters, measured, progress)
-    members = tuple(
-        Member(
-            source.name,
-            Curve(one.position, one.force, body, one.time, one.unloading, one.stiffness),
-            one.messages,
-            data_of(one, config),
-        )
-        for source, one, body in zip(sources, measured, bodies, strict=True)
-    )
+    members = []
+    for source, one, body in zip(sources, measured, bodies, strict=True):
+        curve = Curve(one.position, one.force, body, one.time, one.unloading, one.stiffness)
+        members.append(Member(source.name, curve, one.messages, data_of(one, config)))
     model = _known(config.model, fix, ratio)
     # What is given leaves nothing to ask.
     given = [effect for effect in model if quantities(type(effect)) and not effect.open]
-    baseline = [registry().make(Effect, {"type": name}) for name in _BASELINES[config.baseline]]
+    baseline = [_effect(name) for name in _BASELINES[config.baseline]]
     question = {
         "model": [effect for effect in model if effect not in given],
         "rivals": [r for rival in config.rivals if (r := _known(rival, fix, ratio))],
@@ -117,7 +106,7 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
         "uncertainty": _uncertain(config, measured, indenters),
         "full": config.compare,
     }
-    return Problem(config, members, question, ratio, watch)
+    return Problem(config, tuple(members), question, ratio, watch)
 
 
 def _on_solid(
@@ -129,8 +118,7 @@ def _on_solid(
     """Return what has the force curve of each indenter, a layer beside it, and Poisson's ratio."""
     kernel, ratio, thickness = config.kernel, config.poissons_ratio, config.thickness
     if thickness == FREE:
-        layer = registry().make(Effect, {"type": "layer", _RATIO: ratio})
-        return [*indenters], [layer], ratio
+        return [*indenters], [_effect("layer", poissons_ratio=ratio)], ratio
     if isinstance(thickness, float) and ratio is not None:
         kernel = layer_table(ratio, thickness)
     if kernel is not None:
@@ -163,7 +151,7 @@ def _known(
     found = []
     for effect in effects:
         own = {name: fix[name] for name in quantities(type(effect)).keys() & fix.keys()}
-        if hasattr(effect, _RATIO) and _RATIO not in effect.model_fields_set and ratio:
+        if ratio and hasattr(effect, _RATIO) and _RATIO not in effect.model_fields_set:
             own[_RATIO] = max(ratio, 0.0)
         if own.get(TENSION) != 0:
             found.append(effect.model_copy(update=own))
@@ -174,13 +162,14 @@ def _uncertain(
     config: FitConfig, measured: Sequence[Measurement], indenters: Sequence[object]
 ) -> list[Effect]:
     """Return the effects that stand for the uncertainties of the calibration."""
-    effects: list[Effect] = []
     known = {
         "spring_constant": {curve.stiffness for curve in measured},
         "sensitivity": {curve.origin.sensitivity for curve in measured},
         "radius": {getattr(indenter, "radius", None) for indenter in indenters},
     }
+    effects = []
     for name, value in config.uncertainty.items():
+        unit, effect = UNCERTAIN[name]
         if isinstance(value, str):
             reference, *others = known[name]
             if reference is None or others:
@@ -189,8 +178,11 @@ def _uncertain(
                     "such as 5 %",
                     f"uncertainty.{name}",
                 )
-            value = Quantity(UNCERTAIN[name])(value) / reference
-        effect, quantity = _EFFECTS[name]
-        weighed = {quantity: {"value": 0.0, "deviation": value}}
-        effects.append(registry().make(Effect, {"type": effect, **weighed}))
+            value = Quantity(unit)(value) / reference
+        weighed = {"value": 0.0, "deviation": value}
+        effects.append(_effect(effect, **{f"{effect}_error": weighed}))
     return effects
+
+
+def _effect(name: str, **fields: Any) -> Effect:
+    return registry().make(Effect, {"type": name, **fields})

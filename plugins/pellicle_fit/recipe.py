@@ -20,7 +20,7 @@ from .intervals import Estimate, estimates, threshold_of
 from .noise import CHANCE, Judged
 from .objective import MODULUS
 from .rivals import Question, comparison
-from .strangers import naming_strangers, refuse_broken
+from .strangers import refuse_broken, strangers_named
 from .verdict import MARGIN, SMALL, Decision, Verdict, choice, decision, doubtful, ties
 
 TENSION = "tension"
@@ -155,7 +155,7 @@ def _held(fit: Candidate, name: str) -> Estimate:
     return Estimate(0.0, 0.0, 0.0, "N/m" if name == TENSION else "1", held=True)
 
 
-@naming_strangers
+@strangers_named()
 def answer(
     curves: Sequence[Curve],
     model: Sequence[Effect],

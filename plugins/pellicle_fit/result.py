@@ -47,11 +47,11 @@ class Fit:
     """The curves."""
     advice: str
     """What to measure next; empty if nothing would help."""
-    poissons_ratio: float | None = None
+    poissons_ratio: float | None
     """ν, if it was given."""
-    config: FitConfig | None = None
+    config: FitConfig
     """The configuration of the fit."""
-    record: Record | None = None
+    record: Record
     """Versions, date and wall time."""
 
     @property
@@ -106,17 +106,13 @@ class Fit:
     @property
     def sentences(self) -> list[str]:
         """The data, the verdict and the advice in words."""
-        found = sentences.data(self.answer, self._uncertainty), self.comparison, self.agreement
-        return [*filter(None, [*found, self.advice])]
+        data = sentences.data(self.answer, self.config.uncertainty)
+        return [*filter(None, [data, self.comparison, self.agreement, self.advice])]
 
     @property
     def agreement(self) -> str:
         """Whether several curves agree on what they share, in words; empty for one."""
         return sentences.agreement(self.answer, [member.name for member in self.members])
-
-    @property
-    def _uncertainty(self) -> Mapping[str, float | str]:
-        return self.config.uncertainty if self.config else {}
 
     @property
     def messages(self) -> list[str]:
@@ -154,11 +150,9 @@ class Fit:
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as JSON data."""
         answer, chosen = self.answer, self.answer.chosen
-        own, names = parameters_of(chosen), ("reduced_modulus", "tension", "youngs_modulus")
-        result: dict[str, Any] = {
-            name: vars(estimate) for name, estimate in self.estimates().items() if name in names
-        }
-        result |= {
+        own, asked = parameters_of(chosen), ("reduced_modulus", "tension", "youngs_modulus")
+        return {
+            **{name: vars(e) for name, e in self.estimates().items() if name in asked},
             "parameters": {name: vars(estimate) for name, estimate in own.items()},
             "model": {"effects": sorted(chosen.types), "words": sentences.words(chosen)},
             "verdict": self.verdict.value,
@@ -167,7 +161,7 @@ class Fit:
             "agreement": self.agreement,
             "advice": self.advice,
             "confidence": CONFIDENCE,
-            "calibration": sentences.calibration(self._uncertainty),
+            "calibration": sentences.calibration(self.config.uncertainty),
             "chi_squared": self.chi_squared,
             "threshold": answer.threshold,
             "margin": max(MARGIN, answer.threshold),
@@ -180,25 +174,23 @@ class Fit:
             "curves": [self._curve(i, own) for i in range(len(self.members))],
             "messages": self.messages,
             "notes": self.notes,
+            "configuration": self.config.to_dict(),
+            **self.record.to_dict(),
         }
-        if self.config is not None:
-            result["configuration"] = self.config.to_dict()
-        return result | (self.record.to_dict() if self.record else {})
 
     def _explanation(self, fit: Candidate) -> dict[str, Any]:
         """Return one of the explanations; quantities whose intervals were not sought lack ends."""
-        best = self.answer.explanations[0]
-        ends = fit.estimates
+        answer = self.answer
         return {
             "effects": sorted(fit.types),
             "words": sentences.words(fit),
             "chi_squared": fit.chi_squared,
-            "delta_aic": fit.aic - best.aic,
-            "tied": fit.types in {tied.types for tied in self.answer.tied},
-            "holds_modulus": fit.types not in {other.types for other in self.answer.not_held},
+            "delta_aic": fit.aic - answer.explanations[0].aic,
+            "tied": any(fit.types == tied.types for tied in answer.tied),
+            "holds_modulus": all(fit.types != other.types for other in answer.not_held),
             "parameters": {
                 name: vars(value)
-                if name in ends or value.held
+                if name in fit.estimates or value.held
                 else {"value": value.value, "unit": value.unit}
                 for name, value in parameters_of(fit).items()
             },
@@ -269,7 +261,8 @@ def parameters_of(fit: Candidate) -> dict[str, Estimate]:
         bare = Estimate(slot.value(at), None, None, slot.quantity.unit)
         found[name] = fit.estimates.get(name, bare)
     for part in objective.explanation.parts:
-        for name in quantities(type(part)).keys() - part.open.keys():
-            value, unit = float(getattr(part, name)), quantities(type(part))[name].unit
-            found[name] = Estimate(value, value, value, unit, held=True)
+        for name, quantity in quantities(type(part)).items():
+            if name not in part.open:
+                value = float(getattr(part, name))
+                found[name] = Estimate(value, value, value, quantity.unit, held=True)
     return found

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from functools import lru_cache, wraps
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from functools import lru_cache
 from inspect import getsourcefile
 from traceback import extract_tb
-from typing import ParamSpec, TypeVar
 
 from pellicle import registry
 from pellicle.errors import PellicleError, PluginError
 
 from .effect import Effect
-
-_Arguments = ParamSpec("_Arguments")
-_Value = TypeVar("_Value")
 
 
 def refuse_broken(effects: Iterable[Effect]) -> None:
@@ -28,12 +25,12 @@ def refuse_broken(effects: Iterable[Effect]) -> None:
     installed = registry().components[Effect.family].values()
     shipped = {entry.component for entry in installed if entry.origin.is_own}
     for effect in effects:
-        if type(effect) not in shipped:
-            _asked(effect)
+        if type(effect) not in shipped and (broken := _violation(effect)):
+            raise PluginError(f"effect {effect.type_name!r}: {broken}")
 
 
 @lru_cache(maxsize=64)
-def _asked(effect: Effect) -> None:
+def _violation(effect: Effect) -> str:
     # The kit takes a second to import.
     from pellicle.testing import keep
 
@@ -42,28 +39,22 @@ def _asked(effect: Effect) -> None:
     try:
         keep(QUICK, effect)
     except AssertionError as error:
-        broken = "; ".join(str(error).splitlines())
-        raise PluginError(f"effect {effect.type_name!r}: {broken}") from error
+        return "; ".join(str(error).splitlines())
+    return ""
 
 
-def naming_strangers(
-    function: Callable[_Arguments, _Value],
-) -> Callable[_Arguments, _Value]:
-    """Return a function that names the stranger's effect and its line in exceptions."""
-
-    @wraps(function)
-    def named(*arguments: _Arguments.args, **options: _Arguments.kwargs) -> _Value:
-        try:
-            return function(*arguments, **options)
-        except PellicleError:
-            raise
-        except Exception as error:
-            # The command line prints the note instead of a traceback.
-            lines = {frame.filename: frame.lineno for frame in extract_tb(error.__traceback__)}
-            for type_, entry in registry().components[Effect.family].items():
-                file = getsourcefile(entry.component)
-                if file in lines and not entry.origin.is_own:
-                    error.add_note(f"effect {type_!r} failed ({file}, line {lines[file]})")
-            raise
-
-    return named
+@contextmanager
+def strangers_named() -> Iterator[None]:
+    """Add a note that names the stranger's effect and its line to exceptions."""
+    try:
+        yield
+    except PellicleError:
+        raise
+    except Exception as error:
+        # The command line prints the note instead of a traceback.
+        lines = {frame.filename: frame.lineno for frame in extract_tb(error.__traceback__)}
+        for type_, entry in registry().components[Effect.family].items():
+            file = getsourcefile(entry.component)
+            if file in lines and not entry.origin.is_own:
+                error.add_note(f"effect {type_!r} failed ({file}, line {lines[file]})")
+        raise

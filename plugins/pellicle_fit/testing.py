@@ -6,10 +6,11 @@ passes, with its quantities where searches start; on a curve for which it has an
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import replace
-from itertools import product
+from functools import wraps
+from itertools import islice, product
 from typing import NamedTuple
 
 import numpy as np
@@ -50,44 +51,42 @@ class Case(NamedTuple):
         """The contact of the indenter on a half-space."""
         return Contact.on_half_space(self.curve.indenter, self.modulus)
 
-    def force(self, *, without: bool = False, contact_point: float = 0.0) -> Array:
-        """Return the recorded force [N] with the effect, or without."""
-        effects = () if without else (self.effect,)
+    def force(self, *effects: Effect, contact_point: float = 0.0) -> Array:
+        """Return the force [N] that is recorded with some effects."""
         relaxed = Explanation(Solid(), effects).relaxed(self.curve.loading_time)
         solid = Solid(reduced_modulus=self.modulus / relaxed, contact_point=contact_point)
         return Explanation(solid, effects).force(self.curve)
 
     def scaled(self, length: float, force: float, time: float) -> Case:
         """Return the case with lengths, forces and times times factors, and so all quantities."""
-        update, curve, body = {}, self.curve, self.curve.indenter
+        factor, update = Sizes(length, force, time, 0).of, {}
+        curve, body = self.curve, self.curve.indenter
         for name, info in type(self.effect).model_fields.items():
             quantity, value = quantity_of(info), getattr(self.effect, name)
             if quantity is not None and value is not None:
-                newton, metre, second = quantity.powers()
-                update[name] = value * force**newton * length**metre * time**second
+                update[name] = value * factor(quantity.unit)
         if radius := getattr(body, "radius", None):
             body = _body("paraboloid", radius=length * radius)
-        curve = Curve(
-            length * curve.position,
-            force * curve.force,
-            body,
-            time * curve.clock,
-            stiffness=_STIFFNESS * force / length,
+        curve = replace(
+            curve,
+            position=length * curve.position,
+            force=force * curve.force,
+            indenter=body,
+            time=time * curve.clock,
+            stiffness=_STIFFNESS * factor("N/m"),
         )
         effect = self.effect.model_copy(update=update)
-        return Case(self.words, effect, curve, self.modulus * force / length**2)
+        return Case(self.words, effect, curve, self.modulus * factor("Pa"))
 
     def given(self, rows: Array) -> Array:
         """Return what the effect itself makes of depths [m] or, of an instrument, forces [N]."""
-        rows = rows.view()
+        rows, effect, curve = rows.view(), self.effect, self.curve
         rows.flags.writeable = False
-        effect, curve = self.effect, self.curve
         match effect:
             case Bends():
                 return effect.contact(self.contact).force(rows)
             case Responds():
-                response = effect.response(self.contact, curve, curve.position, 1 / _STIFFNESS)
-                return response(rows)
+                return effect.response(self.contact, curve, curve.position, 1 / _STIFFNESS)(rows)
             case Adds():
                 return effect.force(self.contact, curve, rows)
             case Yields():
@@ -109,6 +108,17 @@ class Case(NamedTuple):
         return max(_ROUNDING, 3 * known.accuracy(self.curve)) * self.curve.largest
 
 
+def _in_each_case(rule: Callable[[Case], str]) -> Callable[[Effect], str]:
+    """Return the rule of an effect that one of its cases is."""
+
+    @wraps(rule)
+    def broken(effect: Effect) -> str:
+        told = ((case.words, rule(case)) for case in _cases(effect))
+        return next((f"{words}: {violation}" for words, violation in told if violation), "")
+
+    return broken
+
+
 def check_effect(effect: Effect) -> None:
     """Check that an effect keeps its contract.
 
@@ -127,20 +137,17 @@ def stands_in_one_place(effect: Effect) -> str:
 
 
 def starts_lie_within_limits(effect: Effect) -> str:
-    """starts() and limits() name quantities; limits are a lower and an upper one, starts inside."""
-    known = quantities(type(effect))
+    """starts() and limits() name quantities, and starts lie between the limits."""
+    known, free = quantities(type(effect)), _free(effect)
     for words, curve in _curves():
         sizes = Sizes.of_curve(curve)
-        free, limits = _free(effect), effect.limits(sizes)
-        starts = list(free.starts(sizes))
-        for name in {*limits, *(name for start in starts for name in start)} - known.keys():
+        limits, starts = free.limits(sizes), list(free.starts(sizes))
+        values = [(name, value) for start in starts for name, value in start.items()]
+        for name in {*limits, *dict(values)} - known.keys():
             return f"{name} is not one of its quantities, {', '.join(known) or 'of which none is'}"
         if not starts:
             return f"starts() yields nothing on {words}; without quantities it yields {{}} once"
-        for name, (low, high) in limits.items():
-            if not low < high:
-                return f"the limits of {name} on {words} are {low:g} and {high:g}"
-        for name, value in ((n, v) for start in starts for n, v in start.items()):
+        for name, value in values:
             low, high = limits.get(name, (-np.inf, np.inf))
             known[name](value)
             if not low <= value <= high:
@@ -150,161 +157,150 @@ def starts_lie_within_limits(effect: Effect) -> str:
 
 def acts_on_a_curve(effect: Effect) -> str:
     """excuse() returns an empty text for one of the curves of the kit, else why not."""
-    if next(_cases(effect), None):
-        return ""
-    reasons = (effect.excuse(_contact(curve), curve, frozenset()) for _, curve in _curves())
-    return f"on all of them it is excused: {'; '.join(dict.fromkeys(reasons))}"
+    reasons = [_excuse(effect, curve) for _, curve in _curves()]
+    return (
+        f"on all of them it is excused: {'; '.join(dict.fromkeys(reasons))}" if all(reasons) else ""
+    )
 
 
-def returns_a_number_for_each_row(effect: Effect) -> str:
-    """It returns float64 of the shape of its argument, which stays, and the same each time."""
-    for case in _cases(effect):
-        first, second = (case.given(case.rows) for _ in range(2))
-        if not isinstance(first, np.ndarray) or first.dtype != np.float64:
-            return f"{case.words}: {first!r}, which is no array of float64"
-        if first.shape != case.rows.shape:
-            return f"{case.words}: of shape {first.shape} for {case.rows.shape}"
-        if not np.array_equal(first, second):
-            return f"{case.words}: the second call returns something else"
-    return ""
+@_in_each_case
+def returns_a_number_for_each_row(case: Case) -> str:
+    """It returns float64 of the shape of its argument, which stays, and the same each time.
+
+    What is no response depends on each row alone: of every second row it is every second one.
+    """
+    first, second = (case.given(case.rows) for _ in range(2))
+    if not isinstance(first, np.ndarray) or first.dtype != np.float64:
+        return f"{first!r}, which is no array of float64"
+    if first.shape != case.rows.shape:
+        return f"of shape {first.shape} for {case.rows.shape}"
+    if not np.array_equal(first, second, equal_nan=True):
+        return "the second call returns something else"
+    curve, every = case.curve, slice(None, None, 2)
+    rows = {name: getattr(curve, name)[every] for name in ("position", "force", "time")}
+    half = case._replace(curve=replace(curve, **rows, unloading=curve.moves_out[every]))
+    far = np.abs(half.given(half.rows) - first[every]) > _LIMIT**2 * np.max(np.abs(first))
+    differs = not isinstance(case.effect, Responds) and far.any()
+    return "without every second row the others change" if differs else ""
 
 
-def is_finite_everywhere(effect: Effect) -> str:
+@_in_each_case
+def is_finite_everywhere(case: Case) -> str:
     """It is finite before contact, at tiny and at large forces, and down to the depth limit."""
-    for case in _cases(effect):
-        deepest = np.inf
-        if isinstance(case.effect, Bends):
-            deepest = case.effect.contact(case.contact).depth_limit
-        ends, largest = case.rows.copy(), float(case.rows.max())
-        ends[:4] = [0.0, 1e-9 * largest, -largest, min(10 * largest, deepest)]
-        if not np.all(finite := np.isfinite(case.given(ends))):
-            return f"{case.words}: it is not at {ends[~finite][0]:g} in SI"
-    return ""
+    effect, deepest = case.effect, np.inf
+    if isinstance(effect, Bends):
+        deepest = effect.contact(case.contact).depth_limit
+    ends, largest = case.rows.copy(), float(case.rows.max())
+    ends[:4] = [0.0, 1e-9 * largest, -largest, min(10 * largest, deepest)]
+    finite = np.isfinite(case.given(ends))
+    return "" if finite.all() else f"it is not at {ends[~finite][0]:g} in SI"
 
 
-def each_row_is_its_own(effect: Effect) -> str:
-    """What is no response depends on each row alone: of every second row it is every second one."""
-    for case in _cases(effect):
-        curve, every = case.curve, slice(None, None, 2)
-        rows = {name: getattr(curve, name)[every] for name in ("position", "force", "time")}
-        half = case._replace(curve=replace(curve, **rows, unloading=curve.moves_out[every]))
-        whole = case.given(case.rows)
-        far = np.abs(half.given(half.rows) - whole[every]) > _LIMIT**2 * np.max(np.abs(whole))
-        if not isinstance(effect, Responds) and far.any():
-            return f"{case.words}: without every second row the others change"
-    return ""
-
-
-def depths_grow(effect: Effect) -> str:
+@_in_each_case
+def depths_grow(case: Case) -> str:
     """A bent contact has no force at depths ≤ 0, and one that grows; with what yields, bases sink.
 
     The depth of the base, δ + u(F), grows with that of the solid.
     """
-    for case in _cases(effect):
-        contact, deepest = case.contact, 2 * float(_DEPTHS[-1])
-        if isinstance(case.effect, Bends):
-            contact = case.effect.contact(contact)
-            deepest = min(deepest, contact.depth_limit)
-        depth = deepest * np.linspace(-1.0, 1.0, 201)
-        force = contact.force(depth)
-        if np.any(force[:101] != 0) or not np.all(np.diff(force[100:]) > 0):
-            return f"{case.words}: the forces at {depth[95]:g}, …, {depth[-1]:g} m are {force[95:]}"
-        give = case.effect.give(force) if isinstance(case.effect, Yields) else 0.0
-        sinks = np.diff(depth + give) > 0
-        if not sinks[100 : 100 + _DEPTHS.size].all():
-            return f"{case.words}: the base does not from a depth of {depth[:-1][~sinks][0]:g} m on"
-    return ""
+    contact, deepest = case.contact, 2 * float(_DEPTHS[-1])
+    if isinstance(case.effect, Bends):
+        contact = case.effect.contact(contact)
+        deepest = min(deepest, contact.depth_limit)
+    depth = deepest * np.linspace(-1.0, 1.0, 201)
+    force = contact.force(depth)
+    if np.any(force[:101] != 0) or not np.all(np.diff(force[100:]) > 0):
+        return f"the forces at {depth[95]:g}, …, {depth[-1]:g} m are {force[95:]}"
+    give = case.effect.give(force) if isinstance(case.effect, Yields) else 0.0
+    sinks = np.diff(depth + give) > 0
+    if sinks[100 : 100 + _DEPTHS.size].all():
+        return ""
+    return f"the base does not from a depth of {depth[:-1][~sinks][0]:g} m on"
 
 
-def without_its_cause_it_is_nothing(effect: Effect) -> str:
+@_in_each_case
+def without_its_cause_it_is_nothing(case: Case) -> str:
     """At 0, or in the limit, of one of its quantities the force is that of a set without it."""
-    for case in _cases(effect):
-        least, words = np.inf, ""
-        for name, quantity in quantities(type(effect)).items():
-            value = getattr(case.effect, name)
-            for off in (0.0, 1e-9 * value, 1e9 * value):
-                with suppress(ValueError):
-                    off = quantity(off)
-                    without = case._replace(effect=case.effect.model_copy(update={name: off}))
-                    far = np.max(np.abs(without.force() - case.force(without=True)))
-                    far -= max(case.allowed, _LIMIT * case.curve.largest if off else 0.0)
-                    least, words = min((least, words), (far, f"{name} = {off:g}"))
-        if words and least > 0:
-            return f"{case.words}: even with {words} in SI the force differs by {least:.2g} N"
-    return ""
+    least, words = np.inf, ""
+    for name, quantity in quantities(type(case.effect)).items():
+        value = getattr(case.effect, name)
+        for off in (0.0, 1e-9 * value, 1e9 * value):
+            with suppress(ValueError):
+                off = quantity(off)
+                nothing = case._replace(effect=case.effect.model_copy(update={name: off}))
+                far = np.max(np.abs(nothing.force(nothing.effect) - case.force()))
+                far -= max(case.allowed, _LIMIT * case.curve.largest if off else 0.0)
+                least, words = min((least, words), (far, f"{name} = {off:g}"))
+    if not words or least <= 0:
+        return ""
+    return f"even with {words} in SI the force differs by {least:.2g} N"
 
 
-def units_are_right(effect: Effect) -> str:
+@_in_each_case
+def units_are_right(case: Case) -> str:
     """With lengths, forces or times times a factor, quantities by their units, F is as expected.
 
     The modulus is the one at the end of the loading.
     """
-    for case in _cases(effect):
-        for words, factors in _SCALES.items():
-            scaled = case.scaled(*factors)
-            far = np.max(np.abs(scaled.force() - factors[1] * case.force()))
-            if far > scaled.allowed:
-                return (
-                    f"{case.words}: with {words} {max(factors):g} times as large the force is off "
-                    f"by {far:.2g} N; is the unit of a quantity wrong?"
-                )
+    for words, factors in _SCALES.items():
+        scaled = case.scaled(*factors)
+        far = np.max(np.abs(scaled.force(scaled.effect) - factors[1] * case.force(case.effect)))
+        if far > scaled.allowed:
+            return (
+                f"with {words} {max(factors):g} times as large the force is off by {far:.2g} N; "
+                "is the unit of a quantity wrong?"
+            )
     return ""
 
 
-def jumps_are_told(effect: Effect) -> str:
+@_in_each_case
+def jumps_are_told(case: Case) -> str:
     """A force that jumps with the contact point is a discrete choice, which searched() counts."""
-    for case in _cases(effect):
-        if effect.searched(case.curve):
-            continue
-        # A soft cantilever may jump by itself.
-        case = case._replace(curve=replace(case.curve, stiffness=None))
-        shifts = list(float(np.ptp(_DEPTHS)) / _DEPTHS.size / 8 * np.arange(-8.0, 9.0))
-        forces = [case.force(contact_point=shift) for shift in shifts]
-        for _ in range(_HALVINGS):
+    if case.effect.searched(case.curve):
+        return ""
+    # A soft cantilever may jump by itself.
+    case = case._replace(curve=replace(case.curve, stiffness=None))
+    shifts = [*(float(np.ptp(_DEPTHS)) / _DEPTHS.size / 8 * np.arange(-8.0, 9.0))]
+    for halving in range(_HALVINGS + 1):
+        forces = [case.force(case.effect, contact_point=shift) for shift in shifts]
+        if halving < _HALVINGS:
             # A jump is a bend of a curve that halving does not make smaller.
-            bends = np.max(np.abs(np.diff(forces, 2, axis=0)), axis=1)
-            at = int(np.argmax(bends))
+            at = int(np.argmax(np.max(np.abs(np.diff(forces, 2, axis=0)), axis=1)))
             shifts = [*np.linspace(shifts[at], shifts[at + 2], 5)]
-            forces = [case.force(contact_point=shift) for shift in shifts]
-        jump = float(np.max(np.abs(np.diff(forces, axis=0))))
-        if jump > _LIMIT * case.curve.largest:
-            return f"{case.words}: the force jumps by {jump:.2g} N"
-    return ""
+    jump = float(np.max(np.abs(np.diff(forces, axis=0))))
+    return f"the force jumps by {jump:.2g} N" if jump > _LIMIT * case.curve.largest else ""
 
 
-def what_it_says_is_valid(effect: Effect) -> str:
+@_in_each_case
+def what_it_says_is_valid(case: Case) -> str:
     """accuracy() is a share, searched() a whole number ≥ 0; relaxed() and stiffness() are > 0."""
-    for case in _cases(effect):
-        known, says = case.effect, {}
-        says["accuracy()"] = 0 <= known.accuracy(case.contact, case.curve, frozenset()) < 1
-        says["searched()"] = known.searched(case.curve) in range(100)
-        if isinstance(known, Responds):
-            says["relaxed()"] = 0 < known.relaxed(1.0) < np.inf
-        if isinstance(known, Records):
-            says["stiffness()"] = 0 < known.stiffness(_STIFFNESS) < np.inf
-        if wrong := [name for name, is_valid in says.items() if not is_valid]:
-            return f"{case.words}: {' and '.join(wrong)} is not"
-    return ""
+    known, says = case.effect, {}
+    says["accuracy()"] = 0 <= known.accuracy(case.contact, case.curve, frozenset()) < 1
+    says["searched()"] = known.searched(case.curve) in range(100)
+    if isinstance(known, Responds):
+        says["relaxed()"] = 0 < known.relaxed(1.0) < np.inf
+    if isinstance(known, Records):
+        says["stiffness()"] = 0 < known.stiffness(_STIFFNESS) < np.inf
+    wrong = [name for name, is_valid in says.items() if not is_valid]
+    return f"{' and '.join(wrong)} is not" if wrong else ""
 
 
 def _cases(effect: Effect) -> Iterator[Case]:
     """Yield the effect on the curves on which it can act, at the first of its starts."""
+    free = _free(effect)
     for words, curve in _curves():
-        if effect.excuse(_contact(curve), curve, frozenset()):
-            continue
-        free, sizes = _free(effect), Sizes.of_curve(curve)
-        for start in list(free.starts(sizes))[:_VALUES]:
-            known = free.known(sizes).model_copy(update=dict(start))
-            yield Case(words, known, curve)
+        if not _excuse(effect, curve):
+            sizes = Sizes.of_curve(curve)
+            for start in islice(free.starts(sizes), _VALUES):
+                yield Case(words, free.known(sizes).model_copy(update=dict(start)), curve)
+
+
+def _excuse(effect: Effect, curve: Curve) -> str:
+    return effect.excuse(Contact.on_half_space(curve.indenter, 1.0), curve, frozenset())
 
 
 def _free(effect: Effect) -> Effect:
     """Return the effect with all of its quantities open."""
     return effect.model_copy(update=dict.fromkeys(quantities(type(effect))))
-
-
-def _contact(curve: Curve) -> Contact:
-    return Contact.on_half_space(curve.indenter, 1.0)
 
 
 def _curves() -> Iterator[tuple[str, Curve]]:
@@ -332,7 +328,6 @@ QUICK = [
     starts_lie_within_limits,
     returns_a_number_for_each_row,
     is_finite_everywhere,
-    each_row_is_its_own,
     depths_grow,
     what_it_says_is_valid,
 ]

@@ -5,17 +5,15 @@ from __future__ import annotations
 from typing import ClassVar, Literal
 
 import numpy as np
-from pydantic import ConfigDict
 
 from pellicle_fit.effect import Contact, Curve
 
 from .shape import Shape, in_place
 
 
-class Cone(Shape):
+class Cone(Shape, title="a cone instead"):
     """A cone in place of a bead, of 45°: its angle cannot be told from the modulus."""
 
-    model_config = ConfigDict(title="a cone instead")
     type: Literal["cone"] = "cone"
     examples = ({},)
     holds_modulus: ClassVar[bool] = False

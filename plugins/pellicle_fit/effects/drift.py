@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import ConfigDict
 
 from pellicle_fit.effect import Array, Contact, Curve, Fitted, Records, fitted
 
 
-class Drift(Records):
+class Drift(Records, title="drift in time"):
     """Force of the instrument that grows with time."""
 
-    model_config = ConfigDict(title="drift in time")
     type: Literal["drift"] = "drift"
     examples = ({}, {"drift": "10 pN/s"})
     rank: ClassVar[int] = 1

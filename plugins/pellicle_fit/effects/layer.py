@@ -2,31 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from pellicle.components import HasLayerForceCurve
 from pellicle.units import Quantity
 from pellicle_fit.checked_force import checked_force
-from pellicle_fit.effect import Array, Bends, Contact, Curve, Fitted, Sizes, Values, fitted
+from pellicle_fit.effect import Array, Bends, Contact, Curve, Fitted, fitted
 
-_THICKNESSES = (0.5, 2.0, 10.0)
-"""Thicknesses from which searches start, over the range of positions."""
 _ERROR = 1e-4
 """Of the tables of force curves on layers, over the largest force."""
 
 
-class Layer(Bends):
+class Layer(Bends, title="a thin layer"):
     """Elastic layer of thickness h, bonded to a rigid base, in place of the half-space."""
 
-    model_config = ConfigDict(title="a thin layer")
     type: Literal["layer"] = "layer"
     examples = ({}, {"thickness": "10 um", "poissons_ratio": 0.4})
     rank: ClassVar[int] = 2
-    thickness: Annotated[float, Fitted("m", above=0, log=True)] = fitted("thickness h [m]")
+    thickness: Annotated[
+        float, Fitted("m", above=0, log=True, starts=(0.5, 2.0, 10.0), limits=(1e-2, 1e3))
+    ] = fitted("thickness h [m]")
     poissons_ratio: Annotated[
         float, Quantity("1", at_least=0, at_most=0.5), Field(description="Poisson's ratio ν")
     ] = 0.5
@@ -48,11 +46,3 @@ class Layer(Bends):
 
         limit = size * body.layer_depth_limit(*layer)
         return replace(contact, area=area, depth_limit=limit, half_space=False, error=_ERROR)
-
-    def limits(self, sizes: Sizes) -> Mapping[str, tuple[float, float]]:
-        """Return thicknesses up to that of a half-space."""
-        return {"thickness": (1e-2 * sizes.length, 1e3 * sizes.length)}
-
-    def starts(self, sizes: Sizes) -> Iterable[Values]:
-        """Yield thin and thick layers."""
-        yield from ({"thickness": share * sizes.length} for share in _THICKNESSES)

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import ConfigDict
-
 from pellicle_fit.effect import Array, Curve, Fitted, Records, fitted
 
 
-class Offset(Records):
+class Offset(Records, title="an offset"):
     """Constant force of the instrument."""
 
-    model_config = ConfigDict(title="an offset")
     type: Literal["offset"] = "offset"
     examples = ({}, {"offset": "10 pN"})
     rank: ClassVar[int] = 1

@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict
-
-from pellicle_fit.effect import Array, Fitted, Sizes, Values, fitted
+from pellicle_fit.effect import Array, Fitted, fitted
 
 from .relaxing import Relaxing
 
 
-class PowerLaw(Relaxing):
+class PowerLaw(Relaxing, title="power-law relaxation"):
     """Solid that relaxes by a power law, E(t) = E* (t / 1 s)^−α."""
 
-    model_config = ConfigDict(title="power-law relaxation")
     type: Literal["power_law"] = "power_law"
     examples = ({}, {"relaxation_exponent": 0.2})
-    relaxation_exponent: Annotated[float, Fitted("1", at_least=0, at_most=0.95)] = fitted(
-        "exponent α"
-    )
+    relaxation_exponent: Annotated[
+        float, Fitted("1", at_least=0, at_most=0.95, starts=(0.05, 0.3))
+    ] = fitted("exponent α")
 
     def relaxed(self, time: float) -> float:
         """Return (t / 1 s)^−α."""
@@ -30,7 +26,3 @@ class PowerLaw(Relaxing):
         """Return t^(1−α) / (1 − α) [s]."""
         power = 1 - self.relaxation_exponent
         return time**power / power
-
-    def starts(self, sizes: Sizes) -> Iterable[Values]:
-        """Yield a solid that hardly relaxes and one that flows."""
-        yield from ({"relaxation_exponent": exponent} for exponent in (0.05, 0.3))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -23,15 +22,6 @@ _EARLIEST = 1e-4
 """Least time in contact over that of the loading; before it the response is that of then."""
 Primitive = Callable[[Array], Array]
 """∫ E(t) dt / E* from 0 to times [s]."""
-
-
-class Course(NamedTuple):
-    """How a solid responds to a path, in each row, of shape (n,)."""
-
-    share: Array
-    """Effective modulus over E*."""
-    depth: Array
-    """Depth [m] at which the contact was as large while it grew."""
 
 
 class Relaxing(Responds):
@@ -85,12 +75,17 @@ class Relaxing(Responds):
         return force
 
 
-def course(contact: Contact, curve: Curve, depth: Array, primitive: Primitive) -> Course:
-    """Return how a solid responds to depths [m]; the contact is that without tension."""
+def course(
+    contact: Contact, curve: Curve, depth: Array, primitive: Primitive
+) -> tuple[Array, Array]:
+    """Return the effective modulus over E*, and the depth [m] of a growing contact of equal size.
+
+    Both are of shape (n,), for a path of depths [m]; the contact is that without tension.
+    """
     loading = ~curve.moves_out
     time, z = curve.clock[loading], np.maximum.accumulate(depth[loading])
     if z[-1] <= 0:
-        return Course(np.ones_like(depth), depth)
+        return np.ones_like(depth), depth
     start = np.interp(0.0, z, time) if z[0] <= 0 else time[0] - z[0] * np.ptp(time) / np.ptp(z)
     later = time > start
     times, z = np.append(start, time[later]), np.append(0.0, z[later])
@@ -108,7 +103,7 @@ def course(contact: Contact, curve: Curve, depth: Array, primitive: Primitive) -
         shares[rows], depth[rows] = _shrinking(
             (nodes, path, area), (curve.clock[rows], depth[rows]), primitive
         )
-    return Course(shares, depth)
+    return shares, depth
 
 
 def _nodes(times: Array, depth: Array) -> Array:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import ConfigDict
 
-from pellicle_fit.effect import Array, Contact, Curve, Fitted, Sizes, Values, Yields, fitted
+from pellicle_fit.effect import Array, Contact, Curve, Fitted, Yields, fitted
 
 
-class RoughToe(Yields):
+class RoughToe(Yields, title="a rough surface"):
     """Asperities between a round tip and the solid, flattened by u = λ ln(1 + (F/F₁)^⅓).
 
     Asperities with heights that fall off exponentially over λ carry a mean pressure that grows as
@@ -19,13 +17,14 @@ class RoughToe(Yields):
     as F^⅓ (Hertz).
     """
 
-    model_config = ConfigDict(title="a rough surface")
     type: Literal["rough_toe"] = "rough_toe"
     examples = ({}, {"height": "20 nm", "toe_force": "10 pN"})
-    height: Annotated[float, Fitted("m", above=0, log=True)] = fitted("scale λ of the heights [m]")
-    toe_force: Annotated[float, Fitted("N", above=0, log=True)] = fitted(
-        "force F₁ at which they are flattened by λ ln 2 [N]"
-    )
+    height: Annotated[
+        float, Fitted("m", above=0, log=True, starts=(0.01, 0.1), limits=(3e-4, 0.3))
+    ] = fitted("scale λ of the heights [m]")
+    toe_force: Annotated[
+        float, Fitted("N", above=0, log=True, starts=(0.01,), limits=(1e-6, 1.0))
+    ] = fitted("force F₁ at which they are flattened by λ ln 2 [N]")
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Refuse tips that are not round."""
@@ -34,13 +33,3 @@ class RoughToe(Yields):
     def give(self, force: Array) -> Array:
         """Return λ ln(1 + (F/F₁)^⅓) [m]."""
         return self.height * np.log1p(np.cbrt(np.maximum(force, 0) / self.toe_force))
-
-    def limits(self, sizes: Sizes) -> Mapping[str, tuple[float, float]]:
-        """Return asperities that the curve flattens."""
-        length, force = 0.3 * sizes.length, sizes.force
-        return {"height": (1e-3 * length, length), "toe_force": (1e-6 * force, force)}
-
-    def starts(self, sizes: Sizes) -> Iterable[Values]:
-        """Yield low and high asperities."""
-        for share in (0.01, 0.1):
-            yield {"height": share * sizes.length, "toe_force": 0.01 * sizes.force}

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 from typing import ClassVar
 
 from pellicle import indenter
 from pellicle.components import HasForceCurve
-from pellicle_fit.effect import Bends, Contact, Curve, Sizes, Values
+from pellicle_fit.effect import Bends, Contact, Curve
 
 
 class Shape(Bends):
@@ -22,14 +21,9 @@ class Shape(Bends):
             return "a tension makes up for any shape"
         return "" if contact.tip_radius else "needs a round tip"
 
-    def starts(self, sizes: Sizes) -> Iterable[Values]:
-        """Yield nothing to search."""
-        yield {}
-
 
 def in_place(contact: Contact, name: str, **fields: float | None) -> Contact:
     """Return the contact of another indenter in place of that of one."""
     other = indenter(name, **fields)
     assert isinstance(other, HasForceCurve)
-    bare = Contact.on_half_space(other, contact.modulus)
-    return replace(bare, tension=contact.tension)
+    return replace(Contact.on_half_space(other, contact.modulus), tension=contact.tension)

@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import ConfigDict
 
 from pellicle_fit.effect import Array, Curve, Fitted, Records, fitted
 
 
-class Slope(Records):
+class Slope(Records, title="a sloping baseline"):
     """A force that grows with the position of the base, as optical interference makes it."""
 
-    model_config = ConfigDict(title="a sloping baseline")
     type: Literal["slope"] = "slope"
     examples = ({}, {"slope": "10 uN/m"})
     rank: ClassVar[int] = 1

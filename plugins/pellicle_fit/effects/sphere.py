@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import ConfigDict
-
 from pellicle_fit.effect import Contact, Curve
 
 from .shape import Shape, in_place
@@ -14,10 +12,9 @@ SHALLOW = 0.1
 """Depth over radius up to which a sphere is a paraboloid."""
 
 
-class Sphere(Shape):
+class Sphere(Shape, title="a sphere, or a paraboloid, instead"):
     """A sphere in place of a paraboloid, or a paraboloid in place of a sphere."""
 
-    model_config = ConfigDict(title="a sphere, or a paraboloid, instead")
     type: Literal["sphere"] = "sphere"
     examples = ({},)
 

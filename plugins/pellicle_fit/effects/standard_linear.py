@@ -6,17 +6,15 @@ from collections.abc import Iterable, Mapping
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import ConfigDict
 
 from pellicle_fit.effect import Array, Fitted, Sizes, Values, fitted
 
 from .relaxing import Relaxing
 
 
-class StandardLinear(Relaxing):
+class StandardLinear(Relaxing, title="standard linear relaxation"):
     """Standard linear solid, E(t) = E* (1 − g + g e^(−t/T)), with E* that of fast loading."""
 
-    model_config = ConfigDict(title="standard linear relaxation")
     type: Literal["standard_linear"] = "standard_linear"
     examples = ({}, {"relaxed_share": 0.3, "relaxation_time": "1 s"})
     relaxed_share: Annotated[float, Fitted("1", at_least=0, at_most=0.99)] = fitted(

@@ -2,37 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import ConfigDict
 
-from pellicle_fit.effect import Array, Bends, Contact, Curve, Fitted, Sizes, Values, fitted
+from pellicle_fit.effect import Array, Bends, Contact, Curve, Fitted, fitted
 
 _NODES, _SHARES = np.polynomial.legendre.leggauss(10)
 _ROOTS, _WEIGHTS = ((_NODES + 1) / 2) ** 2, _SHARES * (_NODES + 1) / 2
 """Nodes √(δ′/δ), dense at first touch, and weights of integrals over the depths δ′ of contacts."""
 
 
-class StiffSurface(Bends):
+class StiffSurface(Bends, title="a surface stiffer or softer than the bulk"):
     """Surface stiffer or softer than the bulk: contacts of radius a have k = 2E*a (1 + g e^(−a/l)).
 
     A gradient of the modulus, or a film. With |g| ≤ ½: a surface stiffer than half again mimics any
     tension, for both are a stiffness over the contact radius.
     """
 
-    model_config = ConfigDict(title="a surface stiffer or softer than the bulk")
     type: Literal["stiff_surface"] = "stiff_surface"
     examples = ({}, {"gain": 0.3, "reach": "1 um"})
     rank: ClassVar[int] = 2
-    gain: Annotated[float, Fitted("1", at_least=-0.5, at_most=0.5)] = fitted(
+    gain: Annotated[float, Fitted("1", at_least=-0.5, at_most=0.5, starts=(0.3, -0.3))] = fitted(
         "relative excess g of the stiffness at the surface"
     )
-    reach: Annotated[float, Fitted("m", above=0, log=True)] = fitted(
-        "length l over which it falls [m]"
-    )
+    reach: Annotated[
+        float, Fitted("m", above=0, log=True, starts=(0.3, 1.0, 3.0), limits=(0.01, 100.0))
+    ] = fitted("length l over which it falls [m]")
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Refuse a set with a tension, and a contact without a radius."""
@@ -54,13 +51,3 @@ class StiffSurface(Bends):
             return table.area(depth, 0.0) + deep * excess
 
         return replace(contact, area=area, half_space=False)
-
-    def limits(self, sizes: Sizes) -> Mapping[str, tuple[float, float]]:
-        """Return lengths that are neither below all contacts nor beyond them."""
-        return {"reach": (0.01 * sizes.length, 100 * sizes.length)}
-
-    def starts(self, sizes: Sizes) -> Iterable[Values]:
-        """Yield stiffer and softer surfaces over short and long ways."""
-        for gain in (0.3, -0.3):
-            for share in (0.3, 1.0, 3.0):
-                yield {"gain": gain, "reach": share * sizes.length}

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 
-from pellicle_fit.effect import Bends, Contact, Fitted, Sizes, Values, fitted
-
-_SHARES = (0.0, 0.015, 0.15, 1.5)
-"""Tensions from which searches start, over force per length."""
+from pellicle_fit.effect import Bends, Contact, Fitted, fitted
 
 
 class Tension(Bends):
@@ -18,12 +14,10 @@ class Tension(Bends):
     type: Literal["tension"] = "tension"
     examples = ({}, {"tension": "1 mN/m"})
     rank: ClassVar[int] = 3
-    tension: Annotated[float, Fitted("N/m", at_least=0)] = fitted("surface tension τ₀ [N/m]")
+    tension: Annotated[float, Fitted("N/m", at_least=0, starts=(0.0, 0.015, 0.15, 1.5))] = fitted(
+        "surface tension τ₀ [N/m]"
+    )
 
     def contact(self, contact: Contact) -> Contact:
         """Return the contact under the tension: E* A(δ, s) with s = 2τ₀/E*."""
         return replace(contact, tension=self.tension)
-
-    def starts(self, sizes: Sizes) -> Iterable[Values]:
-        """Yield tensions from none to one that dominates."""
-        yield from ({"tension": share * sizes.of("N/m")} for share in _SHARES)

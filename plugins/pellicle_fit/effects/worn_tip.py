@@ -2,29 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import ConfigDict
 
-from pellicle_fit.effect import Array, Contact, Fitted, Sizes, Values, fitted
+from pellicle_fit.effect import Array, Contact, Fitted, fitted
 
 from .shape import Shape
 
 
-class WornTip(Shape):
+class WornTip(Shape, title="a worn tip"):
     """A paraboloid or a sphere whose tip is worn to a flat of radius b.
 
     δ = (a/R) √(a² − b²), F = (2 E*/3R) (2a² + b²) √(a² − b²) (Popov, Heß & Willert 2019), times the
     force of a sphere over that of a paraboloid at the same depth.
     """
 
-    model_config = ConfigDict(title="a worn tip")
     type: Literal["worn_tip"] = "worn_tip"
     examples = ({}, {"flat_radius": "0.5 um"})
-    flat_radius: Annotated[float, Fitted("m", at_least=0)] = fitted("radius b of the flat [m]")
+    flat_radius: Annotated[float, Fitted("m", at_least=0, starts=(0.1, 0.5))] = fitted(
+        "radius b of the flat [m]"
+    )
 
     def contact(self, contact: Contact) -> Contact:
         """Return the contact of the worn tip."""
@@ -40,7 +39,3 @@ class WornTip(Shape):
             return worn * np.where(deep > 0, whole / hertz, 0.0)
 
         return replace(contact, area=area)
-
-    def starts(self, sizes: Sizes) -> Iterable[Values]:
-        """Yield flats of a part of the way, and of half of it."""
-        yield from ({"flat_radius": share * sizes.length} for share in (0.1, 0.5))

@@ -15,8 +15,6 @@ from pellicle_fit.effects.layer import Layer
 from .simulation import Simulation
 from .solid import solid
 
-DEFAULT_KERNEL = "tensed_membrane"
-
 
 def body_of(
     indenter: Indenter | HasForceCurve,
@@ -36,7 +34,7 @@ def body_of(
         return indenter
     if not isinstance(indenter, Indenter):
         raise ConfigError("cannot be given with a force curve, which includes its solid", "kernel")
-    return Simulation(indenter, solid(kernel or DEFAULT_KERNEL, poissons_ratio))
+    return Simulation(indenter, solid(kernel or "tensed_membrane", poissons_ratio))
 
 
 def layer_of(
@@ -53,12 +51,14 @@ def layer_of(
     bonded = solid(layer_table(ratio, thickness)).kernel
     q = np.geomspace(1e-2, 1e2, 9) / thickness
     is_bonded = np.allclose(given.kernel.compliance(q), bonded.compliance(q), rtol=1e-9, atol=0)
-    if not is_bonded or not isinstance(indenter, HasLayerForceCurve):
-        return None
     # A punch is too wide for the curve at any depth, or at none.
-    if not indenter.layer_depth_limit(thickness, ratio) > 0:
-        return None
-    return Layer(thickness=thickness, poissons_ratio=ratio)
+    if (
+        is_bonded
+        and isinstance(indenter, HasLayerForceCurve)
+        and indenter.layer_depth_limit(thickness, ratio) > 0
+    ):
+        return Layer(thickness=thickness, poissons_ratio=ratio)
+    return None
 
 
 def layer_table(poissons_ratio: float, thickness: float) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from pellicle.components import Executor, Indenter
 from pellicle.errors import ConfigError, ConvergenceError, ConvergenceWarning, problems_within
 from pellicle.units import readable
 
-from .interpolated import SCALE, SimulatedCurve, stretched
+from .interpolated import SCALE, Nodes, SimulatedCurve, stretched
 from .solid import Solid, scaled, values_of
 
 if TYPE_CHECKING:
@@ -72,44 +72,24 @@ class Simulation(NamedTuple):
         StorageError
             The folder cannot be used, or is locked by another process.
         """
-        planned = plan(self.indenter, self.solid, deepest, grid_points)
-        if isinstance(executor, str):
-            executor = {"type": executor}
-        # Each contact on a grid of its own, and on one of half the cells.
-        study = planned.table | {"study": planned.table["study"] | {"executor": executor}}
+        nodes, study = plan(self.indenter, self.solid, deepest, grid_points)
+        study["study"]["executor"] = {"type": executor} if isinstance(executor, str) else executor
         folder = Path(cache) if cache else platformdirs.user_cache_path("pellicle")
         table = _table(Study.from_mapping(study), folder / "force-curves", progress)
-        forces = table["force"].values.reshape(2, planned.depths.size, _RATIOS.size)
+        # Each contact on a grid of its own, and on one of half the cells.
+        forces = table["force"].values.reshape(2, nodes.depths.size, nodes.ratios.size)
         if not (forces > 0).all():
             raise ConvergenceError(
                 "some contacts of the study carry no force; give more grid points"
             )
-        return SimulatedCurve(
-            planned.depths,
-            _RATIOS,
-            np.log(forces[0]),
-            planned.width,
-            planned.unit,
-            accuracy=float(np.max(np.abs(forces[1] / forces[0] - 1))),
-            half_space=self.solid.is_half_space,
-        )
+        accuracy = float(np.max(np.abs(forces[1] / forces[0] - 1)))
+        return SimulatedCurve(nodes, np.log(forces[0]), accuracy, self.solid.is_half_space)
 
 
-class Plan(NamedTuple):
-    """The contacts from which a force curve is interpolated, in lengths over `unit`."""
-
-    unit: float
-    """[m]"""
-    depths: Array
-    """Nodes δ, of shape (m,)."""
-    width: tuple[float, float]
-    """Slope of log w over log δ, and its value at δ = 1."""
-    table: dict[str, Any]
-    """Configuration of the study without its executor."""
-
-
-def plan(indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GRID_POINTS) -> Plan:
-    """Return the contacts that the force curve of an indenter needs down to a depth [m].
+def plan(
+    indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GRID_POINTS
+) -> tuple[Nodes, dict[str, Any]]:
+    """Return the contacts that a force curve needs down to a depth [m], and the study of them.
 
     Raises
     ------
@@ -126,7 +106,8 @@ def plan(indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GR
         raise ConfigError(
             f"{grid_points} is not allowed; give an even number ≥ {_FEWEST}", "grid_points"
         )
-    values = [(q, v) for part in (indenter, solid.kernel) for _, q, v in values_of(part)]
+    of_shape, of_solid = ([*values_of(part)] for part in (indenter, solid.kernel))
+    values = [(quantity, value) for _, quantity, value in (*of_shape, *of_solid)]
     lengths = [value for quantity, value in values if quantity and quantity.unit == "m"]
     # A number without a unit may be a length.
     scales = all(quantity or isinstance(value, (str, int)) for quantity, value in values)
@@ -141,14 +122,14 @@ def plan(indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GR
     halves = np.array([half_widths(body, depth) for depth in depths])
     slope, intercept = np.polyfit(np.log(depths), np.log(halves.prod(axis=1)) / 2, 1)
     widths = np.exp(intercept + slope * np.log(depths))
-    is_layered = any(q and q.unit == "m" for _, q, _ in values_of(solid.kernel))
+    is_layered = any(quantity and quantity.unit == "m" for _, quantity, _ in of_solid)
     boxes = 2 * (_MARGIN_OF_LAYERS if is_layered else _MARGIN) * halves
     contacts = {
         "loading.depth": np.repeat(depths, _RATIOS.size).tolist(),
         f"kernel.{solid.tension}": np.outer(widths, _RATIOS / 2).ravel().tolist(),
         "grid.size": np.repeat(boxes, _RATIOS.size, axis=0).tolist(),
     }
-    table: dict[str, Any] = {
+    study: dict[str, Any] = {
         "title": f"force curve of {shape['type']} on {kernel['type']}",
         "grid": {"points": grid_points, "size": 1.0},
         "kernel": kernel,
@@ -157,7 +138,7 @@ def plan(indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GR
         "outputs": [],
         "study": {"vary": {"grid.points": [grid_points, grid_points // 2]}, "zip": [contacts]},
     }
-    return Plan(unit, depths, (float(slope), float(intercept)), table)
+    return Nodes(unit, depths, _RATIOS, (float(slope), float(intercept))), study
 
 
 def half_widths(indenter: Indenter, depth: float) -> tuple[float, float]:
@@ -175,9 +156,7 @@ def half_widths(indenter: Indenter, depth: float) -> tuple[float, float]:
     while True:
         axes = Grid(points=_CELLS, size=tuple((2 * half).tolist())).coordinates()
         below = np.asarray(indenter.profile(*axes)) >= -depth
-        reach = np.array(
-            [np.max(np.abs(np.broadcast_to(x, below.shape)[below]), initial=0.0) for x in axes]
-        )
+        reach = np.array([np.max(np.where(below, np.abs(x), 0.0)) for x in axes])
         outside = reach >= [np.max(np.abs(x)) for x in axes]
         fitted = reach + half / _CELLS
         if not outside.any() and (fitted >= _CLOSE * half).all():

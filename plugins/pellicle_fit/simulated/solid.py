@@ -79,12 +79,10 @@ def _field(table: Mapping[str, Any], name: str) -> tuple[str, FieldInfo]:
             fields = registry().find("kernel", inner.get("type")).model_fields
             if name in fields:
                 return f"{path}.{name}".lstrip("."), fields[name]
-    remedy = (
-        '; put it under a skin: type = "coated", with this kernel as its substrate'
-        if name == "tension"
-        else "; a fit needs one that has it"
-    )
-    raise ConfigError(f"{table.get('type')!r} has no field {name}{remedy}")
+    remedy = "a fit needs one that has it"
+    if name == "tension":
+        remedy = 'put it under a skin: type = "coated", with this kernel as its substrate'
+    raise ConfigError(f"{table.get('type')!r} has no field {name}; {remedy}")
 
 
 def scaled(component: Component, unit: float, free: tuple[str, ...] = ()) -> dict[str, Any]:

@@ -34,50 +34,32 @@ def liar(change: Callable[..., Any]) -> Any:
     return Bead(radius=1e-5)
 
 
-def curve_in_a_row(curve: pl.ForceCurve, depth: Any) -> Any:
-    """Return the force alone."""
-    return curve.force
-
-
-def too_short(curve: pl.ForceCurve, depth: Any) -> Any:
-    """Return a force too few."""
-    return curve._replace(force=curve.force[:-1])
-
-
-def complex_force(curve: Any, depth: Any) -> Any:
-    """Return a complex force."""
-    return curve._replace(force=curve.force + 0j)
-
-
-def unknown_force(curve: pl.ForceCurve, depth: Any) -> Any:
-    """Return NaN for a force."""
-    return curve._replace(force=np.full_like(depth, np.nan))
-
-
 def moves_depth(curve: pl.ForceCurve, depth: Any) -> Any:
     """Write to the depths."""
     depth += 1e-6
     return curve
 
 
-LIES = {
-    curve_in_a_row: "() returned ",
-    too_short: "() returned ",
-    complex_force: "() returned ",
-    unknown_force: "().force has values that are NaN",
-}
+LIES: list[tuple[Callable[..., Any], str]] = [
+    (lambda curve, depth: curve.force, "() returned "),
+    (lambda curve, depth: curve._replace(force=curve.force[:-1]), "() returned "),
+    (lambda curve, depth: curve._replace(force=curve.force + 0j), "() returned "),
+    (lambda curve, depth: curve._replace(force=np.nan * depth), "().force has values that are NaN"),
+]
 
 
 @pytest.mark.parametrize(
     "solid", [{}, {"thickness": 1e-5, "poissons_ratio": 0.5}], ids=["half-space", "layer"]
 )
-@pytest.mark.parametrize("change", LIES)
-def test_a_force_curve_that_lies_is_refused(change: Any, solid: dict[str, Any]) -> None:
+@pytest.mark.parametrize(("change", "words"), LIES, ids=["bare", "short", "complex", "NaN"])
+def test_a_force_curve_that_lies_is_refused(
+    change: Callable[..., Any], words: str, solid: dict[str, Any]
+) -> None:
     """No modulus is fitted by a force that is none."""
     method = "layer_force_curve" if solid else "force_curve"
     with pytest.raises(pl.PluginError) as error:
         pl.fit(DEPTH, FORCE, indenter=liar(change), rivals=[], **solid)
-    assert f"indenter 'liar': {method}{LIES[change]}" in str(error.value)
+    assert f"indenter 'liar': {method}{words}" in str(error.value)
 
 
 def test_who_fails_is_named() -> None:

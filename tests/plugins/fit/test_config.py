@@ -162,8 +162,6 @@ def test_options_of_the_question(cli: Cli) -> None:
         ({"uncertainty": {"mass": 0.1}}, "spring_constant, sensitivity, radius"),
         ({"uncertainty": {"radius": "3 N"}}, "uncertainty.radius: '3 N'"),
         ({"uncertainty": {"radius": "-3 %"}}, "uncertainty.radius"),
-        ({"thickness": "1 um"}, "poissons_ratio: is missing"),
-        ({"thickness": "1 um", "kernel": "half_space"}, "cannot be given with a kernel"),
     ],
 )
 def test_bad_options(options: dict[str, Any], words: str) -> None:

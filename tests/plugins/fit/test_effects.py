@@ -404,7 +404,7 @@ BROKEN: list[tuple[type[Effect], str, dict[str, Any], str]] = [
     (Push, "is_finite_everywhere", {"force": lambda s, c, v, d: s.push * d / d}, "is not at 0"),
     (
         Push,
-        "each_row_is_its_own",
+        "returns_a_number_for_each_row",
         {"force": lambda s, c, v, d: s.push * d / d.std()},
         "every second",
     ),

@@ -16,8 +16,8 @@ from pellicle_fit.effects.tension import Tension
 from pellicle_fit.recipe import answer
 from pellicle_fit.simulated import simulation
 from pellicle_fit.simulated.body import body_of, layer_of, layer_table
-from pellicle_fit.simulated.interpolated import SimulatedCurve
-from pellicle_fit.simulated.simulation import Plan, Simulation, plan
+from pellicle_fit.simulated.interpolated import Nodes, SimulatedCurve
+from pellicle_fit.simulated.simulation import Simulation, plan
 from pellicle_fit.simulated.solid import scaled, solid
 
 LAYER = {"type": "bonded_layer", "thickness": "4 um"}
@@ -36,17 +36,16 @@ def exact_nodes() -> SimulatedCurve:
     """Return a curve through exact forces of a sphere, at the nodes of its plan."""
     sphere = pl.indenter("sphere", radius=1.0)
     assert isinstance(sphere, pl.HasForceCurve)
-    planned = plan(sphere, solid("tensed_membrane"), 0.4)
-    slope, intercept = planned.width
-    widths = np.exp(intercept + slope * np.log(planned.depths))
+    nodes, _ = plan(sphere, solid("tensed_membrane"), 0.4)
+    slope, intercept = nodes.width
+    widths = np.exp(intercept + slope * np.log(nodes.depths))
     forces = np.array(
         [
-            [sphere.force_curve(np.array([depth]), x * width).force[0] for x in simulation._RATIOS]
-            for depth, width in zip(planned.depths, widths, strict=True)
+            [sphere.force_curve(np.array([depth]), x * width).force[0] for x in nodes.ratios]
+            for depth, width in zip(nodes.depths, widths, strict=True)
         ]
     )
-    nodes = planned.depths, simulation._RATIOS, np.log(forces)
-    return SimulatedCurve(*nodes, planned.width, RADIUS, accuracy=0.01, half_space=False)
+    return SimulatedCurve(nodes._replace(unit=RADIUS), np.log(forces), 0.01, half_space=False)
 
 
 @pytest.mark.parametrize("ratio", [0.0, 1e-3, 0.03, 0.5, 8.0])
@@ -178,10 +177,9 @@ def test_a_study_that_fails_is_no_force_curve(
 ) -> None:
     """Its table says which runs and why, and it is not taken for whole by the next fit."""
 
-    def hasty(*arguments: Any) -> Plan:
-        planned = plan(*arguments)
-        solver = {"type": "active_set", "max_iterations": 1}
-        return planned._replace(table=planned.table | {"solver": solver})
+    def hasty(*arguments: Any) -> tuple[Nodes, dict[str, Any]]:
+        nodes, study = plan(*arguments)
+        return nodes, study | {"solver": {"type": "active_set", "max_iterations": 1}}
 
     monkeypatch.setattr(simulation, "_OCTAVES", 1)
     monkeypatch.setattr(simulation, "_RATIOS", simulation._RATIOS[:2])
