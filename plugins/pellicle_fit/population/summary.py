@@ -8,11 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pellicle_fit.wording import OVER_TIED, SHOWN
+
 from .row import Row
 
 ALL = "all"
 """Name of the line of all accepted curves."""
-_DRAWN = ("reduced_modulus", "youngs_modulus", "tension", "work_of_adhesion")
 
 
 class Quartiles(NamedTuple):
@@ -44,7 +45,7 @@ def summary(rows: Sequence[Row]) -> list[Quartiles]:
 
     fitted = [
         (name, row.group, e.unit, e.value if row.is_closed(name) else np.nan, row.outlier)
-        for name in _DRAWN
+        for name in dict.fromkeys((*OVER_TIED, *SHOWN))
         for row in rows
         if row.accepted and (e := row.estimates.get(name)) is not None and not e.held
     ]

@@ -24,7 +24,8 @@ from pellicle.errors import ConfigError, StorageError
 from pellicle_fit import many
 from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.files.sources import Source
-from pellicle_fit.many import ManyFits, fit_sources
+from pellicle_fit.many import fit_sources
+from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.population.judgement import (
     group_of,
     group_pattern,
@@ -36,7 +37,7 @@ from pellicle_fit.population.row import Row
 from pellicle_fit.population.rules import Rule
 from pellicle_fit.population.summary import summary
 from pellicle_fit.report.contact_sheet import sheets
-from pellicle_fit.report.distributions import drawable
+from pellicle_fit.report.population_figures import drawable
 from pellicle_fit.report.sentences import sentences_of_population
 from tests.plugins.fit.test_many import BEAD, HERTZ, OPTIONS, curve, save
 
