@@ -43,8 +43,7 @@ class ManyFits:
     def to_dict(self) -> dict[str, Any]:
         """Return the fits as JSON data."""
         curves = [row.to_dict() for row in self.rows]
-        groups = [part._asdict() for part in summary(self.rows)]
-        return {"curves": curves, "groups": groups, "notes": self.notes}
+        return {"curves": curves, "groups": summary(self.rows), "notes": self.notes}
 
 
 def table(rows: Sequence[Row]) -> xr.Dataset:

@@ -53,16 +53,13 @@ def panels(fit: Fit | ManyFits) -> list[Panel]:
     """
     if isinstance(fit, Fit):
         return [Panel(*figure_of(beside), caption) for caption, beside in charts(fit).items()]
-    found = []
-    if drawing := bars(fit.rows):
-        caption = "A bar is the interval: down to 0, or up to a triangle, where an end is open."
-        found.append(Panel(*drawing, caption))
-    if beside := distributions(fit.rows):
-        caption = (
-            "Accepted curves, by group, in histograms those with closed intervals; dotted, the "
-            "median; square, a modulus that stands out."
-        )
-        found.append(Panel(*figure_of(beside), caption))
+    of_bars = "A bar is the interval: down to 0, or up to a triangle, where an end is open."
+    of_distributions = (
+        "Accepted curves, by group, in histograms those with closed intervals; dotted, the median; "
+        "square, a modulus that stands out."
+    )
+    beside = {of_bars: bars(fit.rows), of_distributions: distributions(fit.rows)}
+    found = [Panel(*figure_of(of), caption) for caption, of in beside.items() if of]
     for name, images in fit.maps.items():
         title = Path(name).name
         caption = f"{title}: grey where there is no accepted fit, or an interval is open."

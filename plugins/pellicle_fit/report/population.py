@@ -11,18 +11,17 @@ import numpy as np
 
 from pellicle.files import atomic_write
 from pellicle.results import header
-from pellicle.show import figure_of, save_figure
+from pellicle.show import figure_of, save_figure, save_pages
 from pellicle.units import axis_unit
 from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.population.images import CONTACT_HEIGHT
 from pellicle_fit.wording import SHOWN
 
-from .contact_sheet import save_sheets
+from .contact_sheet import sheets
 from .population_figures import distributions
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _WIDTH, _AROUND = 3.7, 0.75
@@ -39,7 +38,8 @@ def save_population(fits: ManyFits, directory: Path) -> tuple[Path, ...]:
     StorageError
         A file cannot be written.
     """
-    files = [save_sheets(fits.rows, directory / "fits-curves.pdf")]
+    draws, sizes = zip(*map(figure_of, sheets(fits.rows)), strict=True)
+    files = [save_pages(draws, directory / "fits-curves.pdf", sizes[0])]
     if charts := distributions(fits.rows):
         draw, size = figure_of(charts)
         files += save_figure(draw, directory / "fits", ["png"], size)
@@ -72,44 +72,36 @@ def save_tiff(image: xr.DataArray, path: Path) -> Path:
 def map_figure(
     images: xr.Dataset, title: str
 ) -> tuple[Callable[[Figure], None], tuple[float, float]]:
-    """Return what draws each parameter beside the width of its interval, and its size [inch]."""
+    """Return what draws each parameter beside the width of its interval, and its size [inch].
+
+    It is grey where there is no value.
+    """
     names = [name for name in (*SHOWN, CONTACT_HEIGHT) if name in images]
+    (x, y), (across, along) = (images[side].values for side in "xy"), _pitches(images)
+    edges = np.array([x[0] - across / 2, x[-1] + across / 2, y[0] - along / 2, y[-1] + along / 2])
+    length, length_unit = axis_unit(edges, "m")
 
     def draw(figure: Figure) -> None:
         figure.suptitle(title, fontsize="medium")
-        pairs = figure.subplots(len(names), 2, squeeze=False) if names else ()
-        for name, pair in zip(names, pairs, strict=True):
+        for number, name in enumerate(names):
             width = images[f"{name}_high"] - images[f"{name}_low"]
-            unit = images[name].attrs["units"]
-            _draw(pair[0], images[name], unit, name.replace("_", " "))
-            _draw(pair[1], width, unit, "width of its 95 % interval")
+            heads = {name.replace("_", " "): images[name], "width of its 95 % interval": width}
+            for place, (head, image) in enumerate(heads.items(), 2 * number + 1):
+                scale, unit = axis_unit(image.values, images[name].attrs["units"])
+                values = image.values * scale
+                finite = values[np.isfinite(values)]
+                low, high = np.percentile(finite if finite.size else (0.0, 1.0), _EXTREMES)
+                axes = figure.add_subplot(len(names), 2, place)
+                extent: Any = edges * length
+                shown = axes.imshow(values, origin="lower", extent=extent, vmin=low, vmax=high)
+                axes.set_facecolor("0.8")
+                axes.set(xlabel=f"x [{length_unit}]", ylabel=f"y [{length_unit}]")
+                axes.set_title(head, fontsize="medium")
+                figure.colorbar(shown, ax=axes, label=unit, extend="both", shrink=0.8)
 
-    left, right, low, high = _edges(images, 1.0)
-    height = (_WIDTH - 1.3) * np.clip((high - low) / (right - left), 0.2, 3.0) + _AROUND
-    return draw, (2 * _WIDTH, float(height) * max(len(names), 1) + 0.4)
-
-
-def _draw(axes: Axes, image: xr.DataArray, unit: str, title: str) -> None:
-    """Draw an image with its scale; grey where there is no value."""
-    length, length_unit = axis_unit(np.append(image["x"].values, image["y"].values), "m")
-    scale, scale_unit = axis_unit(image.values, unit)
-    values = image.values * scale
-    finite = values[np.isfinite(values)]
-    low, high = np.percentile(finite, _EXTREMES) if finite.size else (0.0, 1.0)
-    style: dict[str, Any] = {"cmap": "viridis", "vmin": float(low), "vmax": float(high)}
-    shown = axes.imshow(values, origin="lower", extent=_edges(image, length), **style)
-    axes.set_facecolor("0.8")
-    axes.set(xlabel=f"x [{length_unit}]", ylabel=f"y [{length_unit}]")
-    axes.set_title(title, fontsize="medium")
-    if finite.size:
-        axes.figure.colorbar(shown, ax=axes, label=scale_unit, extend="both", shrink=0.8)
-
-
-def _edges(images: xr.Dataset | xr.DataArray, length: float) -> tuple[float, float, float, float]:
-    """Return the outer edges of the images in a unit."""
-    (x, y), (across, along) = (images[name].values * length for name in "xy"), _pitches(images)
-    across, along = across * length / 2, along * length / 2
-    return float(x[0]) - across, float(x[-1]) + across, float(y[0]) - along, float(y[-1]) + along
+    ratio = np.clip((edges[3] - edges[2]) / (edges[1] - edges[0]), 0.2, 3.0)
+    height = (_WIDTH - 1.3) * float(ratio) + _AROUND
+    return draw, (2 * _WIDTH, height * max(len(names), 1) + 0.4)
 
 
 def _pitches(images: xr.Dataset | xr.DataArray) -> tuple[float, float]:

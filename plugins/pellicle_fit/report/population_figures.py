@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.components import Axis, Chart, Look, Series
-from pellicle.units import axis_unit
 from pellicle_fit.objective import MODULUS
 from pellicle_fit.population.row import Row
 from pellicle_fit.population.summary import label
@@ -19,61 +16,44 @@ from pellicle_fit.wording import words
 
 from .guides import guide
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 _DRAWN = {MODULUS: "Pa", TENSION: "N/m"}
-_BARS, _NAMED = 200, 20
-"""Most curves whose intervals are drawn beside each other, and whose names have room below."""
+_BARS = 200
+"""Most curves whose intervals are drawn beside each other."""
+_ENDS = "low", "high"
 _OPEN_TOP = 1.1
 """Position of an open upper end, as a multiple of the largest value drawn."""
 _BINS = 5, 40
 """Least and greatest number of bins."""
-_GROUPS = 10
-"""Number of groups with a colour of their own; the others share the last."""
 _DECADE = 10.0
 """Greatest over least value beyond which an axis is logarithmic."""
 
 
-def bars(rows: Sequence[Row]) -> tuple[Callable[[Figure], None], tuple[float, float]] | None:
-    """Return what draws the quantities of each curve with their intervals, and its size [inch].
+def bars(rows: Sequence[Row]) -> list[Chart]:
+    """Return modulus and tension of each curve with their intervals, if they were fitted.
 
     A bar with an open end reaches down to 0, or up to a triangle at the top.
     """
-    fitted = {
-        name: [
-            (number, e)
-            for number, row in enumerate(rows, 1)
-            if (e := row.estimates.get(name)) and not e.held
+    series, axes = list[Series](), list[Axis]()
+    for name, unit in _DRAWN.items():
+        pairs = ((number, row.estimates.get(name)) for number, row in enumerate(rows, 1))
+        fitted = [(float(number), e) for number, e in pairs if e is not None and not e.held]
+        if not fitted:
+            continue
+        x, values = (np.array(of) for of in zip(*((n, e.value) for n, e in fitted), strict=True))
+        # An open end is None, which becomes NaN.
+        low, high = (np.array([getattr(e, end) for _, e in fitted], dtype=float) for end in _ENDS)
+        opened, top = np.isnan(high), _OPEN_TOP * max(values.max(), np.nanmax([*high, 0.0]))
+        high[opened] = top
+        ends = np.column_stack([np.nan_to_num(low), high, np.full(x.size, np.nan)])
+        panel = len(axes)
+        series += [
+            Series(np.repeat(x, 3), ends.ravel(), panel=panel),
+            Series(x, values, look=Look(0, None, 0), panel=panel),
+            Series(x[opened], high[opened], look=Look(0, None, 2), panel=panel),
         ]
-        for name in _DRAWN
-    }
-    names = [name for name, of in fitted.items() if of]
-
-    def draw(figure: Figure) -> None:
-        columns = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
-        for name, axes in zip(names, columns, strict=True):
-            numbers, estimates = (np.array(part) for part in zip(*fitted[name], strict=True))
-            values = np.array([e.value for e in estimates])
-            factor, unit = axis_unit(values, _DRAWN[name])
-            low = np.array([e.low or 0.0 for e in estimates])
-            # An open end is None, which becomes NaN.
-            high: Array = np.array([e.high for e in estimates], dtype=float)
-            opened = np.isnan(high)
-            high[opened] = _OPEN_TOP * max(values.max(), high[~opened].max(initial=0.0))
-            ends = np.array([values - low, high - values]) * factor
-            axes.errorbar(numbers, values * factor, ends, fmt="o", markersize=4, capsize=2)
-            axes.plot(numbers[opened], high[opened] * factor, "^", color="C0", markersize=6)
-            axes.set_ylabel(f"{words(name)} [{unit}]")
-            axes.set_ylim(bottom=0.0)
-            axes.grid(alpha=0.3)
-        columns[-1].set_xlabel("curve")
-        if len(rows) <= _NAMED:
-            names_of = [Path(row.name).name for row in rows]
-            ticks = range(1, len(rows) + 1)
-            columns[-1].set_xticks(ticks, names_of, rotation=45, ha="right", fontsize="small")
-
-    return (draw, (5.4, 4.6)) if names and len(rows) <= _BARS else None
+        axes.append(Axis(words(name), unit, limits=(0, None)))
+    across = Axis("curve, in the order of the table")
+    return [Chart(across, axes, series)] if axes and len(rows) <= _BARS else []
 
 
 def drawable(rows: Sequence[Row]) -> list[Row]:
@@ -85,10 +65,8 @@ def distributions(rows: Sequence[Row]) -> list[Chart]:
     """Return histograms of E* and τ₀ of the drawable curves, by group, and E* against τ₀."""
     rows, charts = drawable(rows), list[Chart]()
     groups = list(dict.fromkeys(row.group for row in rows))
-    kinds = np.array([min(groups.index(row.group), _GROUPS - 1) for row in rows])
-    labels = [label(group) for group in groups[:_GROUPS]]
-    if len(groups) > _GROUPS:
-        labels[-1] = f"{len(groups) - _GROUPS + 1} other groups"
+    kinds = np.array([groups.index(row.group) for row in rows])
+    labels = [label(group) for group in groups]
     closed = {name: np.array([row.is_closed(name) for row in rows]) for name in _DRAWN}
     for name, has in closed.items():
         if has.any():

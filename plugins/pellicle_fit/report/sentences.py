@@ -6,7 +6,7 @@ from collections import Counter
 
 from pellicle_fit.intervals import CONFIDENCE
 from pellicle_fit.population.fits import ManyFits
-from pellicle_fit.population.summary import ALL, summary
+from pellicle_fit.population.summary import ALL, QUARTILES, summary
 from pellicle_fit.result import Fit
 from pellicle_fit.sentences import words as words_of
 from pellicle_fit.wording import OVER_TIED, in_words, unit_of, words
@@ -53,19 +53,18 @@ def sentences_of_population(fits: ManyFits) -> str:
         row.fit.get("verdict", "") for row in rows if row.accepted
     ).most_common():
         counts += f"; verdicts: {', '.join(f'{count} {verdict}' for verdict, count in verdicts)}"
-    hidden = "reduced_modulus" if any(p.parameter == "youngs_modulus" for p in parts) else ""
-    groups = [group for group in dict.fromkeys(p.group for p in parts) if group != ALL]
+    hidden = "reduced_modulus" * any(part["parameter"] == "youngs_modulus" for part in parts)
+    groups = [group for group in dict.fromkeys(part["group"] for part in parts) if group != ALL]
     sentences = [f"{counts}."]
     for group in groups if 0 < len(groups) <= _GROUPS else [ALL] * bool(parts):
         medians = []
         for part in parts:
-            if part.group == group and part.parameter != hidden:
-                unit = unit_of([part.median or part.upper_quartile], part.unit)
-                quartiles = part.median, part.lower_quartile, part.upper_quartile
-                median, low, high = (unit.number(value, 3) for value in quartiles)
-                rest = f"; open in {part.open} of {part.n}" if part.open else ""
-                medians.append(
-                    f"{words(part.parameter)} {median} {unit.unit} ({low} to {high}{rest})"
-                )
+            if part["group"] == group and part["parameter"] != hidden:
+                quartiles = [part[name] for name in QUARTILES[1:4]]
+                unit = unit_of([quartiles[1] or quartiles[2]], part["unit"])
+                low, median, high = (unit.number(value, 3) for value in quartiles)
+                rest = f"; open in {part['open']} of {part['n']}" if part["open"] else ""
+                text = f"{unit.with_unit(median)} ({low} to {high}{rest})"
+                medians.append(f"{words(part['parameter'])} {text}")
         sentences.append(f"Median{'' if group == ALL else f' of {group}'}: {', '.join(medians)}.")
     return " ".join([*sentences, *["In brackets the quartiles."] * bool(parts)])

@@ -8,7 +8,7 @@ from pellicle.components import Column, Table
 from pellicle_fit.intervals import CONFIDENCE, Estimate
 from pellicle_fit.objective import CONTACT_POINT, MODULUS
 from pellicle_fit.population.row import FITTED, Row
-from pellicle_fit.population.summary import summary
+from pellicle_fit.population.summary import QUARTILES, summary
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import Fit, name_of, parameters_of
 from pellicle_fit.rivals import MARGIN
@@ -111,12 +111,13 @@ def groups(of: Sequence[Row], *, si: bool = False) -> Table:
     parts, cells = summary(of), []
     for part in parts:
         # The groups of one parameter share their unit.
-        medians = [other.median for other in parts if other.parameter == part.parameter]
-        unit = unit_of(medians, part.unit, si=si)
-        low, high = (unit.number(end) for end in (part.lower_quartile, part.upper_quartile))
-        counts = f"{part.n} of {part.curves}", str(part.open), str(part.outliers)
-        name = f"{words(part.parameter)} [{unit.unit}]"
-        cells.append((part.group, name, *counts, unit.number(part.median), f"{low} to {high}"))
+        parameter = part["parameter"]
+        medians = [other["median"] for other in parts if other["parameter"] == parameter]
+        unit = unit_of(medians, part["unit"], si=si)
+        low, median, high = (unit.number(part[name]) for name in QUARTILES[1:4])
+        counts = f"{part['n']} of {part['curves']}", str(part["open"]), str(part["outliers"])
+        name = f"{words(parameter)} [{unit.unit}]"
+        cells.append((part["group"], name, *counts, median, f"{low} to {high}"))
     heads = "group", "parameter", "accepted", "open", "outliers", "median", "quartiles"
     return Table.of_rows(heads, cells, "The accepted curves.")
 
