@@ -36,7 +36,9 @@ def force_maps(rows: Sequence[Row]) -> tuple[dict[str, xr.Dataset], list[str]]:
         if np.unique(places, axis=1).shape[1] < 2:
             continue
         stated, *others = {site.grid for site in sites}
-        axes = stated if stated and not others and _holds(stated, places) else _grid(places)
+        axes = None if others else stated
+        if axes is None or not all(map(_is_on, axes, places)):
+            axes = _grid(places)
         if axes is None:
             notes.append(f"{name}: its places are not on a grid, so there is no image")
             continue
@@ -55,7 +57,9 @@ def _images(
     """Return the images of a map, and the names of curves at places that have another."""
     import pandas as pd
 
-    pixels = pd.MultiIndex.from_arrays([*_indices(axes, places).round().astype(int)[::-1]])
+    pairs = zip(axes[::-1], places[::-1], strict=True)
+    indices = [np.round((values - axis.start) / axis.pitch).astype(int) for axis, values in pairs]
+    pixels = pd.MultiIndex.from_arrays(indices)
     accepted = [row.accepted for row in rows]
     frame = pd.DataFrame([_numbers(row) for row in rows if row.accepted], index=pixels[accepted])
     sides = {name: range(axis.pixels) for name, axis in zip("yx", axes[::-1], strict=True)}
@@ -86,17 +90,11 @@ def _numbers(row: Row) -> dict[str, float]:
     return numbers | {name: known[name] for name in _QUALITY}
 
 
-def _indices(axes: tuple[Axis, Axis], places: Array) -> Array:
-    """Return the indices of places along x and y, as fractions, both of shape (2, n)."""
-    pairs = zip(axes, places, strict=True)
-    return np.array([(values - axis.start) / axis.pitch for axis, values in pairs])
-
-
-def _holds(axes: tuple[Axis, Axis], places: Array) -> bool:
-    """Return whether all places are on the pixels of a grid."""
-    index = _indices(axes, places)
+def _is_on(axis: Axis, values: Array) -> bool:
+    """Return whether all values are on the pixels of an axis."""
+    index = (values - axis.start) / axis.pitch
     nearest = np.round(index)
-    inside = nearest.min() >= 0 and np.all([axis.pixels for axis in axes] > nearest.T)
+    inside = nearest.min() >= 0 and nearest.max() < axis.pixels
     return bool(inside and np.abs(index - nearest).max() <= _OFF)
 
 
@@ -124,7 +122,6 @@ def _axis(values: Array) -> Axis | None:
     for guess in (float(np.median(gaps)), float(gaps.min())):
         pixels = round(span / guess) + 1
         axis = Axis(float(centres[0]), span / (pixels - 1), pixels)
-        index = (values - axis.start) / axis.pitch
-        if np.abs(index - np.round(index)).max() <= _OFF:
+        if _is_on(axis, values):
             return axis
     return None

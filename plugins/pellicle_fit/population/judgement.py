@@ -114,10 +114,11 @@ def judge(
     for names in (accepted, rejected):
         entries.append([] if names is None else names.entries(rows))
         if names is not None:
+            used = {*entries[-1]}
             notes += [
                 f"{names.path} names {shown(name)}, which is none of the curves"
                 for name in names.reasons
-                if name not in entries[-1]
+                if name not in used
             ]
     for number, row in enumerate(rows):
         if not row.is_fitted:

@@ -1,56 +1,79 @@
-"""A contact sheet: a small chart of each curve with its fit, many on a page."""
+"""A contact sheet: a small figure of each curve with its fit, many on a page."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellicle.components import Axis, Chart, Look, Series
+from pellicle.files import for_document
 from pellicle.units import decimal, readable
 from pellicle_fit.population.row import Row
 from pellicle_fit.wording import SHOWN
 
-_ON_A_PAGE = 28
-_LETTERS = 44
-_COLUMNS = "position", "force"
-_STATES = "accepted", "rejected", "stands out"
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+PAGE = 8.27, 11.69
+"""Width and height of a page [inch]."""
+_ACROSS, _DOWN = 4, 7
+_LETTERS = 38
+_COLOURS = {"accepted": "0.6", "outlier": "C1", "rejected": "C3", "not fitted": "0.2"}
+"""Colours of the frames."""
 
 
-def sheets(rows: Sequence[Row]) -> list[Chart]:
-    """Return the pages of the contact sheet of all curves, each frame over the range of its curve.
-
-    Fits of curves that are rejected, or stand out, have other colours.
-    """
-    pages = [rows[start : start + _ON_A_PAGE] for start in range(0, len(rows), _ON_A_PAGE)]
-    return [_page(page, f"page {number} of {len(pages)}") for number, page in enumerate(pages, 1)]
+def sheets(rows: Sequence[Row]) -> list[Callable[[Figure], None]]:
+    """Return functions that draw the pages of the contact sheet of all curves."""
+    size = _ACROSS * _DOWN
+    pages = [rows[start : start + size] for start in range(0, len(rows), size)]
+    return [partial(_page, page, f"page {k} of {len(pages)}") for k, page in enumerate(pages, 1)]
 
 
-def _page(rows: Sequence[Row], title: str) -> Chart:
-    nothing, data = np.empty(0), Look(None, None, 0)
-    series, titles = [Series(nothing, nothing, legend="data", look=data)], []
-    series += [Series(nothing, nothing, legend=s, look=Look(k)) for k, s in enumerate(_STATES)]
-    for panel, row in enumerate(rows):
-        position, force = row.sketch.get("position", nothing), row.sketch.get("force", nothing)
-        spans: list[str] = []
-        if position.size:
-            length, most = float(np.ptp(position)) or 1.0, float(np.ptp(force)) or 1.0
-            spans = [readable(length, "m", 3), readable(most, "N", 3)]
-            looks = {"force": data, "fit": Look(2 * row.outlier if row.accepted else 1)}
-            for name in looks.keys() & row.sketch.keys():
-                x, y = (position - position.min()) / length, row.sketch[name] - force.min()
-                series.append(Series(x, y / most, look=looks[name], panel=panel))
-        lines = [row.name[-_LETTERS:], ", ".join(_numbers(row)), ", ".join(spans), row.reason]
+def _page(rows: Sequence[Row], caption: str, figure: Figure) -> None:
+    """Draw some curves on one page."""
+    cells = figure.subplots(_DOWN, _ACROSS).ravel()
+    for row, axes in zip(rows, cells, strict=False):
+        _curve(row, axes)
+    for axes in cells[len(rows) :]:
+        axes.set_axis_off()
+    # Nothing is drawn of these but the legend.
+    cells[-1].plot([], [], ".", color="0.6", label="data")
+    cells[-1].plot([], [], "C0", label="fit")
+    for state, colour in _COLOURS.items():
+        cells[-1].fill_between([], [], facecolor="none", edgecolor=colour, label=state)
+    title = f"{caption}; each frame spans the range of its curve"
+    above: dict[str, Any] = {"loc": "outside upper center", "ncols": 6, "title_fontsize": 6}
+    figure.legend(title=title, fontsize=5, **above)
+
+
+def _curve(row: Row, axes: Axes) -> None:
+    """Draw a curve with its fit in a frame, with its name, its numbers and why it is rejected."""
+    state = "accepted" if row.accepted else "rejected" if row.is_fitted else "not fitted"
+    axes.spines[:].set_color(_COLOURS["outlier" if row.outlier else state])
+    axes.set(xticks=[], yticks=[])
+    name, reason = row.name[-_LETTERS:], row.reason[:_LETTERS]
+    above = (1.2, name, "black"), (1.11, _numbers(row), "black"), (1.02, reason, "C3")
+    texts = [(0.0, *text) for text in above]
+    if row.sketch and row.sketch["position"].size:
+        z, force = row.sketch["position"], row.sketch["force"]
+        axes.plot(z, force, ".", color="0.6", markersize=1.5)
+        if "fit" in row.sketch:
+            axes.plot(z, row.sketch["fit"], "C0", linewidth=0.7)
+        for up, values, unit in ((0.87, z, "m"), (0.78, force, "N")):
+            texts.append((0.04, up, readable(float(np.ptp(values)), unit, 3), "0.4"))
+    for x, y, text, colour in texts:
         # A name may hold dollars, which are formulas to matplotlib.
-        titles.append("\n".join(line[:_LETTERS].replace("$", r"\$") for line in lines))
-    x_axis, y_axis = (Axis(f"{n}, over its range", limits=(-0.05, 1.05)) for n in _COLUMNS)
-    return Chart(x_axis, [y_axis] * len(rows), series, title, hues=len(_STATES), titles=titles)
+        words = for_document(text).replace("$", r"\$")
+        axes.text(x, y, words, fontsize=4.5, color=colour, transform=axes.transAxes)
 
 
-def _numbers(row: Row) -> list[str]:
-    """Return what was fitted and the quality of the fit."""
+def _numbers(row: Row) -> str:
+    """Return what was fitted and the quality of the fit as a line."""
     if not row.is_fitted:
-        return []
+        return ""
     estimates = {symbol: row.estimates.get(name) for name, symbol in SHOWN.items()}
     texts = [
         f"{symbol} {readable(e.value, e.unit, 3)}"
@@ -58,4 +81,4 @@ def _numbers(row: Row) -> list[str]:
         if e is not None and not (e.held and not e.value)
     ]
     ratio = decimal(row.numbers["chi_squared"] / row.numbers["points"], 3)
-    return [*texts, f"R² {row.numbers['r_squared']:.4f}", f"χ²/n {ratio}"]
+    return ", ".join([*texts, f"R² {row.numbers['r_squared']:.4f}", f"χ²/n {ratio}"])

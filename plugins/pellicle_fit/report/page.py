@@ -16,7 +16,6 @@ from pellicle.show import (
     Picture,
     Section,
     Text,
-    figure_of,
     input_table,
     png,
     summary,
@@ -29,7 +28,7 @@ from pellicle_fit.result import Fit
 from pellicle_fit.rivals import Verdict
 
 from . import tables
-from .contact_sheet import sheets
+from .contact_sheet import PAGE, sheets
 from .figures import charts, panels
 from .sentences import sentence_of_fit, sentences_of_population
 
@@ -145,7 +144,7 @@ def _sheets(fits: ManyFits) -> list[Block]:
     shown, caption = pages[:_PAGES], "Each curve with its fit."
     if len(pages) > len(shown):
         caption += f" The first {len(shown)} of {len(pages)} pages; all are in fits-curves.pdf."
-    return [Picture(svg(*figure_of(p)), caption, caption, wide=True) for p in shown]
+    return [Picture(svg(draw, PAGE), caption, caption, wide=True) for draw in shown]
 
 
 def _sentence(text: str) -> str:

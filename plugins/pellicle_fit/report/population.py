@@ -17,7 +17,7 @@ from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.population.images import CONTACT_HEIGHT
 from pellicle_fit.wording import SHOWN
 
-from .contact_sheet import sheets
+from .contact_sheet import PAGE, sheets
 from .population_figures import distributions
 
 if TYPE_CHECKING:
@@ -38,8 +38,7 @@ def save_population(fits: ManyFits, directory: Path) -> tuple[Path, ...]:
     StorageError
         A file cannot be written.
     """
-    draws, sizes = zip(*map(figure_of, sheets(fits.rows)), strict=True)
-    files = [save_pages(draws, directory / "fits-curves.pdf", sizes[0])]
+    files = [save_pages(sheets(fits.rows), directory / "fits-curves.pdf", PAGE)]
     if charts := distributions(fits.rows):
         draw, size = figure_of(charts)
         files += save_figure(draw, directory / "fits", ["png"], size)
