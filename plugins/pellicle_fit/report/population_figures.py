@@ -24,6 +24,8 @@ _OPEN_TOP = 1.1
 """Position of an open upper end, as a multiple of the largest value drawn."""
 _BINS = 5, 40
 """Least and greatest number of bins."""
+_GROUPS = 10
+"""Number of groups with a colour of their own; the others share the last."""
 _DECADE = 10.0
 """Greatest over least value beyond which an axis is logarithmic."""
 
@@ -65,8 +67,10 @@ def distributions(rows: Sequence[Row]) -> list[Chart]:
     """Return histograms of E* and τ₀ of the drawable curves, by group, and E* against τ₀."""
     rows, charts = drawable(rows), list[Chart]()
     groups = list(dict.fromkeys(row.group for row in rows))
-    kinds = np.array([groups.index(row.group) for row in rows])
-    labels = [label(group) for group in groups]
+    kinds = np.array([min(groups.index(row.group), _GROUPS - 1) for row in rows])
+    labels = [label(group) for group in groups[:_GROUPS]]
+    if len(groups) > _GROUPS:
+        labels[-1] = f"{len(groups) - _GROUPS + 1} other groups"
     closed = {name: np.array([row.is_closed(name) for row in rows]) for name in _DRAWN}
     for name, has in closed.items():
         if has.any():
