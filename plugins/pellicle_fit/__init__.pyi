@@ -7,5 +7,5 @@ from .fits import fit as fit
 from .fits import fit_pooled as fit_pooled
 from .intervals import Estimate as Estimate
 from .many import fit_many as fit_many
-from .maps import fit_map as fit_map
+from .many import fit_map as fit_map
 from .result import Fit as Fit

@@ -17,7 +17,7 @@ from .print_fits import print_fit, print_fits, print_notes, show_fits
 
 if TYPE_CHECKING:
     from pellicle_fit.config import FitConfig
-    from pellicle_fit.many import ManyFits
+    from pellicle_fit.population.fits import ManyFits
     from pellicle_fit.result import Fit
 
 
@@ -133,7 +133,7 @@ def fit(
     Exit code 0 only if every curve was fitted, 1 if some could not be fitted.
     """
     from pellicle_fit.config import FitConfig
-    from pellicle_fit.many import ManyFits
+    from pellicle_fit.population.fits import ManyFits
     from pellicle_fit.record import repetition
     from pellicle_fit.report.figures import save_figure
     from pellicle_fit.report.page import save_report

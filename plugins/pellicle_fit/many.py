@@ -1,4 +1,4 @@
-"""Fits of many curves by an executor, and the table with a row for each."""
+"""Fits of many curves by an executor: a table with a row for each, or images of a force map."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import json
 import pickle
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import nullcontext, suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from operator import length_hint
 from pathlib import Path
@@ -20,15 +20,14 @@ from pellicle.batch import BatchProgress, locked, mapped
 from pellicle.components import Component, Executor, Say
 from pellicle.errors import ConfigError, PellicleError
 from pellicle.files import atomic_write, check_writable, write_json
-from pellicle.results import header
 
 from .config import FitConfig
 from .files.sources import Curves, Source, SourceStream
+from .population.fits import ManyFits, table
 from .population.images import force_maps
 from .population.judgement import group_of, group_pattern, judge, read_names
-from .population.row import FAILED, Row, Sketch
+from .population.row import FAILED, Row, sketch
 from .population.summary import summary
-from .population.table import table
 from .problem import Problem, problem
 from .record import Stopwatch, components_of, data_of
 
@@ -37,15 +36,8 @@ if TYPE_CHECKING:
 
 _JOURNAL = "curves"
 _WITHOUT_EFFECT = {
-    "curves",
-    "per_file",
-    "pool",
-    "executor",
-    "cache",
-    "accept",
-    "accepted",
-    "rejected",
-    "group_by",
+    *("curves", "per_file", "pool", "executor", "cache"),
+    *("accept", "accepted", "rejected", "group_by"),
 }
 """Fields of a configuration that do not change the fit of a curve."""
 _OF_ALL = {"configuration", "versions", "date", "wall_time"}
@@ -74,38 +66,6 @@ class FitTask:
     def memory(self) -> int:
         """Estimated peak memory of the fit [bytes]."""
         return _BYTES_PER_POINT * sum(m.curve.force.size for m in self.problem.members)
-
-
-@dataclass
-class ManyFits:
-    """The fits of many curves."""
-
-    rows: list[Row]
-    files: tuple[Path, ...] = ()
-    resumed: int = 0
-    """Number of fits that an earlier call had finished."""
-    notes: list[str] = field(default_factory=list)
-    """Notes on the population: rejected curves, outliers, lists with wrong names."""
-    maps: dict[str, xr.Dataset] = field(default_factory=dict)
-    """Images of each force map, by its file."""
-    config: FitConfig | None = None
-
-    @property
-    def failed(self) -> int:
-        """Number of curves that could not be fitted."""
-        return sum(row.status.startswith(FAILED) for row in self.rows)
-
-    def _repr_html_(self) -> str:
-        """Return HTML for a notebook: sentences, the quartiles of each group, a picture."""
-        from .report.notebook import html_of_population
-
-        return html_of_population(self)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the fits as JSON data."""
-        curves = [row.to_dict() for row in self.rows]
-        groups = [part._asdict() for part in summary(self.rows)]
-        return {"curves": curves, "groups": groups, "notes": self.notes}
 
 
 def fit_many(
@@ -149,10 +109,62 @@ def fit_many(
     StorageError
         The folder cannot be used.
     """
+    return table(_fit(curves, config, directory, progress, options).rows)
+
+
+def fit_map(
+    curves: Curves | None = None,
+    *,
+    config: FitConfig | str | Path | None = None,
+    directory: str | Path | None = None,
+    progress: bool = True,
+    **options: Any,
+) -> xr.Dataset:
+    """Fit each curve of a force map on its own and return an image of each parameter.
+
+    Parameters
+    ----------
+    curves
+        The file of a force map; or a table that lists files and where they were measured, with a
+        header such as ``file,x [um],y [um]``.
+    directory, progress, config, **options
+        As for `fit_many`, whose files are written too, and the images as well in ``maps``.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``y`` and ``x`` [m]: each parameter as value, ``_low`` and ``_high``, with the contact
+        point as ``contact_height``, and the quality of each fit.  NaN where a curve is missing,
+        could not be fitted or was rejected, and at open ends of intervals.
+
+    Raises
+    ------
+    ConfigError, PluginError
+        An argument is not allowed, or the curves are not those of one map.
+    StorageError
+        The folder cannot be used.
+    """
+    fits = _fit(curves, config, directory, progress, options)
+    if len(fits.maps) != 1:
+        reason = "; ".join(fits.notes) or "their files do not say where curves were measured"
+        raise ConfigError(
+            f"hold {len(fits.maps)} force maps ({reason}); give one, or use fit_many", "curves"
+        )
+    (images,) = fits.maps.values()
+    return images
+
+
+def _fit(
+    curves: Curves | None,
+    config: FitConfig | str | Path | None,
+    directory: str | Path | None,
+    progress: bool,
+    options: Mapping[str, Any],
+) -> ManyFits:
+    """Return the fits of the arguments of `fit_many`."""
     config = FitConfig.merged(config, **options)
     folder = None if directory is None else Path(directory)
-    sources = SourceStream(config.files(curves))
-    return table(fit_sources(config, sources, folder, progress=progress).rows)
+    return fit_sources(config, SourceStream(config.files(curves)), folder, progress=progress)
 
 
 def fit_sources(
@@ -171,7 +183,7 @@ def fit_sources(
     from .report.population import save_population
 
     lists = read_names(config.accepted), read_names(config.rejected)
-    fits, watch = ManyFits([], config=config), Stopwatch()
+    fits, watch = ManyFits([], configuration=config.to_dict()), Stopwatch()
     with nullcontext() if directory is None else locked(directory, "fits"):
         if directory is not None:
             check_writable(directory / "fits.h5")
@@ -197,8 +209,7 @@ def fit_sources(
 
 def _batches(sources: Iterable[Source]) -> Iterator[list[Source]]:
     """Yield the curves in batches that fit in memory."""
-    batch: list[Source] = []
-    points = 0
+    batch, points = list[Source](), 0
     for source in sources:
         batch.append(source)
         if not isinstance(source.curve, PellicleError):
@@ -206,8 +217,7 @@ def _batches(sources: Iterable[Source]) -> Iterator[list[Source]]:
         if points > _BATCH:
             yield batch
             batch, points = [], 0
-    if batch:
-        yield batch
+    yield batch
 
 
 def _fit_batch(
@@ -235,18 +245,16 @@ def _fit_batch(
                 raise source.curve
             row.map, row.site = source.map, source.curve.site
             with suppress(TypeError, ValueError):
-                row.sketch = Sketch.of(source.curve.position, source.curve.force)
-            path = None
-            if directory is not None:
-                path = directory / _JOURNAL / f"{_identity(config, source)[:16]}.json"
-                if (earlier := _read(path)) is not None:
-                    # The file may have another name now.
-                    own_data = {"name": source.name, "data": data_of(source.curve, config)}
-                    row.keep(earlier | {"curves": [earlier["curves"][0] | own_data]})
-                    fits.resumed += 1
-                    continue
-            ready = problem(config, [source], progress=progress)
-            tasks.append(FitTask(row, replace(ready, config=own), path))
+                row.sketch = sketch(position=source.curve.position, force=source.curve.force)
+            path = directory and directory / _JOURNAL / f"{_identity(config, source)[:16]}.json"
+            if earlier := _stored(path):
+                # The file may have another name now.
+                own_data = {"name": source.name, "data": data_of(source.curve, config)}
+                row.keep(earlier | {"curves": [earlier["curves"][0] | own_data]})
+                fits.resumed += 1
+            else:
+                ready = replace(problem(config, [source], progress=progress), config=own)
+                tasks.append(FitTask(row, ready, path))
         except PellicleError as error:
             row.status = _failure(error, row.name)
 
@@ -270,12 +278,13 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
     (member,), (force,) = fit.members, fit.forces()
     measured, position = member.curve.force, member.curve.position
     scatter = measured - np.mean(measured)
+    drawn = sketch(position=position, force=measured, fit=force)
     kept = {name: value for name, value in fit.to_dict().items() if name not in _OF_ALL}
     return kept | {
         "r_squared": 1 - float(np.sum((force - measured) ** 2) / np.sum(scatter**2)),
         "indentation": float(np.max(position)) - fit.contact_point.value,
         "largest_force": float(np.max(force)),
-        "sketch": Sketch.of(position, measured, force).to_dict(),
+        "sketch": {name: [float(f"{v:.5g}") for v in values] for name, values in drawn.items()},
     }
 
 
@@ -295,12 +304,12 @@ def _identity(config: FitConfig, source: Source) -> str:
     return digest.hexdigest()
 
 
-def _read(path: Path) -> dict[str, Any] | None:
+def _stored(path: Path | None) -> dict[str, Any] | None:
     """Return the fit that a file stores; None if it stores none."""
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
+    content = None
+    if path is not None:
+        with suppress(OSError, ValueError):
+            content = json.loads(path.read_text(encoding="utf-8"))
     return content if isinstance(content, dict) else None
 
 
@@ -317,7 +326,7 @@ def _write(
     """Write the tables of the curves and of the groups, and return their paths."""
     import pandas as pd
 
-    record = watch.record(config, [row.data for row in fits.rows if row.is_fitted])
+    record = watch.record(config, [row.curve["data"] for row in fits.rows if row.is_fitted])
     attributes = {
         "configuration": config.to_json(),
         "versions": ", ".join(f"{name} {number}" for name, number in record.versions.items()),
@@ -326,10 +335,10 @@ def _write(
     dataset = table(fits.rows).assign_attrs(attributes)
     hdf5, text, groups = (directory / f"fits{end}" for end in (".h5", ".csv", "-groups.csv"))
     results.write(dataset.assign_attrs(command="fit"), hdf5)
-    heads = {name: header(str(name), variable) for name, variable in dataset.data_vars.items()}
+    heads = {name: results.header(str(name), of) for name, of in dataset.data_vars.items()}
     frame = dataset.to_dataframe().rename(columns=heads).assign(**attributes)
     for path, content in ((text, frame.reset_index()), (groups, pd.DataFrame(summary(fits.rows)))):
         with atomic_write(path) as part:
             content.to_csv(part, index=False, na_rep="nan")
-    whole = fits.to_dict() | {"configuration": config.to_dict()} | record.to_dict()
+    whole = fits.to_dict() | {"configuration": fits.configuration} | record.to_dict()
     return hdf5, text, groups, write_json(whole, directory / "fits.json")

@@ -12,7 +12,7 @@ from pellicle.errors import first_of
 from pellicle.files import is_file
 
 if TYPE_CHECKING:
-    from pellicle_fit.many import ManyFits
+    from pellicle_fit.population.fits import ManyFits
     from pellicle_fit.result import Fit
 
 _LINES = 50
@@ -37,10 +37,9 @@ def print_fit(fit: Fit, *, si: bool = False) -> None:
 
 def print_notes(fit: Fit) -> None:
     """Print the warnings and notes of a fit."""
-    for warning in fit.warnings:
-        echo(f"warning: {warning}", err=True)
-    for note in fit.notes:
-        echo(f"note: {note}", err=True)
+    for kind, texts in (("warning", fit.warnings), ("note", fit.notes)):
+        for text in texts:
+            echo(f"{kind}: {text}", err=True)
 
 
 def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None, si: bool = False) -> None:
@@ -78,7 +77,7 @@ def show_fits(directory: Path, si: bool, json: bool) -> bool:
     """
     if not is_file(directory / "fits.json"):
         return False
-    from pellicle_fit.many import ManyFits
+    from pellicle_fit.population.fits import ManyFits
     from pellicle_fit.population.row import Row
     from pellicle_fit.record import content_of
 

@@ -91,11 +91,8 @@ class Repetition(NamedTuple):
     def difference(self, content: Mapping[str, Any]) -> str:
         """Return how files and versions of the JSON data of fits differ; empty if they do not."""
         now = _hashes(content)
-        differs = [
-            file
-            for file in sorted(now.keys() | self.sha256.keys())
-            if now.get(file) != self.sha256.get(file)
-        ]
+        files = sorted(now.keys() | self.sha256.keys())
+        differs = [file for file in files if now.get(file) != self.sha256.get(file)]
         differs += [
             f"{name} {version} (was {self.versions[name]})"
             for name, version in content.get("versions", {}).items()

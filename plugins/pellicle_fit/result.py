@@ -220,7 +220,7 @@ class Fit:
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: a sentence, the estimates, and the curve with its fit."""
-        from .report.notebook import html_of_fit
+        from .report.page import html_of_fit
 
         return html_of_fit(self)
 

@@ -1,76 +1,63 @@
-"""Names, units and intervals of what a fit determines, as people read them."""
+"""Which quantities of a fit are shown, and their names, units and intervals as people read them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pellicle.units import Scale, axis_unit, printed
+from pellicle.components import Column
+from pellicle.units import Scale
 
 from .intervals import Estimate
 
+SHOWN = {"reduced_modulus": "E*", "tension": "τ₀", "work_of_adhesion": "W", "thickness": "h"}
+"""Symbols of the quantities that tables and figures of curves show, if a curve has them."""
+OVER_TIED = "reduced_modulus", "youngs_modulus", "tension"
+"""Quantities whose intervals are over all explanations that the curve cannot tell apart."""
 _WORDS = {
     "youngs_modulus": "Young's modulus",
     "offset": "offset of the baseline",
     "slope": "slope of the baseline",
-    "chi_squared": "χ²",
 }
 
 
 def words(name: str) -> str:
-    """Return the name of a parameter or a key in words."""
+    """Return the name of a quantity or a key in words."""
     for key, text in _WORDS.items():
         name = name.replace(key, text)
     return name.replace("_", " ")
 
 
-def scale(estimate: Estimate, *, si: bool = False) -> Scale:
-    """Return the unit for the value and the ends of an estimate, with a prefix unless ``si``."""
+def unit_of(values: Sequence[float], unit: str, *, si: bool = False) -> Scale:
+    """Return the unit in which values in SI are shown, with one prefix unless ``si``."""
+    return Column("", values, unit).unit_and_digits(si=si)[0]
+
+
+def unit_of_estimate(estimate: Estimate, *, si: bool = False) -> Scale:
+    """Return the unit for the value and the ends of an estimate, as `unit_of` does."""
     ends = [end for end in (estimate.low, estimate.high) if end is not None]
     # The value of an interval that is open to one side is not shown.
     values = ends if len(ends) == 1 or not estimate.value else [estimate.value]
-    return column_scale(values, estimate.unit, si=si)
+    return unit_of(values, estimate.unit, si=si)
 
 
-def column_scale(values: Sequence[float], unit: str, *, si: bool = False) -> Scale:
-    """Return the unit of a column of values in SI, with one prefix unless ``si``."""
-    if si:
-        return Scale(1.0, "" if unit == "1" else printed(unit))
-    return axis_unit(values, unit)
-
-
-def interval_text(low: float | None, high: float | None, scale: Scale) -> str:
-    """Return an interval in the unit of a column, an open end as "open"."""
-    return " to ".join("open" if end is None else scale.number(end) for end in (low, high))
-
-
-def interval(estimate: Estimate, *, si: bool = False) -> str:
-    """Return an interval in the unit of `scale`; of an open one the end that it has."""
-    unit_scale = scale(estimate, si=si)
+def interval(estimate: Estimate, unit: Scale) -> str:
+    """Return an interval in a unit; of an open one the end that it has."""
     if estimate.held:
         return "fixed"
-    low, high = (
-        None if end is None else unit_scale.number(end) for end in (estimate.low, estimate.high)
-    )
-    if low is None and high is None:
-        return "open"
+    ends = (estimate.low, estimate.high)
+    low, high = (None if end is None else unit.number(end) for end in ends)
     if low is None:
-        return f"< {high}"
+        return "open" if high is None else f"< {high}"
     return f"> {low}" if high is None else f"{low} to {high}"
 
 
-def in_words(estimate: Estimate, *, si: bool = False, sought: bool = True) -> str:
-    """Return an estimate with its interval: ``5 mN/m (4.8 to 5.2)``, or ``< 3.8 µN/m``.
-
-    An open interval that was not ``sought`` is left out.
-    """
-    unit_scale = scale(estimate, si=si)
-    value = unit_scale.text(estimate.value)
-    if not sought and estimate.low is None and estimate.high is None:
-        return value
+def in_words(estimate: Estimate, *, si: bool = False) -> str:
+    """Return an estimate with its interval: ``5 mN/m (4.8 to 5.2)``, or ``< 3.8 µN/m``."""
+    unit = unit_of_estimate(estimate, si=si)
+    value, ends = unit.text(estimate.value), interval(estimate, unit)
     if estimate.held:
         return f"fixed at {value}"
-    if estimate.low is None and estimate.high is None:
+    if ends == "open":
         return "that this measurement does not determine"
-    text = interval(estimate, si=si)
     is_open = None in (estimate.low, estimate.high)
-    return unit_scale.with_unit(text) if is_open else f"{value} ({text})"
+    return unit.with_unit(ends) if is_open else f"{value} ({ends})"

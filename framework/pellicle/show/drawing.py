@@ -26,7 +26,7 @@ DIVERGING = "RdBu_r"
 _RETRACTION = (0, (2.5, 1.2))
 _GREY, _PALE = "0.4", "0.6"
 _MOST_MARKED = 80
-"""Points of a line that all have a marker; of more, some have, at a distance."""
+"""Points that all have a marker; of more on a line, some have, at a distance, others are dots."""
 _MARKER_DISTANCE, _SPARSE_DISTANCE = 0.04, 0.12
 """Over the diagonal of the axes; the latter on a smooth curve."""
 _LETTERS = 50
@@ -171,6 +171,8 @@ def _style(series: Series, chart: Chart) -> dict[str, Any]:
     if look.marker is None:
         return style
     style["marker"] = MARKERS[look.marker % len(MARKERS)]
+    if look.line is None and series.x.size > _MOST_MARKED:
+        return style | {"marker": ".", "markersize": 2.5}
     if look.sparse:
         # Smooth curves that coincide show their markers beside each other.
         first = _SPARSE_DISTANCE * (0.2 + 0.25 * (look.marker % 4))

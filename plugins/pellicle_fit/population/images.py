@@ -28,18 +28,17 @@ _EMPTIEST = 4
 
 def force_maps(rows: Sequence[Row]) -> tuple[dict[str, xr.Dataset], list[str]]:
     """Return the images of each force map by its file, and notes on them."""
-    members: dict[str, list[Row]] = {}
-    for row in rows:
-        if row.site is not None:
-            members.setdefault(row.map, []).append(row)
     maps, notes = {}, []
-    for name, part in members.items():
-        places = np.array([(row.site.x, row.site.y) for row in part if row.site]).T
+    for name in dict.fromkeys(row.map for row in rows if row.site is not None):
+        part = [row for row in rows if row.site is not None and row.map == name]
+        sites = [row.site for row in part if row.site is not None]
+        places = np.array([(site.x, site.y) for site in sites]).T
         if np.unique(places, axis=1).shape[1] < 2:
             continue
-        grids = {row.site.grid for row in part if row.site}
-        stated = grids.pop() if len(grids) == 1 else None
-        axes = stated if stated is not None and _holds(stated, places) else _grid(places)
+        stated, *others = {site.grid for site in sites}
+        axes = None if others else stated
+        if axes is None or not all(map(_is_on, axes, places)):
+            axes = _grid(places)
         if axes is None:
             notes.append(f"{name}: its places are not on a grid, so there is no image")
             continue
@@ -58,13 +57,14 @@ def _images(
     """Return the images of a map, and the names of curves at places that have another."""
     import pandas as pd
 
-    columns, lines = (index.astype(int) for index in _indices(axes, places).round())
-    pixels = pd.MultiIndex.from_arrays([lines, columns], names=["y", "x"])
+    pairs = zip(axes[::-1], places[::-1], strict=True)
+    indices = [np.round((values - axis.start) / axis.pitch).astype(int) for axis, values in pairs]
+    pixels = pd.MultiIndex.from_arrays(indices)
     accepted = [row.accepted for row in rows]
     frame = pd.DataFrame([_numbers(row) for row in rows if row.accepted], index=pixels[accepted])
-    sides = [range(axis.pixels) for axis in reversed(axes)]
-    frame = frame[~frame.index.duplicated(keep="last")]
-    images = frame.reindex(pd.MultiIndex.from_product(sides, names=["y", "x"])).to_xarray()
+    sides = {name: range(axis.pixels) for name, axis in zip("yx", axes[::-1], strict=True)}
+    whole = pd.MultiIndex.from_product(sides.values(), names=sides)
+    images = frame[~frame.index.duplicated(keep="last")].reindex(whole).to_xarray()
     units = units_of(rows) | {f"{CONTACT_HEIGHT}{end}": "m" for end in ENDS}
     for name, image in images.items():
         image.attrs["units"] = units[str(name)]
@@ -82,41 +82,30 @@ def _numbers(row: Row) -> dict[str, float]:
     for name, estimate in row.estimates.items():
         if estimate.held or name in _OF_BASELINE:
             continue
-        low, value, high = (known[f"{name}{end}"] for end in ("_low", "", "_high"))
+        value, low, high = (known[f"{name}{end}"] for end in ENDS)
         value = value if row.is_closed(name) else np.nan
         if name == CONTACT_POINT:
-            name, low, value, high = CONTACT_HEIGHT, -high, -value, -low
-        numbers |= {name: value, f"{name}_low": low, f"{name}_high": high}
+            name, value, low, high = CONTACT_HEIGHT, -value, -high, -low
+        numbers |= zip((f"{name}{end}" for end in ENDS), (value, low, high), strict=True)
     return numbers | {name: known[name] for name in _QUALITY}
 
 
-def _indices(axes: tuple[Axis, Axis], places: Array) -> Array:
-    """Return the indices of places along x and y, as fractions, both of shape (2, n)."""
-    pairs = zip(axes, places, strict=True)
-    return np.array([(values - axis.start) / axis.pitch for axis, values in pairs])
-
-
-def _holds(axes: tuple[Axis, Axis], places: Array) -> bool:
-    """Return whether all places are on the pixels of a grid."""
-    index = _indices(axes, places)
+def _is_on(axis: Axis, values: Array) -> bool:
+    """Return whether all values are on the pixels of an axis."""
+    index = (values - axis.start) / axis.pitch
     nearest = np.round(index)
-    pixels = np.array([[axis.pixels] for axis in axes])
-    inside = nearest.min() >= 0 and np.all(nearest < pixels)
+    inside = nearest.min() >= 0 and nearest.max() < axis.pixels
     return bool(inside and np.abs(index - nearest).max() <= _OFF)
 
 
 def _grid(places: Array) -> tuple[Axis, Axis] | None:
     """Return the grid of the places of curves; None if they are not on one along x and y."""
-    across, along = (_axis(values) for values in places)
-    if across is None or along is None:
+    across, along = map(_axis, places)
+    if not across or not along or across.pixels * along.pixels > _EMPTIEST * places.shape[1]:
         return None
     # A line of curves is one pixel wide.
-    across, along = (
-        axis._replace(pitch=axis.pitch or other.pitch)
-        for axis, other in ((across, along), (along, across))
-    )
-    many = across.pixels * along.pixels > _EMPTIEST * places.shape[1]
-    return None if many else (across, along)
+    pitches = across.pitch or along.pitch, along.pitch or across.pitch
+    return across._replace(pitch=pitches[0]), along._replace(pitch=pitches[1])
 
 
 def _axis(values: Array) -> Axis | None:
@@ -133,7 +122,6 @@ def _axis(values: Array) -> Axis | None:
     for guess in (float(np.median(gaps)), float(gaps.min())):
         pixels = round(span / guess) + 1
         axis = Axis(float(centres[0]), span / (pixels - 1), pixels)
-        index = (values - axis.start) / axis.pitch
-        if np.abs(index - np.round(index)).max() <= _OFF:
+        if _is_on(axis, values):
             return axis
     return None

@@ -5,11 +5,10 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
-from functools import cached_property
 from itertools import compress
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,36 +28,28 @@ _NORMAL = 1.4826
 _LIMIT = 3.5
 """Distance from the median, in these deviations, beyond which a curve stands out."""
 _HEADS = ("curve", "name", "file")
-_PATTERN = re.compile(r"[*?[]")
 
 
-@dataclass
-class Names:
+class Names(NamedTuple):
     """A list of curves in a file."""
 
     path: Path
     reasons: Mapping[str, str]
     """What follows each name on its line."""
-    used: set[str] = field(default_factory=set)
-    """Names that mean a curve."""
 
-    @cached_property
-    def _patterns(self) -> list[str]:
-        return [name for name in self.reasons if _PATTERN.search(name)]
+    def entries(self, rows: Sequence[Row]) -> list[str]:
+        """Return the name in the list that means each curve: its name or its end, or a pattern.
 
-    def entry(self, curve: str) -> str | None:
-        """Return the name in the list that means a curve: its name or the end of it, or a pattern.
-
-        The end follows a slash: ``a.csv`` means ``day/a.csv``.
+        The end follows a slash: ``a.csv`` means ``day/a.csv``. Without any it is empty.
         """
-        path = curve.replace("\\", "/")
-        starts = [0, *(match.end() for match in re.finditer("/", path))]
-        ends = (path[start:] for start in starts)
-        patterns = (n for n in self._patterns if fnmatchcase(f"/{path}", f"*/{n}"))
-        entry = next((end for end in ends if end in self.reasons), None) or next(patterns, None)
-        if entry:
-            self.used.add(entry)
-        return entry
+        patterns, found = [name for name in self.reasons if re.search(r"[*?[]", name)], []
+        for row in rows:
+            path = row.name.replace("\\", "/")
+            starts = [0, *(match.end() for match in re.finditer("/", path))]
+            ends = (path[start:] for start in starts if path[start:] in self.reasons)
+            fitting = (name for name in patterns if fnmatchcase(f"/{path}", f"*/{name}"))
+            found.append(next(ends, None) or next(fitting, ""))
+        return found
 
 
 def read_names(path: Path | None) -> Names | None:
@@ -72,16 +63,16 @@ def read_names(path: Path | None) -> Names | None:
     if path is None:
         return None
     try:
-        lines = read_text(path).splitlines()
-        rows = [row for row in csv.reader(lines) if row and not row[0].lstrip().startswith("#")]
+        rows = [row for row in csv.reader(read_text(path).splitlines()) if row]
     except (OSError, ValueError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or error
         raise StorageError(f"{path}: cannot be read as a list of curves ({reason})") from None
-    reasons = {
-        row[0].strip().replace("\\", "/"): ", ".join(cell.strip() for cell in row[1:])
-        for row in rows
-    }
-    return Names(path, {k: v for k, v in reasons.items() if k and k.lower() not in _HEADS})
+    reasons = {}
+    for first, *others in rows:
+        name = first.strip().replace("\\", "/")
+        if name and name.lower() not in _HEADS and not name.startswith("#"):
+            reasons[name] = ", ".join(cell.strip() for cell in others)
+    return Names(path, reasons)
 
 
 def group_pattern(group_by: str) -> re.Pattern[str] | None:
@@ -119,17 +110,27 @@ def judge(
     A curve is accepted if it was fitted, is not in the list of rejected curves, is in that of
     accepted ones if there is one, and obeys all rules.  Outliers stay accepted.
     """
-    checks = [Rule(text) for text in rules]
-    for row in rows:
-        row.reason = _reason(row, checks, accepted, rejected)
-        row.accepted, row.outlier = not row.reason, False
-    notes = [
-        f"{names.path} names {shown(name)}, which is none of the curves"
-        for names in (accepted, rejected)
-        if names is not None
-        for name in names.reasons
-        if name not in names.used
-    ]
+    checks, notes, entries = [Rule(text) for text in rules], [], []
+    for names in (accepted, rejected):
+        entries.append([] if names is None else names.entries(rows))
+        if names is not None:
+            used = {*entries[-1]}
+            notes += [
+                f"{names.path} names {shown(name)}, which is none of the curves"
+                for name in names.reasons
+                if name not in used
+            ]
+    for number, row in enumerate(rows):
+        if not row.is_fitted:
+            row.reason = row.status
+        elif rejected is not None and (entry := entries[1][number]):
+            why = rejected.reasons[entry]
+            row.reason = f"in {rejected.path.name}{f': {why}' if why else ''}"
+        elif accepted is not None and not entries[0][number]:
+            row.reason = f"not in {accepted.path.name}"
+        else:
+            row.reason = "; ".join(filter(None, (rule.objection(row) for rule in checks)))
+        row.accepted = not row.reason
     whole = [row for row in rows if row.accepted]
     lost = sum(row.is_fitted for row in rows) - len(whole)
     if rows and not whole:
@@ -137,28 +138,15 @@ def judge(
     elif lost:
         curves = "curve was" if lost == 1 else "curves were"
         notes.append(f"{lost} fitted {curves} rejected; the table says why")
-    if far := outliers(whole):
-        for row in far:
-            row.outlier = True
+    far = outliers(whole)
+    for row in rows:
+        row.outlier = row in far
+    if far:
         notes.append(
             f"the modulus of {len(far)} of {len(whole)} accepted curves stands out from that of "
             f"the others in the group; nothing was left out: {first_of([row.name for row in far])}"
         )
     return notes
-
-
-def _reason(row: Row, rules: Sequence[Rule], accepted: Names | None, rejected: Names | None) -> str:
-    """Return why a curve is not accepted; empty if it is."""
-    wanted = accepted is None or accepted.entry(row.name) is not None
-    entry = None if rejected is None else rejected.entry(row.name)
-    if not row.is_fitted:
-        return row.status
-    if rejected is not None and entry is not None:
-        why = rejected.reasons[entry]
-        return f"in {rejected.path.name}{f': {why}' if why else ''}"
-    if accepted is not None and not wanted:
-        return f"not in {accepted.path.name}"
-    return "; ".join(filter(None, (rule.objection(row) for rule in rules)))
 
 
 def outliers(rows: Sequence[Row]) -> list[Row]:
@@ -171,10 +159,9 @@ def outliers(rows: Sequence[Row]) -> list[Row]:
     import pandas as pd
 
     rows = [row for row in rows if row.is_closed(MODULUS)]
-    moduli = [row.estimates[MODULUS].value for row in rows]
+    logarithms = pd.Series(np.log([row.estimates[MODULUS].value for row in rows]))
     groups = pd.Series([row.group for row in rows], dtype=object)
-    logarithms = pd.Series(np.log(moduli)).groupby(groups)
-    distances = (pd.Series(np.log(moduli)) - logarithms.transform("median")).abs()
+    distances = (logarithms - logarithms.groupby(groups).transform("median")).abs()
     limits = _LIMIT * _NORMAL * distances.groupby(groups).transform("median")
-    far = (distances > limits) & (limits > 0) & (logarithms.transform("size") >= _FEWEST)
-    return list(compress(rows, far))
+    sizes = logarithms.groupby(groups).transform("size")
+    return list(compress(rows, (distances > limits) & (limits > 0) & (sizes >= _FEWEST)))

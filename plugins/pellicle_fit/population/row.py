@@ -4,57 +4,42 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from pellicle.arrays import Array
 from pellicle_fit.files.measurement import Site
 from pellicle_fit.intervals import Estimate
+from pellicle_fit.wording import OVER_TIED
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 FITTED = "fitted"
 FAILED = "failed: "
-NOT_RUN = "not run"
 NUMBERS = {
-    "r_squared": "1",
-    "chi_squared": "1",
-    "points": "1",
+    **dict.fromkeys(("r_squared", "chi_squared", "points"), "1"),
     "noise": "N",
     "indentation": "m",
     "largest_force": "N",
-    "lead": "1",
-    "tension_needed": "1",
-    "failed_checks": "1",
-    "messages": "1",
+    **dict.fromkeys(("lead", "tension_needed", "failed_checks", "messages"), "1"),
 }
 """Unit of each number of a fit that is not a quantity of it; checks and messages are counted."""
 ENDS = "", "_low", "_high"
 """What the names of value and ends of an interval end with."""
-_OVER_TIED = "reduced_modulus", "youngs_modulus", "tension"
-"""Quantities whose intervals are over all explanations that the curve cannot tell apart."""
-_POINTS, _DIGITS = 80, 5
+_POINTS = 80
 
 
-class Sketch(NamedTuple):
-    """Position [m] and force [N] of some rows of a curve, and the force of the fit there."""
+def sketch(**columns: ArrayLike) -> dict[str, Array]:
+    """Return evenly chosen rows of a curve, with both ends, as many as a small figure has.
 
-    position: Array
-    force: Array
-    fit: Array | None = None
-
-    @classmethod
-    def of(cls, position: Array, force: Array, fit: Array | None = None) -> Self:
-        """Return evenly chosen rows, with the first and the last, as many as a small figure has."""
-        z, f = (np.asarray(values, dtype=float) for values in (position, force))
-        rows = np.flatnonzero(np.isfinite(z) & np.isfinite(f))
-        rows = rows[np.linspace(0, rows.size - 1, min(rows.size, _POINTS)).round().astype(int)]
-        model = None if fit is None else np.asarray(fit)[rows].astype("f4")
-        return cls(z[rows].astype("f4"), f[rows].astype("f4"), model)
-
-    def to_dict(self) -> dict[str, list[float]]:
-        """Return it as JSON data, rounded."""
-        lists = {name: v for name, v in self._asdict().items() if v is not None}
-        return {name: [float(f"{v:.{_DIGITS}g}") for v in values] for name, values in lists.items()}
+    The columns are position [m], force [N] and, of what was fitted, the force of the fit.
+    """
+    arrays = {name: np.asarray(values, dtype=float) for name, values in columns.items()}
+    rows = np.flatnonzero(np.isfinite(arrays["position"]) & np.isfinite(arrays["force"]))
+    rows = rows[np.linspace(0, rows.size - 1, min(rows.size, _POINTS)).round().astype(int)]
+    return {name: values[rows].astype("f4") for name, values in arrays.items()}
 
 
 @dataclass(eq=False)
@@ -68,16 +53,19 @@ class Row:
     """File of the force map that it belongs to."""
     site: Site | None = None
     """Where on the map it was measured."""
-    status: str = NOT_RUN
+    status: str = "not run"
     """`FITTED`, or why there is no fit."""
     fit: dict[str, Any] = field(default_factory=dict)
     """JSON data of the fit, with r_squared, indentation [m] and largest_force [N]."""
-    sketch: Sketch | None = None
+    sketch: dict[str, Array] = field(default_factory=dict)
+    """Some of its rows, as `sketch` returns them."""
     accepted: bool = False
     reason: str = ""
     """Why it is not accepted."""
     outlier: bool = False
     """Whether its modulus stands out from that of its group."""
+    curve: dict[str, Any] = field(default_factory=dict, init=False)
+    """What the fit says of the curve alone."""
     estimates: dict[str, Estimate] = field(default_factory=dict, init=False)
     """Modulus and tension over all that is tied, and the quantities of the chosen explanation."""
     numbers: dict[str, float] = field(default_factory=dict, init=False)
@@ -89,19 +77,21 @@ class Row:
 
     def keep(self, fit: dict[str, Any]) -> None:
         """Take the JSON data of a fit, which may hold a sketch, as workers return them."""
-        self.fit = {name: value for name, value in fit.items() if name != "sketch"}
+        self.status, self.fit = FITTED, {k: value for k, value in fit.items() if k != "sketch"}
         if "sketch" in fit:
-            self.sketch = Sketch.of(**fit["sketch"])
-        (curve,) = fit["curves"]
-        of_curve = {"points": curve["points"], "noise": curve["noise"]["value"]}
-        counts = {"failed_checks": len(curve["failed_checks"]), "messages": len(fit["messages"])}
-        found = fit | of_curve | counts
+            self.sketch = sketch(**fit["sketch"])
+        (self.curve,) = fit["curves"]
+        counts = {
+            name: len(of[name]) for name, of in (("failed_checks", self.curve), ("messages", fit))
+        }
+        found = (
+            fit | {"points": self.curve["points"], "noise": self.curve["noise"]["value"]} | counts
+        )
         self.numbers = {name: _number(found.get(name)) for name in NUMBERS}
-        headline = {name: fit[name] for name in _OVER_TIED if name in fit}
+        headline = {name: fit[name] for name in OVER_TIED if name in fit}
         # Modulus and tension come first.
         parameters = {**headline, **fit["parameters"], **headline}
         self.estimates = {name: Estimate(**entry) for name, entry in parameters.items()}
-        self.status = FITTED
 
     @property
     def is_fitted(self) -> bool:
@@ -118,12 +108,12 @@ class Row:
 
     def values(self) -> dict[str, float]:
         """Return all numbers in SI by name, ends of intervals too; an open end is NaN."""
-        values: dict[str, float] = {}
-        for name, estimate in self.estimates.items():
-            numbers = estimate.value, estimate.low, estimate.high
-            names = (f"{name}{end}" for end in ENDS)
-            values |= dict(zip(names, map(_number, numbers), strict=True))
-        return values | self.numbers
+        ends = {
+            f"{name}{end}": _number(number)
+            for name, e in self.estimates.items()
+            for end, number in zip(ENDS, (e.value, e.low, e.high), strict=True)
+        }
+        return ends | self.numbers
 
     @property
     def model(self) -> str:
@@ -131,34 +121,9 @@ class Row:
         return str(self.fit["model"]["words"]) if self.fit else ""
 
     @property
-    def verdict(self) -> str:
-        """Whether what was asked for is needed; empty without a fit."""
-        return str(self.fit.get("verdict", ""))
-
-    @property
-    def messages(self) -> list[str]:
-        """Warnings and notes of the fit."""
-        return list(self.fit.get("messages", ()))
-
-    @property
-    def _curve(self) -> dict[str, Any]:
-        return dict(next(iter(self.fit.get("curves", ())), {}))
-
-    @property
     def failed_checks(self) -> list[str]:
         """Codes of the checks that its residuals fail."""
-        return [check["code"] for check in self._curve.get("failed_checks", ())]
-
-    @property
-    def data(self) -> dict[str, Any]:
-        """Origin of the curve, and which part of it was fitted; empty without a fit."""
-        return dict(self._curve.get("data", {}))
-
-    @property
-    def radius(self) -> float | str:
-        """Radius of the indenter [m]; an empty text if it has none, or without a fit."""
-        radius: float | str = self._curve.get("indenter", {}).get("radius", "")
-        return radius
+        return [check["code"] for check in self.curve.get("failed_checks", ())]
 
     def to_dict(self) -> dict[str, Any]:
         """Return the row as JSON data, without the sketch."""
@@ -171,19 +136,15 @@ class Row:
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Self:
         """Return the row that JSON data hold, without its place on a map."""
-        fit = {name: value for name, value in data.items() if name != "site"}
-        name, group, status = (fit.pop(key) for key in ("curve", "group", "status"))
-        own = {key: fit.pop(key) for key in ("accepted", "reason", "outlier")}
-        return cls(name, group, status=status, fit=fit, **own)
+        own = ("group", "status", "accepted", "reason", "outlier")
+        fit = {name: data[name] for name in data if name not in (*own, "curve", "site")}
+        return cls(data["curve"], fit=fit, **{name: data[name] for name in own})
 
 
 def units_of(rows: Iterable[Row]) -> dict[str, str]:
     """Return the unit of each of the values of rows by name."""
-    units = dict(NUMBERS)
-    for row in rows:
-        for name, estimate in row.estimates.items():
-            units |= {f"{name}{end}": estimate.unit for end in ENDS}
-    return units
+    units = {name: e.unit for row in rows for name, e in row.estimates.items()}
+    return NUMBERS | {f"{name}{end}": unit for name, unit in units.items() for end in ENDS}
 
 
 def _number(value: float | None) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 
@@ -51,30 +51,37 @@ class Rule:
     """
 
     def __init__(self, text: str) -> None:
-        self.text, rule, unit_of = text, shown(text), units()
+        rule, unit_of = shown(text), units()
         parts = [part.strip() for part in _COMPARISON.split(text)]
-        self._sides, self._signs = parts[::2], parts[1::2]
-        sides = [side for side in self._sides if not _quantity(side)]
-        self._names = sorted(set().union(*map(names_in, sides)))
-        if len(self._sides) not in (2, 3) or not all(self._sides) or not self._names:
-            raise ConfigError(f"{rule} does not compare a number of the fit; {_EXAMPLE}")
-        for name in self._names:
-            if name not in unit_of:
-                raise ConfigError(f"{shown(name)} in {rule}: {nearest(name, unit_of)}")
-        self._units = {name: unit_of[name] for name in self._names}
-        ones = {name: 1.0 if unit == "1" else one(unit) for name, unit in self._units.items()}
-        dimensions = {}
-        for side in self._sides:
-            number = _quantity(side)
+        self.text, self._signs = text, parts[1::2]
+        self._sides: list[float | str] = []
+        self._units: dict[str, str] = {}
+        dimensions, sides = {}, parts[::2]
+        if len(sides) not in (2, 3) or not all(sides):
+            sides = []
+        for side in sides:
+            number = split(side)
+            if number is not None and not number[1][:1].isalpha():
+                number = None
+            names = names_in(side) if number is None else set()
+            for name in sorted(names):
+                if name not in unit_of:
+                    raise ConfigError(f"{shown(name)} in {rule}: {nearest(name, unit_of)}")
+            units_here = {name: unit_of[name] for name in names}
+            ones = {name: 1.0 if unit == "1" else one(unit) for name, unit in units_here.items()}
             try:
-                value = one(number[1]) if number else evaluate(side, ones)
+                value = evaluate(side, ones) if number is None else number[0] * one(number[1])
             except ConfigError:
                 raise
             except ValueError as error:
                 raise ConfigError(f"{shown(side)} in {rule} {error}") from None
             # A bare number is in SI.
-            if number or names_in(side):
+            if number or names:
                 dimensions[str(getattr(value, "dimensionality", "dimensionless"))] = side
+            self._sides.append(float(value.magnitude) if number else side)
+            self._units |= units_here
+        if not self._units:
+            raise ConfigError(f"{rule} does not compare a number of the fit; {_EXAMPLE}")
         if len(dimensions) > 1:
             texts = " with ".join(f"{side} ({name})" for name, side in dimensions.items())
             raise ConfigError(f"{rule} compares {texts}; {_EXAMPLE}")
@@ -82,8 +89,8 @@ class Rule:
     def objection(self, row: Row) -> str:
         """Return why a fit breaks the rule; empty if it does not."""
         known = row.values()
-        numbers = {name: known.get(name, np.nan) for name in self._names}
-        sides = [_value(side, numbers) for side in self._sides]
+        numbers = {name: known.get(name, np.nan) for name in sorted(self._units)}
+        sides = [float(evaluate(s, numbers) if isinstance(s, str) else s) for s in self._sides]
         pairs = zip(sides[:-1], self._signs, sides[1:], strict=True)
         if not any(map(np.isnan, sides)) and all(_SIGNS[sign](a, b) for a, sign, b in pairs):
             return ""
@@ -92,18 +99,6 @@ class Rule:
             for name, v in numbers.items()
         )
         return f"{', '.join(texts)}, against {self.text}"
-
-
-def _quantity(side: str) -> tuple[float, str] | None:
-    """Return number and unit of a side such as ``1 MPa``; None for an expression."""
-    number = split(side)
-    return number if number is not None and number[1][:1].isalpha() else None
-
-
-def _value(side: str, numbers: Mapping[str, float]) -> float:
-    """Return the value of a side in SI."""
-    number = _quantity(side)
-    return number[0] * float(one(number[1]).magnitude) if number else float(evaluate(side, numbers))
 
 
 def rules(texts: tuple[str, ...]) -> tuple[str, ...]:

@@ -4,47 +4,33 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
+
+from pellicle_fit.wording import OVER_TIED, SHOWN
 
 from .row import Row
 
 ALL = "all"
 """Name of the line of all accepted curves."""
-_DRAWN = ("reduced_modulus", "youngs_modulus", "tension", "work_of_adhesion")
 
 
-class Quartiles(NamedTuple):
-    """The distribution of one parameter in one group."""
-
-    group: str
-    parameter: str
-    unit: str
-    curves: int
-    """Number of curves of the group, accepted or not."""
-    n: int
-    """Number of accepted curves."""
-    open: int
-    """How many of them have an open interval; their values, some of many, are left out."""
-    outliers: int
-    minimum: float
-    lower_quartile: float
-    median: float
-    upper_quartile: float
-    maximum: float
+QUARTILES = "minimum", "lower_quartile", "median", "upper_quartile", "maximum"
 
 
-def summary(rows: Sequence[Row]) -> list[Quartiles]:
+def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
     """Return a line for each parameter and group that has an accepted curve, then for all curves.
 
-    Parameters that were fixed have none.  Where all intervals are open, quartiles are NaN.
+    Of all ``curves`` of a group ``n`` are accepted. Those whose intervals are ``open`` change no
+    quartile, since their values are some of many; where all are, quartiles are NaN. Parameters that
+    were fixed have no line.
     """
     import pandas as pd
 
     fitted = [
         (name, row.group, e.unit, e.value if row.is_closed(name) else np.nan, row.outlier)
-        for name in _DRAWN
+        for name in dict.fromkeys((*OVER_TIED, *SHOWN))
         for row in rows
         if row.accepted and (e := row.estimates.get(name)) is not None and not e.held
     ]
@@ -54,10 +40,12 @@ def summary(rows: Sequence[Row]) -> list[Quartiles]:
         groups = whole.groupby("group", sort=False) if len(curves) > 1 else ()
         parts = [(label(group), curves[group], part) for group, part in groups]
         for group, count, part in (*parts, (ALL, len(rows), whole)):
-            values, unit = part["value"], part["unit"].iloc[0]
-            counts = len(part), int(values.isna().sum()), int(part["outlier"].sum())
+            values = part["value"]
+            line = {"group": group, "parameter": name, "unit": part["unit"].iloc[0]}
+            line |= {"curves": count, "n": len(part), "open": int(values.isna().sum())}
             quartiles = values.quantile([0, 0.25, 0.5, 0.75, 1]).tolist()
-            lines.append(Quartiles(group, name, unit, count, *counts, *quartiles))
+            line["outliers"] = int(part["outlier"].sum())
+            lines.append(line | dict(zip(QUARTILES, quartiles, strict=True)))
     return lines
 
 

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.units import axis_unit
+from pellicle.components import Axis, Chart, Look, Series
 from pellicle_fit.candidate import Candidate
 from pellicle_fit.objective import MODULUS
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import parameters_of
 
-if TYPE_CHECKING:
-    from matplotlib.figure import FigureBase
+from .guides import guide
 
-_JOINT = (2.30, 5.99)
-"""Δχ² that bounds 68 % and 95 % confidence regions of two quantities."""
+_JOINT = {2.30: "68 % of the pair", 5.99: "95 % of the pair"}
+"""Δχ² that bounds confidence regions of two quantities."""
 _MODULI, _TENSIONS = 31, 21
 """Points along the modulus, and along the tension at each modulus."""
 _HALF_WIDTH = 4.5
@@ -26,30 +23,27 @@ _FURTHEST = np.log(10.0)
 """Moduli drawn to either side at most, as a logarithm."""
 
 
-def likelihood_map(explained: Candidate, figure: FigureBase) -> None:
-    """Draw √Δχ² over modulus and tension of an explanation, minimised over the rest."""
-    moduli, tensions, rises = _grid(explained)
-    estimates, axes = parameters_of(explained), figure.add_subplot()
-    (pascal, modulus_unit), (newton, tension_unit) = (
-        axis_unit(moduli, "Pa"),
-        axis_unit(tensions, "N/m"),
-    )
-    x, y = moduli * pascal, tensions * newton
-    levels = np.linspace(0, 4, 17)
-    filled = axes.contourf(x, y, np.sqrt(np.maximum(rises, 0)), levels, cmap="Blues_r")
-    axes.contour(x, y, rises, _JOINT, colors="black", linewidths=0.8)
-    modulus, tension = estimates[MODULUS], estimates[TENSION]
-    axes.plot(modulus.value * pascal, tension.value * newton, "k+")
-    for estimate, factor, line in (
-        (modulus, pascal, axes.axvline),
-        (tension, newton, axes.axhline),
-    ):
-        for end in (estimate.low, estimate.high):
-            if end is not None:
-                line(end * factor, color="0.2", linewidth=1.0, linestyle=":")
-    axes.set(xlabel=f"reduced modulus [{modulus_unit}]", ylabel=f"tension [{tension_unit}]")
-    axes.set_title("68 % and 95 % of the pair; dotted: 95 % of each alone", fontsize="medium")
-    figure.colorbar(filled, ax=axes, label="√Δχ²")
+def likelihood_map(explained: Candidate) -> Chart:
+    """Return the edges of what describes the curve, with all but modulus and tension sought."""
+    from matplotlib.figure import Figure
+
+    grid, own = _grid(explained), parameters_of(explained)
+    edges = Figure().add_subplot().contour(*grid, [*_JOINT]).allsegs
+    series = [
+        Series(points[:, 0], points[:, 1], legend=name * (points is lines[0]), look=Look(0, line))
+        for line, (name, lines) in enumerate(zip(_JOINT.values(), edges, strict=True))
+        for points in lines
+    ]
+    modulus, tension = own[MODULUS], own[TENSION]
+    best = np.array([modulus.value]), np.array([tension.value])
+    series.append(Series(*best, legend="best", look=Look(0, None, 0)))
+    x, y = (np.concatenate(ends) for ends in zip(*((s.x, s.y) for s in series), strict=True))
+    across, along = [x.min(), x.max()], [y.min(), y.max()]
+    moduli = [guide([end] * 2, along) for end in (modulus.low, modulus.high) if end is not None]
+    tensions = [guide(across, [end] * 2) for end in (tension.low, tension.high) if end is not None]
+    named = guide([], [], "95 % of each alone")
+    axes = Axis("reduced modulus", "Pa"), [Axis("tension", "N/m")]
+    return Chart(*axes, [*series, *moduli, *tensions, named])
 
 
 def _grid(explained: Candidate) -> tuple[Array, Array, Array]:

@@ -1,4 +1,4 @@
-"""The web page of a fit: estimates, warnings, figures, inputs, and everything as JSON."""
+"""The web page of a fit, with its figures, inputs and all numbers, and its HTML in a notebook."""
 
 from __future__ import annotations
 
@@ -9,18 +9,27 @@ from pathlib import Path
 
 from pellicle.components import Column, Table
 from pellicle.files import atomic_write, json_text
-from pellicle.show import Block, Code, Notice, Picture, Section, Text, input_table, svg
+from pellicle.show import (
+    Block,
+    Code,
+    Notice,
+    Picture,
+    Section,
+    Text,
+    input_table,
+    png,
+    summary,
+    svg,
+)
 from pellicle.show import page as render
-from pellicle.units import readable
 from pellicle_fit.config import FitConfig
-from pellicle_fit.many import ManyFits
+from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.result import Fit
 from pellicle_fit.verdict import Verdict
-from pellicle_fit.wording import words
 
 from . import tables
 from .contact_sheet import PAGE, sheets
-from .figures import panels
+from .figures import charts, panels
 from .sentences import sentence_of_fit, sentences_of_population
 
 _LINES = 200
@@ -37,6 +46,17 @@ _ELSEWHERE = {
 _UNDECIDED = Verdict.CANNOT_TELL, Verdict.UNDESCRIBED
 
 
+def html_of_fit(fit: Fit) -> str:
+    """Return a sentence, the estimates with their intervals, and the curve with its fit."""
+    count, warnings = len(fit.members), len(fit.warnings)
+    title = f"Fit of {count} curves" if count > 1 else "Fit of a curve"
+    text = f"{sentence_of_fit(fit)} {_sentence(fit.comparison)}"
+    if warnings:
+        text += f" {warnings} warning{'s' * (warnings > 1)}: see warnings."
+    (chart, *_), *_ = charts(fit).values()
+    return summary(title, text, tables.estimates(fit), picture=png(chart))
+
+
 def save_report(fit: Fit | ManyFits, path: Path, title: str) -> Path:
     """Write the page of a fit or of many fits, and return its path.
 
@@ -47,32 +67,33 @@ def save_report(fit: Fit | ManyFits, path: Path, title: str) -> Path:
     StorageError
         The file cannot be written.
     """
-    many = isinstance(fit, ManyFits)
-    results = _many(fit) if isinstance(fit, ManyFits) else _one(fit)
-    advice = "" if isinstance(fit, ManyFits) else fit.advice
     figures: list[Block] = [
         Picture(svg(p.draw, p.size), p.caption, p.caption, wide=p.size[0] > 2 * p.size[1])
         for p in panels(fit)
     ]
-    if isinstance(fit, ManyFits):
-        figures += _sheets(fit)
     content = json_text(fit.to_dict())
     code: Block = Code(content, "All numbers, in SI.", f"{path.stem}.json")
     if len(content) > _LONGEST:
         code = Text("With this number of curves the page does not repeat the tables of --output.")
-    given = fit.config.to_dict() if fit.config else {}
-    known = {name: value for name, value in given.items() if name not in _ELSEWHERE}
+    if isinstance(fit, Fit):
+        configuration = fit.config.to_dict() if fit.config else {}
+        results, data = _one(fit), _data(fit)
+        advice: list[Block] = [Text(_sentence(fit.advice))] if fit.advice else []
+    else:
+        configuration, results, data, advice = fit.configuration, _many(fit), [], []
+        figures += _sheets(fit)
+    known = {name: value for name, value in configuration.items() if name not in _ELSEWHERE}
     inputs = input_table(known, FitConfig, "The indenter, and what was given or chosen.")
     sections = [
         Section("Result", results),
         Section("Figures", figures),
-        Section("More informative experiments", [Text(_sentence(advice))] if advice else []),
+        Section("More informative experiments", advice),
         Section("Inputs", [inputs] if known else []),
-        Section("Data", [] if isinstance(fit, ManyFits) else _record(fit)),
+        Section("Data", data),
         Section("As JSON", [code]),
     ]
     now = datetime.now(UTC).isoformat(" ", timespec="seconds").replace("+00:00", " UTC")
-    kind = "Fits" if many else "Fit"
+    kind = "Fit" if isinstance(fit, Fit) else "Fits"
     text = render(title, sections, f"{kind} of pellicle {version('pellicle')}, {now}")
     with atomic_write(path) as part:
         part.write_text(text, encoding="utf-8")
@@ -81,18 +102,16 @@ def save_report(fit: Fit | ManyFits, path: Path, title: str) -> Path:
 
 def _one(fit: Fit) -> list[Block]:
     """Return the results of the fit of one curve or of several."""
-    agree = fit.answer.agreement.factor == 1
-    return [
+    blocks: list[Block] = [
         Text(sentence_of_fit(fit), lead=True),
         Notice(_sentence(fit.comparison), good=fit.verdict not in _UNDECIDED),
-        *([Notice(_sentence(fit.agreement), good=agree)] if fit.agreement else []),
-        Text(_sentence(fit.sentences[0])),
-        *_warnings(fit.warnings),
-        tables.estimates(fit),
-        tables.explanations(fit),
-        tables.curves(fit),
-        *([Notice("Notes:", good=True, details=fit.notes)] if fit.notes else []),
     ]
+    if fit.agreement:
+        agree = fit.answer.agreement.factor == 1
+        blocks.append(Notice(_sentence(fit.agreement), good=agree))
+    blocks += [Text(_sentence(fit.sentences[0])), *_warnings(fit.warnings)]
+    blocks += [tables.estimates(fit), tables.explanations(fit), tables.curves(fit)]
+    return [*blocks, *([Notice("Notes:", good=True, details=fit.notes)] if fit.notes else [])]
 
 
 def _many(fits: ManyFits) -> list[Block]:
@@ -109,7 +128,7 @@ def _many(fits: ManyFits) -> list[Block]:
         blocks.append(Notice("Population:", good=False, details=_first(fits.notes)))
     if any(row.accepted for row in rows):
         blocks.append(tables.groups(rows))
-    messages = [f"{row.name}: {text}" for row in rows for text in row.messages]
+    messages = [f"{row.name}: {text}" for row in rows for text in row.fit.get("messages", ())]
     return [*blocks, tables.rows(rows), *_warnings(_first(messages))]
 
 
@@ -136,23 +155,22 @@ def _warnings(messages: Sequence[str]) -> list[Block]:
     return [Notice("Warnings:", good=False, details=messages)] if messages else []
 
 
-def _record(fit: Fit) -> list[Block]:
+def _data(fit: Fit) -> list[Block]:
     """Return the table of the files that were fitted, and the versions."""
     data = [member.data for member in fit.members]
     roles = (entry["columns"].items() for entry in data)
-    heads = {
-        "file": [entry["file"] or "numbers given in Python" for entry in data],
-        "curve": [entry["curve"] or "" for entry in data],
-        "columns": [", ".join(f"{role} = {column}" for role, column in items) for items in roles],
-        "segment": [entry["segment"] for entry in data],
-        "baseline": [entry["baseline"] for entry in data],
-        "SHA-256": [entry["sha256"] or "" for entry in data],
-    }
-    for name, unit in (("spring_constant", "N/m"), ("sensitivity", "m/V")):
-        values = (entry[name] for entry in data)
-        heads[words(name)] = ["" if value is None else readable(value, unit) for value in values]
-    columns = [Column(head, texts) for head, texts in heads.items() if any(texts)]
-    blocks: list[Block] = [Table(columns, "The data, and how they were read.")]
+    columns = [
+        Column("file", [entry["file"] or "numbers given in Python" for entry in data]),
+        Column("curve", [entry["curve"] or "" for entry in data]),
+        Column("columns", [", ".join(f"{role} = {column}" for role, column in of) for of in roles]),
+        Column("segment", [entry["segment"] for entry in data]),
+        Column("baseline", [entry["baseline"] for entry in data]),
+        Column("SHA-256", [entry["sha256"] or "" for entry in data]),
+        Column("spring constant", [entry["spring_constant"] or "" for entry in data], "N/m"),
+        Column("sensitivity", [entry["sensitivity"] or "" for entry in data], "m/V"),
+    ]
+    shown = [column for column in columns if any(column.values)]
+    blocks: list[Block] = [Table(shown, "The data, and how they were read.")]
     if fit.record is not None:
         versions = fit.record.versions.items()
         blocks.append(Text(f"Versions: {', '.join(f'{n} {number}' for n, number in versions)}."))

@@ -24,7 +24,8 @@ from pellicle.errors import ConfigError, StorageError
 from pellicle_fit import many
 from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.files.sources import Source
-from pellicle_fit.many import ManyFits, fit_sources
+from pellicle_fit.many import fit_sources
+from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.population.judgement import (
     group_of,
     group_pattern,
@@ -36,7 +37,7 @@ from pellicle_fit.population.row import Row
 from pellicle_fit.population.rules import Rule
 from pellicle_fit.population.summary import summary
 from pellicle_fit.report.contact_sheet import sheets
-from pellicle_fit.report.distributions import drawable
+from pellicle_fit.report.population_figures import drawable
 from pellicle_fit.report.sentences import sentences_of_population
 from tests.plugins.fit.test_many import BEAD, HERTZ, OPTIONS, curve, save
 
@@ -134,11 +135,11 @@ def test_outliers_are_kept() -> None:
     assert [r.name for r in rows if r.outlier] == ["3"]
     assert rows[3].accepted
     assert any("nothing was left out: 3" in note for note in notes)
-    parts = {part.group: part for part in summary(rows)}
-    assert (parts["soft/1"].n, parts["soft/1"].outliers, parts["all"].n) == (20, 1, 40)
+    parts = {part["group"]: part for part in summary(rows)}
+    assert (parts["soft/1"]["n"], parts["soft/1"]["outliers"], parts["all"]["n"]) == (20, 1, 40)
     soft = [r.estimates["reduced_modulus"].value for r in rows[:20]]
-    assert parts["soft/1"].median == np.median(soft)
-    assert parts["soft/1"].upper_quartile == np.quantile(soft, 0.75)
+    assert parts["soft/1"]["median"] == np.median(soft)
+    assert parts["soft/1"]["upper_quartile"] == np.quantile(soft, 0.75)
     # Equal moduli have no deviation to compare with, and four have no majority.
     assert not outliers([row("a")] * 9 + [row("b", 2e3)])
     assert not outliers([row("a", v) for v in (1e3, 1.01e3, 0.99e3, 1e6)])
@@ -151,10 +152,10 @@ def test_open_intervals_have_no_median() -> None:
     judge(rows, [], None, None)
     assert not any(r.outlier for r in rows)
     (part,) = summary(rows)
-    assert (part.n, part.open, part.median, part.maximum) == (10, 5, 1.2e3, 1.4e3)
+    assert [part[k] for k in ("n", "open", "median", "maximum")] == [10, 5, 1.2e3, 1.4e3]
     assert "1.2 kPa (1.1 to 1.3; open in 5 of 10)" in sentences_of_population(ManyFits(rows))
     (part,) = summary(rows[5:])
-    assert (part.n, part.open, np.isnan(part.median)) == (5, 5, True)
+    assert (part["n"], part["open"], np.isnan(part["median"])) == (5, 5, True)
     assert [r.name for r in drawable(rows)] == list("01234")
 
 

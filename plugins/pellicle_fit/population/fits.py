@@ -1,0 +1,87 @@
+"""The fits of a population, and their table with a row for each curve."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .row import FAILED, Row, units_of
+from .summary import summary
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_MEASURED = {"spring_constant": "N/m", "sensitivity": "m/V", "poissons_ratio": "1"}
+"""Numbers in the data of a row, and their units."""
+_COUNTS = "failed_checks", "messages"
+
+
+@dataclass
+class ManyFits:
+    """The fits of many curves."""
+
+    rows: list[Row]
+    files: tuple[Path, ...] = ()
+    resumed: int = 0
+    """Number of fits that an earlier call had finished."""
+    notes: list[str] = field(default_factory=list)
+    """Notes on the population: rejected curves, outliers, lists with wrong names."""
+    maps: dict[str, xr.Dataset] = field(default_factory=dict)
+    """Images of each force map, by its file."""
+    configuration: dict[str, Any] = field(default_factory=dict)
+    """The configuration of the fits, as JSON data."""
+
+    @property
+    def failed(self) -> int:
+        """Number of curves that could not be fitted."""
+        return sum(row.status.startswith(FAILED) for row in self.rows)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the fits as JSON data."""
+        curves = [row.to_dict() for row in self.rows]
+        return {"curves": curves, "groups": summary(self.rows), "notes": self.notes}
+
+
+def table(rows: Sequence[Row]) -> xr.Dataset:
+    """Return rows as a dataset over ``curve``; NaN where there is no number.
+
+    Each quantity has its value and the ends of its interval, such as ``tension_low``.
+    """
+    import pandas as pd
+    import xarray as xr
+
+    cells = [_cells(row) for row in rows]
+    # The curve with the most quantities gives the order of the columns.
+    names = list(dict.fromkeys(name for one in sorted(cells, key=len)[::-1] for name in one))
+    units = {"x": "m", "y": "m", **_MEASURED, **units_of(rows)}
+    columns: dict[str, Any] = {}
+    for name, column in pd.DataFrame(cells, columns=names).items():
+        if name in units and name not in _COUNTS:
+            columns[str(name)] = "curve", column.to_numpy(float), {"units": units[str(name)]}
+        else:
+            columns[str(name)] = "curve", column.fillna("").to_numpy()
+    return xr.Dataset(columns, {"curve": np.array([row.name for row in rows], dtype=object)})
+
+
+def _cells(row: Row) -> dict[str, Any]:
+    """Return the cells of a curve by the names of their columns, in SI."""
+    data, texts = row.curve.get("data", {}), ("verdict", "comparison", "advice")
+    place = {} if row.site is None else {"map": row.map, "x": row.site.x, "y": row.site.y}
+    roles = data.get("columns", {}).items()
+    return {
+        "status": row.status,
+        **{name: value for name, value in row.values().items() if name not in _COUNTS},
+        "model": row.model,
+        **{name: row.fit.get(name, "") for name in texts},
+        **{name: getattr(row, name) for name in ("group", "accepted", "outlier", "reason")},
+        **place,
+        "failed_checks": "; ".join(row.failed_checks),
+        **{name: data.get(name) for name in _MEASURED},
+        **{name: data.get(name) or "" for name in ("segment", "baseline", "file", "sha256")},
+        "columns": "; ".join(f"{role} = {column}" for role, column in roles),
+        "messages": "; ".join(row.fit.get("messages", ())),
+    }
