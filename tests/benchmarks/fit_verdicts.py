@@ -61,7 +61,9 @@ class Truth(NamedTuple):
 def rows_of(protocol: str, deepest: float) -> list[Rows]:
     """Return the paths of a protocol."""
     if protocol == "both":
-        return [path("both", 2 * ROWS, deepest)]
+        # Of the two rows at the turn, where a velocity is that of neither pass, one.
+        rows = path("both", 2 * ROWS, deepest)
+        return [Rows(*(np.delete(column, ROWS) for column in rows))]
     rates = (1.0, 0.1) if protocol == "speeds" else (1.0,)
     return [path("approach", ROWS, deepest, rate) for rate in rates]
 

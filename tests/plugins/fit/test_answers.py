@@ -12,10 +12,9 @@ from fit_verdicts import NOISE, TOP, outcome, pink, truth_of
 from scipy.optimize import minimize
 
 import pellicle as pl
-from pellicle_fit import verdict as comparison
 from pellicle_fit.candidate import Candidate
 from pellicle_fit.noise import Flaw
-from pellicle_fit.verdict import Verdict, decision
+from pellicle_fit.verdict import MARGIN, Verdict, decision
 from pellicle_plugins.indenters.of_revolution import Cone, FlatPunch, Paraboloid, Sphere
 from tests.physics.frozen.fit_curves import MODULUS, RADIUS, Array
 from tests.plugins.fit.conftest import ends_of, holds
@@ -162,7 +161,7 @@ def test_means_of_rows_answer_as_all_rows_do(
     """Of a long curve the means that searches see lose next to nothing of the intervals."""
     rows = curve(tension, points=3000, noise=0.02)
     short = fit(*rows)
-    monkeypatch.setattr(comparison, "_ROWS", 3000)
+    monkeypatch.setattr("pellicle_fit.rivals.ROWS", 3000)
     long = fit(*rows)
     low, high = ends_of(long.reduced_modulus)
     for end in ("value", "low", "high"):
@@ -201,7 +200,7 @@ def test_false_claims_at_the_margin(separation: float) -> None:
     # χ² differ by S without noise: with it by normal numbers about S of deviation 2√S.
     draws = np.random.default_rng(1).standard_normal(100_000)
     lead = separation + 2 * np.sqrt(separation) * draws
-    assert np.mean(lead < -comparison.MARGIN) < 0.03
+    assert np.mean(lead < -MARGIN) < 0.03
 
 
 @pytest.mark.slow
