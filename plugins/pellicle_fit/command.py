@@ -119,7 +119,7 @@ def fit(
         Path | None,
         typer.Option(
             metavar="FIT.json",
-            help="Repeat the fit that a JSON file records, and say if files or versions differ.",
+            help="Repeat the fit that a JSON file records, from the folder where it was made.",
         ),
     ] = None,
     si: Annotated[bool, typer.Option("--si", help="Print tables in SI units.")] = False,
@@ -149,7 +149,7 @@ def fit(
     if repeated is not None and configs:
         raise ConfigError(f"{configs[0]}: --again has a configuration of its own; leave one out")
     config = FitConfig.merged(
-        configs[0] if configs else repeated and repeated.config,
+        configs[0] if configs else repeated,
         [
             *(_override("fix", text) for text in fix or ()),
             *(_override("uncertainty", text) for text in uncertainty or ()),
@@ -181,8 +181,6 @@ def fit(
         print_notes(result)
     else:
         print_fit(result, si=si)
-    if repeated and (difference := repeated.difference(result.to_dict())):
-        echo(f"warning: {difference}", err=True)
     written = [*many.files] if many else []
     if directory is not None and not isinstance(result, ManyFits):
         written.append(result.save(directory / f"{name}.json"))

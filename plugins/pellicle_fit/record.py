@@ -1,4 +1,4 @@
-"""The record of a fit: what was fitted, with which versions, when; and the same fit again."""
+"""The record of a fit: what was fitted, with which versions, and when."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 from itertools import chain
 from pathlib import Path
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import Any
 
 from pellicle import registry
 from pellicle.components import Component
@@ -18,10 +18,6 @@ from pellicle.schema import walk
 
 from .config import FitConfig
 from .files.measurement import Measurement
-from .files.readers import sha256
-
-_ABOVE = 2
-"""Folders above that of a record in which its curves are sought."""
 
 
 @dataclass(frozen=True)
@@ -80,32 +76,10 @@ def components_of(config: FitConfig) -> set[type[Component]]:
     return named | {type(entry) for entry in objects if isinstance(entry, Component)}
 
 
-class Repetition(NamedTuple):
-    """A fit to repeat."""
+def repetition(path: Path) -> FitConfig:
+    """Return the configuration that the JSON of a fit, of a pool or of many fits records.
 
-    config: FitConfig
-    sha256: Mapping[str, str]
-    """Hash of each file that was fitted, by its path as it was given."""
-    versions: Mapping[str, str]
-
-    def difference(self, content: Mapping[str, Any]) -> str:
-        """Return how files and versions of the JSON data of fits differ; empty if they do not."""
-        now = _hashes(content)
-        files = sorted(now.keys() | self.sha256.keys())
-        differs = [file for file in files if now.get(file) != self.sha256.get(file)]
-        differs += [
-            f"{name} {version} (was {self.versions[name]})"
-            for name, version in content.get("versions", {}).items()
-            if self.versions.get(name) not in (None, version)
-        ]
-        return f"not what was fitted then: {', '.join(differs)}" if differs else ""
-
-
-def repetition(path: Path) -> Repetition:
-    """Return what the JSON file of a fit, of a pool or of many fits says was fitted.
-
-    Its curves are sought from the current folder, from that of the file, and from those above it;
-    those whose hashes are the recorded ones are preferred.
+    Its curves are sought from the current folder, as they were then.
 
     Raises
     ------
@@ -114,40 +88,17 @@ def repetition(path: Path) -> Repetition:
     StorageError
         The file cannot be read.
     """
-    content = content_of(path)
-    hashes = _hashes(content)
-    if not hashes:
+    config = FitConfig.from_json(json.dumps(content_of(path)))
+    if not config.curves:
         raise ConfigError(
             f"{path}: holds no fit of a file; numbers that were given in Python have to be given "
             "again, with FitConfig.from_json"
         )
-    config = FitConfig.from_json(json.dumps(content))
-    file, digest = next(iter(hashes.items()))
-    folders = [Path(), *path.resolve().parents[: 1 + _ABOVE]]
-    folders = [folder for folder in folders if (folder / file).is_file()]
-    if not folders:
-        raise StorageError(
-            f"{file}: is not there, nor in the folder of {path} or above it; call pellicle where "
-            "the fit was made"
-        )
-    folder = next((f for f in folders if sha256(f / file) == digest), folders[0])
-    if folder != Path():
-        hashes = {str(folder / file): digest for file, digest in hashes.items()}
-        config = FitConfig.merged(config, curves=tuple(folder / curve for curve in config.curves))
-    return Repetition(config, hashes, content.get("versions", {}))
-
-
-def _hashes(content: Mapping[str, Any]) -> dict[str, str]:
-    """Return the hash of each file of the JSON data of a fit, of a pool or of many fits."""
-    found: dict[str, str] = {}
-    for row in content.get("curves", ()):
-        data = row.get("data", {})
-        found |= {data["file"]: data["sha256"]} if data.get("file") else _hashes(row)
-    return found
+    return config
 
 
 def content_of(path: Path) -> dict[str, Any]:
-    """Return what the JSON file of a fit holds; it raises what `repetition` does."""
+    """Return what the JSON file of a fit holds; errors as of `repetition`."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:

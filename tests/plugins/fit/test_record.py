@@ -163,7 +163,7 @@ def test_record_of_many(cli: Cli) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("no_rivals")
 def test_again(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The same fit gives the same numbers, from another folder too; a change of file is told."""
+    """The same fit gives the same numbers; options replace what is recorded."""
     measure(FILE)
     cli(str(FILE), *OPTIONS, "-o", "out")
     first = Path("out/Bead 1 µ-fit.json")
@@ -171,19 +171,9 @@ def test_again(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     same = cli("--again", str(first), "--json")
     assert timeless(same.stdout) == timeless(text)
     assert "warning" not in same.stderr
-    Path("elsewhere").mkdir()
-    monkeypatch.chdir("elsewhere")
-    moved = cli("--again", str(".." / first), "--json")
-    assert json.loads(moved.stdout)["tension"] == json.loads(text)["tension"]
-    assert "warning" not in moved.stderr
-    monkeypatch.chdir("..")
     # Options replace what is recorded.
     hertz = json.loads(cli("--again", str(first), "--fix", "tension=0", "--json").stdout)
     assert hertz["tension"]["held"]
-    measure(FILE, seed=1)
-    first.write_text(text.replace(f'"numpy": "{np.__version__}"', '"numpy": "0.1"'), "utf-8")
-    changed = cli("--again", str(first)).stderr
-    assert f"not what was fitted then: {FILE}, numpy {np.__version__} (was 0.1)" in changed
 
 
 @pytest.mark.parametrize(
@@ -194,13 +184,11 @@ def test_again(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
         ("[]", "is not the JSON of a fit"),
         ('{"configuration": {"indenter": {"type": "cone"}}}', "holds no fit of a file"),
         (
-            '{"configuration": {"indenter": {"type": "cone"}}, '
-            '"curves": [{"data": {"file": "gone.csv", "sha256": ""}}]}',
-            "gone.csv: is not there, nor in the folder of fit.json",
+            '{"configuration": {"indenter": {"type": "cone", "half_angle": 1}, "curves": "b.csv"}}',
+            "b.csv",
         ),
         (
-            '{"configuration": {"indenter": {"type": "ball"}}, '
-            '"curves": [{"data": {"file": "a.csv", "sha256": ""}}]}',
+            '{"configuration": {"indenter": {"type": "ball"}, "curves": "a.csv"}}',
             "'ball' is not an indenter",
         ),
     ],
