@@ -13,7 +13,7 @@ import pellicle as pl
 from pellicle.cli import INTERRUPTED, NOT_CONVERGED, echo, print_json
 from pellicle.errors import ConfigError
 
-from .print_fits import print_fit, print_fits, print_notes, show_fits
+from .print_fits import print_fit, print_fits, print_warnings, show_fits
 
 if TYPE_CHECKING:
     from pellicle_fit.config import FitConfig
@@ -97,7 +97,8 @@ def fit(
         bool, typer.Option("--pool", help="Fit one modulus and one tension to all curves.")
     ] = False,
     compare: Annotated[
-        bool, typer.Option("--compare", help="Print all explanations, with their intervals.")
+        bool,
+        typer.Option("--compare", help="Get and print intervals of all explanations."),
     ] = False,
     set_: Annotated[
         list[str] | None,
@@ -122,6 +123,9 @@ def fit(
             help="Repeat the fit that a JSON file records, from the folder where it was made.",
         ),
     ] = None,
+    details: Annotated[
+        bool, typer.Option("--details", help="Print all quantities, explanations and checks, too.")
+    ] = False,
     si: Annotated[bool, typer.Option("--si", help="Print tables in SI units.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
     quiet: Annotated[
@@ -178,9 +182,9 @@ def fit(
     elif isinstance(result, ManyFits):
         print_fits(result, quiet=quiet, directory=directory, si=si)
     elif quiet:
-        print_notes(result)
+        print_warnings(result)
     else:
-        print_fit(result, si=si)
+        print_fit(result, details=details or compare, si=si)
     written = [*many.files] if many else []
     if directory is not None and not isinstance(result, ManyFits):
         written.append(result.save(directory / f"{name}.json"))

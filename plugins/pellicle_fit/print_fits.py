@@ -11,6 +11,9 @@ from pellicle.cli import NOT_CONVERGED, echo, print_json, print_table
 from pellicle.errors import first_of
 from pellicle.files import is_file
 
+from .words.population import advice_of_population, sentences_of_population
+from .words.story import story
+
 if TYPE_CHECKING:
     from pellicle_fit.population.fits import ManyFits
     from pellicle_fit.result import Fit
@@ -19,27 +22,26 @@ _LINES = 50
 """Largest number of curves that are listed although a table is written."""
 
 
-def print_fit(fit: Fit, *, si: bool = False) -> None:
-    """Print what a fit says in words, its estimates, and a line for each curve of several."""
+def print_fit(fit: Fit, *, details: bool = False, si: bool = False) -> None:
+    """Print numbers, verdict and next step, and in detail what they rest on."""
     from pellicle_fit.report import tables
-    from pellicle_fit.report.sentences import sentence_of_fit
 
-    echo(sentence_of_fit(fit, si=si))
-    print_table(tables.estimates(fit, si=si), si=si)
-    if len(fit.members) > 1:
-        print_table(tables.curves(fit, si=si), si=si)
-    if fit.config is not None and fit.config.compare:
-        print_table(tables.explanations(fit, si=si), si=si)
-    for sentence in fit.sentences:
-        echo(sentence)
-    print_notes(fit)
+    for line in story(fit, si=si):
+        echo(line)
+    if details:
+        for table in (tables.estimates, tables.explanations, tables.curves):
+            print_table(table(fit, si=si), si=si)
+    print_warnings(fit, details=details)
 
 
-def print_notes(fit: Fit) -> None:
-    """Print the warnings and notes of a fit."""
-    for kind, texts in (("warning", fit.warnings), ("note", fit.notes)):
-        for text in texts:
-            echo(f"{kind}: {text}", err=True)
+def print_warnings(fit: Fit, *, details: bool = False) -> None:
+    """Print the warnings of reading a fit's curves, and in detail failed checks and notes too."""
+    read = {text for member in fit.members for text in member.messages}
+    for text in fit.warnings:
+        if details or text in read:
+            echo(f"warning: {text}", err=True)
+    for text in fit.notes if details else ():
+        echo(f"note: {text}", err=True)
 
 
 def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None, si: bool = False) -> None:
@@ -65,6 +67,8 @@ def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None, si: bool 
         echo(f"{len(fits.rows)} curves: see {directory / 'fits.csv'}")
     if len(fits.rows) > 1 and any(row.accepted for row in fits.rows):
         print_table(tables.groups(fits.rows, si=si), si=si)
+    for line in [sentences_of_population(fits), *advice_of_population(fits.rows)]:
+        echo(line)
 
 
 def show_fits(directory: Path, si: bool, json: bool) -> bool:

@@ -25,9 +25,9 @@ from .objective import CONTACT_POINT
 from .recipe import answer
 from .record import Stopwatch, data_of
 from .result import Fit, Member
-from .sentences import advised
 from .simulated.body import body_of, layer_of, layer_table
 from .simulated.simulation import Simulation
+from .words.advice import steps
 
 _BASELINES = {"none": (), "offset": ("offset",), "slope": ("offset", "slope")}
 _REACH = 1.5
@@ -56,7 +56,7 @@ class Problem:
         """
         with status_line("fitting", progress):
             found = answer([member.curve for member in self.members], **self.question)
-            advice = advised(found)
+            advice = steps(found, self.members, self.config)
         record = self.watch.record(self.config, [member.data for member in self.members])
         return Fit(found, self.members, advice, self.poissons_ratio, self.config, record)
 
@@ -93,7 +93,7 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
     members = []
     for source, one, body in zip(sources, measured, bodies, strict=True):
         curve = Curve(one.position, one.force, body, one.time, one.unloading, one.stiffness)
-        members.append(Member(source.name, curve, one.messages, data_of(one, config)))
+        members.append(Member(source.name, curve, one.messages, one.left_out, data_of(one, config)))
     model = _known(config.model, fix, ratio)
     # What is given leaves nothing to ask.
     given = [effect for effect in model if quantities(type(effect)) and not effect.open]

@@ -87,6 +87,17 @@ class Answer:
             and modulus < SMALL * min((m for f, m in moduli.items() if f is not fit), default=0.0)
         )
 
+    @property
+    def tied_without(self) -> list[Candidate]:
+        """What explains the curves as well as the best with what is asked for, without it."""
+        margin, word = max(MARGIN, self.threshold), self.question.word
+        asked = next(fit for fit in self.explanations if fit.types == self.decision.asked)
+        return [
+            fit
+            for fit in self.explanations
+            if not word <= fit.types and abs(fit.aic - asked.aic) < margin
+        ]
+
     def _over_tied(self, name: str) -> Estimate:
         """Return the least interval that contains those of all that is tied."""
         tied = [fit for fit in self.tied if fit not in self.not_held]

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from pellicle.arrays import Array
 from pellicle.files import json_text, write_json
 
-from . import sentences
 from .candidate import Candidate
 from .config import FitConfig, described
 from .curve import Curve
@@ -20,6 +19,10 @@ from .intervals import CONFIDENCE, Estimate
 from .recipe import Answer
 from .record import Record
 from .verdict import MARGIN, Verdict
+from .words.advice import Step
+from .words.effects import words
+from .words.remarks import agreement, failed_checks, remarks
+from .words.story import calibration_of, story, verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -33,6 +36,8 @@ class Member(NamedTuple):
     curve: Curve
     messages: tuple[str, ...]
     """Of reading and cleaning; each is a `Note` or a warning."""
+    left_out: tuple[int, int] | None
+    """First and last row of the retraction where the approach alone is fitted."""
     data: dict[str, Any]
     """Origin, and the part that is fitted, as JSON data."""
 
@@ -45,8 +50,8 @@ class Fit:
     """All explanations that were compared, and the verdict."""
     members: tuple[Member, ...]
     """The curves."""
-    advice: str
-    """What to measure next; empty if nothing would help."""
+    steps: list[Step]
+    """What to do next, the most urgent first; empty if nothing would help."""
     poissons_ratio: float | None
     """ν, if it was given."""
     config: FitConfig
@@ -100,28 +105,27 @@ class Fit:
 
     @property
     def comparison(self) -> str:
-        """The verdict in words, with its figures."""
-        return sentences.comparison(self.answer)
+        """The verdict in words."""
+        return verdict(self.answer)
 
     @property
-    def sentences(self) -> list[str]:
-        """The data, the verdict and the advice in words."""
-        data = sentences.data(self.answer, self.config.uncertainty)
-        return [*filter(None, [data, self.comparison, self.agreement, self.advice])]
+    def advice(self) -> str:
+        """What to do next, in words; empty if nothing would help."""
+        return str(self.steps[0]) if self.steps else ""
 
     @property
     def agreement(self) -> str:
         """Whether several curves agree on what they share, in words; empty for one."""
-        return sentences.agreement(self.answer, [member.name for member in self.members])
+        return agreement(self.answer, [member.name for member in self.members])
 
     @property
     def messages(self) -> list[str]:
         """Warnings, and notes of what was done; those of one of several curves with its name."""
         several, found = len(self.members) > 1, []
         for member, judged in zip(self.members, self.answer.judgements, strict=True):
-            own = [*member.messages, *(text for _, text in sentences.failed_checks(judged))]
+            own = [*member.messages, *failed_checks(judged).values()]
             found += [type(text)(f"{member.name}: {text}") if several else text for text in own]
-        return [*found, *sentences.remarks(self.answer)]
+        return [*found, *remarks(self.answer)]
 
     @property
     def warnings(self) -> list[str]:
@@ -154,14 +158,14 @@ class Fit:
         return {
             **{name: vars(e) for name, e in self.estimates().items() if name in asked},
             "parameters": {name: vars(estimate) for name, estimate in own.items()},
-            "model": {"effects": sorted(chosen.types), "words": sentences.words(chosen)},
+            "model": {"effects": sorted(chosen.types), "words": words(chosen)},
             "verdict": self.verdict.value,
             "comparison": self.comparison,
             "tension_needed": self.tension_needed,
             "agreement": self.agreement,
-            "advice": self.advice,
+            "next": [step._asdict() for step in self.steps],
             "confidence": CONFIDENCE,
-            "calibration": sentences.calibration(self.config.uncertainty),
+            "calibration": calibration_of(self),
             "chi_squared": self.chi_squared,
             "threshold": answer.threshold,
             "margin": max(MARGIN, answer.threshold),
@@ -183,7 +187,7 @@ class Fit:
         answer = self.answer
         return {
             "effects": sorted(fit.types),
-            "words": sentences.words(fit),
+            "words": words(fit),
             "chi_squared": fit.chi_squared,
             "delta_aic": fit.aic - answer.explanations[0].aic,
             "tied": any(fit.types == tied.types for tied in answer.tied),
@@ -200,23 +204,22 @@ class Fit:
         """Return one of the curves, with what the chosen explanation says of it alone."""
         member, judged = self.members[i], self.answer.judgements[i]
         slots = [slot for slot in self.answer.chosen.objective.slots if slot.curve == i]
-        checks = sentences.failed_checks(judged)
         return {
             "name": member.name,
             "indenter": described(member.curve.indenter),
             "points": member.curve.position.size,
             "noise": {"value": judged.noise.deviation, "unit": "N"},
-            "failed_checks": [{"code": code, "message": text} for code, text in checks],
+            "failed_checks": [
+                {"code": code, "message": text} for code, text in failed_checks(judged).items()
+            ],
             "messages": list(member.messages),
             **{slot.name: vars(parameters[name_of(slot.name, i)]) for slot in slots},
             "data": member.data,
         }
 
     def __repr__(self) -> str:
-        """Return the result in two sentences; the arrays of a curve would fill a screen."""
-        from .report.sentences import sentence_of_fit
-
-        return f"<{type(self).__name__}: {sentence_of_fit(self)} {self.comparison}>"
+        """Return numbers, verdict and next step; the arrays of a curve would fill a screen."""
+        return "\n".join(story(self))
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: a sentence, the estimates, and the curve with its fit."""

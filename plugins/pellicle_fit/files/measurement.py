@@ -80,6 +80,8 @@ class Measurement:
     """Where on the sample it was measured, if it belongs to a force map."""
     origin: Origin = field(default_factory=Origin)
     """Its file, with the hash, the columns and the calibration."""
+    left_out: tuple[int, int] | None = None
+    """First and last row of a retraction that was left out of a fit of the approach, from 1."""
     unloading: Mask | None = None
     """Which rows were taken while the indenter moved out; None until the curve is cleaned."""
 

@@ -69,7 +69,7 @@ def table(rows: Sequence[Row]) -> xr.Dataset:
 
 def _cells(row: Row) -> dict[str, Any]:
     """Return the cells of a curve by the names of their columns, in SI."""
-    data, texts = row.curve.get("data", {}), ("verdict", "comparison", "advice")
+    data, texts = row.curve.get("data", {}), ("verdict", "comparison")
     place = {} if row.site is None else {"map": row.map, "x": row.site.x, "y": row.site.y}
     roles = data.get("columns", {}).items()
     return {
@@ -77,6 +77,7 @@ def _cells(row: Row) -> dict[str, Any]:
         **{name: value for name, value in row.values().items() if name not in _COUNTS},
         "model": row.model,
         **{name: row.fit.get(name, "") for name in texts},
+        "next": "; ".join(f"{step['do']}: {step['why']}" for step in row.fit.get("next", ())),
         **{name: getattr(row, name) for name in ("group", "accepted", "outlier", "reason")},
         **place,
         "failed_checks": "; ".join(row.failed_checks),

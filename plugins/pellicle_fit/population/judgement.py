@@ -15,6 +15,7 @@ import numpy as np
 from pellicle.errors import ConfigError, StorageError, first_of, shown
 from pellicle.files import read_text
 from pellicle_fit.objective import MODULUS
+from pellicle_fit.verdict import Verdict
 
 from .row import Row
 from .rules import Rule
@@ -108,7 +109,8 @@ def judge(
     """Set ``accepted``, ``reason`` and ``outlier`` of each row, and return notes.
 
     A curve is accepted if it was fitted, is not in the list of rejected curves, is in that of
-    accepted ones if there is one, and obeys all rules.  Outliers stay accepted.
+    accepted ones if there is one, and obeys all rules; if there are none, if a model describes it.
+    Outliers stay accepted.
     """
     checks, notes, entries = [Rule(text) for text in rules], [], []
     for names in (accepted, rejected):
@@ -128,6 +130,8 @@ def judge(
             row.reason = f"in {rejected.path.name}{f': {why}' if why else ''}"
         elif accepted is not None and not entries[0][number]:
             row.reason = f"not in {accepted.path.name}"
+        elif not checks and row.fit["verdict"] == Verdict.UNDESCRIBED.value:
+            row.reason = row.fit["comparison"]
         else:
             row.reason = "; ".join(filter(None, (rule.objection(row) for rule in checks)))
         row.accepted = not row.reason

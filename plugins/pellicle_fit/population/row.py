@@ -11,7 +11,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle_fit.files.measurement import Site
 from pellicle_fit.intervals import Estimate
-from pellicle_fit.wording import OVER_TIED
+from pellicle_fit.words.quantities import OVER_TIED
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -119,6 +119,11 @@ class Row:
     def model(self) -> str:
         """The effects of the chosen explanation in words; empty without a fit."""
         return str(self.fit["model"]["words"]) if self.fit else ""
+
+    @property
+    def verdict(self) -> str:
+        """What is said of the curve, as far as it fits a table; empty without a fit."""
+        return str(self.fit.get("comparison", "")).partition(":")[0].removeprefix("this curve ")
 
     @property
     def failed_checks(self) -> list[str]:

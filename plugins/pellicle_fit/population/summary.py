@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from pellicle_fit.wording import OVER_TIED, SHOWN
+from pellicle_fit.words.quantities import OVER_TIED, SHOWN
 
 from .row import Row
 

@@ -11,7 +11,7 @@ import numpy as np
 from pellicle.files import for_document
 from pellicle.units import decimal, readable
 from pellicle_fit.population.row import Row
-from pellicle_fit.wording import SHOWN
+from pellicle_fit.words.quantities import SHOWN
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -16,8 +16,8 @@ from pellicle_fit.objective import MODULUS
 from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import Fit, parameters_of
-from pellicle_fit.sentences import words as words_of
-from pellicle_fit.wording import words
+from pellicle_fit.words.effects import words as words_of
+from pellicle_fit.words.quantities import words
 
 from .guides import guide
 from .likelihood_map import likelihood_map

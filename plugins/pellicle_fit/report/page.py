@@ -26,11 +26,12 @@ from pellicle_fit.config import FitConfig
 from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.result import Fit
 from pellicle_fit.verdict import Verdict
+from pellicle_fit.words.population import advice_of_population, sentences_of_population
+from pellicle_fit.words.story import story
 
 from . import tables
 from .contact_sheet import PAGE, sheets
 from .figures import charts, panels
-from .sentences import sentence_of_fit, sentences_of_population
 
 _LINES = 200
 """Lines of a list of warnings or failed curves."""
@@ -48,11 +49,9 @@ _UNDECIDED = Verdict.CANNOT_TELL, Verdict.UNDESCRIBED
 
 def html_of_fit(fit: Fit) -> str:
     """Return a sentence, the estimates with their intervals, and the curve with its fit."""
-    count, warnings = len(fit.members), len(fit.warnings)
+    count = len(fit.members)
     title = f"Fit of {count} curves" if count > 1 else "Fit of a curve"
-    text = f"{sentence_of_fit(fit)} {_sentence(fit.comparison)}"
-    if warnings:
-        text += f" {warnings} warning{'s' * (warnings > 1)}: see warnings."
+    text = " ".join(map(_sentence, story(fit)))
     (chart, *_), *_ = charts(fit).values()
     return summary(title, text, tables.estimates(fit), picture=png(chart))
 
@@ -78,16 +77,14 @@ def save_report(fit: Fit | ManyFits, path: Path, title: str) -> Path:
     if isinstance(fit, Fit):
         configuration = fit.config.to_dict() if fit.config else {}
         results, data = _one(fit), _data(fit)
-        advice: list[Block] = [Text(_sentence(fit.advice))] if fit.advice else []
     else:
-        configuration, results, data, advice = fit.configuration, _many(fit), [], []
+        configuration, results, data = fit.configuration, _many(fit), []
         figures += _sheets(fit)
     known = {name: value for name, value in configuration.items() if name not in _ELSEWHERE}
     inputs = input_table(known, FitConfig, "The indenter, and what was given or chosen.")
     sections = [
         Section("Result", results),
         Section("Figures", figures),
-        Section("More informative experiments", advice),
         Section("Inputs", [inputs] if known else []),
         Section("Data", data),
         Section("As JSON", [code]),
@@ -101,16 +98,18 @@ def save_report(fit: Fit | ManyFits, path: Path, title: str) -> Path:
 
 
 def _one(fit: Fit) -> list[Block]:
-    """Return the results of the fit of one curve or of several."""
+    """Return the story of the fit of one curve or of several, and what it rests on."""
+    numbers, verdict, *step = story(fit)
     blocks: list[Block] = [
-        Text(sentence_of_fit(fit), lead=True),
-        Notice(_sentence(fit.comparison), good=fit.verdict not in _UNDECIDED),
+        Text(_sentence(numbers), lead=True),
+        Notice(_sentence(verdict), good=fit.verdict not in _UNDECIDED),
+        *map(Text, map(_sentence, step)),
     ]
     if fit.agreement:
         agree = fit.answer.agreement.factor == 1
         blocks.append(Notice(_sentence(fit.agreement), good=agree))
-    blocks += [Text(_sentence(fit.sentences[0])), *_warnings(fit.warnings)]
-    blocks += [tables.estimates(fit), tables.explanations(fit), tables.curves(fit)]
+    blocks += [*_warnings(fit.warnings), tables.estimates(fit), tables.curves(fit)]
+    blocks.append(tables.explanations(fit))
     return [*blocks, *([Notice("Notes:", good=True, details=fit.notes)] if fit.notes else [])]
 
 
@@ -128,6 +127,7 @@ def _many(fits: ManyFits) -> list[Block]:
         blocks.append(Notice("Population:", good=False, details=_first(fits.notes)))
     if any(row.accepted for row in rows):
         blocks.append(tables.groups(rows))
+    blocks += map(Text, map(_sentence, advice_of_population(rows)))
     messages = [f"{row.name}: {text}" for row in rows for text in row.fit.get("messages", ())]
     return [*blocks, tables.rows(rows), *_warnings(_first(messages))]
 

@@ -15,7 +15,7 @@ from pellicle.show import figure_of, save_figure, save_pages
 from pellicle.units import axis_unit
 from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.population.images import CONTACT_HEIGHT
-from pellicle_fit.wording import SHOWN
+from pellicle_fit.words.quantities import SHOWN
 
 from .contact_sheet import PAGE, sheets
 from .population_figures import distributions

@@ -12,7 +12,7 @@ from pellicle_fit.objective import MODULUS
 from pellicle_fit.population.row import Row
 from pellicle_fit.population.summary import label
 from pellicle_fit.recipe import TENSION
-from pellicle_fit.wording import words
+from pellicle_fit.words.quantities import words
 
 from .guides import guide
 

@@ -11,10 +11,10 @@ from pellicle_fit.population.row import FITTED, Row
 from pellicle_fit.population.summary import QUARTILES, summary
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import Fit, name_of, parameters_of
-from pellicle_fit.sentences import failed_checks
-from pellicle_fit.sentences import words as words_of
 from pellicle_fit.verdict import MARGIN
-from pellicle_fit.wording import SHOWN, interval, unit_of, unit_of_estimate, words
+from pellicle_fit.words.effects import words as words_of
+from pellicle_fit.words.quantities import SHOWN, interval, unit_of, unit_of_estimate, words
+from pellicle_fit.words.remarks import failed_checks
 
 _INTERVAL = f"{100 * CONFIDENCE:.0f} % interval"
 _MEANING = "values that describe the data nearly as well"
@@ -31,8 +31,8 @@ def estimates(fit: Fit, *, si: bool = False) -> Table:
             ends = interval(estimate, unit)
             rows.append((words(name), unit.number(estimate.value), ends, unit.unit))
     caption = (
-        "Intervals of modulus and tension are over all explanations that the data cannot tell "
-        f"apart, the others those of the one that is chosen: {words_of(fit.answer.chosen)}."
+        f"The quantities of the model that was chosen, {words_of(fit.answer.chosen)}; intervals of "
+        "modulus and tension are over all models that describe the data as well."
     )
     return Table.of_rows(("parameter", "value", _INTERVAL, "unit"), rows, caption)
 
@@ -61,7 +61,7 @@ def curves(fit: Fit, *, si: bool = False) -> Table:
     members, judgements, own = fit.members, fit.answer.judgements, fit.estimates()
     radii = [getattr(member.curve.indenter, "radius", "") for member in members]
     points = [own[name_of(CONTACT_POINT, number)] for number in range(len(members))]
-    checks = [", ".join(code for code, _ in failed_checks(judged)) for judged in judgements]
+    checks = [", ".join(failed_checks(judged)) for judged in judgements]
     columns = [
         Column("curve", [member.name for member in members]),
         *([Column("radius", radii, "m")] if any(radii) else []),
@@ -74,36 +74,29 @@ def curves(fit: Fit, *, si: bool = False) -> Table:
 
 
 def rows(of: Sequence[Row], *, si: bool = False) -> Table:
-    """Return a row for each curve of a population; a column only if it says something."""
-    reasons, states = [], []
+    """Return a row for each curve of a population; a column only if it tells curves apart."""
+    states, reasons = [], []
     for row in of:
         rejected = row.is_fitted and not row.accepted
         states.append("rejected" if rejected else row.status.partition(":")[0])
-        reasons.append(row.reason if rejected else "")
+        reasons.append(row.reason if rejected and row.reason != row.fit["comparison"] else "")
     radii = [row.curve.get("indenter", {}).get("radius", "") for row in of]
-    columns = [
-        Column("curve", [row.name for row in of]),
-        Column("group", [row.group for row in of]),
-    ]
-    if len({radius for radius in radii if radius != ""}) > 1:
-        columns.append(Column("radius", radii, "m"))
-    columns.append(Column("model", [row.model for row in of]))
+    columns = [Column("verdict", [row.verdict for row in of])]
     for name in SHOWN:
         columns += _quantity(name, [row.estimates.get(name) for row in of], si)
-    columns += _quantity(CONTACT_POINT, [row.estimates.get(CONTACT_POINT) for row in of], si)[:1]
     outliers = ["stands out" if row.outlier else "" for row in of]
     columns += [
-        Column("verdict", [row.fit.get("verdict", "") for row in of]),
+        Column("group", [row.group for row in of]),
+        Column("radius", radii, "m"),
         Column("R²", [row.numbers.get("r_squared", "") for row in of], digits=5),
         Column("failed checks", [", ".join(row.failed_checks) for row in of]),
-        Column("notes", [str(len(row.fit.get("messages", ()))) for row in of]),
         Column("status", states, bad=[state != FITTED for state in states]),
         Column("reason", reasons, bad=[reason != "" for reason in reasons]),
         Column("modulus", outliers, bad=[mark != "" for mark in outliers]),
     ]
-    optional = "group", "reason", "modulus"
-    shown = [column for column in columns if column.words not in optional or any(column.values)]
-    return Table(shown, "Each curve on its own, with its 95 % intervals.")
+    shown = [one for one in columns if len(of) == 1 or len({*map(str, one.values)}) > 1]
+    first = Column("curve", [row.name for row in of])
+    return Table([first, *shown], "Each curve on its own, with its 95 % intervals.")
 
 
 def groups(of: Sequence[Row], *, si: bool = False) -> Table:
@@ -127,7 +120,7 @@ def _quantity(
 ) -> list[Column]:
     """Return the columns of values and intervals of a quantity; none if no curve has it.
 
-    Intervals are those that were ``sought``, by default all.
+    Intervals are those that were ``sought``, by default all; of an open one the end that it has.
     """
     if not any(e is not None and not (e.held and not e.value) for e in of):
         return []
@@ -135,7 +128,5 @@ def _quantity(
     values = Column(words(name), ["" if e is None else e.value for e in of], unit)
     scale, ends = values.unit_and_digits(si=si)[0], []
     for estimate, wanted in zip(of, sought or [True] * len(of), strict=True):
-        texts = [] if estimate is None or not wanted else [estimate.low, estimate.high]
-        text = " to ".join("open" if end is None else scale.number(end) for end in texts)
-        ends.append("fixed" if wanted and estimate is not None and estimate.held else text)
+        ends.append(interval(estimate, scale) if estimate is not None and wanted else "")
     return [values, Column(f"95 % of {words(name)}", ends, meaning=_MEANING)]

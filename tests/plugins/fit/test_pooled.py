@@ -13,6 +13,7 @@ from click.testing import Result
 from numpy.typing import NDArray
 
 import pellicle as pl
+from pellicle_fit.words.story import story
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.plugins.fit.conftest import ends_of, holds
 
@@ -98,8 +99,7 @@ def test_what_is_said(measured: dict[str, tuple[Array, Array]]) -> None:
     fit = pooled(measured, compare=True)
     assert fit.tension_needed
     assert fit.agreement.startswith("the curves agree")
-    assert fit.sentences[0].startswith("2 curves, 300 points, noise ")
-    assert fit.sentences[0].endswith("; calibration taken as exact")
+    assert story(fit)[0].endswith("; calibration taken as exact")
     content = json.loads(fit.to_json())
     small, large = content["curves"]
     assert (small["name"], large["name"]) == tuple(measured)

@@ -14,7 +14,7 @@ import pellicle as pl
 from pellicle_fit.report.figures import panels, save_figure
 from pellicle_fit.report.likelihood_map import _grid
 from pellicle_fit.report.page import save_report
-from pellicle_fit.report.sentences import sentence_of_fit
+from pellicle_fit.words.story import story
 from tests.plugins.fit.test_many import BEAD, MODULUS, curve
 
 
@@ -26,9 +26,10 @@ def single() -> pl.Fit:
 
 @pytest.mark.slow
 def test_page(single: pl.Fit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The page of a fit has its sentence, verdict, explanations and figures; so has a notebook."""
-    sentence = sentence_of_fit(single)
+    """The page of a fit has its story, verdict, explanations and figures; so has a notebook."""
+    sentence = story(single)[0]
     assert sentence.startswith("Young's modulus 3.7")
+    sentence = sentence[1:]
     page = unescape(save_report(single, tmp_path / "fit.html", "bead").read_text(encoding="utf-8"))
     for words in (sentence, "Tension is needed", "an offset", "95 % of tension", "10 µm"):
         assert words in page

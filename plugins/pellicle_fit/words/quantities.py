@@ -5,14 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from pellicle.components import Column
-from pellicle.units import Scale
-
-from .intervals import Estimate
+from pellicle.units import DIGITS, Scale
+from pellicle_fit.intervals import Estimate
 
 SHOWN = {"reduced_modulus": "E*", "tension": "τ₀", "work_of_adhesion": "W", "thickness": "h"}
 """Symbols of the quantities that tables and figures of curves show, if a curve has them."""
 OVER_TIED = "reduced_modulus", "youngs_modulus", "tension"
 """Quantities whose intervals are over all explanations that the curve cannot tell apart."""
+PLAUSIBLE = {"reduced_modulus": (1.0, 1e12), "tension": (0.0, 1.0), "thickness": (1e-9, 1.0)}
+"""Values [SI] beyond which a unit is probably wrong."""
+_FEW = 3
+"""Significant digits in sentences."""
 _WORDS = {
     "youngs_modulus": "Young's modulus",
     "offset": "offset of the baseline",
@@ -40,24 +43,24 @@ def unit_of_estimate(estimate: Estimate, *, si: bool = False) -> Scale:
     return unit_of(values, estimate.unit, si=si)
 
 
-def interval(estimate: Estimate, unit: Scale) -> str:
+def interval(estimate: Estimate, unit: Scale, digits: int = DIGITS) -> str:
     """Return an interval in a unit; of an open one the end that it has."""
     if estimate.held:
         return "fixed"
     ends = (estimate.low, estimate.high)
-    low, high = (None if end is None else unit.number(end) for end in ends)
+    low, high = (None if end is None else unit.number(end, digits) for end in ends)
     if low is None:
         return "open" if high is None else f"< {high}"
     return f"> {low}" if high is None else f"{low} to {high}"
 
 
-def in_words(estimate: Estimate, *, si: bool = False) -> str:
+def in_figures(estimate: Estimate, *, si: bool = False) -> str:
     """Return an estimate with its interval: ``5 mN/m (4.8 to 5.2)``, or ``< 3.8 µN/m``."""
     unit = unit_of_estimate(estimate, si=si)
-    value, ends = unit.text(estimate.value), interval(estimate, unit)
+    value, ends = unit.text(estimate.value, _FEW), interval(estimate, unit, _FEW)
     if estimate.held:
-        return f"fixed at {value}"
+        return f"{value} (fixed)"
     if ends == "open":
-        return "that this measurement does not determine"
+        return "not determined"
     is_open = None in (estimate.low, estimate.high)
     return unit.with_unit(ends) if is_open else f"{value} ({ends})"

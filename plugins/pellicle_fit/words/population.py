@@ -1,39 +1,19 @@
-"""The results of fits in sentences, with units that read well."""
+"""What a laboratory reads of many fits: how many, their medians, and what to do next."""
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 
-from pellicle_fit.intervals import CONFIDENCE
+from pellicle.errors import first_of
 from pellicle_fit.population.fits import ManyFits
+from pellicle_fit.population.row import Row
 from pellicle_fit.population.summary import ALL, QUARTILES, summary
-from pellicle_fit.result import Fit
-from pellicle_fit.sentences import words as words_of
-from pellicle_fit.wording import OVER_TIED, in_words, unit_of, words
+
+from .quantities import unit_of, words
 
 _GROUPS = 4
 """Groups of a population that are named in a sentence; of more, only all curves are."""
-
-
-def sentence_of_fit(fit: Fit, *, si: bool = False) -> str:
-    """Return modulus and tension with their intervals, and what the chosen explanation adds.
-
-    The modulus is Young's where Poisson's ratio is known.
-    """
-    estimates, chosen = fit.estimates(), fit.answer.chosen
-    own = (e for e in chosen.objective.explanation.effects if e.type_name in chosen.types)
-    others = [name for effect in own for name in effect.open if name not in OVER_TIED]
-    hidden = {"reduced_modulus"} if "youngs_modulus" in estimates else set()
-    if fit.tension.held and not fit.tension.value:
-        hidden.add("tension")
-    names = [name for name in OVER_TIED if name in estimates and name not in hidden]
-    names += [*others, *(["contact_point"] if len(fit.members) == 1 else [])]
-    parts = [f"{words(name)} {in_words(estimates[name], si=si)}" for name in names]
-    text = " and ".join(filter(None, [", ".join(parts[:-1]), parts[-1]]))
-    by = "" if chosen.types == fit.answer.question.word else f", by {words_of(chosen)}"
-    tied = len(fit.answer.tied)
-    over = f", over {tied} explanations that the data cannot tell apart" if tied > 1 else ""
-    return f"{text[0].upper()}{text[1:]}, with {100 * CONFIDENCE:.0f} % intervals{over}{by}."
 
 
 def sentences_of_population(fits: ManyFits) -> str:
@@ -68,3 +48,18 @@ def sentences_of_population(fits: ManyFits) -> str:
                 medians.append(f"{words(part['parameter'])} {text}")
         sentences.append(f"Median{'' if group == ALL else f' of {group}'}: {', '.join(medians)}.")
     return " ".join([*sentences, *["In brackets the quartiles."] * bool(parts)])
+
+
+def advice_of_population(rows: Sequence[Row]) -> list[str]:
+    """Return what to do next, a line for each step with the curves that it would help."""
+    found: dict[str, dict[str, str]] = {}
+    for row in rows:
+        for step in row.fit.get("next", ()):
+            found.setdefault(step["do"], {})[row.name] = step["why"]
+    lines = []
+    for do, whys in sorted(found.items(), key=lambda item: -len(item[1])):
+        first, why = next(iter(whys.items()))
+        which = "all curves" if len(whys) == len(rows) else first_of([*whys])
+        example = "" if {*whys.values()} == {why} else f"{first}: "
+        lines.append(f"{which}: {do} ({example}{why})")
+    return lines

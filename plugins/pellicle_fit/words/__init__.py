@@ -1,0 +1,1 @@
+"""What fits say, in words."""

@@ -1,0 +1,105 @@
+"""What to do next with a curve: mend how it is read, fit it otherwise, or measure more."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from pellicle.units import readable
+from pellicle_fit.forecast import telling, tightening
+from pellicle_fit.noise import Flaw
+from pellicle_fit.objective import MODULUS
+from pellicle_fit.recipe import TENSION, Answer
+from pellicle_fit.verdict import Verdict
+
+from .effects import listed
+from .quantities import PLAUSIBLE, words
+
+if TYPE_CHECKING:
+    from pellicle_fit.config import FitConfig
+    from pellicle_fit.result import Member
+
+_DEPTHS = 1e-5, 10.0
+"""Depths over the radius beyond which a unit is probably wrong."""
+
+
+class Step(NamedTuple):
+    """Something to do, and why."""
+
+    do: str
+    why: str
+
+    def __str__(self) -> str:
+        """Return both in a line."""
+        return f"{self.do}: {self.why}"
+
+
+def steps(answer: Answer, members: Sequence[Member], config: FitConfig) -> list[Step]:
+    """Return what to do next, the most urgent first; empty if nothing would help.
+
+    What to measure is asked where nothing of the fit itself is to be mended first.
+    """
+    first = [*_of_input(answer), *_of_options(answer, members, config)]
+    return first or [*_of_measurement(answer)]
+
+
+def _of_input(answer: Answer) -> Iterator[Step]:
+    """Yield what is probably wrong with radius or units."""
+    chosen = answer.chosen
+    for i, curve in enumerate(chosen.whole):
+        radius = getattr(curve.indenter, "radius", None)
+        point = chosen.objective.known(chosen.minimum.at, i).solid.contact_point
+        depth = float(np.max(curve.position)) - point
+        if radius and not _DEPTHS[0] <= depth / radius <= _DEPTHS[1]:
+            sizes = readable(depth, "m", 3), f"{depth / radius:.3g}", readable(radius, "m", 3)
+            why = "the depth of {} is {} times the radius of {}".format(*sizes)
+            yield Step("check radius and units", why)
+            break
+    for name, (least, most) in PLAUSIBLE.items():
+        if (found := answer.estimates.get(name)) is None:
+            continue
+        # The best value of an open interval is one of many.
+        low, high = found.low or 0.0, np.inf if found.high is None else found.high
+        if low > most or high < least:
+            value = readable(found.value, found.unit, 3)
+            yield Step("check the units", f"a {words(name)} of {value} is not plausible")
+
+
+def _of_options(answer: Answer, members: Sequence[Member], config: FitConfig) -> Iterator[Step]:
+    """Yield what another option of the fit would mend."""
+    flaws = {flaw for one in answer.judgements for flaw in one.flaws}
+    if Flaw.OFFSET in flaws and config.baseline == "none":
+        yield Step("add --baseline offset", "the force before contact is not 0")
+    if Flaw.DRIFT in flaws and config.baseline != "slope":
+        yield Step("add --baseline slope", "the force before contact has a slope")
+    if Flaw.DIP in flaws and "adhesion" not in answer.chosen.types:
+        yield Step("ask with --model adhesion", "the force dips before contact")
+    if Flaw.SPIKES in flaws:
+        why = "single points lie far from their neighbours, and shift the fit"
+        yield Step("leave out outlying points", why)
+    if config.thickness is None and any("layer" in fit.types for fit in answer.tied):
+        yield Step("give --thickness", "a thin layer describes the curve")
+    undecided = answer.verdict in (Verdict.CANNOT_TELL, Verdict.UNDESCRIBED)
+    rows = next((member.left_out for member in members if member.left_out), None)
+    if undecided and rows:
+        why = f"rows {rows[0]} to {rows[1]} are the retraction"
+        yield Step("fit with --segment both", why)
+
+
+def _of_measurement(answer: Answer) -> Iterator[Step]:
+    """Yield what to measure, if something is open and a measurement would help."""
+    if answer.verdict is Verdict.CANNOT_TELL:
+        asked = next(f for f in answer.explanations if f.types == answer.decision.asked)
+        advice, aim = telling(asked, answer.tied_without), "tell them apart"
+    else:
+        found = {name: answer.estimates.get(name) for name in (MODULUS, TENSION)}
+        names = [name for name, estimate in found.items() if estimate and estimate.high is None]
+        advice, aim = tightening(answer.chosen, names), f"bound {listed([*map(words, names)])}"
+    if advice.words:
+        count = f"{advice.count} curves of this kind" if advice.count > 1 else "it"
+        yield Step(f"measure {advice.words}", f"{count} would {aim}")
+    elif answer.verdict is Verdict.CANNOT_TELL:
+        why = "no other speed, dwell, pass, depth or radius would tell them apart"
+        yield Step("measure with less noise", why)

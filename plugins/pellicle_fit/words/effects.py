@@ -1,0 +1,35 @@
+"""Explanations in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from pellicle.components import words_of_type
+from pellicle_fit.candidate import Candidate, Types
+from pellicle_fit.effect import Effect
+from pellicle_fit.rivals import Question
+
+
+def words(fit: Candidate) -> str:
+    """Return the effects of an explanation in words, but for those that all have."""
+    effects = fit.objective.explanation.effects
+    return in_words([effect for effect in effects if effect.type_name in fit.types])
+
+
+def words_of_types(question: Question, types: Types) -> str:
+    """Return effects of a question in words."""
+    effects = {effect.type_name: effect for rival in question.rivals for effect in rival}
+    effects |= {question.asked.type_name: question.asked} if question.asked else {}
+    return in_words([effect for name, effect in effects.items() if name in types])
+
+
+def in_words(effects: Sequence[Effect]) -> str:
+    """Return effects in words, the last after an "and"."""
+    return listed([words_of_type(type(e), e.type_name) for e in effects]) or "no effect"
+
+
+def listed(names: Sequence[str], last: str = "and", most: int = 20) -> str:
+    """Return names with commas and a word before the last; of many, how many more there are."""
+    if len(names) > most:
+        names = [*names[:most], f"{len(names) - most} more"]
+    return f" {last} ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))

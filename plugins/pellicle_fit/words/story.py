@@ -1,0 +1,87 @@
+"""What a laboratory reads of a fit: the numbers asked for, the verdict, and what to do next."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from pellicle_fit.intervals import CONFIDENCE
+from pellicle_fit.recipe import Answer
+from pellicle_fit.verdict import Verdict
+
+from .effects import in_words, listed, words, words_of_types
+from .quantities import in_figures
+from .quantities import words as words_of
+from .remarks import CHECKS
+
+if TYPE_CHECKING:
+    from pellicle_fit.result import Fit
+
+_RIVALS = 3
+"""Rivals that a verdict names."""
+
+
+def story(fit: Fit, *, si: bool = False) -> list[str]:
+    """Return numbers, verdict and, unless there is nothing to do, the next step; a line each."""
+    step = [f"next: {fit.advice}"] if fit.advice else []
+    return [numbers(fit, si=si), verdict(fit.answer), *step]
+
+
+def numbers(fit: Fit, *, si: bool = False) -> str:
+    """Return the quantities that were asked for, with intervals over all that fit as well.
+
+    The modulus is Young's where Poisson's ratio is known.
+    """
+    answer, estimates = fit.answer, fit.estimates()
+    names = ["youngs_modulus" if "youngs_modulus" in estimates else "reduced_modulus"]
+    asked, chosen = answer.question.asked, answer.chosen.types
+    if asked is not None and asked.type_name in chosen:
+        names += asked.open
+    parts = [f"{words_of(name)} {in_figures(estimates[name], si=si)}" for name in names]
+    calibration = calibration_of(fit)
+    if answer.verdict is Verdict.UNDESCRIBED:
+        return f"not to be quoted: {', '.join(parts)}; {calibration}"
+    return f"{', '.join(parts)}, {100 * CONFIDENCE:.0f} %; {calibration}"
+
+
+def calibration_of(fit: Fit) -> str:
+    """Return to which uncertainties the calibration is known: exactly, if there are none."""
+    known = [
+        f"{name.replace('_', ' ')} to {value if isinstance(value, str) else f'{100 * value:.3g} %'}"
+        for name, value in fit.config.uncertainty.items()
+    ]
+    return f"calibration weighed: {listed(known)}" if known else "calibration taken as exact"
+
+
+def verdict(answer: Answer) -> str:
+    """Return whether what is asked for is needed, with the strongest rival, in plain words."""
+    several = len(answer.judgements) > 1
+    curves = "these curves" if several else "this curve"
+    question, fits = answer.question, {fit.types: fit for fit in answer.explanations}
+    word, asked, other = question.word, answer.decision.asked, words(fits[answer.decision.other])
+    subject = words(fits[word]) if word else "an elastic half-space"
+    if question.kept and not word:
+        subject += f" with {in_words(question.kept)}"
+    match answer.verdict:
+        case Verdict.UNDESCRIBED:
+            flaws = {flaw for one in answer.judgements if not one.describes for flaw in one.flaws}
+            why = next(text for flaw, text in CHECKS.items() if flaw in flaws)
+            untried = listed([words_of_types(question, types) for types in answer.untried])
+            text = f"no model describes {curves}: {why}"
+            return f"{text}; {untried} could not be tried" if untried else text
+        case Verdict.NEEDED:
+            beside = words_of_types(question, asked - word)
+            pair = f", beside {beside}" if asked != word else ""
+            if not question.rivals:
+                return f"{subject} is needed{pair}; no rival was tried"
+            nearest = f"; the nearest is {other}" if answer.decision.other else ""
+            nothing = f"nothing else that was tried describes {curves} as well"
+            return f"{subject} is needed{pair}: {nothing}{nearest}"
+        case Verdict.CANNOT_TELL:
+            tied = [words(fit) for fit in answer.tied_without]
+            names = listed(tied, "or", _RIVALS)
+            return f"{curves} cannot tell {words(fits[asked])} from {names}"
+        case Verdict.OTHER:
+            return f"{other} without {subject}" if word else f"{other}: more than {subject}"
+    if not word and len(fits) == 1:
+        return f"{subject} was compared with nothing"
+    return f"no sign of {subject if word else f'more than {subject}'}"
