@@ -60,7 +60,8 @@ def row(name: str, modulus: float | None = 1e3, *, is_open: bool = False, group:
     numbers = {"r_squared": 0.99, "chi_squared": 50.0, "indentation": 1e-6, "largest_force": 1e-8}
     model = {"effects": [], "words": "no effect"}
     fit = {"parameters": parameters, "curves": [curve], "messages": [], "model": model}
-    return Row(name, group, fit=numbers | fit | parameters)
+    told = {"verdict": "no sign", "comparison": "no sign of tension"}
+    return Row(name, group, fit=numbers | fit | parameters | told)
 
 
 @pytest.mark.parametrize(
