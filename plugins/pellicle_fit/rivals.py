@@ -123,10 +123,10 @@ def _objective(
 ) -> Objective:
     """Return χ² of means, unless it has to be of all rows.
 
-    No mean stands for rows of which some touch and others do not, and none has their memory.
+    No mean stands for rows between which a force jumps, and none has their memory.
     """
     objective = Objective(explanation, curves, noise, Sizes.of_curve(curves[0]), memory)
-    if objective.searched or any(memory):
+    if any(memory) or any(effect.jumps for effect in explanation.effects):
         return objective
     return replace(objective, curves=tuple(curve.binned(ROWS) for curve in curves))
 
@@ -148,7 +148,11 @@ def _idle(
         low = min(low, *(fit.aic + 1 for fit in contained))
     high = min(fit.chi_squared for fit in contained)
     # Of means, χ² lacks the scatter of the rows about them.
-    scatter = 0.0 if objective.searched else fits[word].chi_squared - fits[word].minimum.chi_squared
+    scatter = (
+        0.0
+        if objective.curves is fits[word].whole
+        else fits[word].chi_squared - fits[word].minimum.chi_squared
+    )
     return low - criterion(objective, 0.0) - scatter, high - scatter + _SAME
 
 

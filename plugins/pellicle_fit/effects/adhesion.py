@@ -48,6 +48,7 @@ class Adhesion(Responds):
     type: Literal["adhesion"] = "adhesion"
     examples = ({}, {"work_of_adhesion": "10 uJ/m^2"})
     balances: ClassVar[bool] = True
+    jumps: ClassVar[bool] = True
     work_of_adhesion: Annotated[float, Fitted("J/m2", above=0, log=True)] = fitted(
         "work of adhesion w [J/m2]"
     )
