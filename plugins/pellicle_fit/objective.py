@@ -22,8 +22,6 @@ _STEP = 1e-6
 """Step of derivatives by differences, in coordinates of the order of 1."""
 _SEARCHES = (("dogbox", 60), ("trf", 400))
 """Optimisers in the order in which they are tried, and their largest numbers of steps."""
-_ROUGH_SEARCH = "trf", 0
-"""The optimiser of rough searches, whose box the limits shape: quicker away from them."""
 _TOLERANCE, _ROUGHLY = 1e-8, 1e-4
 ROUGH = 20
 """Steps of a search that tells whether a start is worth another."""
@@ -237,20 +235,21 @@ class Objective:
         if not free:
             return Minimum(full(at), self.chi_squared(full(at)))
         tolerance = _ROUGHLY if steps else _TOLERANCE
-        for method, most in (_ROUGH_SEARCH,) if steps else _SEARCHES:
+        # Away from the limits the latter is quicker.
+        for method, most in ((_SEARCHES[-1][0], steps),) if steps else _SEARCHES:
             found = least_squares(
                 lambda some: self.residuals(full(some)),
                 at,
                 lambda some: self.jacobian(full(some), free),
                 (low, high),
                 method=method,
-                max_nfev=steps or most,
+                max_nfev=most,
                 xtol=tolerance,
                 ftol=tolerance,
                 gtol=tolerance,
             )
             at = found.x
-            if found.success or steps:
+            if found.success:
                 break
         return Minimum(full(at), 2 * float(found.cost), bool(found.success))
 

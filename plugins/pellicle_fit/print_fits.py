@@ -28,7 +28,7 @@ def print_fit(fit: Fit, *, si: bool = False) -> None:
     print_table(tables.estimates(fit, si=si), si=si)
     if len(fit.members) > 1:
         print_table(tables.curves(fit, si=si), si=si)
-    if fit.config is not None and fit.config.compare:
+    if fit.config.compare:
         print_table(tables.explanations(fit, si=si), si=si)
     for sentence in fit.sentences:
         echo(sentence)

@@ -76,7 +76,6 @@ class Adhesion(Responds):
         root = np.sqrt(np.maximum(branch.position - end, 0.0))
         keep = np.append(True, root[1:] > np.maximum.accumulate(root)[:-1] + 1e-9 * root[-1])
         spline = CubicSpline(root[keep], branch.force[keep])
-
         ramp = _RAMP * curve.span / curve.passes[0].size
 
         def response(depth: Array) -> Array:
