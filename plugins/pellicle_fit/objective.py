@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -177,9 +177,9 @@ class Objective:
 
     def residuals(self, at: Array) -> Array:
         """Return (recorded − measured)/noise of all rows, then the terms of what is weighed."""
-        return np.concatenate(self._terms(at))
+        return np.concatenate(self.terms(at))
 
-    def _terms(self, at: Array, known: Mapping[int, Array] = MappingProxyType({})) -> list[Array]:
+    def terms(self, at: Array, known: Mapping[int, Array] = MappingProxyType({})) -> list[Array]:
         """Return the residuals of each curve, unless they are known, and of what is weighed."""
         terms = []
         for i, (curve, noise) in enumerate(zip(self.curves, self.noise, strict=True)):
@@ -199,16 +199,19 @@ class Objective:
         """Return χ²."""
         return float(np.sum(self.residuals(at) ** 2))
 
-    def jacobian(self, at: Array, free: Sequence[int]) -> Array:
-        """Return the derivatives of the residuals by some coordinates, from differences."""
-        here, columns = self._terms(at), []
+    def jacobian(self, at: Array, free: Sequence[int], here: list[Array] | None = None) -> Array:
+        """Return the derivatives of the residuals by some coordinates, from differences.
+
+        ``here`` are the terms at the coordinates, where they are known.
+        """
+        here, columns = here or self.terms(at), []
         for k in free:
             step = _STEP if at[k] + _STEP <= self.limits[1][k] else -_STEP
             moved = at.copy()
             moved[k] += step
             # A quantity of one curve leaves the others as they are.
             same = {i: here[i] for i in range(len(self.curves)) if not self.acts(self.slots[k], i)}
-            change = np.concatenate(self._terms(moved, same)) - np.concatenate(here)
+            change = np.concatenate(self.terms(moved, same)) - np.concatenate(here)
             columns.append(change / step)
         return np.column_stack(columns)
 
@@ -234,13 +237,15 @@ class Objective:
         at = np.clip(np.asarray(start, dtype=float)[free], low, high)
         if not free:
             return Minimum(full(at), self.chi_squared(full(at)))
+        # Derivatives are asked for where the residuals were last.
+        terms = lru_cache(maxsize=1)(lambda some: self.terms(full(np.frombuffer(some))))
         tolerance = _ROUGHLY if steps else _TOLERANCE
         # Away from the limits the latter is quicker.
         for method, most in ((_SEARCHES[-1][0], steps),) if steps else _SEARCHES:
             found = least_squares(
-                lambda some: self.residuals(full(some)),
+                lambda some: np.concatenate(terms(some.tobytes())),
                 at,
-                lambda some: self.jacobian(full(some), free),
+                lambda some: self.jacobian(full(some), free, terms(some.tobytes())),
                 (low, high),
                 method=method,
                 max_nfev=most,
