@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -116,6 +116,11 @@ class Candidate:
             found.append(one)
             row += force.size
         return found
+
+
+def best_of(candidates: Iterable[Candidate]) -> Candidate:
+    """Return the candidate of least AIC."""
+    return min(candidates, key=lambda candidate: candidate.aic)
 
 
 def criterion(objective: Objective, chi_squared: float) -> float:

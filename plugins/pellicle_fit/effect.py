@@ -178,6 +178,8 @@ class Effect(Fittable):
     """Order in which effects of one place act."""
     holds_modulus: ClassVar[bool] = True
     """Whether E* beside it is that of the solid, and not up to an unknown factor."""
+    jumps: ClassVar[bool] = False
+    """Whether its force may jump from row to row, so that no mean stands for rows."""
     absorbed: ClassVar[str] = ""
     """What makes up for its quantities, so that they need deviations; empty if nothing does."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -22,8 +22,6 @@ _STEP = 1e-6
 """Step of derivatives by differences, in coordinates of the order of 1."""
 _SEARCHES = (("dogbox", 60), ("trf", 400))
 """Optimisers in the order in which they are tried, and their largest numbers of steps."""
-_ROUGH_SEARCH = "trf", 0
-"""The optimiser of rough searches, whose box the limits shape: quicker away from them."""
 _TOLERANCE, _ROUGHLY = 1e-8, 1e-4
 ROUGH = 20
 """Steps of a search that tells whether a start is worth another."""
@@ -179,9 +177,9 @@ class Objective:
 
     def residuals(self, at: Array) -> Array:
         """Return (recorded − measured)/noise of all rows, then the terms of what is weighed."""
-        return np.concatenate(self._terms(at))
+        return np.concatenate(self.terms(at))
 
-    def _terms(self, at: Array, known: Mapping[int, Array] = MappingProxyType({})) -> list[Array]:
+    def terms(self, at: Array, known: Mapping[int, Array] = MappingProxyType({})) -> list[Array]:
         """Return the residuals of each curve, unless they are known, and of what is weighed."""
         terms = []
         for i, (curve, noise) in enumerate(zip(self.curves, self.noise, strict=True)):
@@ -201,16 +199,19 @@ class Objective:
         """Return χ²."""
         return float(np.sum(self.residuals(at) ** 2))
 
-    def jacobian(self, at: Array, free: Sequence[int]) -> Array:
-        """Return the derivatives of the residuals by some coordinates, from differences."""
-        here, columns = self._terms(at), []
+    def jacobian(self, at: Array, free: Sequence[int], here: list[Array] | None = None) -> Array:
+        """Return the derivatives of the residuals by some coordinates, from differences.
+
+        ``here`` are the terms at the coordinates, where they are known.
+        """
+        here, columns = here or self.terms(at), []
         for k in free:
             step = _STEP if at[k] + _STEP <= self.limits[1][k] else -_STEP
             moved = at.copy()
             moved[k] += step
             # A quantity of one curve leaves the others as they are.
             same = {i: here[i] for i in range(len(self.curves)) if not self.acts(self.slots[k], i)}
-            change = np.concatenate(self._terms(moved, same)) - np.concatenate(here)
+            change = np.concatenate(self.terms(moved, same)) - np.concatenate(here)
             columns.append(change / step)
         return np.column_stack(columns)
 
@@ -236,21 +237,24 @@ class Objective:
         at = np.clip(np.asarray(start, dtype=float)[free], low, high)
         if not free:
             return Minimum(full(at), self.chi_squared(full(at)))
+        # Derivatives are asked for where the residuals were last.
+        terms = lru_cache(maxsize=1)(lambda some: self.terms(full(np.frombuffer(some))))
         tolerance = _ROUGHLY if steps else _TOLERANCE
-        for method, most in (_ROUGH_SEARCH,) if steps else _SEARCHES:
+        # Away from the limits the latter is quicker.
+        for method, most in ((_SEARCHES[-1][0], steps),) if steps else _SEARCHES:
             found = least_squares(
-                lambda some: self.residuals(full(some)),
+                lambda some: np.concatenate(terms(some.tobytes())),
                 at,
-                lambda some: self.jacobian(full(some), free),
+                lambda some: self.jacobian(full(some), free, terms(some.tobytes())),
                 (low, high),
                 method=method,
-                max_nfev=steps or most,
+                max_nfev=most,
                 xtol=tolerance,
                 ftol=tolerance,
                 gtol=tolerance,
             )
             at = found.x
-            if found.success or steps:
+            if found.success:
                 break
         return Minimum(full(at), 2 * float(found.cost), bool(found.success))
 

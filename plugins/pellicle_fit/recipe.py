@@ -12,7 +12,7 @@ from scipy.special import chdtrc
 
 from pellicle.errors import ConfigError
 
-from .candidate import Candidate, Types
+from .candidate import Candidate, Types, best_of
 from .curve import Curve
 from .effect import Effect, Records, quantities
 from .explanation import Solid
@@ -219,7 +219,7 @@ def answer(
         raise ConfigError(f"cannot be fitted to this curve: {excused[word]}", "model")
     candidates = {types: one for types, one in candidates.items() if types not in excused}
     fits = comparison(question, candidates, curves)
-    best = min(fits.values(), key=lambda fit: fit.aic)
+    best = best_of(fits.values())
     threshold = threshold_of(min(judged.noise.freedom for judged in best.judgements))
     margin = max(MARGIN, threshold)
     decided = decision(fits, word, doubted=doubtful(best.judgements), margin=margin)

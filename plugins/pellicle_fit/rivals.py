@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
-from .candidate import NONE, ROWS, Candidate, Types, criterion
+from .candidate import NONE, ROWS, Candidate, Types, best_of, criterion
 from .curve import Curve
 from .effect import Effect, Responds, Sizes
 from .explanation import Explanation, Solid
@@ -64,12 +64,10 @@ def comparison(
     """
     white = (0.0,) * len(curves)
     simple = _simple(question, candidates, curves, white)
-    best = min(simple.values(), key=lambda fit: fit.aic)
-    memory = tuple(judged.memory for judged in best.judgements)
+    memory = tuple(judged.memory for judged in best_of(simple.values()).judgements)
     if any(memory):
         fits = _beside(question, candidates, _simple(question, candidates, curves, memory))
-        best = min(fits.values(), key=lambda fit: fit.aic)
-        if all(judged.describes for judged in best.judgements):
+        if all(judged.describes for judged in best_of(fits.values()).judgements):
             return fits
     return _beside(question, candidates, simple)
 
@@ -99,7 +97,7 @@ def _beside(
     That only scales χ²; at last it is that of the best.
     """
     fits, word = dict(simple), question.word
-    best = min(simple.values(), key=lambda fit: fit.aic)
+    best = best_of(simple.values())
     curves, noise, memory = best.whole, best.objective.noise, best.objective.memory
     for types, explanation in candidates.items():
         if types in fits:
@@ -123,10 +121,10 @@ def _objective(
 ) -> Objective:
     """Return χ² of means, unless it has to be of all rows.
 
-    No mean stands for rows of which some touch and others do not, and none has their memory.
+    No mean stands for rows between which a force jumps, and none has their memory.
     """
     objective = Objective(explanation, curves, noise, Sizes.of_curve(curves[0]), memory)
-    if objective.searched or any(memory):
+    if any(memory) or any(effect.jumps for effect in explanation.effects):
         return objective
     return replace(objective, curves=tuple(curve.binned(ROWS) for curve in curves))
 
@@ -148,7 +146,11 @@ def _idle(
         low = min(low, *(fit.aic + 1 for fit in contained))
     high = min(fit.chi_squared for fit in contained)
     # Of means, χ² lacks the scatter of the rows about them.
-    scatter = 0.0 if objective.searched else fits[word].chi_squared - fits[word].minimum.chi_squared
+    scatter = (
+        0.0
+        if objective.curves is fits[word].whole
+        else fits[word].chi_squared - fits[word].minimum.chi_squared
+    )
     return low - criterion(objective, 0.0) - scatter, high - scatter + _SAME
 
 

@@ -254,8 +254,8 @@ def units_are_right(case: Case) -> str:
 
 @_in_each_case
 def jumps_are_told(case: Case) -> str:
-    """A force that jumps with the contact point is a discrete choice, which searched() counts."""
-    if case.effect.searched(case.curve):
+    """A force may jump with the contact point only where `jumps` says so."""
+    if case.effect.jumps:
         return ""
     # A soft cantilever may jump by itself.
     case = case._replace(curve=replace(case.curve, stiffness=None))

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import bdtrc
 
-from .candidate import NONE, Candidate, Types
+from .candidate import NONE, Candidate, Types, best_of
 from .noise import Judged
 
 MARGIN = 4.0
@@ -91,7 +91,7 @@ def choice(fits: Fits, word: Types, decision: Decision, margin: float) -> Types:
             return decision.other
         case Verdict.NO_SIGN:
             return word
-    best = min(fits.values(), key=lambda fit: fit.aic)
+    best = best_of(fits.values())
     return word if fits[word].aic - best.aic < margin else best.types
 
 

@@ -73,7 +73,7 @@ KINDS = {
     "periodic, four steps": _kind(384, "periodic", loading={"depth": [1e-6, 2e-6, 3e-6, 4e-6]}),
     "periodic, full contact, many outputs": _kind(1024, "periodic", **_full(1024), **ALL_OUTPUTS),
     "free, a solid that relaxes": _kind(
-        384, kernel=_relaxing(5), loading={"depth": [2e-5] * 4, "time": [0, 1, 2, 3]}
+        384, kernel=_relaxing(5), loading={"depth": [1e-4] * 4, "time": [0, 1, 2, 3]}
     ),
     "periodic, a skin on a solid that relaxes": _kind(
         384,

@@ -48,6 +48,7 @@ class Adhesion(Responds):
     type: Literal["adhesion"] = "adhesion"
     examples = ({}, {"work_of_adhesion": "10 uJ/m^2"})
     balances: ClassVar[bool] = True
+    jumps: ClassVar[bool] = True
     work_of_adhesion: Annotated[float, Fitted("J/m2", above=0, log=True)] = fitted(
         "work of adhesion w [J/m2]"
     )
@@ -75,7 +76,6 @@ class Adhesion(Responds):
         root = np.sqrt(np.maximum(branch.position - end, 0.0))
         keep = np.append(True, root[1:] > np.maximum.accumulate(root)[:-1] + 1e-9 * root[-1])
         spline = CubicSpline(root[keep], branch.force[keep])
-
         ramp = _RAMP * curve.span / curve.passes[0].size
 
         def response(depth: Array) -> Array:

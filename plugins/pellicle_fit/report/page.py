@@ -75,7 +75,7 @@ def save_report(fit: Fit | ManyFits, path: Path, title: str) -> Path:
     if len(content) > _LONGEST:
         code = Text("With this number of curves the page does not repeat the tables of --output.")
     if isinstance(fit, Fit):
-        configuration = fit.config.to_dict() if fit.config else {}
+        configuration = fit.config.to_dict()
         results, data = _one(fit), _data(fit)
     else:
         configuration, results, data = fit.configuration, _many(fit), []
@@ -170,8 +170,5 @@ def _data(fit: Fit) -> list[Block]:
         Column("sensitivity", [entry["sensitivity"] or "" for entry in data], "m/V"),
     ]
     shown = [column for column in columns if any(column.values)]
-    blocks: list[Block] = [Table(shown, "The data, and how they were read.")]
-    if fit.record is not None:
-        versions = fit.record.versions.items()
-        blocks.append(Text(f"Versions: {', '.join(f'{n} {number}' for n, number in versions)}."))
-    return blocks
+    versions = ", ".join(f"{name} {number}" for name, number in fit.record.versions.items())
+    return [Table(shown, "The data, and how they were read."), Text(f"Versions: {versions}.")]
