@@ -12,7 +12,7 @@ from pellicle.errors import first_of
 from pellicle.files import is_file
 
 from .words.population import advice_of_population, sentences_of_population
-from .words.story import story
+from .words.story import told
 
 if TYPE_CHECKING:
     from pellicle_fit.population.fits import ManyFits
@@ -26,7 +26,7 @@ def print_fit(fit: Fit, *, details: bool = False, si: bool = False) -> None:
     """Print numbers, verdict and next step, and in detail what they rest on."""
     from pellicle_fit.report import tables
 
-    for line in story(fit, si=si):
+    for line in told(fit, si=si):
         echo(line)
     if details:
         for table in (tables.estimates, tables.explanations, tables.curves):

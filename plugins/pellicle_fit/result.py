@@ -22,7 +22,7 @@ from .verdict import MARGIN, Verdict
 from .words.advice import Step
 from .words.effects import words
 from .words.remarks import agreement, failed_checks, remarks
-from .words.story import calibration_of, story, verdict
+from .words.story import calibration_of, told, verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -219,7 +219,7 @@ class Fit:
 
     def __repr__(self) -> str:
         """Return numbers, verdict and next step; the arrays of a curve would fill a screen."""
-        return "\n".join(story(self))
+        return "\n".join(told(self))
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: a sentence, the estimates, and the curve with its fit."""

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal
 from pellicle_fit.effect import Array, Curve, Fitted, Records, fitted
 
 
-class Sensitivity(Records, title="a sensitivity that is off"):
+class Sensitivity(Records, title="a wrong sensitivity"):
     """Deflections that are told 1 + ε times too large, and so are the forces.
 
     The base is where it was sent: what is off is the way of the tip, by ε F/k.

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from textwrap import wrap
+from typing import TYPE_CHECKING, Any
 
 from pellicle_fit.intervals import CONFIDENCE
 from pellicle_fit.recipe import Answer
@@ -16,8 +17,15 @@ from .remarks import CHECKS
 if TYPE_CHECKING:
     from pellicle_fit.result import Fit
 
+_WIDTH = 100
+_WRAPPED: dict[str, Any] = {"subsequent_indent": "  ", "break_long_words": False}
 _RIVALS = 3
 """Rivals that a verdict names."""
+
+
+def told(fit: Fit, *, si: bool = False) -> list[str]:
+    """Return the lines of its story for a terminal."""
+    return [part for line in story(fit, si=si) for part in wrap(line, _WIDTH, **_WRAPPED)]
 
 
 def story(fit: Fit, *, si: bool = False) -> list[str]:
