@@ -20,7 +20,7 @@ def main() -> None:
     depth = np.linspace(-0.5e-6, 1.5e-6, 1000)
     force = 2e3 * bead.force_curve(depth, 5e-6).force
     force += 0.005 * force.max() * np.random.default_rng(1).standard_normal(depth.size)
-    save_figure(pl.fit(depth + 3.2e-6, force, indenter=bead), Path(__file__).with_name("fit.png"))
+    save_figure(pl.fit(depth + 3.2e-6, force, indenter=bead), Path(__file__).with_name("fit"))
 
 
 if __name__ == "__main__":

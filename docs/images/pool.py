@@ -26,7 +26,7 @@ def main() -> None:
         force += 0.01 * force.max() * random.standard_normal(depth.size)
         curves[f"{1e6 * radius:.0f} µm"] = depth + 3.2e-6, force
     fit = pl.fit_pooled(curves, indenter="paraboloid", radius=list(radii))
-    save_figure(fit, Path(__file__).with_name("pool.png"))
+    save_figure(fit, Path(__file__).with_name("pool"))
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import pellicle as pl
-from pellicle.cli import INTERRUPTED, NOT_CONVERGED, echo, print_json
+from pellicle.cli import INTERRUPTED, NOT_CONVERGED, Format, echo, print_json
 from pellicle.errors import ConfigError
 
 from .print_fits import print_fit, print_fits, print_warnings, show_fits
@@ -113,6 +114,14 @@ def fit(
         Path | None,
         typer.Option("-o", "--output", metavar="DIR", help="Folder for JSON, table and figure."),
     ] = None,
+    formats: Annotated[
+        list[Format] | None,
+        typer.Option(
+            "--format",
+            metavar="FORMAT",
+            help="Of the figures in it: png (default), svg or pdf; repeat for several.",
+        ),
+    ] = None,
     report: Annotated[
         bool, typer.Option("--report", help="Write a web page, to that folder or the current one.")
     ] = False,
@@ -175,7 +184,8 @@ def fit(
         pool=pool or None,
         compare=compare or None,
     )
-    result, name, title = _fit(config, directory, quiet=quiet)
+    kinds = [str(kind) for kind in formats or [Format.PNG]]
+    result, name, title = _fit(config, directory, kinds, quiet=quiet)
     many = result if isinstance(result, ManyFits) else None
     if json:
         print_json(result.to_dict())
@@ -188,7 +198,7 @@ def fit(
     written = [*many.files] if many else []
     if directory is not None and not isinstance(result, ManyFits):
         written.append(result.save(directory / f"{name}.json"))
-        written.append(save_figure(result, directory / f"{name}.png"))
+        written += save_figure(result, directory / name, kinds)
     if report:
         written.append(save_report(result, (directory or Path()) / f"{name}.html", title))
     if many and many.resumed and not quiet:
@@ -207,7 +217,7 @@ def register_commands(register: pl.RegisterCommand) -> None:
 
 
 def _fit(
-    config: FitConfig, directory: Path | None, *, quiet: bool
+    config: FitConfig, directory: Path | None, formats: Sequence[str], *, quiet: bool
 ) -> tuple[Fit | ManyFits, str, str]:
     """Return the fit of the curves, the name of its files and the title of its page."""
     from pellicle_fit.files.sources import SourceStream
@@ -226,7 +236,8 @@ def _fit(
     if sources is not None:
         return problem(config, sources, progress=progress).fit(progress=progress), name, title
     try:
-        fits = fit_sources(config, SourceStream(curves), directory, progress=not quiet)
+        stream, shown = SourceStream(curves), not quiet
+        fits = fit_sources(config, stream, directory, progress=shown, formats=formats)
     except KeyboardInterrupt:
         hint = f"; finished fits are in {directory}, and the same command continues"
         echo(f"interrupted{hint if directory else ''}", err=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import pickle
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
 from importlib.metadata import version
@@ -168,7 +168,12 @@ def _fit(
 
 
 def fit_sources(
-    config: FitConfig, sources: Iterable[Source], directory: Path | None, *, progress: bool
+    config: FitConfig,
+    sources: Iterable[Source],
+    directory: Path | None,
+    *,
+    progress: bool,
+    formats: Sequence[str] = ("png",),
 ) -> ManyFits:
     """Fit each curve that is not fitted yet, and write the files.
 
@@ -203,7 +208,7 @@ def fit_sources(
         fits.notes = [*notes, *of_maps]
         if directory is not None:
             tables = _write(fits, config, watch, directory)
-            fits.files = (*tables, *save_population(fits, directory))
+            fits.files = (*tables, *save_population(fits, directory, formats))
     return fits
 
 

@@ -4,6 +4,7 @@ What a command of a plugin may use is listed here. Heavy imports are inside the 
 ``pellicle --help`` answers at once.
 """
 
+from .plot import Format as Format
 from .printing import BAD_INPUT as BAD_INPUT
 from .printing import INTERRUPTED as INTERRUPTED
 from .printing import NOT_CONVERGED as NOT_CONVERGED

@@ -80,6 +80,8 @@ class Look(NamedTuple):
     """Number of the marker; None is none."""
     sparse: bool = False
     """Whether markers only help to tell smooth curves apart, and do not mark every point."""
+    filled: bool | None = None
+    """Whether markers are filled; if None those of many points without a line are."""
 
 
 @dataclass(frozen=True)
@@ -205,6 +207,8 @@ class Column:
     """Which cells a page marks, as what people should not rely on."""
     frames: Sequence[int | None] = ()
     """The frame of the first maps of a page that a click on each cell shows, if any."""
+    read_in: Scale | None = None
+    """The unit in which people read the numbers, if tables share it."""
 
     @property
     def head(self) -> str:
@@ -214,7 +218,9 @@ class Column:
 
     @cached_property
     def scale(self) -> Scale:
-        """The unit in which people read the numbers, which the largest of them gives."""
+        """The unit in which people read the numbers, which the largest of them gives by default."""
+        if self.read_in:
+            return self.read_in
         values: Any = self.values
         if not isinstance(values, np.ndarray):
             values = [value for value in values if isinstance(value, Real)]

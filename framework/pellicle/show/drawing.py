@@ -27,6 +27,8 @@ _RETRACTION = (0, (2.5, 1.2))
 _GREY, _PALE = "0.4", "0.6"
 _MOST_MARKED = 80
 """Points that all have a marker; of more on a line, some have, at a distance, others are dots."""
+_DOT = 2.5
+"""Size of markers that are dots."""
 _MARKER_DISTANCE, _SPARSE_DISTANCE = 0.04, 0.12
 """Over the diagonal of the axes; the latter on a smooth curve."""
 _LETTERS = 50
@@ -171,13 +173,16 @@ def _style(series: Series, chart: Chart) -> dict[str, Any]:
     if look.marker is None:
         return style
     style["marker"] = MARKERS[look.marker % len(MARKERS)]
+    face = style["color"] if look.filled else "white"
     if look.line is None and series.x.size > _MOST_MARKED:
-        return style | {"marker": ".", "markersize": 2.5}
+        if look.filled is False:
+            return style | {"markersize": _DOT, "markerfacecolor": face, "markeredgewidth": 0.5}
+        return style | {"marker": ".", "markersize": _DOT}
     if look.sparse:
         # Smooth curves that coincide show their markers beside each other.
         first = _SPARSE_DISTANCE * (0.2 + 0.25 * (look.marker % 4))
         return style | {"markersize": 3.5, "markevery": (first, _SPARSE_DISTANCE)}
-    style |= {"markersize": 4, "markerfacecolor": "white"}
+    style |= {"markersize": 4, "markerfacecolor": face}
     of_legs = (series.x[leg.steps].size for leg in series.legs)
     if look.line is not None and max(of_legs, default=series.x.size) > _MOST_MARKED:
         style["markevery"] = _MARKER_DISTANCE
@@ -189,9 +194,10 @@ def _draw_legs(
 ) -> None:
     """Draw approach in the style, and retraction with short dashes and filled markers.
 
-    ``arrows`` point in the order of the steps; on logarithmic axes they might begin at values that
-    are not positive.
+    ``arrows`` point in the order of the steps, if they have markers; on logarithmic axes they might
+    begin at values that are not positive.
     """
+    arrows = arrows and style.get("markersize", 0.0) > _DOT
     # The legend shows the plain style if there is an approach.
     for leg in sorted(series.legs, key=lambda leg: leg.direction):
         drawn = dict(style)

@@ -24,6 +24,8 @@ from .numbers import is_number
 if TYPE_CHECKING:
     from jinja2 import Template
 
+_LONG = 30
+"""Letters of the longest cell of a column that stays on one line."""
 _HASH = re.compile(r"\b([0-9a-f]{8})[0-9a-f]{24,}\b")
 
 
@@ -137,12 +139,14 @@ def page(title: str, sections: Sequence[Section], subtitle: str = "") -> str:
 def _column(column: Column) -> dict[str, Any]:
     """Return the head and the cells of a column of a table; hashes are shortened."""
     label, texts = column.read()
+    shown = [_HASH.sub(r"\1…", text) for text in texts]
     cells = [
         {"text": short, "whole": text if short != text else "", "bad": bad, "frame": frame}
-        for text, bad, frame in zip_longest(texts, column.bad, column.frames)
-        for short in (_HASH.sub(r"\1…", text),)
+        for short, text, bad, frame in zip_longest(shown, texts, column.bad, column.frames)
     ]
-    words = not all(map(is_number, texts))
+    words = "" if all(map(is_number, texts)) else "words"
+    if max(map(len, shown), default=0) > _LONG:
+        words = "long words"
     return {"column": column, "label": label, "words": words, "cells": cells}
 
 

@@ -23,6 +23,7 @@ _ACROSS, _DOWN = 4, 7
 _LETTERS = 38
 _COLOURS = {"accepted": "0.6", "outlier": "C1", "rejected": "C3", "not fitted": "0.2"}
 """Colours of the frames."""
+_DOTS: dict[str, Any] = {"color": "0.6", "ms": 1.6, "mew": 0.35}
 
 
 def sheets(rows: Sequence[Row]) -> list[Callable[[Figure], None]]:
@@ -40,11 +41,11 @@ def _page(rows: Sequence[Row], caption: str, figure: Figure) -> None:
     for axes in cells[len(rows) :]:
         axes.set_axis_off()
     # Nothing is drawn of these but the legend.
-    cells[-1].plot([], [], ".", color="0.6", label="data")
+    cells[-1].plot([], [], "o", **_DOTS, label="data")
     cells[-1].plot([], [], "C0", label="fit")
     for state, colour in _COLOURS.items():
         cells[-1].fill_between([], [], facecolor="none", edgecolor=colour, label=state)
-    title = f"{caption}; each frame spans the range of its curve"
+    title = f"{caption}; each frame spans the range of its curve; hollow points: not accepted"
     above: dict[str, Any] = {"loc": "outside upper center", "ncols": 6, "title_fontsize": 6}
     figure.legend(title=title, fontsize=5, **above)
 
@@ -59,7 +60,7 @@ def _curve(row: Row, axes: Axes) -> None:
     texts = [(0.0, *text) for text in above]
     if row.sketch and row.sketch["position"].size:
         z, force = row.sketch["position"], row.sketch["force"]
-        axes.plot(z, force, ".", color="0.6", markersize=1.5)
+        axes.plot(z, force, "o", mfc="0.6" if row.accepted else "none", **_DOTS)
         if "fit" in row.sketch:
             axes.plot(z, row.sketch["fit"], "C0", linewidth=0.7)
         for up, values, unit in ((0.87, z, "m"), (0.78, force, "N")):
@@ -74,11 +75,10 @@ def _numbers(row: Row) -> str:
     """Return what was fitted and the quality of the fit as a line."""
     if not row.is_fitted:
         return ""
-    estimates = {symbol: row.estimates.get(name) for name, symbol in SHOWN.items()}
     texts = [
         f"{symbol} {readable(e.value, e.unit, 3)}"
-        for symbol, e in estimates.items()
-        if e is not None and not (e.held and not e.value)
+        for name, symbol in SHOWN.items()
+        if (e := row.estimates.get(name)) is not None and not (e.held and not e.value)
     ]
     ratio = decimal(row.numbers["chi_squared"] / row.numbers["points"], 3)
     return ", ".join([*texts, f"R² {row.numbers['r_squared']:.4f}", f"χ²/n {ratio}"])

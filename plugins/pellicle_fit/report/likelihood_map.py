@@ -23,12 +23,15 @@ _FURTHEST = np.log(10.0)
 """Moduli drawn to either side at most, as a logarithm."""
 
 
-def likelihood_map(explained: Candidate) -> Chart:
-    """Return the edges of what describes the curve, with all but modulus and tension sought."""
+def likelihood_map(explained: Candidate, widened: float) -> Chart:
+    """Return the edges of what describes curves, with all but modulus and tension sought.
+
+    Δχ² at the edges is ``widened`` for curves that do not agree.
+    """
     from matplotlib.figure import Figure
 
-    grid, own = _grid(explained), parameters_of(explained)
-    edges = Figure().add_subplot().contour(*grid, [*_JOINT]).allsegs
+    grid, own = _grid(explained, widened), parameters_of(explained)
+    edges = Figure().add_subplot().contour(*grid, [level * widened for level in _JOINT]).allsegs
     series = [
         Series(points[:, 0], points[:, 1], legend=name * (points is lines[0]), look=Look(0, line))
         for line, (name, lines) in enumerate(zip(_JOINT.values(), edges, strict=True))
@@ -46,7 +49,7 @@ def likelihood_map(explained: Candidate) -> Chart:
     return Chart(*axes, [*series, *moduli, *tensions, named])
 
 
-def _grid(explained: Candidate) -> tuple[Array, Array, Array]:
+def _grid(explained: Candidate, widened: float = 1.0) -> tuple[Array, Array, Array]:
     """Return moduli [Pa], tensions [N/m] and Δχ², each of shape (moduli, tensions).
 
     The tensions of a row surround the best tension at its modulus, so that the grid follows a
@@ -56,7 +59,8 @@ def _grid(explained: Candidate) -> tuple[Array, Array, Array]:
     names = [slot.name for slot in objective.slots]
     e, t = names.index(MODULUS), names.index(TENSION)
     rest = [k for k in range(len(names)) if k not in (e, t)]
-    half_width = min(_HALF_WIDTH * objective.deviations(best.at)[e], _FURTHEST)
+    reach = _HALF_WIDTH * np.sqrt(widened)
+    half_width = min(reach * objective.deviations(best.at)[e], _FURTHEST)
     coordinates = best.at[e] + np.linspace(-half_width, half_width, _MODULI)
     tensions = np.empty((_MODULI, _TENSIONS))
     rises = np.empty_like(tensions)
@@ -68,7 +72,7 @@ def _grid(explained: Candidate) -> tuple[Array, Array, Array]:
         by_tension = objective.jacobian(ridge, (t,))[:, 0]
         by_rest = objective.jacobian(ridge, rest) if rest else np.empty((by_tension.size, 0))
         along = -np.linalg.lstsq(by_rest, by_tension, rcond=1e-12)[0]
-        half = _HALF_WIDTH / np.linalg.norm(by_tension + by_rest @ along)
+        half = reach / np.linalg.norm(by_tension + by_rest @ along)
         tensions[row] = np.linspace(max(ridge[t] - half, 0.0), ridge[t] + half, _TENSIONS)
         for column, tension in enumerate(tensions[row]):
             at = np.array(ridge)

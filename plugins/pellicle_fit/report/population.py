@@ -1,71 +1,144 @@
-"""Files of a population beside its tables: contact sheet, distributions, and force maps."""
+"""Figures of a population, and its files: distributions, force maps and a contact sheet."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pellicle.arrays import Array
+from pellicle.components import Axis, Chart, Look, Series
 from pellicle.files import atomic_write
 from pellicle.results import header
 from pellicle.show import figure_of, save_figure, save_pages
 from pellicle.units import axis_unit
+from pellicle_fit.objective import MODULUS
 from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.population.images import CONTACT_HEIGHT
-from pellicle_fit.words.quantities import SHOWN
+from pellicle_fit.population.row import Row
+from pellicle_fit.population.summary import label
+from pellicle_fit.recipe import TENSION
+from pellicle_fit.words.quantities import SHOWN, words
 
 from .contact_sheet import PAGE, sheets
-from .population_figures import distributions
+from .guides import guide
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
+_DRAWN = {MODULUS: "Pa", TENSION: "N/m"}
+_BARS = 200
+"""Most curves whose intervals are drawn beside each other."""
+_OPEN_TOP = 1.1
+"""Position of an open upper end, as a multiple of the largest value drawn."""
+_BINS = 5, 40
+"""Least and greatest number of bins."""
+_GROUPS = 10
+"""Number of groups with a colour of their own; the others share the last."""
+_DECADE = 10.0
+"""Greatest over least value beyond which an axis is logarithmic."""
 _WIDTH, _AROUND = 3.7, 0.75
 """Width of a panel, and its height beside that of the image [inch]."""
 _EXTREMES = 1, 99
 """Percentiles between which the colours change, so that one odd curve does not fade the rest."""
 
 
-def save_population(fits: ManyFits, directory: Path) -> tuple[Path, ...]:
-    """Write ``fits-curves.pdf``, ``fits.png`` and the images in ``maps``, and return the files.
+def bars(rows: Sequence[Row]) -> list[Chart]:
+    """Return modulus and tension of each curve with their intervals, if they were fitted.
 
-    Raises
-    ------
-    StorageError
-        A file cannot be written.
+    A bar with an open end reaches down to 0, or up to a triangle at the top; markers of rejected
+    curves are hollow.
     """
-    files = [save_pages(sheets(fits.rows), directory / "fits-curves.pdf", PAGE)]
-    if charts := distributions(fits.rows):
-        draw, size = figure_of(charts)
-        files += save_figure(draw, directory / "fits", ["png"], size)
-    # Two files may have the same name in different folders.
-    stems, seen = Counter(Path(name).stem for name in fits.maps), Counter[str]()
-    for name, images in fits.maps.items():
-        stem = Path(name).stem
-        seen[stem] += 1
-        path = directory / "maps" / (f"{stem}-{seen[stem]}" if stems[stem] > 1 else stem)
-        for parameter, image in images.data_vars.items():
-            files.append(save_tiff(image, path.with_name(f"{path.name}-{parameter}.tif")))
-        fill, size = map_figure(images, Path(name).name)
-        files += save_figure(fill, path, ("png", "pdf"), size)
-    return tuple(files)
+    series, axes = list[Series](), list[Axis]()
+    for name, unit in _DRAWN.items():
+        fitted = [
+            (number, row.accepted, e.value, e.low, e.high)
+            for number, row in enumerate(rows, 1)
+            if (e := row.estimates.get(name)) is not None and not e.held
+        ]
+        if not fitted:
+            continue
+        # An open end is None, which becomes NaN.
+        x, accepted, values, low, high = np.array(fitted, dtype=float).T
+        opened, panel = np.isnan(high), len(axes)
+        high[opened] = _OPEN_TOP * max(values.max(), np.nanmax([*high, 0.0]))
+        ends = np.column_stack([np.nan_to_num(low), high, np.full(x.size, np.nan)])
+        series.append(Series(np.repeat(x, 3), ends.ravel(), panel=panel))
+        for filled, of in ((True, accepted > 0), (False, accepted == 0)):
+            for marker, y, which in ((0, values, of), (2, high, of & opened)):
+                look = Look(0, None, marker, filled=filled)
+                series.append(Series(x[which], y[which], look=look, panel=panel))
+        axes.append(Axis(words(name), unit, limits=(0, None)))
+    across = Axis("curve, in the order of the table")
+    return [Chart(across, axes, series)] if axes and len(rows) <= _BARS else []
 
 
-def save_tiff(image: xr.DataArray, path: Path) -> Path:
-    """Write an image as TIFF of 32-bit floats, the largest y on top, with pixels for each cm."""
-    from PIL import Image
+def drawable(rows: Sequence[Row]) -> list[Row]:
+    """Return the rows that are drawn: of accepted curves that have a closed interval."""
+    return [row for row in rows if row.accepted and any(map(row.is_closed, _DRAWN))]
 
-    across, along = _pitches(image)
-    per_cm = {"x_resolution": 1e-2 / across, "y_resolution": 1e-2 / along}
-    picture = Image.fromarray(image.values[::-1].astype(np.float32))
-    text = header(str(image.name), image)
-    with atomic_write(path) as part:
-        picture.save(part, format="TIFF", description=text, resolution_unit="cm", **per_cm)
-    return path
+
+def distributions(rows: Sequence[Row]) -> list[Chart]:
+    """Return histograms of E* and τ₀ of the drawable curves, by group, and E* against τ₀."""
+    rows, charts = drawable(rows), list[Chart]()
+    groups = list(dict.fromkeys(row.group for row in rows))
+    kinds = np.array([min(groups.index(row.group), _GROUPS - 1) for row in rows])
+    labels = [label(group) for group in groups[:_GROUPS]]
+    if len(groups) > _GROUPS:
+        labels[-1] = f"{len(groups) - _GROUPS + 1} other groups"
+    closed = {name: np.array([row.is_closed(name) for row in rows]) for name in _DRAWN}
+    for name, has in closed.items():
+        if has.any():
+            # One legend is enough.
+            shown = labels if len(labels) > 1 and not charts else [""] * len(labels)
+            charts.append(_histogram(name, _values(rows, name)[has], kinds[has], shown))
+    if len(charts) == 2:
+        charts.append(_scatter(rows, kinds, len(labels)))
+    return charts
+
+
+def _values(rows: Sequence[Row], name: str) -> Array:
+    return np.array([row.estimates[name].value for row in rows])
+
+
+def _axis(name: str, values: Array) -> Axis:
+    is_wide = name == MODULUS and bool(values.max() > _DECADE * values.min())
+    return Axis(words(name), _DRAWN[name], log=is_wide)
+
+
+def _histogram(name: str, values: Array, kinds: Array, labels: Sequence[str]) -> Chart:
+    """Return how many values lie in each bin, those of each kind on top of the others."""
+    axis, low, high = _axis(name, values), float(values.min()), float(values.max())
+    number = int(np.clip(np.sqrt(values.size) * 2, *_BINS)) + 1
+    high = high if high > low else low + (abs(low) or 1.0)
+    edges = np.geomspace(low, high, number) if axis.log else np.linspace(low, high, number)
+    series, floor = list[Series](), np.zeros(2 * number)
+    for kind, legend in enumerate(labels):
+        counts, _ = np.histogram(values[kinds == kind], edges)
+        top = floor + np.pad(np.repeat(counts, 2), 1)
+        ends = {"low": floor, "high": top}
+        series.append(Series(np.repeat(edges, 2), top, legend=legend, look=Look(kind), **ends))
+        floor = top
+    median = guide([float(np.median(values))] * 2, [0.0, floor.max()])
+    # In the order of the stack, from the top, so that no outline hides one below it.
+    return Chart(axis, [Axis("curves")], [*series[::-1], median], hues=len(labels))
+
+
+def _scatter(rows: Sequence[Row], kinds: Array, count: int) -> Chart:
+    """Return tension against modulus, with other marks where the modulus stands out."""
+    modulus, tension = _values(rows, MODULUS), _values(rows, TENSION)
+    outlier, series = np.array([row.outlier for row in rows]), []
+    for marker, of in enumerate((~outlier, outlier)):
+        for kind in range(count):
+            shown = of & (kinds == kind)
+            look = Look(kind, None, marker, filled=True)
+            series.append(Series(modulus[shown], tension[shown], look=look))
+    axes = _axis(MODULUS, modulus), [_axis(TENSION, tension)]
+    return Chart(*axes, [one for one in series if one.x.size], hues=count)
 
 
 def map_figure(
@@ -108,3 +181,41 @@ def _pitches(images: xr.Dataset | xr.DataArray) -> tuple[float, float]:
     sides = [images[name].values for name in "xy"]
     x, y = (float(side[1] - side[0]) if side.size > 1 else 0.0 for side in sides)
     return x or y, y or x
+
+
+def save_population(fits: ManyFits, directory: Path, formats: Sequence[str]) -> tuple[Path, ...]:
+    """Write contact sheet, distributions and the images in ``maps``, and return the files.
+
+    Raises
+    ------
+    StorageError
+        A file cannot be written.
+    """
+    files = [save_pages(sheets(fits.rows), directory / "fits-curves.pdf", PAGE)]
+    if charts := distributions(fits.rows):
+        draw, size = figure_of(charts)
+        files += save_figure(draw, directory / "fits", formats, size)
+    # Two files may have the same name in different folders.
+    stems, seen = Counter(Path(name).stem for name in fits.maps), Counter[str]()
+    for name, images in fits.maps.items():
+        stem = Path(name).stem
+        seen[stem] += 1
+        path = directory / "maps" / (f"{stem}-{seen[stem]}" if stems[stem] > 1 else stem)
+        for parameter, image in images.data_vars.items():
+            files.append(save_tiff(image, path.with_name(f"{path.name}-{parameter}.tif")))
+        fill, size = map_figure(images, Path(name).name)
+        files += save_figure(fill, path, formats, size)
+    return tuple(files)
+
+
+def save_tiff(image: xr.DataArray, path: Path) -> Path:
+    """Write an image as TIFF of 32-bit floats, the largest y on top, with pixels for each cm."""
+    from PIL import Image
+
+    across, along = _pitches(image)
+    per_cm = {"x_resolution": 1e-2 / across, "y_resolution": 1e-2 / along}
+    picture = Image.fromarray(image.values[::-1].astype(np.float32))
+    text = header(str(image.name), image)
+    with atomic_write(path) as part:
+        picture.save(part, format="TIFF", description=text, resolution_unit="cm", **per_cm)
+    return path

@@ -37,7 +37,7 @@ from pellicle_fit.population.row import Row
 from pellicle_fit.population.rules import Rule
 from pellicle_fit.population.summary import summary
 from pellicle_fit.report.contact_sheet import sheets
-from pellicle_fit.report.population_figures import drawable
+from pellicle_fit.report.population import drawable
 from pellicle_fit.words.population import sentences_of_population
 from tests.plugins.fit.test_many import BEAD, HERTZ, OPTIONS, curve, save
 
@@ -185,7 +185,8 @@ def test_files(cli: Cli, tmp_path: Path) -> None:
         save(tmp_path / "day" / f"{name}.csv", position, scale * force)
     save(tmp_path / "day" / "c.csv", position, 0 * force)
     Path("bad.txt").write_text("b_2.csv, slipped\n")
-    arguments = ("day/soft/*.csv", "day/*.csv", *FIXED, "-o", "out", "--quiet")
+    formats = "--format", "svg", "--format", "pdf"
+    arguments = ("day/soft/*.csv", "day/*.csv", *FIXED, "-o", "out", "--quiet", *formats)
     rules = ("--set", "group_by={group}_*.csv", "--set", "rejected=bad.txt", "--report")
     result = cli(*arguments, *rules, "--set", "accept=reduced_modulus < 15 kPa", code=1)
     assert result.stdout == ""
@@ -205,7 +206,7 @@ def test_files(cli: Cli, tmp_path: Path) -> None:
     assert sheet.startswith(b"%PDF")
     # Of the letters of a font of Type 3 beyond Latin-1, and of ligatures, no text can be copied.
     assert b"/Type3" not in sheet
-    assert Path("out/fits.png").is_file()
+    assert [Path(f"out/fits.{ending}").is_file() for ending in ("svg", "pdf", "png")] == [1, 1, 0]
     page = Path("out/fits.html").read_text(encoding="utf-8")
     for words in ("slipped", "quartiles", "Each curve with its fit"):
         assert words in page
@@ -279,7 +280,7 @@ def test_two_at_once(cli: Cli, tmp_path: Path) -> None:
     assert "is locked by process" in result.stderr
     assert not Path("out/fits.csv").exists()
     # One curve alone is a population too.
-    assert "1 of 1" not in cli("day", *FIXED, "-o", "out").stdout
+    cli("day", *FIXED, "-o", "out")
     assert Path("out/fits-curves.pdf").is_file()
 
 

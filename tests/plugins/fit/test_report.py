@@ -5,17 +5,22 @@ from __future__ import annotations
 import re
 from html import unescape
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle_fit.report.figures import panels, save_figure
+from pellicle_fit.population.judgement import judge
+from pellicle_fit.report import tables
+from pellicle_fit.report.figures import charts, panels, save_figure
 from pellicle_fit.report.likelihood_map import _grid
 from pellicle_fit.report.page import save_report
+from pellicle_fit.report.population import bars
 from pellicle_fit.words.story import story
-from tests.plugins.fit.test_many import BEAD, MODULUS, curve
+from tests.plugins.fit.test_many import BEAD, MODULUS, RADIUS, curve
+from tests.plugins.fit.test_population import row
 
 
 @pytest.fixture(scope="module")
@@ -34,10 +39,16 @@ def test_page(single: pl.Fit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     for words in (sentence, "Tension is needed", "an offset", "95 % of tension", "10 µm"):
         assert words in page
     assert page.count("data:image/svg+xml") == 2
+    folded = re.findall(r'<details class="table">\s*<summary>(\w+)', page)
+    assert folded == ["Notes", "What", "The"]
+    assert 'class="notice bad"' not in page
     assert sentence in unescape(single._repr_html_())
     monkeypatch.setitem(mpl.rcParams, "backend", "agg")
     assert len(single.plot().subfigs) == 2
-    assert save_figure(single, tmp_path / "fit.png").stat().st_size > 10_000
+    drawn, printed = save_figure(single, tmp_path / "fit", ("png", "pdf"))
+    assert drawn.stat().st_size > 10_000
+    assert printed.name == "fit.pdf"
+    assert b"/Type3" not in printed.read_bytes()
 
 
 @pytest.mark.slow
@@ -51,6 +62,38 @@ def test_page_of_a_pool(tmp_path: Path) -> None:
     assert page.count("data:image/svg+xml") == 2
     hertz = pl.fit(position, force, **BEAD, rivals=(), fix={"tension": 0})
     assert len(panels(hertz)) == 1
+
+
+def test_figure_of_both_passes() -> None:
+    """It is over the indentation, with both passes told apart; without a tension it is alone."""
+    depth = np.linspace(-1e-6, 3e-6, 100)
+    bead: Any = pl.indenter("paraboloid", radius=RADIUS)
+    force = MODULUS * bead.layer_force_curve(depth, 0.0, 8e-6, 0.5).force
+    noise = 0.005 * force.max() * np.random.default_rng(1).standard_normal(200)
+    position, force = np.append(depth, depth[::-1]) + 1e-6, np.append(force, force[::-1]) + noise
+    options = BEAD | {"segment": "both", "poissons_ratio": 0.5, "rivals": ["layer"]}
+    fit = pl.fit(position, force, **options)
+    assert fit.answer.chosen.types == {"layer"}
+    ((chart,),) = charts(fit).values()
+    data, *_, contact = chart.series
+    np.testing.assert_allclose(data.x, position - fit.contact_point.value)
+    assert [leg.direction for leg in data.legs] == ["approach", "retraction"]
+    assert [one.legend for one in chart.series if one.legend] == [
+        *("data", "tension", "fit: a thin layer", "contact point"),
+    ]
+    assert {*contact.x} == {0.0}
+
+
+def test_bars_and_units() -> None:
+    """Marks of rejected curves are hollow; one curve gives no other unit to the table."""
+    rows = [row(f"{k}", modulus) for k, modulus in enumerate((1e3, 1.1e3, 1.2e3, 5e6))]
+    judge(rows, ["reduced_modulus < 1 MPa"], None, None)
+    (chart,) = bars(rows)
+    marks = {one.look.filled: one.x.tolist() for one in chart.series if one.look.marker == 0}
+    assert marks == {True: [1, 2, 3], False: [4]}
+    heads = [column.read()[0] for column in tables.rows(rows).columns]
+    assert heads[:2] == ["curve", "reduced modulus [kPa]"]
+    assert tables.groups(rows).columns[1].values[0] == "reduced modulus [kPa]"
 
 
 def test_likelihood_map(single: pl.Fit) -> None:
