@@ -17,6 +17,7 @@ from pellicle_fit.words.quantities import SHOWN, interval, unit_of, unit_of_esti
 from pellicle_fit.words.remarks import failed_checks
 
 _INTERVAL = f"{100 * CONFIDENCE:.0f} % interval"
+_EACH = "Each curve on its own, with its 95 % intervals."
 _MEANING = "values that describe the data nearly as well"
 
 
@@ -81,22 +82,26 @@ def rows(of: Sequence[Row], *, si: bool = False) -> Table:
         states.append("rejected" if rejected else row.status.partition(":")[0])
         reasons.append(row.reason if rejected and row.reason != row.fit["comparison"] else "")
     radii = [row.curve.get("indenter", {}).get("radius", "") for row in of]
-    columns = [Column("verdict", [row.verdict for row in of])]
+    columns = list[Column]()
     for name in SHOWN:
         columns += _quantity(name, [row.estimates.get(name) for row in of], si)
     outliers = ["stands out" if row.outlier else "" for row in of]
     columns += [
         Column("group", [row.group for row in of]),
         Column("radius", radii, "m"),
-        Column("R²", [row.numbers.get("r_squared", "") for row in of], digits=5),
         Column("failed checks", [", ".join(row.failed_checks) for row in of]),
         Column("status", states, bad=[state != FITTED for state in states]),
         Column("reason", reasons, bad=[reason != "" for reason in reasons]),
         Column("modulus", outliers, bad=[mark != "" for mark in outliers]),
     ]
-    shown = [one for one in columns if len(of) == 1 or len({*map(str, one.values)}) > 1]
-    first = Column("curve", [row.name for row in of])
-    return Table([first, *shown], "Each curve on its own, with its 95 % intervals.")
+    fitted = [number for number, row in enumerate(of) if row.is_fitted]
+    told = [
+        one
+        for one in columns
+        if len({str(one.values[number]) for number in fitted}) > 1 or any(one.bad)
+    ]
+    first = [Column("curve", [row.name for row in of]), Column("verdict", [r.verdict for r in of])]
+    return Table([*first, *(told if len(of) > 1 else columns)], _EACH)
 
 
 def groups(of: Sequence[Row], *, si: bool = False) -> Table:

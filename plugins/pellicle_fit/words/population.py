@@ -56,10 +56,10 @@ def advice_of_population(rows: Sequence[Row]) -> list[str]:
     for row in rows:
         for step in row.fit.get("next", ()):
             found.setdefault(step["do"], {})[row.name] = step["why"]
-    lines = []
+    lines, fitted = [], sum(row.is_fitted for row in rows)
     for do, whys in sorted(found.items(), key=lambda item: -len(item[1])):
         first, why = next(iter(whys.items()))
-        which = "all curves" if len(whys) == len(rows) else first_of([*whys])
+        which = f"all {fitted} curves" if len(whys) == fitted > 1 else first_of([*whys])
         example = "" if {*whys.values()} == {why} else f"{first}: "
         lines.append(f"{which}: {do} ({example}{why})")
     return lines
