@@ -26,7 +26,7 @@ _RIVALS = 2
 
 def told(fit: Fit, *, si: bool = False) -> list[str]:
     """Return the lines of its story for a terminal; a long one goes on, indented, after a ";"."""
-    lines = []
+    lines = list[str]()
     for line in story(fit, si=si):
         parts = [line] if len(line) <= _WIDTH else line.replace("; ", ";\n  ").splitlines()
         lines += chain.from_iterable(wrap(part, _WIDTH, **_WRAPPED) for part in parts)
