@@ -46,11 +46,8 @@ def panels(fit: Fit | ManyFits) -> dict[str, Drawing]:
     if isinstance(fit, Fit):
         return {caption: figure_of(beside) for caption, beside in charts(fit).items()}
     of_bars = "Filled, accepted curves; hollow, rejected ones; bars to 0 or a triangle are open."
-    of_distributions = (
-        "Accepted curves, by group, in histograms those with closed intervals; dotted, the median; "
-        "square, a modulus that stands out."
-    )
-    beside = {of_bars: bars(fit.rows), of_distributions: distributions(fit.rows)}
+    closed = "Accepted curves, by group; in histograms, with closed intervals; dotted, the median."
+    beside = {of_bars: bars(fit.rows), f"{closed} Squares stand out.": distributions(fit.rows)}
     found: dict[str, Drawing] = {caption: figure_of(of) for caption, of in beside.items() if of}
     for name, images in fit.maps.items():
         title = Path(name).name
@@ -123,8 +120,7 @@ def _curves(fit: Fit, rival: Candidate | None = None) -> Chart:
         deepest, largest = (measured.max(), abs(curve.force).max()) if count > 1 else (1.0, 1.0)
         passes = Leg(slice(0, turn), "approach"), Leg(slice(turn, force.size), "retraction")
         legs = passes if curve.has_both_passes else ()
-        noise = chosen.objective.noise[number]
-        x, data = measured / deepest, "data" * (number == 0)
+        x, noise, data = measured / deepest, chosen.objective.noise[number], "data" * (not number)
         dots = Look(None, None, 0, filled=False if legs else None)
         series.append(Series(x, curve.force / largest, legend=data, look=dots, legs=legs))
         own = member.name * (count <= _LEGEND_CURVES) if count > 1 else f"fit: {words_of(chosen)}"

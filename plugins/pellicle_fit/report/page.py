@@ -35,8 +35,7 @@ _UNDECIDED = Verdict.CANNOT_TELL, Verdict.UNDESCRIBED
 
 def html_of_fit(fit: Fit) -> str:
     """Return a sentence, the estimates with their intervals, and the curve with its fit."""
-    count = len(fit.members)
-    title = f"Fit of {count} curves" if count > 1 else "Fit of a curve"
+    title = "Fit of a curve" if len(fit.members) == 1 else f"Fit of {len(fit.members)} curves"
     text = " ".join(map(_sentence, story(fit)))
     (chart, *_), *_ = charts(fit).values()
     return show.summary(title, text, tables.estimates(fit), picture=show.png(chart))
@@ -71,8 +70,7 @@ def save_report(fit: Fit | ManyFits, path: Path, title: str) -> Path:
         Section("As JSON", code),
     ]
     now = datetime.now(UTC).isoformat(" ", timespec="seconds").replace("+00:00", " UTC")
-    kind = "Fit" if isinstance(fit, Fit) else "Fits"
-    text = show.page(title, sections, f"{kind} of pellicle {version('pellicle')}, {now}")
+    text = show.page(title, sections, f"Fitted by pellicle {version('pellicle')}, {now}")
     with atomic_write(path) as part:
         part.write_text(text, encoding="utf-8")
     return path

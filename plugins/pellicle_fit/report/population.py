@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -195,12 +194,11 @@ def save_population(fits: ManyFits, directory: Path, formats: Sequence[str]) -> 
     if charts := distributions(fits.rows):
         draw, size = figure_of(charts)
         files += save_figure(draw, directory / "fits", formats, size)
-    # Two files may have the same name in different folders.
-    stems, seen = Counter(Path(name).stem for name in fits.maps), Counter[str]()
-    for name, images in fits.maps.items():
-        stem = Path(name).stem
-        seen[stem] += 1
-        path = directory / "maps" / (f"{stem}-{seen[stem]}" if stems[stem] > 1 else stem)
+    stems = [Path(name).stem for name in fits.maps]
+    for number, (name, images) in enumerate(fits.maps.items(), 1):
+        # Two files may have the same name in different folders.
+        same = stems.count(Path(name).stem) > 1
+        path = directory / "maps" / f"{Path(name).stem}{f'-{number}' * same}"
         for parameter, image in images.data_vars.items():
             files.append(save_tiff(image, path.with_name(f"{path.name}-{parameter}.tif")))
         fill, size = map_figure(images, Path(name).name)

@@ -16,7 +16,8 @@ from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import Fit, name_of, parameters_of
 from pellicle_fit.verdict import MARGIN
 from pellicle_fit.words.effects import words as words_of
-from pellicle_fit.words.quantities import SHOWN, interval, unit_of, unit_of_estimate, words
+from pellicle_fit.words.quantities import OVER_TIED, SHOWN, interval, unit_of, words
+from pellicle_fit.words.quantities import unit_of_estimate as unit_of_one
 from pellicle_fit.words.remarks import failed_checks
 
 _MEANING = "values that describe the data nearly as well"
@@ -30,8 +31,8 @@ def estimates(fit: Fit, *, si: bool = False) -> Table:
     for name, estimate in fit.estimates().items():
         if not (several and name in of_one):
             unit = _unit(fit, name, si)
-            ends = interval(estimate, unit)
-            rows.append((words(name), unit.number(estimate.value), ends, unit.unit))
+            value, ends = unit.number(estimate.value), interval(estimate, unit)
+            rows.append((words(name), value, ends, unit.unit))
     caption = (
         f"The quantities of the model that was chosen, {words_of(fit.answer.chosen)}; intervals of "
         "modulus and tension are over all models that describe the data as well."
@@ -51,10 +52,10 @@ def explanations(fit: Fit, *, si: bool = False) -> Table:
         Column("tied", ["yes" if one.types in tied else "" for one in compared]),
     ]
     for name in (MODULUS, TENSION):
+        values = [parameters_of(one).get(name) for one in compared]
         # Not of all explanations intervals are sought.
-        sought = [name in one.estimates for one in compared]
-        of = [parameters_of(one).get(name) for one in compared]
-        columns += _quantity(name, of, _unit(fit, name, si), sought)
+        sought = [one.estimates.get(name) for one in compared]
+        columns += _quantity(name, _unit(fit, name, si), values, sought)
     tie = f"below ΔAIC = {max(MARGIN, answer.threshold):.3g} it is a tie"
     return Table(columns, f"What describes the data, best first; {tie}.", folded=True)
 
@@ -68,7 +69,7 @@ def curves(fit: Fit, *, si: bool = False) -> Table:
     columns = [
         Column("curve", [member.name for member in members]),
         *([Column("radius", radii, "m")] if any(radii) else []),
-        *_quantity(CONTACT_POINT, points, _unit(fit, CONTACT_POINT, si)),
+        *_quantity(CONTACT_POINT, _unit(fit, CONTACT_POINT, si), points, points),
         Column("points", [member.curve.position.size for member in members]),
         Column("noise", [judged.noise.deviation for judged in judgements], "N", digits=3),
         Column("failed checks", checks),
@@ -88,20 +89,26 @@ def rows(of: Sequence[Row], *, si: bool = False) -> Table:
         else:
             states.append("modulus stands out" * row.outlier or row.status.partition(":")[0])
     radii = [row.curve.get("indenter", {}).get("radius", "") for row in of]
-    columns = [Column("verdict", [row.verdict for row in of])]
+    columns = list[Column]()
     for name in SHOWN:
-        columns += _quantity(name, [row.estimates.get(name) for row in of], _usual(of, name, si))
+        all_of = [row.estimates.get(name) for row in of]
+        # The best value of an interval that is open is one of many.
+        known = [e if row.is_closed(name) else None for row, e in zip(of, all_of, strict=True)]
+        if name in OVER_TIED or 2 * sum(map(bool, all_of)) >= len(of):
+            columns += _quantity(name, _usual(of, name, si), known, all_of)
     columns += [
         Column("group", [row.group for row in of]),
-        # It is not known of curves that could not be fitted.
-        Column("radius", radii if len({*radii} - {""}) > 1 else [""] * len(of), "m"),
-        Column("R²", [row.numbers.get("r_squared", "") for row in of], digits=5),
+        Column("radius", radii, "m"),
         Column("failed checks", [", ".join(row.failed_checks) for row in of]),
         Column("status", states, bad=[state != FITTED for state in states]),
     ]
-    shown = [one for one in columns if len(of) == 1 or len({*map(str, one.values)}) > 1]
-    first = Column("curve", [row.name for row in of])
-    return Table([first, *shown], "Each curve on its own, with its 95 % intervals.")
+    fitted = [number for number, row in enumerate(of) if row.is_fitted]
+    if len(of) > 1:
+        texts = [{str(one.values[number]) for number in fitted} for one in columns]
+        pairs = zip(columns, texts, strict=True)
+        columns = [one for one, distinct in pairs if len(distinct) > 1 or any(one.bad)]
+    first = [Column("curve", [row.name for row in of]), Column("verdict", [r.verdict for r in of])]
+    return Table([*first, *columns], "Each curve on its own, with its 95 % intervals.")
 
 
 def groups(of: Sequence[Row], *, si: bool = False) -> Table:
@@ -121,7 +128,7 @@ def _unit(fit: Fit, name: str, si: bool) -> Scale:
     """Return the unit of a quantity in all tables of a fit: its own or, if it is 0, of rivals."""
     own = fit.estimates()[name]
     if own.value or own.high:
-        return unit_of_estimate(own, si=si)
+        return unit_of_one(own, si=si)
     others = (parameters_of(one).get(name) for one in fit.answer.explanations)
     return unit_of([e.value for e in others if e is not None], own.unit, si=si)
 
@@ -134,19 +141,19 @@ def _usual(of: Sequence[Row], name: str, si: bool) -> Scale:
 
 
 def _quantity(
-    name: str, of: Sequence[Estimate | None], unit: Scale, sought: Sequence[bool] = ()
+    name: str, unit: Scale, of: Sequence[Estimate | None], sought: Sequence[Estimate | None]
 ) -> list[Column]:
-    """Return the columns of values and intervals of a quantity; none if no curve has it.
+    """Return the columns of the values and of the intervals of a quantity; none if there is none.
 
-    Intervals are those that were ``sought``, by default all; of an open one the end that it has.
+    Of an open interval the end that it has is shown. What is 0 because an explanation has none is
+    left out.
     """
-    if not any(e is not None and not (e.held and not e.value) for e in of):
+    of, sought = (
+        [e if e and (e.value or not e.held) else None for e in part] for part in (of, sought)
+    )
+    in_si = next((e.unit for e in (*of, *sought) if e), None)
+    if in_si is None:
         return []
-    values, ends = ["" if e is None else e.value for e in of], []
-    for estimate, wanted in zip(of, sought or [True] * len(of), strict=True):
-        ends.append(interval(estimate, unit) if estimate is not None and wanted else "")
-    in_si = next(e.unit for e in of if e is not None)
-    return [
-        Column(words(name), values, in_si, read_in=unit),
-        Column(f"95 % of {words(name)}", ends, meaning=_MEANING),
-    ]
+    values = Column(words(name), [e.value if e else "" for e in of], in_si, read_in=unit)
+    ends = [interval(e, unit) if e else "" for e in sought]
+    return [values, Column(f"95 % of {words(name)}", ends, meaning=_MEANING)]

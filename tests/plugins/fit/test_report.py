@@ -92,7 +92,7 @@ def test_bars_and_units() -> None:
     marks = {one.look.filled: one.x.tolist() for one in chart.series if one.look.marker == 0}
     assert marks == {True: [1, 2, 3], False: [4]}
     heads = [column.read()[0] for column in tables.rows(rows).columns]
-    assert heads[:2] == ["curve", "reduced modulus [kPa]"]
+    assert heads[:3] == ["curve", "verdict", "reduced modulus [kPa]"]
     assert tables.groups(rows).columns[1].values[0] == "reduced modulus [kPa]"
 
 
