@@ -11,9 +11,6 @@ from pellicle.cli import NOT_CONVERGED, echo, print_json, print_table
 from pellicle.errors import first_of
 from pellicle.files import is_file
 
-from .words.population import advice_of_population, sentences_of_population
-from .words.story import told
-
 if TYPE_CHECKING:
     from pellicle_fit.population.fits import ManyFits
     from pellicle_fit.result import Fit
@@ -25,6 +22,7 @@ _LINES = 50
 def print_fit(fit: Fit, *, details: bool = False, si: bool = False) -> None:
     """Print numbers, verdict and next step, and in detail what they rest on."""
     from pellicle_fit.report import tables
+    from pellicle_fit.words.story import told
 
     for line in told(fit, si=si):
         echo(line)
@@ -50,6 +48,7 @@ def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None, si: bool 
     Of many curves, lines are left out if the table is in the folder.
     """
     from pellicle_fit.report import tables
+    from pellicle_fit.words.population import advice_of_population, sentences_of_population
 
     reasons: dict[str, list[str]] = {}
     for row in fits.rows:
