@@ -120,7 +120,7 @@ def _curves(fit: Fit, rival: Candidate | None = None) -> Chart:
         deepest, largest = (measured.max(), abs(curve.force).max()) if count > 1 else (1.0, 1.0)
         passes = Leg(slice(0, turn), "approach"), Leg(slice(turn, force.size), "retraction")
         legs = passes if curve.has_both_passes else ()
-        x, noise, data = measured / deepest, chosen.objective.noise[number], "data" * (not number)
+        x, data = measured / deepest, "data" if number == 0 else ""
         dots = Look(None, None, 0, filled=False if legs else None)
         series.append(Series(x, curve.force / largest, legend=data, look=dots, legs=legs))
         own = member.name * (count <= _LEGEND_CURVES) if count > 1 else f"fit: {words_of(chosen)}"
@@ -129,7 +129,8 @@ def _curves(fit: Fit, rival: Candidate | None = None) -> Chart:
             # The noise of the force is in the position of the tip, too, not in that of the base.
             given = (curve.force - modelled) / curve.stiffness if curve.stiffness else 0.0
             depth, legend = (measured + given) / deepest, fill(name, _LETTERS)
-            look, left = Look(hue, 0 if legs else hue), (curve.force - modelled) / noise
+            look = Look(hue, 0 if legs else hue)
+            left = (curve.force - modelled) / chosen.objective.noise[number]
             series.append(Series(depth, modelled / largest, legend=legend, look=look, legs=legs))
             series.append(Series(x, left, look=dots._replace(hue=hue), legs=legs, panel=1))
     drawn = np.concatenate([one.y for one in series if one.panel == 0])
