@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pellicle.components import Column, Table
-from pellicle.units import Scale
+from pellicle.units import DIGITS, Scale
 from pellicle_fit.intervals import CONFIDENCE, Estimate
 from pellicle_fit.objective import CONTACT_POINT, MODULUS
 from pellicle_fit.population.row import FITTED, Row
@@ -16,11 +16,11 @@ from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import Fit, name_of, parameters_of
 from pellicle_fit.verdict import MARGIN
 from pellicle_fit.words.effects import words as words_of
-from pellicle_fit.words.quantities import OVER_TIED, SHOWN, interval, unit_of, words
+from pellicle_fit.words.quantities import FEW, OVER_TIED, SHOWN, interval, known, unit_of, words
 from pellicle_fit.words.quantities import unit_of_estimate as unit_of_one
 from pellicle_fit.words.remarks import failed_checks
 
-_MEANING = "values that describe the data nearly as well"
+_Estimates = Sequence[Estimate | None]
 
 
 def estimates(fit: Fit, *, si: bool = False) -> Table:
@@ -92,21 +92,18 @@ def rows(of: Sequence[Row], *, si: bool = False) -> Table:
     columns = list[Column]()
     for name in SHOWN:
         all_of = [row.estimates.get(name) for row in of]
-        # The best value of an interval that is open is one of many.
-        known = [e if row.is_closed(name) else None for row, e in zip(of, all_of, strict=True)]
+        # The best value of a wide interval is one of many.
+        quoted = [e if e and known(e) else None for e in all_of]
         if name in OVER_TIED or 2 * sum(map(bool, all_of)) >= len(of):
-            columns += _quantity(name, _usual(of, name, si), known, all_of)
+            columns += _quantity(name, _usual(of, name, si), quoted, all_of, FEW)
     columns += [
         Column("group", [row.group for row in of]),
         Column("radius", radii, "m"),
-        Column("failed checks", [", ".join(row.failed_checks) for row in of]),
         Column("status", states, bad=[state != FITTED for state in states]),
     ]
-    fitted = [number for number, row in enumerate(of) if row.is_fitted]
+    fitted = [n for n, row in enumerate(of) if row.is_fitted]
     if len(of) > 1:
-        texts = [{str(one.values[number]) for number in fitted} for one in columns]
-        pairs = zip(columns, texts, strict=True)
-        columns = [one for one, distinct in pairs if len(distinct) > 1 or any(one.bad)]
+        columns = [c for c in columns if any(c.bad) or len({str(c.values[n]) for n in fitted}) > 1]
     first = [Column("curve", [row.name for row in of]), Column("verdict", [r.verdict for r in of])]
     return Table([*first, *columns], "Each curve on its own, with its 95 % intervals.")
 
@@ -135,13 +132,13 @@ def _unit(fit: Fit, name: str, si: bool) -> Scale:
 
 def _usual(of: Sequence[Row], name: str, si: bool) -> Scale:
     """Return the unit of a quantity in all tables of curves: that of the median."""
-    known = [e for row in of if (e := row.estimates.get(name)) is not None]
-    values = [e.value for e in known if e.value] or [0.0]
-    return unit_of([float(np.median(values))], known[0].unit if known else "", si=si)
+    found = [e for row in of if (e := row.estimates.get(name)) is not None]
+    values = [e.value for e in found if e.value] or [0.0]
+    return unit_of([float(np.median(values))], found[0].unit if found else "", si=si)
 
 
 def _quantity(
-    name: str, unit: Scale, of: Sequence[Estimate | None], sought: Sequence[Estimate | None]
+    name: str, unit: Scale, of: _Estimates, sought: _Estimates, digits: int = DIGITS
 ) -> list[Column]:
     """Return the columns of the values and of the intervals of a quantity; none if there is none.
 
@@ -154,6 +151,9 @@ def _quantity(
     in_si = next((e.unit for e in (*of, *sought) if e), None)
     if in_si is None:
         return []
-    values = Column(words(name), [e.value if e else "" for e in of], in_si, read_in=unit)
-    ends = [interval(e, unit) if e else "" for e in sought]
-    return [values, Column(f"95 % of {words(name)}", ends, meaning=_MEANING)]
+    values = [e.value if e else "" for e in of]
+    ends = [interval(e, unit, digits) if e else "" for e in sought]
+    return [
+        Column(words(name), values, in_si, read_in=unit, digits=digits),
+        Column(f"95 % of {words(name)}", ends, meaning="values that describe the data as well"),
+    ]
