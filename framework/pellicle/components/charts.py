@@ -207,8 +207,6 @@ class Column:
     """Which cells a page marks, as what people should not rely on."""
     frames: Sequence[int | None] = ()
     """The frame of the first maps of a page that a click on each cell shows, if any."""
-    read_in: Scale | None = None
-    """The unit in which people read the numbers, if tables share it."""
 
     @property
     def head(self) -> str:
@@ -218,9 +216,7 @@ class Column:
 
     @cached_property
     def scale(self) -> Scale:
-        """The unit in which people read the numbers, which the largest of them gives by default."""
-        if self.read_in:
-            return self.read_in
+        """The unit in which people read the numbers, which the largest of them gives."""
         values: Any = self.values
         if not isinstance(values, np.ndarray):
             values = [value for value in values if isinstance(value, Real)]

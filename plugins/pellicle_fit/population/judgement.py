@@ -16,7 +16,6 @@ from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.files import read_text
 from pellicle_fit.objective import MODULUS
 from pellicle_fit.verdict import Verdict
-from pellicle_fit.words.effects import listed
 
 from .row import Row
 from .rules import Rule
@@ -29,8 +28,6 @@ _NORMAL = 1.4826
 """Standard deviation of a normal distribution over its median absolute deviation."""
 _LIMIT = 3.5
 """Distance from the median, in these deviations, beyond which a curve stands out."""
-_NAMED = 10
-"""Curves that a note names."""
 _HEADS = ("curve", "name", "file")
 
 
@@ -148,11 +145,6 @@ def judge(
     far = outliers(whole)
     for row in rows:
         row.outlier = row in far
-    if far:
-        notes.append(
-            f"the modulus stands out from that of the other curves of the group, and still counts: "
-            f"{listed([row.name for row in far], most=_NAMED)}"
-        )
     return notes
 
 

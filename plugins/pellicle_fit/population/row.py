@@ -12,7 +12,6 @@ from pellicle.arrays import Array
 from pellicle_fit.files.measurement import Site
 from pellicle_fit.intervals import Estimate
 from pellicle_fit.verdict import Verdict
-from pellicle_fit.words.quantities import OVER_TIED
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -27,6 +26,10 @@ NUMBERS = {
     **dict.fromkeys(("lead", "tension_needed", "failed_checks", "messages"), "1"),
 }
 """Unit of each number of a fit that is not a quantity of it; checks and messages are counted."""
+SHOWN = {"reduced_modulus": "E*", "tension": "τ₀", "work_of_adhesion": "W", "thickness": "h"}
+"""Symbols of the quantities that tables and figures of curves show, if a curve has them."""
+OVER_TIED = "reduced_modulus", "youngs_modulus", "tension"
+"""Quantities whose intervals are over all explanations that the curve cannot tell apart."""
 ENDS = "", "_low", "_high"
 """What the names of value and ends of an interval end with."""
 _POINTS = 80

@@ -8,9 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from pellicle_fit.words.quantities import OVER_TIED, SHOWN
-
-from .row import Row
+from .row import OVER_TIED, SHOWN, Row
 
 ALL = "all"
 """Name of the line of all accepted curves."""

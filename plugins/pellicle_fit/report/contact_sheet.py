@@ -10,8 +10,7 @@ import numpy as np
 
 from pellicle.files import for_document
 from pellicle.units import decimal, readable
-from pellicle_fit.population.row import Row
-from pellicle_fit.words.quantities import SHOWN
+from pellicle_fit.population.row import SHOWN, Row
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

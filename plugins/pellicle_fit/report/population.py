@@ -17,10 +17,10 @@ from pellicle.units import axis_unit
 from pellicle_fit.objective import MODULUS
 from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.population.images import CONTACT_HEIGHT
-from pellicle_fit.population.row import Row
+from pellicle_fit.population.row import SHOWN, Row
 from pellicle_fit.population.summary import label
 from pellicle_fit.recipe import TENSION
-from pellicle_fit.words.quantities import SHOWN, words
+from pellicle_fit.words.quantities import words
 
 from .contact_sheet import PAGE, sheets
 from .guides import guide

@@ -10,17 +10,15 @@ from pellicle.components import Column, Table
 from pellicle.units import DIGITS, Scale
 from pellicle_fit.intervals import CONFIDENCE, Estimate
 from pellicle_fit.objective import CONTACT_POINT, MODULUS
-from pellicle_fit.population.row import FITTED, Row
+from pellicle_fit.population.row import FITTED, OVER_TIED, SHOWN, Row
 from pellicle_fit.population.summary import QUARTILES, summary
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import Fit, name_of, parameters_of
 from pellicle_fit.verdict import MARGIN
 from pellicle_fit.words.effects import words as words_of
-from pellicle_fit.words.quantities import FEW, OVER_TIED, SHOWN, interval, known, unit_of, words
+from pellicle_fit.words.quantities import FEW, interval, quoted, unit_of, words
 from pellicle_fit.words.quantities import unit_of_estimate as unit_of_one
 from pellicle_fit.words.remarks import failed_checks
-
-_Estimates = Sequence[Estimate | None]
 
 
 def estimates(fit: Fit, *, si: bool = False) -> Table:
@@ -54,8 +52,8 @@ def explanations(fit: Fit, *, si: bool = False) -> Table:
     for name in (MODULUS, TENSION):
         values = [parameters_of(one).get(name) for one in compared]
         # Not of all explanations intervals are sought.
-        sought = [one.estimates.get(name) for one in compared]
-        columns += _quantity(name, _unit(fit, name, si), values, sought)
+        sought = [name in one.estimates for one in compared]
+        columns += _quantity(name, _unit(fit, name, si), values, sought=sought)
     tie = f"below ΔAIC = {max(MARGIN, answer.threshold):.3g} it is a tie"
     return Table(columns, f"What describes the data, best first; {tie}.", folded=True)
 
@@ -69,7 +67,7 @@ def curves(fit: Fit, *, si: bool = False) -> Table:
     columns = [
         Column("curve", [member.name for member in members]),
         *([Column("radius", radii, "m")] if any(radii) else []),
-        *_quantity(CONTACT_POINT, _unit(fit, CONTACT_POINT, si), points, points),
+        *_quantity(CONTACT_POINT, _unit(fit, CONTACT_POINT, si), points),
         Column("points", [member.curve.position.size for member in members]),
         Column("noise", [judged.noise.deviation for judged in judgements], "N", digits=3),
         Column("failed checks", checks),
@@ -92,10 +90,8 @@ def rows(of: Sequence[Row], *, si: bool = False) -> Table:
     columns = list[Column]()
     for name in SHOWN:
         all_of = [row.estimates.get(name) for row in of]
-        # The best value of a wide interval is one of many.
-        quoted = [e if e and known(e) else None for e in all_of]
         if name in OVER_TIED or 2 * sum(map(bool, all_of)) >= len(of):
-            columns += _quantity(name, _usual(of, name, si), quoted, all_of, FEW)
+            columns += _quantity(name, _usual(of, name, si), all_of, FEW)
     columns += [
         Column("group", [row.group for row in of]),
         Column("radius", radii, "m"),
@@ -131,29 +127,29 @@ def _unit(fit: Fit, name: str, si: bool) -> Scale:
 
 
 def _usual(of: Sequence[Row], name: str, si: bool) -> Scale:
-    """Return the unit of a quantity in all tables of curves: that of the median."""
-    found = [e for row in of if (e := row.estimates.get(name)) is not None]
-    values = [e.value for e in found if e.value] or [0.0]
-    return unit_of([float(np.median(values))], found[0].unit if found else "", si=si)
+    """Return the unit of a quantity in all tables of curves: that of the median of what is known."""
+    found = {row: e for row in of if (e := row.estimates.get(name)) is not None}
+    closed = [e.value for row, e in found.items() if row.is_closed(name)]
+    values = closed or [e.value for e in found.values() if e.value] or [0.0]
+    unit = next((e.unit for e in found.values()), "")
+    return unit_of([float(np.median(values))], unit, si=si)
 
 
 def _quantity(
-    name: str, unit: Scale, of: _Estimates, sought: _Estimates, digits: int = DIGITS
+    name: str,
+    unit: Scale,
+    of: Sequence[Estimate | None],
+    digits: int = DIGITS,
+    sought: Sequence[bool] = (),
 ) -> list[Column]:
-    """Return the columns of the values and of the intervals of a quantity; none if there is none.
+    """Return the column of a quantity with its intervals, if they were ``sought``; else none.
 
-    Of an open interval the end that it has is shown. What is 0 because an explanation has none is
-    left out.
+    What is 0 because an explanation has none is left out.
     """
-    of, sought = (
-        [e if e and (e.value or not e.held) else None for e in part] for part in (of, sought)
-    )
-    in_si = next((e.unit for e in (*of, *sought) if e), None)
-    if in_si is None:
-        return []
-    values = [e.value if e else "" for e in of]
-    ends = [interval(e, unit, digits) if e else "" for e in sought]
-    return [
-        Column(words(name), values, in_si, read_in=unit, digits=digits),
-        Column(f"95 % of {words(name)}", ends, meaning="values that describe the data as well"),
+    of = [None if e is None or (e.held and not e.value) else e for e in of]
+    texts = [
+        (quoted(e, unit, digits) if wanted else unit.number(e.value, digits)) if e else ""
+        for e, wanted in zip(of, sought or [True] * len(of), strict=True)
     ]
+    head = f"{words(name)} [{unit.unit}]"
+    return [Column(head, texts, meaning="with its 95 % interval")] if any(of) else []

@@ -31,8 +31,6 @@ def sentences_of_population(fits: ManyFits) -> list[str]:
     counts = f"{fitted} of {len(rows)} curves were fitted"
     if accepted != fitted:
         counts += f", {accepted} of them accepted"
-    if outliers := sum(row.outlier for row in rows):
-        counts += f"; the modulus of {outliers} stands out"
     if verdicts := Counter(
         row.fit.get("verdict", "") for row in rows if row.accepted
     ).most_common():
@@ -52,6 +50,8 @@ def sentences_of_population(fits: ManyFits) -> list[str]:
                 text = f"{text}of {closed} of {part['curves']} curves" if closed else "bounds alone"
                 medians.append(f"{words(part['parameter'])}: {text}")
         sentences.append(f"{'' if group == ALL else f'{group}: '}{'; '.join(medians)}")
+    if far := [row.name for row in rows if row.outlier]:
+        sentences.append(f"far from the median modulus, and counted: {_listed(far)}")
     return sentences
 
 
@@ -64,9 +64,13 @@ def advice_of_population(rows: Sequence[Row]) -> list[str]:
     lines, fitted = [], sum(row.is_fitted for row in rows)
     for do, whys in sorted(found.items(), key=lambda item: -len(item[1])):
         first, why = next(iter(whys.items()))
-        short = {Path(name).name for name in whys}
-        names = sorted(short) if len(short) == len(whys) else [*whys]
-        which = f"all {fitted} curves" if len(whys) == fitted > 1 else listed(names, most=_NAMES)
+        which = f"all {fitted} curves" if len(whys) == fitted > 1 else _listed([*whys])
         example = "" if {*whys.values()} == {why} else f"{first}: "
         lines.append(f"{which}: {do} ({example}{why})")
     return lines
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Return names of curves, without folders if they differ without."""
+    short = [Path(name).name for name in names]
+    return listed(short if len({*short}) == len(names) else names, most=_NAMES)

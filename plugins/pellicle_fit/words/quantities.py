@@ -8,16 +8,12 @@ from pellicle.components import Column
 from pellicle.units import DIGITS, Scale
 from pellicle_fit.intervals import Estimate
 
-SHOWN = {"reduced_modulus": "E*", "tension": "τ₀", "work_of_adhesion": "W", "thickness": "h"}
-"""Symbols of the quantities that tables and figures of curves show, if a curve has them."""
-OVER_TIED = "reduced_modulus", "youngs_modulus", "tension"
-"""Quantities whose intervals are over all explanations that the curve cannot tell apart."""
 PLAUSIBLE = {"reduced_modulus": (1.0, 1e12), "tension": (0.0, 1.0), "thickness": (1e-9, 1.0)}
 """Values [SI] beyond which a unit is probably wrong."""
 FEW = 3
 """Significant digits in sentences, and in tables of many curves."""
 _WIDE = 2.0
-"""Ends over each other beyond which the best value between them is one of many."""
+"""Ends over each other beyond which the best value between them is not quoted."""
 _WORDS = {
     "youngs_modulus": "Young's modulus",
     "offset": "offset of the baseline",
@@ -56,18 +52,19 @@ def interval(estimate: Estimate, unit: Scale, digits: int = DIGITS) -> str:
     return f"> {low}" if high is None else f"{low} to {high}"
 
 
-def known(estimate: Estimate) -> bool:
-    """Return whether an interval is narrow enough for its best value to be quoted."""
-    low, high = estimate.low, estimate.high
-    return estimate.held or (low is not None and high is not None and high <= _WIDE * low)
+def quoted(estimate: Estimate, unit: Scale, digits: int, shown_unit: str = "") -> str:
+    """Return an estimate with its interval, ``5 mN/m (4.8 to 5.2)``; of a wide one the ends.
+
+    The best value between ends that are far apart is one of many.
+    """
+    low, high, ends = estimate.low, estimate.high, interval(estimate, unit, digits)
+    is_narrow = low is not None and high is not None and high <= _WIDE * low
+    if estimate.held or is_narrow:
+        return f"{unit.number(estimate.value, digits)}{shown_unit} ({ends})"
+    return "not determined" if low is None and high is None else f"{ends}{shown_unit}"
 
 
 def in_figures(estimate: Estimate, *, si: bool = False) -> str:
-    """Return an estimate with its interval, ``5 mN/m (4.8 to 5.2)``; of a wide one the ends."""
+    """Return an estimate with its interval and its unit."""
     unit = unit_of_estimate(estimate, si=si)
-    value, ends = unit.text(estimate.value, FEW), interval(estimate, unit, FEW)
-    if estimate.held:
-        return f"{value} (fixed)"
-    if ends == "open":
-        return "not determined"
-    return f"{value} ({ends})" if known(estimate) else unit.with_unit(ends)
+    return quoted(estimate, unit, FEW, f" {unit.unit}".rstrip())
