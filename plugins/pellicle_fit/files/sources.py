@@ -88,7 +88,7 @@ class CurveFile(NamedTuple):
                 arrays |= {"stiffness": calibration.spring_constant, "speed": calibration.speed}
                 readers = {"": partial(Measurement, **arrays)}
         except PellicleError as error:
-            readers = {"": partial(_raise, error)}
+            return [""], iter([Source(path, error, fields, path, self.group, path)])
 
         def sources() -> Iterator[Source]:
             whole = str(self.table) if site and self.table else path
@@ -103,10 +103,6 @@ class CurveFile(NamedTuple):
                 yield Source(name, curve, fields, path, self.group, whole)
 
         return [*readers], sources()
-
-
-def _raise(error: PellicleError) -> Measurement:
-    raise error
 
 
 class SourceStream:

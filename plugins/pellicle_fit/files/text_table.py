@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import re
-import unicodedata
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from itertools import takewhile
@@ -18,6 +17,7 @@ from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.files import read_text
 
 from .columns import EXAMPLE, LABEL, NAMES, Channel, Columns, is_curve, si_unit
+from .heads import Head, guessed, plain
 
 FILE = "file"
 """Name of the column of a table that lists files."""
@@ -34,24 +34,20 @@ _UNIT_ROWS = 3
 """Rows below a header that may hold units instead of numbers."""
 
 
-class Head(NamedTuple):
-    """The head of a column, such as ``position [um]``, its name and its unit."""
-
-    text: str
-    name: str
-    unit: str
-
-    def is_called(self, name: str) -> bool:
-        """Return whether a user who writes ``name`` may mean this column."""
-        return _plain(name).lower() in (self.text.lower(), self.name.lower())
-
-
 class Cells(NamedTuple):
     """The cells of a table as texts, below its heads if there are any."""
 
     heads: list[Head]
     rows: list[list[str]]
     separator: str
+    is_commented: bool
+    """Whether its heads are a comment that tells of a curve, so that no other format is sought."""
+
+    @property
+    def numbered_heads(self) -> list[Head]:
+        """Heads of the columns, or their numbers if the table has no header."""
+        numbers = map(str, range(1, 1 + max(map(len, self.rows[:1]), default=0)))
+        return self.heads or [Head(number, number, "") for number in numbers]
 
     @property
     def names(self) -> list[str]:
@@ -81,6 +77,9 @@ def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | N
         mapped = mapped or {}
         likely = (*data[:_PREAMBLE], *reversed(range(data[0])))
         found = next((number for number in likely if _fits(_heads(lines[number]), mapped)), None)
+        if found is None and not mapped:
+            width = len(_heads(lines[data[-1]]))
+            found = next((n for n in likely if _is_alike(_heads(lines[n]), width)), None)
         header = data[0] if found is None else found
         heads = _heads(lines[header])
         if found is None and all(_is_number(head.text) for head in heads if head.text):
@@ -99,10 +98,11 @@ def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | N
         likely_units = rows[: _UNIT_ROWS if has_units else 0]
         units = [*takewhile(lambda row: not any(map(_is_number, row)), likely_units)]
         for index, head in enumerate(heads):
-            cells = [_plain(row[index]).strip("[]()") for row in units if index < len(row)]
+            cells = [plain(row[index]).strip("[]()") for row in units if index < len(row)]
             unit = head.unit or next(filter(si_unit, cells), "")
             heads[index] = head._replace(unit=unit)
-        return Cells(heads, rows[len(units) :], separator)
+        is_commented = found is not None and found < data[0]
+        return Cells(heads, rows[len(units) :], separator, is_commented)
     return None
 
 
@@ -115,21 +115,22 @@ def _fits(heads: Sequence[Head], mapped: Mapping[str, str]) -> bool:
     return bool(named) and all(any(head.is_called(name) for head in heads) for name in named)
 
 
+def _is_alike(heads: Sequence[Head], width: int) -> bool:
+    """Return whether heads of so many columns suggest a curve by other words."""
+    return len(heads) == width and "<column>" not in dict(guessed(heads, {}).values())
+
+
 def _heads(line: str) -> list[Head]:
-    line = line.lstrip("".join(_COMMENT))
+    # JPK writes "columns:" before the names.
+    line = re.sub(r"^\s*columns:", "", line.lstrip("".join(_COMMENT)))
     separator = _separator(line)
     cells = _WORD.findall(line) if separator == " " else _split([line], separator)[0]
     heads = []
-    for text in map(_plain, cells):
+    for text in map(plain, cells):
         match = _HEAD.fullmatch(text)
         name, unit = match.groups(default="") if match else (text, "")
         heads.append(Head(text, name.strip(), unit.strip()))
     return heads
-
-
-def _plain(text: str) -> str:
-    """Return a text with one kind of µ and of space."""
-    return " ".join(unicodedata.normalize("NFKC", text).replace("μ", "µ").split())
 
 
 def _separator(line: str) -> str:
@@ -155,7 +156,7 @@ def _is_number(cell: str) -> bool:
 
 def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, Columns]:
     """Return the known columns of each curve of a table, or those that ``mapped`` names."""
-    heads, rows, separator = cells
+    heads, rows, separator, _ = cells
     if not mapped and separator == "," and _fits(heads, mapped):
         for row in rows:
             if len(row) > len(heads) and all(map(_is_number, row)):
