@@ -85,8 +85,8 @@ def _errors_and_warnings(path: Path) -> Iterator[list[str]]:
 
 def _without(path: Path, words: Sequence[str]) -> MissingInputError:
     """Return the error of a file that does not hold its calibration."""
-    names = [_CALIBRATION[each] for each in words]
-    return MissingInputError(f"{path}: ", {name: OPTIONS[name] for name in names})
+    names = [_CALIBRATION.get(word, word) for word in words]
+    return MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in names})
 
 
 def _curve(

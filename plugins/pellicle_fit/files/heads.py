@@ -11,7 +11,7 @@ from .columns import LABEL, UNITS, si_unit
 
 _ROLES = {
     "time": "time",
-    "force": "force|load",
+    "force": "force|load|^f$",
     "deflection": "defl|bending",
     "position": "tip|separation|indent|depth",
     "height": r"height|piezo|ramp|sensor|snsr|exten|position|distance|displacement|(^|[\W_])z",

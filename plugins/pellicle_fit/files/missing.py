@@ -24,15 +24,7 @@ SHOWN = 12
 
 
 class MissingInputError(ConfigError):
-    """A file, or a configuration, lacks what only the user knows.
-
-    Parameters
-    ----------
-    where
-        Beginning of the message: the file, and what it holds.
-    options
-        What is missing, each with the options that say it, in which … stands for a value.
-    """
+    """A file lacks what only its user knows: ``options``, by what is missing, say it with a …."""
 
     def __init__(self, where: str, options: Mapping[str, str]) -> None:
         self.where, self.options = where, options
@@ -58,10 +50,8 @@ def missing_in(
     of_columns = [lack for lack in lacks if lack.split()[0] not in OPTIONS]
     text = ""
     if of_columns:
-        known = {role: (c.name or role, c.unit) for role, c in columns.items()}
-        for name, role_and_unit in mapped.items():
-            role, _, unit = role_and_unit.partition(" ")
-            known[role] = name, unit or known.get(role, ("", ""))[1]
+        typed = {text.split()[0]: name for name, text in mapped.items()}
+        known = {role: (typed.get(role, c.name or role), c.unit) for role, c in columns.items()}
         roles = guessed(heads, known, rises)
         text = ", ".join(
             f"{roles[role][0]} = {role} {roles[role][1] or '<unit>'}"
@@ -71,8 +61,9 @@ def missing_in(
         then = {role: Channel(unit, np.empty(0)) for role, (_, unit) in roles.items()}
         others = [lack for lack in lacking(then, calibration) if lack.split()[0] in OPTIONS]
         lacks = [*of_columns, *others]
-    names = ", ".join([*(shown(head.text) for head in heads[:SHOWN]), *["…"][: len(heads) - SHOWN]])
+    names = [shown(head.text or head.name) for head in heads[:SHOWN]]
+    names += ["…"] if len(heads) > SHOWN else []
     return MissingInputError(
-        f"{where} has {names or 'no columns'}; ",
+        f"{where} has {', '.join(names) or 'no columns'}; ",
         {lack: OPTIONS.get(lack.split()[0], f'--columns "{text}"') for lack in lacks},
     )

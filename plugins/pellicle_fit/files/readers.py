@@ -77,7 +77,7 @@ def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
     else:
         cells = read_cells(path, mapped)
         tables = curves_of(path, cells, mapped) if cells else {}
-        heads = cells.numbered_heads if cells else []
+        heads = cells.heads if cells else []
     hint = ""
     is_known = mapped or any(is_curve(columns.keys()) for columns in tables.values())
     if not is_known and not (cells and cells.is_commented):
@@ -98,7 +98,7 @@ def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
         roles = {place: "extension", signal: "force"}
         (_, z), (_, f) = sorted(curves_of(path, cells, roles)[""].items())
         known = np.isfinite(z.values) & np.isfinite(f.values)
-        return bool(np.cov(z.values[known], f.values[known])[0, 1] > 0)
+        return known.sum() < 2 or bool(np.cov(z.values[known], f.values[known])[0, 1] > 0)
 
     def curve(label: str, columns: Columns) -> Measurement:
         if not lacking(columns, calibration):

@@ -44,12 +44,6 @@ class Cells(NamedTuple):
     """Whether its heads are a comment that tells of a curve, so that no other format is sought."""
 
     @property
-    def numbered_heads(self) -> list[Head]:
-        """Heads of the columns, or their numbers if the table has no header."""
-        numbers = map(str, range(1, 1 + max(map(len, self.rows[:1]), default=0)))
-        return self.heads or [Head(number, number, "") for number in numbers]
-
-    @property
     def names(self) -> list[str]:
         """Names of the columns in lower case."""
         return [head.name.lower() for head in self.heads]
@@ -79,7 +73,13 @@ def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | N
         found = next((number for number in likely if _fits(_heads(lines[number]), mapped)), None)
         if found is None and not mapped:
             width = len(_heads(lines[data[-1]]))
-            found = next((n for n in likely if _is_alike(_heads(lines[n]), width)), None)
+            alike = (
+                n
+                for n in likely
+                if len(heads := _heads(lines[n])) == width
+                and "<column>" not in dict(guessed(heads, {}).values())
+            )
+            found = next(alike, None)
         header = data[0] if found is None else found
         heads = _heads(lines[header])
         if found is None and all(_is_number(head.text) for head in heads if head.text):
@@ -101,6 +101,8 @@ def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | N
             cells = [plain(row[index]).strip("[]()") for row in units if index < len(row)]
             unit = head.unit or next(filter(si_unit, cells), "")
             heads[index] = head._replace(unit=unit)
+        width = max(map(len, rows[len(units) :][:1]), default=0)
+        heads += [Head("", str(index + 1), "") for index in range(len(heads), width)]
         is_commented = found is not None and found < data[0]
         return Cells(heads, rows[len(units) :], separator, is_commented)
     return None
@@ -113,11 +115,6 @@ def _fits(heads: Sequence[Head], mapped: Mapping[str, str]) -> bool:
         return is_curve(names) or FILE in names
     named = [name for name in mapped if not name.isdecimal()]
     return bool(named) and all(any(head.is_called(name) for head in heads) for name in named)
-
-
-def _is_alike(heads: Sequence[Head], width: int) -> bool:
-    """Return whether heads of so many columns suggest a curve by other words."""
-    return len(heads) == width and "<column>" not in dict(guessed(heads, {}).values())
 
 
 def _heads(line: str) -> list[Head]:
@@ -157,11 +154,12 @@ def _is_number(cell: str) -> bool:
 def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, Columns]:
     """Return the known columns of each curve of a table, or those that ``mapped`` names."""
     heads, rows, separator, _ = cells
+    named = sum(bool(head.text) for head in heads)
     if not mapped and separator == "," and _fits(heads, mapped):
         for row in rows:
-            if len(row) > len(heads) and all(map(_is_number, row)):
+            if len(row) > named and all(map(_is_number, row)):
                 raise ConfigError(
-                    f"{path}: has {len(row)} numbers below {len(heads)} names ({','.join(row)}), "
+                    f"{path}: has {len(row)} numbers below {named} names ({','.join(row)}), "
                     "as where commas are decimal and separate columns too; export it with "
                     "semicolons, tabs or decimal points, or choose columns by their numbers "
                     "(--columns on the command line)"
@@ -179,7 +177,7 @@ def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, 
         columns = {}
         for role, index in roles.items():
             name, _, unit = role.partition(" ")
-            head = heads[index] if index < len(heads) else Head("", str(index + 1), "")
+            head = heads[index]
             texts = [row[index].strip() if index < len(row) else "" for row in own]
             values = _numbers(texts, separator, f"{path}: column {head.name}")
             columns[name] = Channel(unit or head.unit, values, head.name)
@@ -190,17 +188,16 @@ def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, 
 def _index(path: Path, cells: Cells, name: str) -> int:
     """Return the index of the column with a name or, if none has it, a number."""
     matches = [index for index, head in enumerate(cells.heads) if head.is_called(name)]
-    width = max(len(cells.heads), *(len(row) for row in cells.rows[:1]), 0)
-    if not matches and name.isdecimal() and 1 <= int(name) <= width:
+    if not matches and name.isdecimal() and 1 <= int(name) <= len(cells.heads):
         matches = [int(name) - 1]
     if len(matches) == 1:
         return matches[0]
-    has = ", ".join(map(shown, [head.text for head in cells.heads] or cells.rows[0]))
+    has = ", ".join(shown(head.text or head.name) for head in cells.heads)
     problem = f"{len(matches)} columns" if matches else "no column"
     hint = f"; the curves of a table are told apart by a column {LABEL}" if matches else ""
     raise ConfigError(
         f"{path}: has {problem} {name!r} (it has {has}); name one column, or give its number from "
-        f"1 to {width} (--columns on the command line){hint}",
+        f"1 to {len(cells.heads)} (--columns on the command line){hint}",
         "columns",
     )
 
