@@ -13,10 +13,18 @@ from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import Fit, name_of, parameters_of
 from pellicle_fit.verdict import MARGIN
 from pellicle_fit.words.effects import words as words_of
-from pellicle_fit.words.quantities import SHOWN, interval, unit_of, unit_of_estimate, words
+from pellicle_fit.words.quantities import (
+    OVER_TIED,
+    SHOWN,
+    interval,
+    unit_of,
+    unit_of_estimate,
+    words,
+)
 from pellicle_fit.words.remarks import failed_checks
 
 _INTERVAL = f"{100 * CONFIDENCE:.0f} % interval"
+_EACH = "Each curve on its own, with its 95 % intervals."
 _MEANING = "values that describe the data nearly as well"
 
 
@@ -81,22 +89,30 @@ def rows(of: Sequence[Row], *, si: bool = False) -> Table:
         states.append("rejected" if rejected else row.status.partition(":")[0])
         reasons.append(row.reason if rejected and row.reason != row.fit["comparison"] else "")
     radii = [row.curve.get("indenter", {}).get("radius", "") for row in of]
-    columns = [Column("verdict", [row.verdict for row in of])]
+    columns = list[Column]()
     for name in SHOWN:
-        columns += _quantity(name, [row.estimates.get(name) for row in of], si)
+        # The best value of an interval that is open is one of many.
+        known = [row.is_closed(name) for row in of]
+        values = [row.estimates.get(name) for row in of]
+        if name in OVER_TIED or 2 * sum(map(bool, values)) >= len(of):
+            columns += _quantity(name, values, si, known=known)
     outliers = ["stands out" if row.outlier else "" for row in of]
     columns += [
         Column("group", [row.group for row in of]),
         Column("radius", radii, "m"),
-        Column("R²", [row.numbers.get("r_squared", "") for row in of], digits=5),
         Column("failed checks", [", ".join(row.failed_checks) for row in of]),
         Column("status", states, bad=[state != FITTED for state in states]),
         Column("reason", reasons, bad=[reason != "" for reason in reasons]),
         Column("modulus", outliers, bad=[mark != "" for mark in outliers]),
     ]
-    shown = [one for one in columns if len(of) == 1 or len({*map(str, one.values)}) > 1]
-    first = Column("curve", [row.name for row in of])
-    return Table([first, *shown], "Each curve on its own, with its 95 % intervals.")
+    fitted = [number for number, row in enumerate(of) if row.is_fitted]
+    told = [
+        one
+        for one in columns
+        if len({str(one.values[number]) for number in fitted}) > 1 or any(one.bad)
+    ]
+    first = [Column("curve", [row.name for row in of]), Column("verdict", [r.verdict for r in of])]
+    return Table([*first, *(told if len(of) > 1 else columns)], _EACH)
 
 
 def groups(of: Sequence[Row], *, si: bool = False) -> Table:
@@ -116,16 +132,24 @@ def groups(of: Sequence[Row], *, si: bool = False) -> Table:
 
 
 def _quantity(
-    name: str, of: Sequence[Estimate | None], si: bool, sought: Sequence[bool] = ()
+    name: str,
+    of: Sequence[Estimate | None],
+    si: bool,
+    sought: Sequence[bool] = (),
+    known: Sequence[bool] = (),
 ) -> list[Column]:
     """Return the columns of values and intervals of a quantity; none if no curve has it.
 
-    Intervals are those that were ``sought``, by default all; of an open one the end that it has.
+    By default all values are ``known`` and all intervals were ``sought``; of an open one the end
+    that it has is shown. What is 0 because an explanation has none is left out.
     """
-    if not any(e is not None and not (e.held and not e.value) for e in of):
+    of = [None if e is not None and e.held and not e.value else e for e in of]
+    if not any(of):
         return []
     unit = next(e.unit for e in of if e is not None)
-    values = Column(words(name), ["" if e is None else e.value for e in of], unit)
+    shown = zip(of, known or [True] * len(of), strict=True)
+    numbers = [e.value if e is not None and is_known else "" for e, is_known in shown]
+    values = Column(words(name), numbers, unit)
     scale, ends = values.unit_and_digits(si=si)[0], []
     for estimate, wanted in zip(of, sought or [True] * len(of), strict=True):
         ends.append(interval(estimate, scale) if estimate is not None and wanted else "")

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from pathlib import Path
 
-from pellicle.errors import first_of
 from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.population.row import Row
 from pellicle_fit.population.summary import ALL, QUARTILES, summary
+from pellicle_fit.recipe import TENSION
 
+from .effects import listed
 from .quantities import unit_of, words
 
+_NAMES = 10
+"""Curves that would be helped alike and are named."""
 _GROUPS = 4
 """Groups of a population that are named in a sentence; of more, only all curves are."""
 
@@ -33,13 +37,13 @@ def sentences_of_population(fits: ManyFits) -> str:
         row.fit.get("verdict", "") for row in rows if row.accepted
     ).most_common():
         counts += f"; verdicts: {', '.join(f'{count} {verdict}' for verdict, count in verdicts)}"
-    hidden = "reduced_modulus" * any(part["parameter"] == "youngs_modulus" for part in parts)
+    shown = {TENSION, *[part["parameter"] for part in parts if "modulus" in part["parameter"]][-1:]}
     groups = [group for group in dict.fromkeys(part["group"] for part in parts) if group != ALL]
     sentences = [f"{counts}."]
     for group in groups if 0 < len(groups) <= _GROUPS else [ALL] * bool(parts):
         medians = []
         for part in parts:
-            if part["group"] == group and part["parameter"] != hidden:
+            if part["group"] == group and part["parameter"] in shown:
                 quartiles = [part[name] for name in QUARTILES[1:4]]
                 unit = unit_of([quartiles[1] or quartiles[2]], part["unit"])
                 low, median, high = (unit.number(value, 3) for value in quartiles)
@@ -56,10 +60,12 @@ def advice_of_population(rows: Sequence[Row]) -> list[str]:
     for row in rows:
         for step in row.fit.get("next", ()):
             found.setdefault(step["do"], {})[row.name] = step["why"]
-    lines = []
+    lines, fitted = [], sum(row.is_fitted for row in rows)
     for do, whys in sorted(found.items(), key=lambda item: -len(item[1])):
         first, why = next(iter(whys.items()))
-        which = "all curves" if len(whys) == len(rows) else first_of([*whys])
+        short = {Path(name).name for name in whys}
+        names = sorted(short) if len(short) == len(whys) else [*whys]
+        which = f"all {fitted} curves" if len(whys) == fitted > 1 else listed(names, most=_NAMES)
         example = "" if {*whys.values()} == {why} else f"{first}: "
         lines.append(f"{which}: {do} ({example}{why})")
     return lines

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import chain
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
@@ -18,14 +19,18 @@ if TYPE_CHECKING:
     from pellicle_fit.result import Fit
 
 _WIDTH = 100
-_WRAPPED: dict[str, Any] = {"subsequent_indent": "  ", "break_long_words": False}
-_RIVALS = 3
+_WRAPPED: dict[str, Any] = {"subsequent_indent": "    ", "break_on_hyphens": False}
+_RIVALS = 2
 """Rivals that a verdict names."""
 
 
 def told(fit: Fit, *, si: bool = False) -> list[str]:
-    """Return the lines of its story for a terminal."""
-    return [part for line in story(fit, si=si) for part in wrap(line, _WIDTH, **_WRAPPED)]
+    """Return the lines of its story for a terminal; a long one goes on, indented, after a ";"."""
+    lines = list[str]()
+    for line in story(fit, si=si):
+        parts = [line] if len(line) <= _WIDTH else line.replace("; ", ";\n  ").splitlines()
+        lines += chain.from_iterable(wrap(part, _WIDTH, **_WRAPPED) for part in parts)
+    return lines
 
 
 def story(fit: Fit, *, si: bool = False) -> list[str]:
@@ -82,14 +87,13 @@ def verdict(answer: Answer) -> str:
             if not question.rivals:
                 return f"{subject} is needed{pair}; no rival was tried"
             nearest = f"; the nearest is {other}" if answer.decision.other else ""
-            nothing = f"nothing else that was tried describes {curves} as well"
-            return f"{subject} is needed{pair}: {nothing}{nearest}"
+            return f"{subject} is needed{pair}: nothing else tried fits as well{nearest}"
         case Verdict.CANNOT_TELL:
             tied = [words(fit) for fit in answer.tied_without]
             names = listed(tied, "or", _RIVALS)
             return f"{curves} cannot tell {words(fits[asked])} from {names}"
         case Verdict.OTHER:
-            return f"{other} without {subject}" if word else f"{other}: more than {subject}"
+            return f"{other} without {subject}" if word else f"{other}, not {subject} alone"
     if not word and len(fits) == 1:
         return f"{subject} was compared with nothing"
     return f"no sign of {subject if word else f'more than {subject}'}"
