@@ -41,12 +41,19 @@ def missing_in(
     where: str,
     heads: Sequence[Head],
     mapped: Mapping[str, str],
+    wrong: Sequence[str],
     columns: Columns,
     calibration: Calibration,
     rises: Callable[[str, str], bool],
 ) -> MissingInputError:
-    """Return the error of a curve of which something is `lacking`, with columns as `guessed`."""
-    lacks = lacking(columns, calibration)
+    """Return the error of a curve of which something is `lacking`, with columns as `guessed`.
+
+    Of what is ``mapped``, the ``wrong`` names are those of no column, or of several.
+    """
+    lacks = [
+        *(f"one column {name!r}" for name in dict.fromkeys(wrong)),
+        *lacking(columns, calibration),
+    ]
     of_columns = [lack for lack in lacks if lack.split()[0] not in OPTIONS]
     text = ""
     if of_columns:

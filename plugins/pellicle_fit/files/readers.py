@@ -12,10 +12,10 @@ import numpy as np
 from pellicle.errors import ConfigError, StorageError
 
 from . import afm
-from .columns import EXAMPLE, Calibration, Columns, from_columns, is_curve, lacking
+from .columns import EXAMPLE, LABEL, NAMES, Calibration, Columns, from_columns, is_curve, lacking
 from .measurement import Measurement, Readers
 from .missing import missing_in
-from .text_table import curves_of, read_cells
+from .text_table import curves_of, index_of, read_cells
 from .tree import read_tree
 
 TEXT = (".csv", ".tsv", ".txt")
@@ -100,12 +100,19 @@ def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
         known = np.isfinite(z.values) & np.isfinite(f.values)
         return known.sum() < 2 or bool(np.cov(z.values[known], f.values[known])[0, 1] > 0)
 
+    if cells is None:
+        found = {role for columns in tables.values() for role in columns}
+        wrong = [name for name, text in mapped.items() if text.split()[0] not in found]
+    else:
+        names = mapped or [name for name in cells.names if name in (*NAMES, LABEL)]
+        wrong = [name for name in names if index_of(heads, name) is None]
+
     def curve(label: str, columns: Columns) -> Measurement:
-        if not lacking(columns, calibration):
+        if not wrong and not lacking(columns, calibration):
             return from_columns(columns, calibration)
         where = f"{path}: curve {label}" if label else str(path)
         if cells is None and label and not mapped:
             columns = {role: c._replace(name=f"*/{role}") for role, c in columns.items()}
-        raise missing_in(f"{where}{hint}:", heads, mapped, columns, calibration, rises)
+        raise missing_in(f"{where}{hint}:", heads, mapped, wrong, columns, calibration, rises)
 
     return {label: partial(curve, label, columns) for label, columns in tables.items()}

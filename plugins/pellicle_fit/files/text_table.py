@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.errors import ConfigError, StorageError, shown
+from pellicle.errors import ConfigError, StorageError
 from pellicle.files import read_text
 
 from .columns import EXAMPLE, LABEL, NAMES, Channel, Columns, is_curve, si_unit
@@ -165,7 +165,8 @@ def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, 
                     "(--columns on the command line)"
                 )
     mapped = mapped or {name: name for name in cells.names if name in (*NAMES, LABEL)}
-    roles = {text: _index(path, cells, name) for name, text in mapped.items()}
+    indices = {text: index_of(heads, name) for name, text in mapped.items()}
+    roles = {text: index for text, index in indices.items() if index is not None}
     label = roles.pop(LABEL, -1)
     curves: dict[str, list[list[str]]] = {} if rows else {"": []}
     for row in rows:
@@ -185,21 +186,12 @@ def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, 
     return tables
 
 
-def _index(path: Path, cells: Cells, name: str) -> int:
-    """Return the index of the column with a name or, if none has it, a number."""
-    matches = [index for index, head in enumerate(cells.heads) if head.is_called(name)]
-    if not matches and name.isdecimal() and 1 <= int(name) <= len(cells.heads):
-        matches = [int(name) - 1]
-    if len(matches) == 1:
-        return matches[0]
-    has = ", ".join(shown(head.text or head.name) for head in cells.heads)
-    problem = f"{len(matches)} columns" if matches else "no column"
-    hint = f"; the curves of a table are told apart by a column {LABEL}" if matches else ""
-    raise ConfigError(
-        f"{path}: has {problem} {name!r} (it has {has}); name one column, or give its number from "
-        f"1 to {len(cells.heads)} (--columns on the command line){hint}",
-        "columns",
-    )
+def index_of(heads: Sequence[Head], name: str) -> int | None:
+    """Return the index of the one column with a name or, if none has it, a number."""
+    matches = [index for index, head in enumerate(heads) if head.is_called(name)]
+    if not matches and name.isdecimal() and 1 <= int(name) <= len(heads):
+        return int(name) - 1
+    return matches[0] if len(matches) == 1 else None
 
 
 def _numbers(cells: list[str], separator: str, column: str) -> Array:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.errors import ConfigError, PellicleError, StorageError, shown
+from pellicle.errors import PellicleError, StorageError
 from pellicle.schema import read_mat
 
 from .columns import NAMES, Channel, Columns
@@ -33,7 +33,7 @@ def read_tree(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns]
     is_matlab = path.suffix.lower() == ".mat"
     try:
         with nullcontext(read_mat(path)) if is_matlab else h5py.File(path) as root:
-            curves = _curves(path, root, mapped, is_matlab=is_matlab)
+            curves = _curves(root, mapped, is_matlab=is_matlab)
             return curves, [*islice(_heads(root, _DEEPEST), SHOWN + 1)]
     except PellicleError:
         raise
@@ -54,9 +54,7 @@ def _unit(array: Any) -> str:
     return unit.decode() if isinstance(unit, bytes) else str(unit)
 
 
-def _curves(
-    path: Path, root: Any, mapped: Mapping[str, str], *, is_matlab: bool
-) -> dict[str, Columns]:
+def _curves(root: Any, mapped: Mapping[str, str], *, is_matlab: bool) -> dict[str, Columns]:
     """Return the arrays whose paths are ``mapped``, by the labels of their curves.
 
     The points of a curve are along the first axis of a matrix of MATLAB, or along the last.
@@ -81,12 +79,6 @@ def _curves(
             for row, numbers in rows.items():
                 whole = "/".join(filter(None, (label, row)))
                 arrays[whole] = Channel(unit or _unit(array), numbers, pattern if mapped else "")
-        if mapped and not arrays:
-            paths = [shown(head.text) for head in islice(_heads(root, _DEEPEST), SHOWN)]
-            raise ConfigError(
-                f"{path}: has no array of numbers at {pattern!r} (it has {', '.join(paths)})",
-                "columns",
-            )
     labels = dict.fromkeys(label for own in channels.values() for label in own if label)
     # An array that all curves share, such as the time, has no label.
     found = {

@@ -259,7 +259,7 @@ def test_paths_that_lead_nowhere(tmp_path: Path) -> None:
         for number in range(30):
             group = file.create_group(f"curve{number:04d}")
             group["z"], group["f"] = Z, F
-    with pytest.raises(pl.ConfigError, match=r"no array of numbers at 'z' \(it has 'curve0000/f',"):
+    with pytest.raises(pl.ConfigError, match=r"has 'curve0000/f',.*one column 'z', one column 'f'"):
         curves(path, "z = position um, f = force nN")
     with pytest.raises(pl.ConfigError, match="--columns"):
         curves(path)
@@ -316,6 +316,15 @@ def test_matlab(tmp_path: Path, write: Callable[[Path], str], count: int) -> Non
     assert all(map(is_the_curve, read_curves.values()))
     with pytest.raises(pl.ConfigError, match="; missing: a position"):
         curves(path)
+
+
+@pytest.mark.parametrize("twice", ["force", "time", "curve"])
+def test_a_column_that_is_there_twice_is_asked_for(tmp_path: Path, twice: str) -> None:
+    """Neither is silently taken or left out."""
+    header = f"position [um],force [nN],{twice},{twice}"
+    (tmp_path / "a.csv").write_text(f"{header}\n0,1,2,3\n4,5,6,7\n")
+    with pytest.raises(pl.ConfigError, match=f"missing: one column '{twice}'"):
+        curves(tmp_path / "a.csv")
 
 
 def test_columns_have_one_order() -> None:
