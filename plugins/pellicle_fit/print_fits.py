@@ -67,7 +67,7 @@ def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None, si: bool 
         echo(f"{len(fits.rows)} curves: see {directory / 'fits.csv'}")
     if len({row.group for row in fits.rows if row.accepted}) > 1:
         print_table(tables.groups(fits.rows, si=si), si=si)
-    for line in [sentences_of_population(fits), *advice_of_population(fits.rows)]:
+    for line in [*sentences_of_population(fits), *advice_of_population(fits.rows)]:
         echo(line)
 
 

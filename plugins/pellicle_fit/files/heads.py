@@ -44,12 +44,12 @@ def plain(text: str) -> str:
 def guessed(
     heads: Sequence[Head],
     known: Mapping[str, tuple[str, str]],
-    rises: Callable[[str, str], bool] = lambda place, signal: True,
+    rises: Callable[[str, str], bool] | None = None,
 ) -> dict[str, tuple[str, str]]:
     """Return names of columns and their units, empty if not known, by the roles they may have.
 
     Those that are ``known`` come first.  A base is an extension if its place ``rises`` with the
-    signal.
+    signal, or if that is not known.
     """
     columns = [(role, name, Head("", name, unit)) for role, (name, unit) in known.items()]
     for index, head in enumerate(heads):
@@ -75,5 +75,5 @@ def guessed(
     role, place, unit = found.setdefault("place", ("height", "<column>", ""))
     if role == "height" and role not in known and "<" not in place + signal:
         rising = "position" if is_tip and not _OF_BASE.search(place.lower()) else "extension"
-        found["place"] = (rising if rises(place, signal) else role, place, unit)
+        found["place"] = (rising if rises is None or rises(place, signal) else role, place, unit)
     return {role: (name, unit) for role, name, unit in found.values()}

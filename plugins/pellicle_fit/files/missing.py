@@ -44,7 +44,7 @@ def missing_in(
     wrong: Sequence[str],
     columns: Columns,
     calibration: Calibration,
-    rises: Callable[[str, str], bool],
+    rises: Callable[[str, str], bool] | None,
 ) -> MissingInputError:
     """Return the error of a curve of which something is `lacking`, with columns as `guessed`.
 

@@ -7,15 +7,13 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-import numpy as np
-
 from pellicle.errors import ConfigError, StorageError
 
 from . import afm
 from .columns import EXAMPLE, LABEL, NAMES, Calibration, Columns, from_columns, is_curve, lacking
 from .measurement import Measurement, Readers
 from .missing import missing_in
-from .text_table import curves_of, index_of, read_cells
+from .text_table import curves_of, index_of, read_cells, rises
 from .tree import read_tree
 
 TEXT = (".csv", ".tsv", ".txt")
@@ -92,14 +90,6 @@ def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
             f"export it as a table (a sheet as CSV) with a header such as {EXAMPLE!r}"
         )
 
-    def rises(place: str, signal: str) -> bool:
-        if cells is None:
-            return True
-        roles = {place: "extension", signal: "force"}
-        (_, z), (_, f) = sorted(curves_of(path, cells, roles)[""].items())
-        known = np.isfinite(z.values) & np.isfinite(f.values)
-        return known.sum() < 2 or bool(np.cov(z.values[known], f.values[known])[0, 1] > 0)
-
     if cells is None:
         found = {role for columns in tables.values() for role in columns}
         wrong = [name for name, text in mapped.items() if text.split()[0] not in found]
@@ -113,6 +103,7 @@ def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
         where = f"{path}: curve {label}" if label else str(path)
         if cells is None and label and not mapped:
             columns = {role: c._replace(name=f"*/{role}") for role, c in columns.items()}
-        raise missing_in(f"{where}{hint}:", heads, mapped, wrong, columns, calibration, rises)
+        way = partial(rises, path, cells) if cells else None
+        raise missing_in(f"{where}{hint}:", heads, mapped, wrong, columns, calibration, way)
 
     return {label: partial(curve, label, columns) for label, columns in tables.items()}

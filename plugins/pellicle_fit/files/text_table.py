@@ -186,6 +186,14 @@ def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, 
     return tables
 
 
+def rises(path: Path, cells: Cells, place: str, signal: str) -> bool:
+    """Return whether one column grows with another."""
+    columns = curves_of(path, cells, {place: "extension", signal: "force"})[""]
+    z, f = columns["extension"].values, columns["force"].values
+    known = np.isfinite(z) & np.isfinite(f)
+    return known.sum() < 2 or bool(np.cov(z[known], f[known])[0, 1] > 0)
+
+
 def index_of(heads: Sequence[Head], name: str) -> int | None:
     """Return the index of the one column with a name or, if none has it, a number."""
     matches = [index for index, head in enumerate(heads) if head.is_called(name)]

@@ -12,10 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pellicle.errors import ConfigError, StorageError, first_of, shown
+from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.files import read_text
 from pellicle_fit.objective import MODULUS
 from pellicle_fit.verdict import Verdict
+from pellicle_fit.words.effects import listed
 
 from .row import Row
 from .rules import Rule
@@ -28,6 +29,8 @@ _NORMAL = 1.4826
 """Standard deviation of a normal distribution over its median absolute deviation."""
 _LIMIT = 3.5
 """Distance from the median, in these deviations, beyond which a curve stands out."""
+_NAMED = 10
+"""Curves that a note names."""
 _HEADS = ("curve", "name", "file")
 
 
@@ -147,8 +150,8 @@ def judge(
         row.outlier = row in far
     if far:
         notes.append(
-            f"the modulus of {len(far)} of {len(whole)} accepted curves stands out from that of "
-            f"the others in the group; nothing was left out: {first_of([row.name for row in far])}"
+            f"the modulus stands out from that of the other curves of the group, and still counts: "
+            f"{listed([row.name for row in far], most=_NAMED)}"
         )
     return notes
 

@@ -11,6 +11,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle_fit.files.measurement import Site
 from pellicle_fit.intervals import Estimate
+from pellicle_fit.verdict import Verdict
 from pellicle_fit.words.quantities import OVER_TIED
 
 if TYPE_CHECKING:
@@ -99,12 +100,12 @@ class Row:
         return self.status == FITTED
 
     def is_closed(self, name: str) -> bool:
-        """Return whether the chosen explanation has both ends of the interval of a quantity.
+        """Return whether the interval of a quantity has both ends.
 
         The value of an open interval is one of many that describe the curve as well.
         """
-        own = self.fit.get("parameters", {}).get(name.replace("youngs", "reduced"))
-        return own is not None and not own["held"] and None not in (own["low"], own["high"])
+        found = self.estimates.get(name)
+        return found is not None and not found.held and None not in (found.low, found.high)
 
     def values(self) -> dict[str, float]:
         """Return all numbers in SI by name, ends of intervals too; an open end is NaN."""
@@ -123,7 +124,9 @@ class Row:
     @property
     def verdict(self) -> str:
         """What is said of the curve, as far as it fits a table; empty without a fit."""
-        return str(self.fit.get("comparison", "")).partition(":")[0].removeprefix("this curve ")
+        text = str(self.fit.get("comparison", "")).replace("this curve", "it")
+        undescribed = self.fit.get("verdict") == Verdict.UNDESCRIBED.value
+        return text if undescribed else text.partition(":")[0].removeprefix("it ")
 
     @property
     def failed_checks(self) -> list[str]:

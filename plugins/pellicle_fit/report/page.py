@@ -117,7 +117,7 @@ def _many(fits: ManyFits) -> list[Block]:
     """Return the results of many fits."""
     rows = fits.rows
     failed = [f"{row.name}: {row.status}" for row in rows if not row.is_fitted]
-    blocks: list[Block] = [Text(sentences_of_population(fits), lead=True)]
+    blocks: list[Block] = [Text(" ".join(map(_sentence, sentences_of_population(fits))), lead=True)]
     if failed:
         lost = f"{len(failed)} of {len(rows)} curves could not be fitted:"
         blocks.append(Notice(lost, good=False, details=_first(failed)))

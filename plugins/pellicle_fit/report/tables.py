@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from pellicle.components import Column, Table
+from pellicle.units import DIGITS
 from pellicle_fit.intervals import CONFIDENCE, Estimate
 from pellicle_fit.objective import CONTACT_POINT, MODULUS
 from pellicle_fit.population.row import FITTED, Row
@@ -14,9 +15,11 @@ from pellicle_fit.result import Fit, name_of, parameters_of
 from pellicle_fit.verdict import MARGIN
 from pellicle_fit.words.effects import words as words_of
 from pellicle_fit.words.quantities import (
+    FEW,
     OVER_TIED,
     SHOWN,
     interval,
+    known,
     unit_of,
     unit_of_estimate,
     words,
@@ -86,24 +89,20 @@ def rows(of: Sequence[Row], *, si: bool = False) -> Table:
     states, reasons = [], []
     for row in of:
         rejected = row.is_fitted and not row.accepted
-        states.append("rejected" if rejected else row.status.partition(":")[0])
+        state = "stands out" if row.outlier else row.status.partition(":")[0]
+        states.append("rejected" if rejected else state)
         reasons.append(row.reason if rejected and row.reason != row.fit["comparison"] else "")
     radii = [row.curve.get("indenter", {}).get("radius", "") for row in of]
     columns = list[Column]()
     for name in SHOWN:
-        # The best value of an interval that is open is one of many.
-        known = [row.is_closed(name) for row in of]
         values = [row.estimates.get(name) for row in of]
         if name in OVER_TIED or 2 * sum(map(bool, values)) >= len(of):
-            columns += _quantity(name, values, si, known=known)
-    outliers = ["stands out" if row.outlier else "" for row in of]
+            columns += _quantity(name, values, si, digits=FEW)
     columns += [
         Column("group", [row.group for row in of]),
         Column("radius", radii, "m"),
-        Column("failed checks", [", ".join(row.failed_checks) for row in of]),
         Column("status", states, bad=[state != FITTED for state in states]),
         Column("reason", reasons, bad=[reason != "" for reason in reasons]),
-        Column("modulus", outliers, bad=[mark != "" for mark in outliers]),
     ]
     fitted = [number for number, row in enumerate(of) if row.is_fitted]
     told = [
@@ -136,21 +135,21 @@ def _quantity(
     of: Sequence[Estimate | None],
     si: bool,
     sought: Sequence[bool] = (),
-    known: Sequence[bool] = (),
+    digits: int = DIGITS,
 ) -> list[Column]:
     """Return the columns of values and intervals of a quantity; none if no curve has it.
 
-    By default all values are ``known`` and all intervals were ``sought``; of an open one the end
-    that it has is shown. What is 0 because an explanation has none is left out.
+    Intervals are those that were ``sought``, by default all; of an open one the end that it has.
+    What is 0 because an explanation has none is left out, and in few digits what is not `known`.
     """
     of = [None if e is not None and e.held and not e.value else e for e in of]
     if not any(of):
         return []
     unit = next(e.unit for e in of if e is not None)
-    shown = zip(of, known or [True] * len(of), strict=True)
-    numbers = [e.value if e is not None and is_known else "" for e, is_known in shown]
-    values = Column(words(name), numbers, unit)
+    few = digits < DIGITS
+    numbers = [e.value if e is not None and (known(e) or not few) else "" for e in of]
+    values = Column(words(name), numbers, unit, digits=digits)
     scale, ends = values.unit_and_digits(si=si)[0], []
     for estimate, wanted in zip(of, sought or [True] * len(of), strict=True):
-        ends.append(interval(estimate, scale) if estimate is not None and wanted else "")
+        ends.append(interval(estimate, scale, digits) if estimate is not None and wanted else "")
     return [values, Column(f"95 % of {words(name)}", ends, meaning=_MEANING)]

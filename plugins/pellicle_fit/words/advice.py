@@ -78,14 +78,14 @@ def _of_options(answer: Answer, members: Sequence[Member], config: FitConfig) ->
         yield Step("ask with --model adhesion", "the force dips before contact")
     if Flaw.SPIKES in flaws:
         why = "single points lie far from their neighbours, and shift the fit"
-        yield Step("leave out outlying points", why)
-    if config.thickness is None and any("layer" in fit.types for fit in answer.tied):
-        yield Step("give --thickness", "a thin layer describes the curve")
+        yield Step("delete outlying rows", why)
     undecided = answer.verdict in (Verdict.CANNOT_TELL, Verdict.UNDESCRIBED)
     rows = next((member.left_out for member in members if member.left_out), None)
     if undecided and rows:
-        why = f"rows {rows[0]} to {rows[1]} are the retraction"
+        why = f"the retraction, rows {rows[0]} to {rows[1]}, tells creep from tension"
         yield Step("fit with --segment both", why)
+    if config.thickness is None and any("layer" in fit.types for fit in answer.tied):
+        yield Step("give the --thickness of a thin sample", "a layer describes the curve as well")
 
 
 def _of_measurement(answer: Answer) -> Iterator[Step]:

@@ -20,11 +20,11 @@ _GROUPS = 4
 """Groups of a population that are named in a sentence; of more, only all curves are."""
 
 
-def sentences_of_population(fits: ManyFits) -> str:
-    """Return how many curves were fitted and accepted, with the medians of each group.
+def sentences_of_population(fits: ManyFits) -> list[str]:
+    """Return how many curves were fitted and accepted, then the medians of each group.
 
-    Of curves in groups the median over all means little, so it is left to the table. A median is
-    followed by the quartiles. The modulus is Young's where Poisson's ratio is known.
+    Of curves in groups the median over all means little, so it is left to the table. The modulus is
+    Young's where Poisson's ratio is known.
     """
     rows, parts = fits.rows, summary(fits.rows)
     fitted, accepted = sum(row.is_fitted for row in rows), sum(row.accepted for row in rows)
@@ -39,7 +39,7 @@ def sentences_of_population(fits: ManyFits) -> str:
         counts += f"; verdicts: {', '.join(f'{count} {verdict}' for verdict, count in verdicts)}"
     shown = {TENSION, *[part["parameter"] for part in parts if "modulus" in part["parameter"]][-1:]}
     groups = [group for group in dict.fromkeys(part["group"] for part in parts) if group != ALL]
-    sentences = [f"{counts}."]
+    sentences = [counts]
     for group in groups if 0 < len(groups) <= _GROUPS else [ALL] * bool(parts):
         medians = []
         for part in parts:
@@ -47,11 +47,12 @@ def sentences_of_population(fits: ManyFits) -> str:
                 quartiles = [part[name] for name in QUARTILES[1:4]]
                 unit = unit_of([quartiles[1] or quartiles[2]], part["unit"])
                 low, median, high = (unit.number(value, 3) for value in quartiles)
-                rest = f"; open in {part['open']} of {part['n']}" if part["open"] else ""
-                text = f"{unit.with_unit(median)} ({low} to {high}{rest})"
-                medians.append(f"{words(part['parameter'])} {text}")
-        sentences.append(f"Median{'' if group == ALL else f' of {group}'}: {', '.join(medians)}.")
-    return " ".join([*sentences, *["In brackets the quartiles."] * bool(parts)])
+                closed = part["n"] - part["open"]
+                text = f"median {unit.with_unit(median)}, quartiles {low} to {high}, "
+                text = f"{text}of {closed} of {part['curves']} curves" if closed else "bounds alone"
+                medians.append(f"{words(part['parameter'])}: {text}")
+        sentences.append(f"{'' if group == ALL else f'{group}: '}{'; '.join(medians)}")
+    return sentences
 
 
 def advice_of_population(rows: Sequence[Row]) -> list[str]:

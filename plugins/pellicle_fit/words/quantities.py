@@ -14,8 +14,10 @@ OVER_TIED = "reduced_modulus", "youngs_modulus", "tension"
 """Quantities whose intervals are over all explanations that the curve cannot tell apart."""
 PLAUSIBLE = {"reduced_modulus": (1.0, 1e12), "tension": (0.0, 1.0), "thickness": (1e-9, 1.0)}
 """Values [SI] beyond which a unit is probably wrong."""
-_FEW = 3
-"""Significant digits in sentences."""
+FEW = 3
+"""Significant digits in sentences, and in tables of many curves."""
+_WIDE = 2.0
+"""Ends over each other beyond which the best value between them is one of many."""
 _WORDS = {
     "youngs_modulus": "Young's modulus",
     "offset": "offset of the baseline",
@@ -54,13 +56,18 @@ def interval(estimate: Estimate, unit: Scale, digits: int = DIGITS) -> str:
     return f"> {low}" if high is None else f"{low} to {high}"
 
 
+def known(estimate: Estimate) -> bool:
+    """Return whether an interval is narrow enough for its best value to be quoted."""
+    low, high = estimate.low, estimate.high
+    return estimate.held or (low is not None and high is not None and high <= _WIDE * low)
+
+
 def in_figures(estimate: Estimate, *, si: bool = False) -> str:
-    """Return an estimate with its interval: ``5 mN/m (4.8 to 5.2)``, or ``< 3.8 µN/m``."""
+    """Return an estimate with its interval, ``5 mN/m (4.8 to 5.2)``; of a wide one the ends."""
     unit = unit_of_estimate(estimate, si=si)
-    value, ends = unit.text(estimate.value, _FEW), interval(estimate, unit, _FEW)
+    value, ends = unit.text(estimate.value, FEW), interval(estimate, unit, FEW)
     if estimate.held:
         return f"{value} (fixed)"
     if ends == "open":
         return "not determined"
-    is_open = None in (estimate.low, estimate.high)
-    return unit.with_unit(ends) if is_open else f"{value} ({ends})"
+    return f"{value} ({ends})" if known(estimate) else unit.with_unit(ends)

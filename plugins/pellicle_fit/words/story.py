@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _WIDTH = 100
 _WRAPPED: dict[str, Any] = {"subsequent_indent": "    ", "break_on_hyphens": False}
-_RIVALS = 2
+_RIVALS = 3
 """Rivals that a verdict names."""
 
 
@@ -93,7 +93,8 @@ def verdict(answer: Answer) -> str:
             names = listed(tied, "or", _RIVALS)
             return f"{curves} cannot tell {words(fits[asked])} from {names}"
         case Verdict.OTHER:
-            return f"{other} without {subject}" if word else f"{other}, not {subject} alone"
+            first = f"{subject} is not needed" if word else f"more than {subject}"
+            return f"{first}; described better by {other}"
     if not word and len(fits) == 1:
         return f"{subject} was compared with nothing"
     return f"no sign of {subject if word else f'more than {subject}'}"
