@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from typer import Option
 
 import pellicle as pl
 from pellicle.cli import INTERRUPTED, NOT_CONVERGED, Format, echo, print_json
@@ -16,6 +17,8 @@ from pellicle.errors import ConfigError
 
 from .print_fits import print_fit, print_fits, print_warnings, show_fits
 
+Text = str | None
+Texts = list[str] | None
 if TYPE_CHECKING:
     from pellicle_fit.config import FitConfig
     from pellicle_fit.population.fits import ManyFits
@@ -33,77 +36,70 @@ def fit(
         ),
     ] = None,
     indenter: Annotated[
-        str | None,
-        typer.Option("-i", "--indenter", help="sphere (a bead), paraboloid (Hertz), cone, …"),
+        Text, Option("-i", "--indenter", help="sphere (a bead), paraboloid (Hertz), cone, …")
     ] = None,
     radius: Annotated[
-        list[str] | None,
-        typer.Option(help='Radius with its unit: "5 um"; repeat it to give one for each file.'),
+        Texts, Option(help='Radius with its unit: "5 um"; repeat it to give one for each file.')
+    ] = None,
+    diameter: Annotated[
+        Texts, Option(help="Diameter in place of the radius, as data sheets of beads have it.")
     ] = None,
     half_angle: Annotated[
-        str | None, typer.Option(help='Angle between axis and side of a cone: "70 degree".')
+        Text, Option(help='Angle between axis and side of a cone: "70 degree".')
     ] = None,
     poissons_ratio: Annotated[
-        float | None, typer.Option(help="Poisson's ratio, to get Young's modulus as well.")
+        float | None, Option(help="Poisson's ratio, to get Young's modulus as well.")
     ] = None,
     thickness: Annotated[
-        str | None,
-        typer.Option(help="Thickness of a layer on a rigid base, or free; with --poissons-ratio."),
+        Text, Option(help="Thickness of a layer on a rigid base, or free; with --poissons-ratio.")
     ] = None,
     model: Annotated[
-        list[str] | None,
-        typer.Option(help="Effect whose need is asked: tension (default), …, or none of them."),
+        Texts, Option(help="Effect whose need is asked: tension (default), …, or none of them.")
     ] = None,
     rivals: Annotated[
-        list[str] | None,
-        typer.Option(
+        Texts,
+        Option(
             help="Effect to compare, or several that act together (offset,slope); repeat it. none "
             "for no comparison; by default all that bend curves as a tension does."
         ),
     ] = None,
     fix: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME=VALUE", help="Fix a quantity: --fix tension=0."),
+        Texts, Option(metavar="NAME=VALUE", help="Fix a quantity: --fix tension=0.")
     ] = None,
     uncertainty: Annotated[
-        list[str] | None,
-        typer.Option(
+        Texts,
+        Option(
             metavar="NAME=VALUE",
             help='Standard deviation of spring_constant, sensitivity or radius: "radius=5 %".',
         ),
     ] = None,
     baseline: Annotated[
-        str | None,
-        typer.Option(help="Force before contact to fit: none (default), offset, slope."),
+        Text, Option(help="Force before contact to fit: none (default), offset, slope.")
     ] = None,
-    segment: Annotated[
-        str | None, typer.Option(help="Pass to fit: approach (default), retract, both.")
-    ] = None,
+    segment: Annotated[Text, Option(help="Pass to fit: approach (default), retract, both.")] = None,
     spring_constant: Annotated[
-        str | None,
-        typer.Option(help='That of the cantilever, to subtract its bending: "0.05 N/m".'),
+        Text, Option(help='That of the cantilever, to subtract its bending: "0.05 N/m".')
     ] = None,
     sensitivity: Annotated[
-        str | None, typer.Option(help='Deflection over the signal in volts: "50 nm/V".')
+        Text, Option(help='Deflection over the signal in volts: "50 nm/V".')
     ] = None,
     columns: Annotated[
-        str | None,
-        typer.Option(
+        Text,
+        Option(
             help="What columns of other names are, with their units, by name, number or path in "
             'the file: "Z = extension nm, Defl = deflection nm". Roles: position, depth, height, '
-            "extension; force, deflection; time; curve.",
+            "extension; force, deflection; time; curve."
         ),
     ] = None,
     pool: Annotated[
-        bool, typer.Option("--pool", help="Fit one modulus and one tension to all curves.")
+        bool, Option("--pool", help="Fit one modulus and one tension to all curves.")
     ] = False,
     compare: Annotated[
-        bool,
-        typer.Option("--compare", help="Get and print intervals of all explanations."),
+        bool, Option("--compare", help="Get and print intervals of all explanations.")
     ] = False,
     set_: Annotated[
-        list[str] | None,
-        typer.Option(
+        Texts,
+        Option(
             "--set",
             metavar="KEY=VALUE",
             help='Any other value, by its key in a configuration: --set indenter.radius_x="5 um", '
@@ -112,7 +108,7 @@ def fit(
     ] = None,
     directory: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="DIR", help="Folder for JSON, table and figure."),
+        Option("-o", "--output", metavar="DIR", help="Folder for JSON, table and figure."),
     ] = None,
     formats: Annotated[
         list[Format] | None,
@@ -123,23 +119,21 @@ def fit(
         ),
     ] = None,
     report: Annotated[
-        bool, typer.Option("--report", help="Write a web page, to that folder or the current one.")
+        bool, Option("--report", help="Write a web page, to that folder or the current one.")
     ] = False,
     again: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             metavar="FIT.json",
             help="Repeat the fit that a JSON file records, from the folder where it was made.",
         ),
     ] = None,
     details: Annotated[
-        bool, typer.Option("--details", help="Print all quantities, explanations and checks, too.")
+        bool, Option("--details", help="Print all quantities, explanations and checks, too.")
     ] = False,
-    si: Annotated[bool, typer.Option("--si", help="Print tables in SI units.")] = False,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
-    quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="Print errors and warnings only.")
-    ] = False,
+    si: Annotated[bool, Option("--si", help="Print tables in SI units.")] = False,
+    json: Annotated[bool, Option("--json", help="Print JSON.")] = False,
+    quiet: Annotated[bool, Option("--quiet", "-q", help="Print errors and warnings only.")] = False,
 ) -> None:
     """Fit reduced modulus, tension and contact point to measured curves, with intervals.
 
@@ -170,7 +164,8 @@ def fit(
         ],
         curves=tuple(path for path in files if path not in configs) or None,
         indenter=indenter,
-        radius=radius[0] if radius and len(radius) == 1 else radius or None,
+        radius=radius or None,
+        diameter=diameter or None,
         half_angle=half_angle,
         poissons_ratio=poissons_ratio,
         thickness=thickness,

@@ -19,10 +19,11 @@ from pydantic import (
     field_validator,
     model_validator,
 )
+from pydantic.fields import FieldInfo
 
 from pellicle import registry
 from pellicle.components import Component, Executor, FromRegistry, HasForceCurve, Indenter
-from pellicle.errors import ConfigError, problems_within, shown
+from pellicle.errors import ConfigError, PellicleError, problems_within, shown
 from pellicle.schema import (
     FromFile,
     InputPath,
@@ -38,6 +39,7 @@ from .effect import Effect, Fitted, quantities
 from .explanation import Solid
 from .files.columns import Calibration
 from .files.measurement import Segment
+from .files.missing import OPTIONS, MissingInputError
 from .files.sources import CurveFile, Curves, Source, SourceStream, expanded, gather
 from .population.judgement import group_pattern
 from .population.rules import rules
@@ -57,7 +59,6 @@ UNCERTAIN = {
     "radius": ("m", "size"),
 }
 """What may be known to an uncertainty, its unit, and the effect whose error that is."""
-MODULUS, TENSION = "reduced_modulus", "tension"
 FREE = "free"
 """Thickness that the fit determines."""
 
@@ -81,20 +82,44 @@ _Effects = list[str | dict[str, Any]]
 _OneEffect = Annotated[Effect, FromRegistry(), BeforeValidator(_component)]
 
 
+def _with_radius(fields: Mapping[str, Any]) -> dict[str, Any]:
+    """Return fields of an indenter with half a diameter, or half of each, as the radius."""
+    found = dict(fields)
+    if (value := found.pop("diameter", None)) is not None:
+        if "radius" in found:
+            raise ConfigError("is given beside a radius; leave out one of them", "diameter")
+        try:
+            halves = [Quantity("m", above=0)(entry) / 2 for entry in _as_list(value)]
+        except ValueError as error:
+            raise ConfigError(str(error), "diameter") from None
+        found["radius"] = halves if len(halves) != 1 else halves[0]
+    return found
+
+
 def _indenter(value: object) -> Any:
     """Return an indenter, or its table if it lacks fields that each file may provide."""
     table = _component(value)
     if isinstance(table, HasForceCurve):
         return table
+    if isinstance(table, Mapping):
+        table = _with_radius(table)
     try:
         return registry().make(Indenter, table)
     except ConfigError as error:
-        if not isinstance(table, Mapping) or "type" not in table:
+        if not isinstance(table, Mapping):
             raise
         problems = [p for p in error.problems if p.field.partition(".")[0] in table]
         if problems:
             raise ConfigError(problems) from None
         return dict(table)
+
+
+def _fields(indenter: object) -> Mapping[str, FieldInfo]:
+    """Return the fields of the kind of an indenter or of its table."""
+    kind = type(indenter)
+    if isinstance(indenter, Mapping):
+        kind = registry().find(Indenter.family, indenter.get("type", "sphere"))
+    return getattr(kind, "model_fields", {})
 
 
 def described(indenter: object) -> dict[str, Any]:
@@ -169,7 +194,7 @@ class FitConfig(FromFile, Calibration):
             "Without any, whether a curve shows more than an elastic half-space",
             validate_default=True,
         ),
-    ] = (TENSION,)  # type: ignore[assignment]
+    ] = ("tension",)  # type: ignore[assignment]
     rivals: Annotated[
         tuple[Annotated[tuple[_OneEffect, ...], BeforeValidator(_as_list)], ...],
         _list(list[str | dict[str, Any] | _Effects]),
@@ -252,7 +277,7 @@ class FitConfig(FromFile, Calibration):
                 values[name] = known[name](entry)
             except ValueError as error:
                 raise ConfigError(str(error), name) from None
-        if {MODULUS, TENSION} <= values.keys():
+        if {"reduced_modulus", "tension"} <= values.keys():
             raise ConfigError("fixes both modulus and tension; leave one of them to the fit")
         return values
 
@@ -273,22 +298,7 @@ class FitConfig(FromFile, Calibration):
 
     @classmethod
     def from_toml(cls, path: str | Path, overrides: Iterable[str] = ()) -> Self:
-        """Return the configuration in a TOML file.
-
-        Parameters
-        ----------
-        path
-            The file; relative paths and patterns in it start from its folder.
-        overrides
-            Texts such as ``'indenter.radius="5 um"'`` that replace values of the file.
-
-        Raises
-        ------
-        ConfigError
-            The file cannot be read or used; all its problems are named at once.
-        PluginError
-            A component that it names is broken.
-        """
+        """Return the configuration in a TOML file; patterns in it start from its folder."""
         return cls.merged(path, overrides)
 
     @classmethod
@@ -324,6 +334,7 @@ class FitConfig(FromFile, Calibration):
             A value is not allowed, or the file cannot be read.
         """
         options = {name: value for name, value in options.items() if value is not None}
+        options = _with_radius(options)
         if isinstance(base, (str, Path)):
             folder, data = Path(base).parent, read_toml(Path(base))
             if "curves" in data.keys() - options.keys():
@@ -338,13 +349,16 @@ class FitConfig(FromFile, Calibration):
         if isinstance(base, FitConfig):
             base = {name: getattr(base, name) for name in base.model_fields_set}
         own = cls.model_fields.keys() - Calibration.model_fields.keys()
-        data = {**(base or {}), **{name: options.pop(name) for name in own & options.keys()}}
+        # What the indenter lacks is told with what its curve lacks.
+        data = {"indenter": {}, **(base or {})}
+        data |= {name: options.pop(name) for name in own & options.keys()}
         for name in data.keys() & {"indenter", "kernel", "executor"}:
             data[name] = _component(data[name])
         for name, value in options.items():
-            if isinstance(value, (list, tuple)):
+            if isinstance(value, (list, tuple)) and len(value) != 1:
                 data = replaced(data, f"per_file.{name}", value)
                 continue
+            (value,) = _as_list(value)
             if isinstance(per_file := data.get("per_file"), Mapping):
                 data["per_file"] = {k: v for k, v in per_file.items() if k != name}
             key = name if name in cls.model_fields else f"indenter.{name}"
@@ -357,34 +371,44 @@ class FitConfig(FromFile, Calibration):
 
     def files(self, curves: Curves | None = None) -> list[CurveFile]:
         """Return the files of ``curves``, or of those of the configuration if None."""
-        kind: type = type(self.indenter)
-        if isinstance(self.indenter, Mapping):
-            kind = registry().find(Indenter.family, self.indenter["type"])
-        fields = {*getattr(kind, "model_fields", ()), *Calibration.model_fields}
-        column = self.group_by
-        chosen = self.curves if curves is None else curves
-        return gather(chosen, self.segment, self, self.per_file, column, column in fields)
+        chosen, column = self.curves if curves is None else curves, self.group_by
+        is_field = column in {"diameter", *_fields(self.indenter), *Calibration.model_fields}
+        return gather(chosen, self.segment, self, self.per_file, column, is_field)
 
     def sources(self, curves: Curves | None = None) -> list[Source]:
         """Return ``curves``, or those of the configuration if None, as read from their files."""
         return [*SourceStream(self.files(curves))]
 
-    def indenter_with(self, fields: Mapping[str, Any]) -> Indenter | HasForceCurve:
+    def indenter_of(self, source: Source) -> Indenter | HasForceCurve:
         """Return the indenter of one curve, with the fields that this curve alone has.
 
         Raises
         ------
         ConfigError
-            The indenter cannot have these fields, or needs others.
+            The indenter cannot have these fields, or needs others; what the file of the curve lacks
+            is named as well.
         """
         indenter: Any = self.indenter
-        if fields and not isinstance(indenter, (Indenter, Mapping)):
+        if source.fields and not isinstance(indenter, (Indenter, Mapping)):
             raise ConfigError(
-                f"{', '.join(fields)} cannot be set: the indenter is complete already"
+                f"{', '.join(source.fields)} cannot be set: the indenter is complete already"
             )
-        for name, value in fields.items():
+        for name, value in _with_radius(source.fields).items():
             indenter = replaced(indenter, name, value)
         if isinstance(indenter, HasForceCurve):
             return indenter
+        lacks: dict[str, str] = {}
         with problems_within("indenter"):
-            return registry().make(Indenter, indenter)
+            if isinstance(indenter, Mapping):
+                lacks = {} if "type" in indenter else {"indenter": "-i sphere"}
+                for name, field in _fields(indenter).items():
+                    if field.is_required() and name not in indenter:
+                        lacks[f"indenter.{name}"] = OPTIONS.get(name, f'--set indenter.{name}="…"')
+            if not lacks:
+                return registry().make(Indenter, indenter)
+        curve, where = source.curve, f"{source.name}: " if source.name else ""
+        if isinstance(curve, MissingInputError):
+            where, lacks = curve.where, {**curve.options, **lacks}
+        elif isinstance(curve, PellicleError):
+            raise curve
+        raise MissingInputError(where, lacks)

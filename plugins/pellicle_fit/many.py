@@ -242,7 +242,7 @@ def _fit_batch(
         row = Row(source.name, group_of(pattern, source.file, source.group))
         fits.rows.append(row)
         try:
-            config.indenter_with(source.fields)
+            config.indenter_of(source)
         except ConfigError as error:
             raise source.named(error) from None
         try:
@@ -320,7 +320,8 @@ def _stored(path: Path | None) -> dict[str, Any] | None:
 
 def _failure(error: Exception, name: str) -> str:
     """Return the status of a curve that could not be fitted."""
-    reason = "; ".join(str(error).removeprefix(f"{name}: ").splitlines()) or "no reason given"
+    text = str(error).removeprefix(f"{name}: ").replace(":\n  ", ": ")
+    reason = "; ".join(text.splitlines()) or "no reason given"
     kind = "" if isinstance(error, PellicleError) else f"{type(error).__name__}: "
     return f"{FAILED}{kind}{reason}"
 

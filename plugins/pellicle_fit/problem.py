@@ -14,12 +14,13 @@ from pellicle.components import HasForceCurve, Indenter
 from pellicle.errors import ConfigError, PellicleError
 from pellicle.units import Quantity
 
-from .config import FREE, TENSION, UNCERTAIN, FitConfig
+from .config import FREE, UNCERTAIN, FitConfig
 from .curve import Curve
 from .effect import Effect, quantities
 from .explanation import Solid
 from .files.cleaning import clean
 from .files.measurement import Measurement
+from .files.missing import MissingInputError
 from .files.sources import Source
 from .objective import CONTACT_POINT
 from .recipe import answer
@@ -74,12 +75,14 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
     watch, measured, indenters = Stopwatch(), [], []
     for source in sources:
         try:
+            indenters.append(config.indenter_of(source))
             if isinstance(source.curve, PellicleError):
                 raise source.curve
-            indenters.append(config.indenter_with(source.fields))
             measured.append(clean(source.curve, config.segment))
         except ConfigError as error:
-            raise error if len(sources) == 1 else source.named(error, "; leave it out") from None
+            if len(sources) == 1 or isinstance(error, MissingInputError):
+                raise
+            raise source.named(error, "; leave it out") from None
     fix, depths = dict(config.fix), {curve.is_depth for curve in measured}
     if len(depths) > 1:
         raise ConfigError("some are of depths and some of positions; fit them apart", "curves")
@@ -153,7 +156,7 @@ def _known(
         own = {name: fix[name] for name in quantities(type(effect)).keys() & fix.keys()}
         if ratio and hasattr(effect, _RATIO) and _RATIO not in effect.model_fields_set:
             own[_RATIO] = max(ratio, 0.0)
-        if own.get(TENSION) != 0:
+        if own.get("tension") != 0:
             found.append(effect.model_copy(update=own))
     return found
 

@@ -137,7 +137,8 @@ class _Group(TyperGroup):
                 return super().invoke(ctx)
         except PellicleError as error:
             for line in str(error).splitlines():
-                echo(f"error: {line}", err=True)
+                # Options to type are a line of their own.
+                echo(line if line.startswith("  -") else f"error: {line}", err=True)
             raise typer.Exit(BAD_INPUT) from None
         except BrokenPipeError:
             raise typer.Exit(BAD_INPUT) from None

@@ -27,12 +27,16 @@ _texts: ContextVar[list[str] | None] = ContextVar("JSON of a command", default=N
 
 
 def echo(text: str = "", err: bool = False) -> None:
-    """Print a text; on a terminal, lines that are too long for it are broken between words."""
+    """Print a text; on a terminal, lines that are too long for it are broken between words.
+
+    Lines of options to copy, after two spaces, are not broken.
+    """
     console = _console(err)
     if console.is_terminal:
         # Unlike rich, this leaves words that are longer, such as paths, in one piece.
         wrap = textwrap.TextWrapper(console.width, break_long_words=False, break_on_hyphens=False)
-        text = "\n".join(map(wrap.fill, text.split("\n")))
+        lines = text.split("\n")
+        text = "\n".join(line if line.startswith("  -") else wrap.fill(line) for line in lines)
     _write(f"{text}\n", err)
 
 

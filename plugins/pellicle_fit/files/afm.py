@@ -18,6 +18,7 @@ from pellicle.units import Quantity
 
 from .columns import Calibration, Channel, from_columns
 from .measurement import Axis, Measurement, Readers, Site
+from .missing import OPTIONS, MissingInputError
 from .passes import labelled
 
 _JPK = (".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series")
@@ -76,13 +77,16 @@ def _errors_and_warnings(path: Path) -> Iterator[list[str]]:
     except PellicleError:
         raise
     except errors.MissingMetaDataError as error:
-        raise ConfigError(
-            f"{path}: holds no {' and '.join(error.meta_keys)}; give spring_constant and "
-            "sensitivity with their units (--spring-constant and --sensitivity on the command line)"
-        ) from None
+        raise _without(path, error.meta_keys) from None
     except (Exception, errors.AFMFileFormatError, meta.MetaDataMissingError) as error:
         reason = " ".join(str(error).split()) or type(error).__name__
         raise StorageError(f"{path}: afmformats cannot read it ({reason})") from None
+
+
+def _without(path: Path, words: Sequence[str]) -> MissingInputError:
+    """Return the error of a file that does not hold its calibration."""
+    names = [_CALIBRATION.get(word, word) for word in words]
+    return MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in names})
 
 
 def _curve(
@@ -113,7 +117,9 @@ def _curve(
             raise ConfigError(f"{path}: has no height over the sample (has {', '.join(data)})")
         position = -np.asarray(data[source], dtype=float)
         if source != _TIP:
-            position -= force / calibration.required_spring_constant()
+            if stiffness is None:
+                raise _without(path, ["spring constant"])
+            position -= force / stiffness
         columns = {"position": Channel("m", position, source), "force": Channel("N", force)}
         if "time" in data:
             columns["time"] = Channel("s", np.asarray(data["time"], dtype=float))

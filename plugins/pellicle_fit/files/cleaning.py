@@ -19,8 +19,6 @@ _FEWEST, _FEW = 8, 30
 """Least number of points of a fit, and the least that need no warning."""
 _RATIO_LIMIT = 1e6
 """Largest ratio of the stiffnesses of cantilever and curve, either way, that is fitted."""
-_LARGEST = 1e30
-"""Largest SI value that is fitted; the smallest is one over this."""
 _SIGNIFICANT = 4.0
 """Standard errors that the rise of the force must exceed."""
 
@@ -50,14 +48,6 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
             "time",
         )
     _check_count(z.size, "the curve")
-    for name, unit, values in (("position", "m", z), ("force", "N", f)):
-        largest = float(np.max(np.abs(values)))
-        if largest and not 1 / _LARGEST <= largest <= _LARGEST:
-            raise ConfigError(
-                f"reaches {largest:.3g} {unit}, and must reach between {1 / _LARGEST:g} and "
-                f"{_LARGEST:g} {unit}: give SI values",
-                name,
-            )
     if not np.ptp(z):
         raise ConfigError(f"is {z[0]:g} m in every row; give a curve that moves", "position")
     base = z if curve.stiffness is None else _base(z, f, curve.stiffness)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Set
 from contextlib import suppress
+from functools import cache
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -26,8 +27,8 @@ NAMES = (*_OF_TIP, *_OF_BASE, *_SIGNALS, "time")
 """Names of the columns that are read."""
 LABEL = "curve"
 """Name of the column that tells the curves of one table apart."""
-_UNITS = {"force": ("N", "nN"), "time": ("s", "ms")}
-"""SI units of columns that are not lengths, and those of the examples in messages."""
+UNITS = {"force": "N", "deflection": "mV", "time": "s"}
+"""SI units, each a letter, of columns that are not lengths."""
 
 
 def column_map(value: object) -> dict[str, str] | None:
@@ -48,20 +49,16 @@ def column_map(value: object) -> dict[str, str] | None:
             "table of the same"
         )
     roles = (*NAMES, LABEL)
-    by_role: dict[str, tuple[str, str]] = {}
+    found: dict[str, tuple[str, str]] = {}
     for column, text in table.items():
-        name, _, unit = str(text).strip().partition(" ")
-        role, unit = name.lower(), unit.strip()
+        role, _, unit = " ".join(str(text).split()).partition(" ")
+        role = role.lower()
         if role not in roles:
             raise ConfigError(f"{shown(role)} is not a role; {nearest(role, roles)}", str(column))
-        if role in by_role:
-            raise ConfigError(f"{by_role[role][0]!r} and {column!r} are both {role}")
-        if role == LABEL:
-            unit = ""
-        elif unit:
-            _factor(role, unit)
-        by_role[role] = str(column), f"{role} {unit}".strip()
-    return dict(by_role[role] for role in roles if role in by_role)
+        if role in found:
+            raise ConfigError(f"{found[role][0]!r} and {column!r} are both {role}")
+        found[role] = str(column), f"{role} {unit}".strip() if role != LABEL else role
+    return dict(found[role] for role in roles if role in found)
 
 
 class Calibration(Model):
@@ -85,16 +82,6 @@ class Calibration(Model):
         '{ "Z" = "extension nm", "Defl" = "deflection nm" }',
     )
 
-    def required_spring_constant(self, purpose: str = "") -> float:
-        """Return the spring constant [N/m]; an error tells the purpose if there is one."""
-        if self.spring_constant is None:
-            raise ConfigError(
-                f"is missing{purpose}; give that of the cantilever with its unit, such as "
-                "'0.05 N/m' (--spring-constant on the command line)",
-                "spring_constant",
-            )
-        return self.spring_constant
-
 
 class Channel(NamedTuple):
     """Values of a column, of shape (n,), their unit as text, and its name in the file."""
@@ -113,53 +100,54 @@ def is_curve(names: Set[str]) -> bool:
     return not names.isdisjoint(_SIGNALS) and not names.isdisjoint((*_OF_TIP, *_OF_BASE))
 
 
+def lacking(columns: Columns, calibration: Calibration) -> list[str]:
+    """Return what is missing of a curve: columns or their units, then fields of a calibration."""
+    places, signals = (
+        [name for name in names if name in columns] for names in ((*_OF_TIP, *_OF_BASE), _SIGNALS)
+    )
+    of_tip = [name for name in places if name in _OF_TIP]
+    places = of_tip or places
+    lacks = [] if places else ["a position (or depth, extension, height)"]
+    if len(places) > 1:
+        lacks.append(f"which of {' and '.join(places)} is the position")
+    lacks += [] if signals else ["a force (or deflection)"]
+    if of_tip or not places:
+        signals = signals[:1]
+    timed = ["time"] if "time" in columns and columns["time"].unit else []
+    for name in (*places, *signals, *timed):
+        unit = columns[name].unit
+        if si_unit(unit) not in [*UNITS.get(name, "m")]:
+            hint = f" ({shown(unit)} is not one of {name})" if unit else ""
+            lacks.append(f"the unit of {columns[name].name or name}{hint}")
+    deflection = si_unit(columns[_SIGNALS[1]].unit) if _SIGNALS[1] in signals else "N"
+    bends = not of_tip and places and deflection == "N"
+    if calibration.spring_constant is None and ((signals and "force" not in columns) or bends):
+        lacks.append("spring_constant")
+    if calibration.sensitivity is None and deflection in ("V", ""):
+        lacks.append("sensitivity" if deflection else "sensitivity if it is in volts")
+    return lacks
+
+
 def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
-    """Return the curve that columns hold.
+    """Return the curve that columns hold, of which nothing is `lacking`.
 
     Force is ``force``, or the spring constant times ``deflection``, which may be in volts if the
     sensitivity is known.  Position is ``position`` or ``depth``, or else that of the cantilever's
     base, ``extension`` or minus ``height``, less the deflection.
     """
-    if columns.keys().isdisjoint(_SIGNALS):
-        listing = ", ".join(columns) or "none that is known"
-        raise ConfigError(
-            f"has no column force or deflection (columns: {listing}); give a "
-            f"header such as {EXAMPLE!r}, or name its columns (--columns on the command line), "
-            "which has to name each column that is read"
-        )
-    of_tip, of_base = ([name for name in kind if name in columns] for kind in (_OF_TIP, _OF_BASE))
-    names = of_tip or of_base
-    if len(names) != 1:
-        both = f"both {' and '.join(names)}"
-        problem = both if names else "no column position or depth, nor extension or height"
-        raise ConfigError(f"has {problem}; give one of them, e.g. {EXAMPLE!r}")
 
     def si(name: str) -> Array:
-        factor = _factor(name, columns[name].unit)
-        if si_unit(columns[name].unit) == "V":
-            if calibration.sensitivity is None:
-                raise ConfigError(
-                    f"is missing, and column deflection is in {shown(columns[name].unit)}; give it "
-                    "with its unit, such as '50 nm/V' (--sensitivity on the command line)",
-                    "sensitivity",
-                )
-            factor *= calibration.sensitivity
-        return factor * columns[name].values
+        unit, values, _ = columns[name]
+        found = si_unit(unit)
+        factor = Quantity(found)(f"1 {unit}")
+        return values * (factor * (calibration.sensitivity or 1.0) if found == "V" else factor)
 
-    (name,) = names
+    stiffness = calibration.spring_constant or np.nan
+    name = next(name for name in (*_OF_TIP, *_OF_BASE) if name in columns)
+    force = si("force") if "force" in columns else stiffness * si("deflection")
     position = si(name)
-    if "force" in columns:
-        force = si("force")
-    else:
-        force = calibration.required_spring_constant() * si("deflection")
-    if not of_tip:
-        if "deflection" in columns:
-            deflection = si("deflection")
-        else:
-            deflection = force / calibration.required_spring_constant(
-                f", and column {name} is that of the cantilever's base, from which the deflection "
-                "must be subtracted"
-            )
+    if name in _OF_BASE:
+        deflection = si("deflection") if "deflection" in columns else force / stiffness
         position = (position if name == "extension" else -position) - deflection
     time = None
     messages: tuple[str, ...] = ()
@@ -188,30 +176,11 @@ def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
     )
 
 
+@cache
 def si_unit(unit: str) -> str:
     """Return the SI unit of a length, force, voltage or time; empty for anything else."""
-    for si in "mNVs":
+    for si in "mNVs" if unit else "":
         with suppress(ValueError):
             Quantity(si)(f"1 {unit}")
             return si
     return ""
-
-
-def _factor(name: str, unit: str) -> float:
-    """Return the factor from the unit of a column to SI, of a deflection in volts to V."""
-    if not unit:
-        raise ConfigError(
-            f"column {name} has no unit; write it in the header, e.g. {EXAMPLE!r}, or in columns "
-            "(--columns on the command line)"
-        )
-    found, (si, typical) = si_unit(unit), _UNITS.get(name, ("m", "nm"))
-    if found == si or (name, found) == ("deflection", "V"):
-        return Quantity(found)(f"1 {unit}")
-    hint = (
-        "; a signal in volts is a column deflection, which becomes a force by sensitivity "
-        "[m/V] and spring constant [N/m]"
-    )
-    raise ConfigError(
-        f"column {name} is in {shown(unit)}, which is not a unit of {name}; give it in "
-        f"{si} or a multiple, e.g. {f'{name} [{typical}]'!r}{hint if found == 'V' else ''}"
-    )

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import hashlib
-from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from pellicle.errors import ConfigError, StorageError, shown
+from pellicle.errors import ConfigError, StorageError
 
 from . import afm
-from .columns import EXAMPLE, Calibration, Columns, from_columns, is_curve
+from .columns import EXAMPLE, LABEL, NAMES, Calibration, Columns, from_columns, is_curve, lacking
 from .measurement import Measurement, Readers
-from .text_table import curves_of, read_cells
-from .tree import SHOWN, read_tree
+from .missing import missing_in
+from .text_table import curves_of, index_of, read_cells, rises
+from .tree import read_tree
 
 TEXT = (".csv", ".tsv", ".txt")
 """Suffixes of tables."""
@@ -34,11 +34,8 @@ def read(path: Path, calibration: Calibration | None = None, segment: str = "app
     MATLAB file.  Any other file is read by afmformats, which then selects the ``segment``.
     """
 
-    def state() -> tuple[int, ...]:
-        with suppress(OSError):
-            status = path.stat()
-            return status.st_ino, status.st_size, status.st_mtime_ns
-        return ()
+    def state() -> int:
+        return path.stat().st_mtime_ns if path.exists() else 0
 
     def check() -> None:
         if state() != before:
@@ -52,7 +49,11 @@ def read(path: Path, calibration: Calibration | None = None, segment: str = "app
 
     before = state()
     readers = _readers(path, calibration or Calibration(), segment)
-    digest = sha256(path)
+    try:
+        with path.open("rb") as file:
+            digest = hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError as error:
+        raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
     check()
     return {label: partial(curve, label) for label in readers}
 
@@ -68,41 +69,41 @@ def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
                 "columns",
             )
         return afm.read_instrument(path, calibration, segment)
-    cells, hint = None, ""
+    cells = None
     if suffix in _TREES:
-        tables = read_tree(path, mapped)
+        tables, heads = read_tree(path, mapped)
     else:
         cells = read_cells(path, mapped)
         tables = curves_of(path, cells, mapped) if cells else {}
-    if not mapped and not any(is_curve(columns.keys()) for columns in tables.values()):
+        heads = cells.heads if cells else []
+    hint = ""
+    is_known = mapped or any(is_curve(columns.keys()) for columns in tables.values())
+    if not is_known and not (cells and cells.is_commented):
         try:
             return afm.read_instrument(path, calibration, segment)
         except StorageError:
             # Only afmformats can recognise the file of an instrument.
             hint = "" if afm.installed() else f"; if it is an instrument's: {afm.INSTALL}"
-            if cells is not None:
-                first = ", ".join(map(shown, (cells.names or cells.rows[0])[:SHOWN]))
-                hint = f"; its first line is {first}, and --columns says what such names are{hint}"
     if not tables:
         raise StorageError(
             f"{path}: is neither text, nor HDF5, nor a readable file of an instrument{hint}; "
             f"export it as a table (a sheet as CSV) with a header such as {EXAMPLE!r}"
         )
 
+    if cells is None:
+        found = {role for columns in tables.values() for role in columns}
+        wrong = [name for name, text in mapped.items() if text.split()[0] not in found]
+    else:
+        names = mapped or [name for name in cells.names if name in (*NAMES, LABEL)]
+        wrong = [name for name in names if index_of(heads, name) is None]
+
     def curve(label: str, columns: Columns) -> Measurement:
-        try:
+        if not wrong and not lacking(columns, calibration):
             return from_columns(columns, calibration)
-        except ConfigError as error:
-            name = f"{path}: curve {label}" if label else path
-            raise ConfigError(f"{name}: {error}{hint}") from None
+        where = f"{path}: curve {label}" if label else str(path)
+        if cells is None and label and not mapped:
+            columns = {role: c._replace(name=f"*/{role}") for role, c in columns.items()}
+        way = partial(rises, path, cells) if cells else None
+        raise missing_in(f"{where}{hint}:", heads, mapped, wrong, columns, calibration, way)
 
     return {label: partial(curve, label, columns) for label, columns in tables.items()}
-
-
-def sha256(path: Path) -> str:
-    """Return the SHA-256 of a file in hexadecimal digits, or raise a StorageError."""
-    try:
-        with path.open("rb") as file:
-            return hashlib.file_digest(file, "sha256").hexdigest()
-    except OSError as error:
-        raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None

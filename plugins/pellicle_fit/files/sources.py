@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from numpy.typing import ArrayLike
 
-from pellicle.errors import ConfigError, PellicleError
+from pellicle.errors import ConfigError, PellicleError, all_problems
 from pellicle.units import Quantity
 
 from .columns import Calibration
@@ -74,11 +74,9 @@ class CurveFile(NamedTuple):
         readers: Readers
         try:
             if {"x", "y"} <= fields.keys():
-                try:
+                with all_problems() as within, within("x and y"):
                     x, y = (Quantity("m")(fields.pop(name)) for name in ("x", "y"))
-                except ValueError as error:
-                    raise ConfigError(f"x and y: {error}") from None
-                site = Site(x, y)
+                    site = Site(x, y)
             calibration = Calibration(**settings)
             if self.numbers is None:
                 readers = read(self.path, calibration, self.segment)
@@ -88,7 +86,7 @@ class CurveFile(NamedTuple):
                 arrays |= {"stiffness": calibration.spring_constant, "speed": calibration.speed}
                 readers = {"": partial(Measurement, **arrays)}
         except PellicleError as error:
-            readers = {"": partial(_raise, error)}
+            return [""], iter([Source(path, error, fields, path, self.group, path)])
 
         def sources() -> Iterator[Source]:
             whole = str(self.table) if site and self.table else path
@@ -103,10 +101,6 @@ class CurveFile(NamedTuple):
                 yield Source(name, curve, fields, path, self.group, whole)
 
         return [*readers], sources()
-
-
-def _raise(error: PellicleError) -> Measurement:
-    raise error
 
 
 class SourceStream:
@@ -202,7 +196,9 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
     listed: list[tuple[Path, dict[str, str], Path | None]] = []
     for row in cells.rows:
         named = zip(cells.names, cells.heads, map(str.strip, row), strict=False)
-        fields = {name: f"{cell} {head.unit}".strip() for name, head, cell in named if cell}
+        fields = {
+            name: f"{cell} {head.unit}".strip() for name, head, cell in named if cell and head.text
+        }
         if FILE not in fields:
             raise ConfigError(f"{path}: has a row without a file; name one in each row")
         listed.append((path.parent / fields.pop(FILE), fields, path))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import re
-import unicodedata
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from itertools import takewhile
@@ -14,10 +13,11 @@ from typing import NamedTuple
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.errors import ConfigError, StorageError, shown
+from pellicle.errors import ConfigError, StorageError
 from pellicle.files import read_text
 
 from .columns import EXAMPLE, LABEL, NAMES, Channel, Columns, is_curve, si_unit
+from .heads import Head, guessed, plain
 
 FILE = "file"
 """Name of the column of a table that lists files."""
@@ -34,24 +34,14 @@ _UNIT_ROWS = 3
 """Rows below a header that may hold units instead of numbers."""
 
 
-class Head(NamedTuple):
-    """The head of a column, such as ``position [um]``, its name and its unit."""
-
-    text: str
-    name: str
-    unit: str
-
-    def is_called(self, name: str) -> bool:
-        """Return whether a user who writes ``name`` may mean this column."""
-        return _plain(name).lower() in (self.text.lower(), self.name.lower())
-
-
 class Cells(NamedTuple):
     """The cells of a table as texts, below its heads if there are any."""
 
     heads: list[Head]
     rows: list[list[str]]
     separator: str
+    is_commented: bool
+    """Whether its heads are a comment that tells of a curve, so that no other format is sought."""
 
     @property
     def names(self) -> list[str]:
@@ -81,6 +71,15 @@ def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | N
         mapped = mapped or {}
         likely = (*data[:_PREAMBLE], *reversed(range(data[0])))
         found = next((number for number in likely if _fits(_heads(lines[number]), mapped)), None)
+        if found is None and not mapped:
+            width = len(_heads(lines[data[-1]]))
+            alike = (
+                n
+                for n in likely
+                if len(heads := _heads(lines[n])) == width
+                and "<column>" not in dict(guessed(heads, {}).values())
+            )
+            found = next(alike, None)
         header = data[0] if found is None else found
         heads = _heads(lines[header])
         if found is None and all(_is_number(head.text) for head in heads if head.text):
@@ -99,10 +98,13 @@ def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | N
         likely_units = rows[: _UNIT_ROWS if has_units else 0]
         units = [*takewhile(lambda row: not any(map(_is_number, row)), likely_units)]
         for index, head in enumerate(heads):
-            cells = [_plain(row[index]).strip("[]()") for row in units if index < len(row)]
+            cells = [plain(row[index]).strip("[]()") for row in units if index < len(row)]
             unit = head.unit or next(filter(si_unit, cells), "")
             heads[index] = head._replace(unit=unit)
-        return Cells(heads, rows[len(units) :], separator)
+        width = max(map(len, rows[len(units) :][:1]), default=0)
+        heads += [Head("", str(index + 1), "") for index in range(len(heads), width)]
+        is_commented = found is not None and found < data[0]
+        return Cells(heads, rows[len(units) :], separator, is_commented)
     return None
 
 
@@ -116,20 +118,16 @@ def _fits(heads: Sequence[Head], mapped: Mapping[str, str]) -> bool:
 
 
 def _heads(line: str) -> list[Head]:
-    line = line.lstrip("".join(_COMMENT))
+    # JPK writes "columns:" before the names.
+    line = re.sub(r"^\s*columns:", "", line.lstrip("".join(_COMMENT)))
     separator = _separator(line)
     cells = _WORD.findall(line) if separator == " " else _split([line], separator)[0]
     heads = []
-    for text in map(_plain, cells):
+    for text in map(plain, cells):
         match = _HEAD.fullmatch(text)
         name, unit = match.groups(default="") if match else (text, "")
         heads.append(Head(text, name.strip(), unit.strip()))
     return heads
-
-
-def _plain(text: str) -> str:
-    """Return a text with one kind of µ and of space."""
-    return " ".join(unicodedata.normalize("NFKC", text).replace("μ", "µ").split())
 
 
 def _separator(line: str) -> str:
@@ -155,18 +153,20 @@ def _is_number(cell: str) -> bool:
 
 def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, Columns]:
     """Return the known columns of each curve of a table, or those that ``mapped`` names."""
-    heads, rows, separator = cells
+    heads, rows, separator, _ = cells
+    named = sum(bool(head.text) for head in heads)
     if not mapped and separator == "," and _fits(heads, mapped):
         for row in rows:
-            if len(row) > len(heads) and all(map(_is_number, row)):
+            if len(row) > named and all(map(_is_number, row)):
                 raise ConfigError(
-                    f"{path}: has {len(row)} numbers below {len(heads)} names ({','.join(row)}), "
+                    f"{path}: has {len(row)} numbers below {named} names ({','.join(row)}), "
                     "as where commas are decimal and separate columns too; export it with "
                     "semicolons, tabs or decimal points, or choose columns by their numbers "
                     "(--columns on the command line)"
                 )
     mapped = mapped or {name: name for name in cells.names if name in (*NAMES, LABEL)}
-    roles = {text: _index(path, cells, name) for name, text in mapped.items()}
+    indices = {text: index_of(heads, name) for name, text in mapped.items()}
+    roles = {text: index for text, index in indices.items() if index is not None}
     label = roles.pop(LABEL, -1)
     curves: dict[str, list[list[str]]] = {} if rows else {"": []}
     for row in rows:
@@ -178,7 +178,7 @@ def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, 
         columns = {}
         for role, index in roles.items():
             name, _, unit = role.partition(" ")
-            head = heads[index] if index < len(heads) else Head("", str(index + 1), "")
+            head = heads[index]
             texts = [row[index].strip() if index < len(row) else "" for row in own]
             values = _numbers(texts, separator, f"{path}: column {head.name}")
             columns[name] = Channel(unit or head.unit, values, head.name)
@@ -186,22 +186,20 @@ def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, 
     return tables
 
 
-def _index(path: Path, cells: Cells, name: str) -> int:
-    """Return the index of the column with a name or, if none has it, a number."""
-    matches = [index for index, head in enumerate(cells.heads) if head.is_called(name)]
-    width = max(len(cells.heads), *(len(row) for row in cells.rows[:1]), 0)
-    if not matches and name.isdecimal() and 1 <= int(name) <= width:
-        matches = [int(name) - 1]
-    if len(matches) == 1:
-        return matches[0]
-    has = ", ".join(map(shown, [head.text for head in cells.heads] or cells.rows[0]))
-    problem = f"{len(matches)} columns" if matches else "no column"
-    hint = f"; the curves of a table are told apart by a column {LABEL}" if matches else ""
-    raise ConfigError(
-        f"{path}: has {problem} {name!r} (it has {has}); name one column, or give its number from "
-        f"1 to {width} (--columns on the command line){hint}",
-        "columns",
-    )
+def rises(path: Path, cells: Cells, place: str, signal: str) -> bool:
+    """Return whether one column grows with another."""
+    columns = curves_of(path, cells, {place: "extension", signal: "force"})[""]
+    z, f = columns["extension"].values, columns["force"].values
+    known = np.isfinite(z) & np.isfinite(f)
+    return known.sum() < 2 or bool(np.cov(z[known], f[known])[0, 1] > 0)
+
+
+def index_of(heads: Sequence[Head], name: str) -> int | None:
+    """Return the index of the one column with a name or, if none has it, a number."""
+    matches = [index for index, head in enumerate(heads) if head.is_called(name)]
+    if not matches and name.isdecimal() and 1 <= int(name) <= len(heads):
+        return int(name) - 1
+    return matches[0] if len(matches) == 1 else None
 
 
 def _numbers(cells: list[str], separator: str, column: str) -> Array:

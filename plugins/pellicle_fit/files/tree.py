@@ -11,36 +11,30 @@ from typing import Any
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.errors import ConfigError, PellicleError, StorageError, shown
+from pellicle.errors import PellicleError, StorageError
 from pellicle.schema import read_mat
 
 from .columns import NAMES, Channel, Columns
+from .heads import Head
+from .missing import SHOWN
 
-SHOWN = 8
-"""Largest number of arrays, or of columns, that a message names."""
 _DEEPEST = 8
 """Largest depth of folders that a message describes; links can make circles."""
 
 
-def read_tree(path: Path, mapped: Mapping[str, str]) -> dict[str, Columns]:
-    """Return the columns of each curve of an HDF5 or a MATLAB file by its label.
+def read_tree(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns], list[Head]]:
+    """Return the columns of each curve of an HDF5 or a MATLAB file by its label, and all heads.
 
-    Without ``mapped`` columns, those of an HDF5 file are arrays of one axis with the names of
-    columns, at its root or else in groups, one for each curve.
+    Without ``mapped`` columns, they are arrays of one axis with the names of columns, at its root
+    or else in groups, one for each curve.
     """
     import h5py
 
     is_matlab = path.suffix.lower() == ".mat"
     try:
         with nullcontext(read_mat(path)) if is_matlab else h5py.File(path) as root:
-            if mapped or not is_matlab:
-                return _curves(path, root, mapped, is_matlab=is_matlab)
-            raise ConfigError(
-                f"is missing: {path} does not hold units; it has {_content(root)}; say what they "
-                "are, such as 'z = extension nm, d = deflection nm' (--columns on the command "
-                "line)",
-                "columns",
-            )
+            curves = _curves(root, mapped, is_matlab=is_matlab)
+            return curves, [*islice(_heads(root, _DEEPEST), SHOWN + 1)]
     except PellicleError:
         raise
     except (OSError, RuntimeError, ValueError) as error:
@@ -60,9 +54,7 @@ def _unit(array: Any) -> str:
     return unit.decode() if isinstance(unit, bytes) else str(unit)
 
 
-def _curves(
-    path: Path, root: Any, mapped: Mapping[str, str], *, is_matlab: bool
-) -> dict[str, Columns]:
+def _curves(root: Any, mapped: Mapping[str, str], *, is_matlab: bool) -> dict[str, Columns]:
     """Return the arrays whose paths are ``mapped``, by the labels of their curves.
 
     The points of a curve are along the first axis of a matrix of MATLAB, or along the last.
@@ -87,11 +79,6 @@ def _curves(
             for row, numbers in rows.items():
                 whole = "/".join(filter(None, (label, row)))
                 arrays[whole] = Channel(unit or _unit(array), numbers, pattern if mapped else "")
-        if mapped and not arrays:
-            raise ConfigError(
-                f"{path}: has no array of numbers at {pattern!r} (it has {_content(root)})",
-                "columns",
-            )
     labels = dict.fromkeys(label for own in channels.values() for label in own if label)
     # An array that all curves share, such as the time, has no label.
     found = {
@@ -118,17 +105,10 @@ def _leaves(node: Any, parts: list[str], label: str = "") -> Iterator[tuple[str,
         yield from _leaves(node[part], rest, label)
 
 
-def _content(root: Any) -> str:
-    """Return the first paths of the arrays in a file as text."""
-    paths = list(islice(_paths(root, _DEEPEST), SHOWN + 1))
-    names = ", ".join(map(shown, paths[:SHOWN]))
-    return f"{names}{', …' if len(paths) > SHOWN else ''}" or "none"
-
-
-def _paths(node: Mapping[str, Any], depth: int) -> Iterator[str]:
+def _heads(node: Mapping[str, Any], depth: int, folder: str = "") -> Iterator[Head]:
     for name in node:
         child = node.get(name)
         if isinstance(child, Mapping) and depth:
-            yield from (f"{name}/{path}" for path in _paths(child, depth - 1))
+            yield from _heads(child, depth - 1, f"{folder}{name}/")
         elif _kind(child) in "fiuV":
-            yield str(name)
+            yield Head(f"{folder}{name}", f"{folder}{name}", _unit(child))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -178,6 +179,46 @@ def test_labels_and_deflection(tmp_path: Path) -> None:
     assert both["1"].position == pytest.approx(1e-6 * Z[2:] - bending[2:])
 
 
+EXPORTS = {
+    "Piezo height [um],Deflection [V]": "Piezo height = height um, Deflection = deflection V",
+    "Z (nm);Defl_nm": "Z = height nm, Defl_nm = deflection nm",
+    "ZSnsr (nm)\tDefl (nm)\tTime (s)": "ZSnsr = extension nm, Defl = deflection nm, Time = time s",
+    "Ramp_nm\tDefl_pN_Ex\tDefl_V_Ex": "Ramp_nm = extension nm, Defl_pN_Ex = force pN",
+    "k: 7\n\nZ (um);Load (nN);Load (nN)": "Z = position um, 2 = force nN",
+    "# columns: height vDeflection t": "height = height <unit>, vDeflection = deflection <unit>",
+    "a,F [nN]": "<column> = height <unit>, F = force nN",
+    "height [m],deflection [V]": "",
+}
+
+
+@pytest.mark.parametrize("header", EXPORTS)
+def test_one_message_asks_for_all_that_an_export_lacks(tmp_path: Path, header: str) -> None:
+    """It ends with options, which read the curve once they have values."""
+    expected, path, head = EXPORTS[header], tmp_path / "export.txt", header.split("\n")[-1]
+    mark = next((mark for mark in "\t;," if mark in head), " ")
+    sign = -1 if "height" in header + expected else 1
+    count = len(head.removeprefix("# columns: ").split(mark))
+    lines = [mark.join(map(str, (sign * z, f, f)[:count])) for z, f in zip(Z, F, strict=True)]
+    path.write_text("\n".join([header, *lines]), encoding="utf-8")
+    config = pl.FitConfig.merged(curves=[path], indenter="sphere")
+    with pytest.raises(pl.ConfigError, match="missing: ") as raised:
+        config.indenter_of(config.sources()[0])
+    _, typed = str(raised.value).split("\n")
+    assert typed.endswith('--radius "… um"')
+    given = dict(re.findall(r'--(\S+) "([^"]*)"', typed))
+    assert given.get("columns", "") == expected
+    for blank, value in {"… N/m": "0.1 N/m", "… nm/V": "1 nm/V", "… um": "5 um"}.items():
+        given = {name.replace("-", "_"): text.replace(blank, value) for name, text in given.items()}
+    if expected:
+        text = expected.replace("height <unit>", "height m").replace("<unit>", "V")
+        given["columns"] = text.replace("<column>", "a")
+    config = pl.FitConfig.merged(config, **given)
+    (source,) = config.sources()
+    assert isinstance(source.curve, Measurement)
+    assert np.all(np.diff(source.curve.position) > 0)
+    assert config.indenter_of(source) == pl.indenter("sphere", radius="5 um")
+
+
 def _asylum(path: Path) -> str:
     with h5py.File(path, "w") as file:
         for number in range(2):
@@ -218,7 +259,7 @@ def test_paths_that_lead_nowhere(tmp_path: Path) -> None:
         for number in range(30):
             group = file.create_group(f"curve{number:04d}")
             group["z"], group["f"] = Z, F
-    with pytest.raises(pl.ConfigError, match=r"no array of numbers at 'z' \(it has 'curve0000/f',"):
+    with pytest.raises(pl.ConfigError, match=r"has 'curve0000/f',.*one column 'z', one column 'f'"):
         curves(path, "z = position um, f = force nN")
     with pytest.raises(pl.ConfigError, match="--columns"):
         curves(path)
@@ -227,7 +268,7 @@ def test_paths_that_lead_nowhere(tmp_path: Path) -> None:
         del file["curve0003/f"]
     readers = read(path, Calibration(columns="*/z = position um, */f = force nN"))
     assert is_the_curve(readers["curve0004"]())
-    with pytest.raises(pl.ConfigError, match="curve curve0003: has no column force"):
+    with pytest.raises(pl.ConfigError, match=r"curve curve0003: has .*; missing: a force"):
         readers["curve0003"]()
 
 
@@ -273,8 +314,17 @@ def test_matlab(tmp_path: Path, write: Callable[[Path], str], count: int) -> Non
     read_curves = curves(path, write(path))
     assert len(read_curves) == count
     assert all(map(is_the_curve, read_curves.values()))
-    with pytest.raises(pl.ConfigError, match="does not hold units; it has '"):
+    with pytest.raises(pl.ConfigError, match="; missing: a position"):
         curves(path)
+
+
+@pytest.mark.parametrize("twice", ["force", "time", "curve"])
+def test_a_column_that_is_there_twice_is_asked_for(tmp_path: Path, twice: str) -> None:
+    """Neither is silently taken or left out."""
+    header = f"position [um],force [nN],{twice},{twice}"
+    (tmp_path / "a.csv").write_text(f"{header}\n0,1,2,3\n4,5,6,7\n")
+    with pytest.raises(pl.ConfigError, match=f"missing: one column '{twice}'"):
+        curves(tmp_path / "a.csv")
 
 
 def test_columns_have_one_order() -> None:

@@ -76,6 +76,22 @@ def test_three_ways_make_one_object(tmp_path: Path) -> None:
     assert {"Sphere", "Tension", "Drag", "PowerLaw", "Offset", "Slope", "Layer"} <= used
 
 
+def test_a_diameter_is_two_radii(tmp_path: Path) -> None:
+    """It stands wherever a radius may, in files, tables of files and arguments, but beside none."""
+    config = pl.FitConfig.merged(indenter="sphere", radius="5 um")
+    assert config == pl.FitConfig.merged(indenter="sphere", diameter="10 um")
+    assert config == pl.FitConfig.merged({"indenter": {"type": "sphere", "diameter": 1e-5}})
+    assert pl.FitConfig.merged(config, diameter=["2 um", "4 um"]).per_file == {
+        "radius": (1e-6, 2e-6)
+    }
+    (tmp_path / "list.csv").write_text("file,diameter [um]\na.csv,8\n")
+    measure(tmp_path / "a.csv")
+    (source,) = config.sources(tmp_path / "list.csv")
+    assert config.indenter_of(source) == pl.indenter("sphere", radius="4 um")
+    with pytest.raises(pl.ConfigError, match="diameter: is given beside a radius"):
+        pl.FitConfig.merged(indenter="sphere", radius="5 um", diameter="10 um")
+
+
 def test_paths_start_from_the_folder_of_the_file(tmp_path: Path) -> None:
     """Curves, patterns and the cache are seen from the file, whatever its folder is called."""
     folder = tmp_path / "day [1]"
@@ -195,5 +211,5 @@ def test_bad_arguments() -> None:
     config = pl.FitConfig(indenter={"type": "sphere", "radius": "5 um"}, curves=["a", "b"])
     with pytest.raises(pl.ConfigError, match="names 2 curves; use fit_many"):
         pl.fit(config=config)
-    with pytest.raises(pl.ConfigError, match="indenter: is missing"):
+    with pytest.raises(pl.ConfigError, match="missing: indenter, "):
         pl.fit([1, 2], [1, 2])

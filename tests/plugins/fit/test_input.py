@@ -180,7 +180,6 @@ BAD: list[tuple[str, Callable[[Array, Array], tuple[Array, Array]]]] = [
     ("several curves", lambda z, f: (np.tile(z, 3), np.tile(f, 3))),
     ("at least 8", lambda z, f: (z[-5:], f[-5:])),
     ("at least 8", lambda z, f: (z, np.nan * f)),
-    ("give SI values", lambda z, f: (1e40 * z, f)),
     ("one curve at a time", lambda z, f: (np.tile(z, (2, 1)), f)),
     ("a list of real numbers", lambda z, f: (z, 1j * f)),  # type: ignore[list-item, return-value]
     ("has 299 values and position 300", lambda z, f: (z, f[1:])),

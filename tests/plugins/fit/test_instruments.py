@@ -99,7 +99,7 @@ def test_maps(tmp_path: Path, recording: instruments.Recording, name: str) -> No
 def test_calibration_is_asked_for(tmp_path: Path, recording: instruments.Recording) -> None:
     """A signal in volts needs spring constant and sensitivity, and the message says so."""
     instruments.workshop(tmp_path / "workshop.csv", recording)
-    with pytest.raises(pl.ConfigError, match="--spring-constant and --sensitivity"):
+    with pytest.raises(pl.ConfigError, match='--sensitivity "… nm/V" --spring-constant "… N/m"'):
         read(tmp_path / "workshop.csv")
 
 

@@ -274,7 +274,8 @@ def test_groups(tmp_path: Path) -> None:
     table = pl.fit_many(tmp_path / "map.h5", **HERTZ)
     first, second = table["status"].values
     assert first == "fitted"
-    assert "curve second: column force has no unit" in second
+    assert "curve second: has" in second
+    assert '--columns "*/position = position m, */force = force <unit>"' in second
 
 
 @pytest.mark.parametrize("listed", [True, False])
