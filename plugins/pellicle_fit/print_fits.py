@@ -33,10 +33,14 @@ def print_fit(fit: Fit, *, details: bool = False, si: bool = False) -> None:
 
 
 def print_warnings(fit: Fit, *, details: bool = False) -> None:
-    """Print the warnings of reading a fit's curves, and in detail failed checks and notes too."""
-    read = {text for member in fit.members for text in member.messages}
+    """Print the warnings of a fit and, in detail, the checks that fail and the notes."""
+    from pellicle_fit.words.remarks import CHECKS
+
+    if fit.answer.agreement.factor > 1:
+        echo(f"warning: {fit.agreement}", err=True)
     for text in fit.warnings:
-        if details or text in read:
+        # The verdict tells the check that fails, and the next step what to do.
+        if details or not text.endswith(tuple(CHECKS.values())):
             echo(f"warning: {text}", err=True)
     for text in fit.notes if details else ():
         echo(f"note: {text}", err=True)

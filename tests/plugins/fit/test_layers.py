@@ -110,7 +110,7 @@ def test_a_contact_far_wider_than_the_layer_is_not_described() -> None:
     """Beyond the table of force curves the fit says so, and gives no number that counts."""
     fit = fitted(curve(thickness=1.0), thickness=THICK / 8)
     assert fit.verdict is Verdict.UNDESCRIBED
-    assert any("is beyond that to which the force" in text for text in fit.messages)
+    assert "deeper than the force of this contact is known" in fit.comparison
 
 
 @pytest.mark.slow
@@ -120,7 +120,7 @@ def test_on_the_command_line(cli: Cli) -> None:
     columns = np.column_stack([position * 1e6, force * 1e9])
     np.savetxt("one.csv", columns, delimiter=",", header="position [um],force [nN]", comments="")
     options = ("-i", "sphere", "--radius", "5 um", "--poissons-ratio", "0.5", "--rivals", "offset")
-    output = cli("one.csv", *options, "--thickness", "4 um").output
+    output = cli("one.csv", *options, "--thickness", "4 um", "--details").output
     assert re.search(r"thickness\s+4(\.0*)?\s+fixed\s+µm", output)
     cli("one.csv", *options, "--thickness", "free", "-o", "free")
     found = json.loads(next(Path("free").glob("*.json")).read_text(encoding="utf-8"))

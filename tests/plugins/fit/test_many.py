@@ -72,7 +72,7 @@ def test_folder(cli: Cli, tmp_path: Path) -> None:
     assert [Path(row["curve"]).name for row in rows] == [f"{letter}.csv" for letter in "abcdef"]
     statuses = [row["status"] for row in rows]
     assert statuses[:2] == ["fitted", "fitted"]
-    reasons = ["sensitivity [m/V]", "this is a retract", "no contact", "several curves"]
+    reasons = ["--sensitivity", "this is a retract", "no contact", "several curves"]
     for status, words in zip(statuses[2:], reasons, strict=True):
         assert status.startswith("failed: ")
         assert words in status

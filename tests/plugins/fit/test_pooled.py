@@ -171,7 +171,6 @@ def test_command(measured: dict[str, tuple[Array, Array]], cli: Callable[..., Re
     radii = [text for radius in RADII for text in ("--radius", f"{radius * 1e6:g} um")]
     arguments = ("0.csv", "1.csv", "-i", "paraboloid", *radii, "--pool", "-o", "out")
     shown = cli(*arguments).stdout
-    assert "the curves agree" in shown
     assert "calibration taken as exact" in shown
     content = json.loads(Path("out/pool.json").read_text(encoding="utf-8"))
     assert content["reduced_modulus"]["low"] < TRUE_MODULUS < content["reduced_modulus"]["high"]

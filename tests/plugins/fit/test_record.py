@@ -227,7 +227,7 @@ def test_read_curves_and_draw_them(tmp_path: Path) -> None:
     measure(tmp_path / "a.csv")
     (tmp_path / "b.csv").write_text("position [um]\n1\n", encoding="utf-8")
     reading = {"columns": ARGUMENTS["columns"], "spring_constant": 0.1, "sensitivity": 50e-9}
-    with pytest.warns(UserWarning, match=r"b\.csv: has no column 'Z'"):
+    with pytest.warns(UserWarning, match=r"b\.csv: has 'position \[um\]'; missing"):
         curves = pl.read_curves(tmp_path, **reading)
     ((name, curve),) = curves.items()
     assert name == str(tmp_path / "a.csv")
@@ -239,5 +239,5 @@ def test_read_curves_and_draw_them(tmp_path: Path) -> None:
     figure.savefig(tmp_path / "fit.png")
     assert drawn_width(tmp_path / "fit.png") > 0.5
     pyplot.close("all")
-    with pytest.raises(pl.ConfigError, match="has no column"):
+    with pytest.raises(pl.ConfigError, match="missing: one column 'Z'"):
         pl.read_curves(tmp_path / "b.csv", **reading)

@@ -36,7 +36,7 @@ def test_page(single: pl.Fit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert sentence.startswith("Young's modulus 3.7")
     sentence = sentence[1:]
     page = unescape(save_report(single, tmp_path / "fit.html", "bead").read_text(encoding="utf-8"))
-    for words in (sentence, "Tension is needed", "an offset", "95 % of tension", "10 µm"):
+    for words in (sentence, "Tension is needed", "an offset", "tension [mN/m]", "10 µm"):
         assert words in page
     assert page.count("data:image/svg+xml") == 2
     folded = re.findall(r'<details class="table">\s*<summary>(\w+)', page)
