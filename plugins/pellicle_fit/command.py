@@ -129,7 +129,7 @@ def fit(
         ),
     ] = None,
     details: Annotated[
-        bool, Option("--details", help="Print all quantities, explanations and checks, too.")
+        bool, Option("--details", help="Of one fit, print all quantities, explanations, checks.")
     ] = False,
     si: Annotated[bool, Option("--si", help="Print tables in SI units.")] = False,
     json: Annotated[bool, Option("--json", help="Print JSON.")] = False,
@@ -187,9 +187,9 @@ def fit(
     elif isinstance(result, ManyFits):
         print_fits(result, quiet=quiet, directory=directory, si=si)
     elif quiet:
-        print_warnings(result)
+        print_warnings(result, details=True)
     else:
-        print_fit(result, details=details or compare, si=si)
+        print_fit(result, details=details or result.config.compare, si=si)
     written = [*many.files] if many else []
     if directory is not None and not isinstance(result, ManyFits):
         written.append(result.save(directory / f"{name}.json"))

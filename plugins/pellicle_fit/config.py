@@ -351,6 +351,9 @@ class FitConfig(FromFile, Calibration):
         own = cls.model_fields.keys() - Calibration.model_fields.keys()
         # What the indenter lacks is told with what its curve lacks.
         data = {"indenter": {}, **(base or {})}
+        for name in ("indenter", "per_file"):
+            if isinstance(table := data.get(name), Mapping):
+                data[name] = _with_radius(table)
         data |= {name: options.pop(name) for name in own & options.keys()}
         for name in data.keys() & {"indenter", "kernel", "executor"}:
             data[name] = _component(data[name])

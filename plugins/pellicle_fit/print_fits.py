@@ -40,7 +40,7 @@ def print_warnings(fit: Fit, *, details: bool = False) -> None:
         echo(f"warning: {fit.agreement}", err=True)
     for text in fit.warnings:
         # The verdict tells the check that fails, and the next step what to do.
-        if details or not text.endswith(tuple(CHECKS.values())):
+        if details or len(fit.members) > 1 or not text.endswith(tuple(CHECKS.values())):
             echo(f"warning: {text}", err=True)
     for text in fit.notes if details else ():
         echo(f"note: {text}", err=True)

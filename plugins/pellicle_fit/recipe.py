@@ -42,6 +42,8 @@ class Answer:
     """Why explanations could not be compared."""
     judgements: tuple[Judged, ...]
     """Noise and flaws of each curve under the best explanation."""
+    margin: float
+    """ΔAIC below which explanations tie."""
     threshold: float
     """Δχ² at the ends of intervals, which a disagreement of curves widens."""
     agreement: Agreement
@@ -90,12 +92,12 @@ class Answer:
     @property
     def tied_without(self) -> list[Candidate]:
         """What explains the curves as well as the best with what is asked for, without it."""
-        margin, word = max(MARGIN, self.threshold), self.question.word
+        word = self.question.word
         asked = next(fit for fit in self.explanations if fit.types == self.decision.asked)
         return [
             fit
             for fit in self.explanations
-            if not word <= fit.types and abs(fit.aic - asked.aic) < margin
+            if not word <= fit.types and abs(fit.aic - asked.aic) < self.margin
         ]
 
     def _over_tied(self, name: str) -> Estimate:
@@ -247,6 +249,7 @@ def answer(
         tuple(fits[types] for types in tied),
         excused,
         tuple(best.judgements),
+        margin,
         threshold,
         agreement,
         untried,

@@ -88,8 +88,10 @@ def repetition(path: Path) -> FitConfig:
     StorageError
         The file cannot be read.
     """
-    config = FitConfig.from_json(json.dumps(content_of(path)))
-    if not config.curves:
+    content = content_of(path)
+    config = FitConfig.from_json(json.dumps(content))
+    curves = [one for row in content.get("curves", ()) for one in row.get("curves", [row])]
+    if not config.curves or any(not c.get("data", {"file": path}).get("file") for c in curves):
         raise ConfigError(
             f"{path}: holds no fit of a file; numbers that were given in Python have to be given "
             "again, with FitConfig.from_json"

@@ -18,7 +18,7 @@ from .files.measurement import Note
 from .intervals import CONFIDENCE, Estimate
 from .recipe import Answer
 from .record import Record
-from .verdict import MARGIN, Verdict
+from .verdict import Verdict
 from .words.advice import Step
 from .words.effects import words
 from .words.remarks import agreement, failed_checks, remarks
@@ -168,7 +168,7 @@ class Fit:
             "calibration": calibration_of(self),
             "chi_squared": self.chi_squared,
             "threshold": answer.threshold,
-            "margin": max(MARGIN, answer.threshold),
+            "margin": answer.margin,
             "lead": answer.decision.lead,
             "explanations": [self._explanation(fit) for fit in answer.explanations],
             "excused": [

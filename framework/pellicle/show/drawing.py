@@ -175,7 +175,7 @@ def _style(series: Series, chart: Chart) -> dict[str, Any]:
     style["marker"] = MARKERS[look.marker % len(MARKERS)]
     face = style["color"] if look.filled else "white"
     if look.line is None and series.x.size > _MOST_MARKED:
-        if look.filled is False:
+        if look.filled is not None:
             return style | {"markersize": _DOT, "markerfacecolor": face, "markeredgewidth": 0.5}
         return style | {"marker": ".", "markersize": _DOT}
     if look.sparse:

@@ -5,7 +5,7 @@ for (const head of document.querySelectorAll("th")) {
   head.firstElementChild.addEventListener("click", () => {
     const body = head.closest("table").tBodies[0];
     const rising = head.getAttribute("aria-sort") !== "ascending";
-    const text = (row) => row.cells[head.cellIndex].textContent;
+    const text = (row) => row.cells[head.cellIndex].textContent.replace(/^[<>] /, "");
     const order = (one, other) => {
       const gap = parseFloat(text(one)) - parseFloat(text(other));
       return Number.isNaN(gap) ? text(one).localeCompare(text(other)) : gap;

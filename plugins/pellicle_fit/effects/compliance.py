@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pellicle_fit.effect import Array, Fitted, Yields, fitted
 
 
-class Compliance(Yields, title="a wrong sensitivity or another compliance"):
+class Compliance(Yields, title="a compliance in series (or a wrong sensitivity)"):
     """Something in series that gives way by u = cF, of either sign.
 
     A deflection sensitivity that is off by a share ε puts the tip wrong by ε F/k: c = ε/k.

@@ -28,9 +28,10 @@ class MissingInputError(ConfigError):
 
     def __init__(self, where: str, options: Mapping[str, str]) -> None:
         self.where, self.options = where, options
+        typed = " ".join(filter(None, dict.fromkeys(options.values())))
         super().__init__(
-            f"{where}missing: {', '.join(options)}; add, with your values for … and <…>:\n"
-            f"  {' '.join(dict.fromkeys(options.values()))}"
+            f"{where}missing: {', '.join(options)}"
+            + (f"; add, with your values for … and <…>:\n  {typed}" if typed else "")
         )
 
     def __reduce__(self) -> tuple[Any, ...]:

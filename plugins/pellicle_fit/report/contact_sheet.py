@@ -11,6 +11,7 @@ import numpy as np
 from pellicle.files import for_document
 from pellicle.units import decimal, readable
 from pellicle_fit.population.row import SHOWN, Row
+from pellicle_fit.words.quantities import in_figures
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -75,7 +76,7 @@ def _numbers(row: Row) -> str:
     if not row.is_fitted:
         return ""
     texts = [
-        f"{symbol} {readable(e.value, e.unit, 3)}"
+        f"{symbol} {in_figures(e)}"
         for name, symbol in SHOWN.items()
         if (e := row.estimates.get(name)) is not None and not (e.held and not e.value)
     ]

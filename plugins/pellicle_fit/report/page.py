@@ -30,7 +30,7 @@ _ELSEWHERE = {
     *("executor", "cache", "grid_points"),
 }
 """Fields of a configuration that say nothing of the solid, or stand in the tables."""
-_UNDECIDED = Verdict.CANNOT_TELL, Verdict.UNDESCRIBED
+_GOOD = {Verdict.CANNOT_TELL: None, Verdict.UNDESCRIBED: False}
 
 
 def html_of_fit(fit: Fit) -> str:
@@ -81,7 +81,7 @@ def _one(fit: Fit) -> list[Block]:
     numbers, verdict, *step = story(fit)
     blocks: list[Block] = [
         Text(_sentence(numbers), lead=True),
-        Notice(_sentence(verdict), good=None if fit.verdict in _UNDECIDED else True),
+        Notice(_sentence(verdict), good=_GOOD.get(fit.verdict, True)),
         *map(Text, map(_sentence, step)),
     ]
     if fit.agreement:

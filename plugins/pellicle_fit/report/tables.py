@@ -14,11 +14,13 @@ from pellicle_fit.population.row import FITTED, OVER_TIED, SHOWN, Row
 from pellicle_fit.population.summary import QUARTILES, summary
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import Fit, name_of, parameters_of
-from pellicle_fit.verdict import MARGIN
 from pellicle_fit.words.effects import words as words_of
 from pellicle_fit.words.quantities import FEW, interval, quoted, unit_of, words
 from pellicle_fit.words.quantities import unit_of_estimate as unit_of_one
 from pellicle_fit.words.remarks import failed_checks
+
+_SI_DIGITS = 6
+"""Significant digits of numbers in SI."""
 
 
 def estimates(fit: Fit, *, si: bool = False) -> Table:
@@ -27,7 +29,7 @@ def estimates(fit: Fit, *, si: bool = False) -> Table:
     slots = fit.answer.chosen.objective.slots
     of_one = {name_of(slot.name, slot.curve) for slot in slots if slot.curve is not None}
     for name, estimate in fit.estimates().items():
-        if not (several and name in of_one):
+        if not (several and name in of_one) and (estimate.value or not estimate.held):
             unit = _unit(fit, name, si)
             value, ends = unit.number(estimate.value), interval(estimate, unit)
             rows.append((words(name), value, ends, unit.unit))
@@ -54,7 +56,7 @@ def explanations(fit: Fit, *, si: bool = False) -> Table:
         # Not of all explanations intervals are sought.
         sought = [name in one.estimates for one in compared]
         columns += _quantity(name, _unit(fit, name, si), values, sought=sought)
-    tie = f"below ΔAIC = {max(MARGIN, answer.threshold):.3g} it is a tie"
+    tie = f"below ΔAIC = {answer.margin:.3g} it is a tie"
     return Table(columns, f"What describes the data, best first; {tie}.", folded=True)
 
 
@@ -62,12 +64,14 @@ def curves(fit: Fit, *, si: bool = False) -> Table:
     """Return a row for each curve of a fit."""
     members, judgements, own = fit.members, fit.answer.judgements, fit.estimates()
     radii = [getattr(member.curve.indenter, "radius", "") for member in members]
-    points = [own[name_of(CONTACT_POINT, number)] for number in range(len(members))]
+    found = (own.get(name_of(CONTACT_POINT, i), own[CONTACT_POINT]) for i in range(len(members)))
+    unit = _unit(fit, CONTACT_POINT, si)
+    points = [f"{unit.number(e.value)} ({interval(e, unit)})" for e in found]
     checks = [", ".join(failed_checks(judged)) for judged in judgements]
     columns = [
         Column("curve", [member.name for member in members]),
         *([Column("radius", radii, "m")] if any(radii) else []),
-        *_quantity(CONTACT_POINT, _unit(fit, CONTACT_POINT, si), points),
+        Column(f"contact point [{unit.unit}]", points),
         Column("points", [member.curve.position.size for member in members]),
         Column("noise", [judged.noise.deviation for judged in judgements], "N", digits=3),
         Column("failed checks", checks),
@@ -87,19 +91,19 @@ def rows(of: Sequence[Row], *, si: bool = False) -> Table:
         else:
             states.append("modulus stands out" * row.outlier or row.status.partition(":")[0])
     radii = [row.curve.get("indenter", {}).get("radius", "") for row in of]
+    has_youngs = any("youngs_modulus" in row.estimates for row in of)
     columns = list[Column]()
-    for name in SHOWN:
+    for name in ("youngs_modulus", *[*SHOWN][1:]) if has_youngs else SHOWN:
         all_of = [row.estimates.get(name) for row in of]
         if name in OVER_TIED or 2 * sum(map(bool, all_of)) >= len(of):
-            columns += _quantity(name, _usual(of, name, si), all_of, FEW)
-    columns += [
+            columns += _quantity(name, _usual(of, name, si), all_of, _SI_DIGITS if si else FEW)
+    others = [
         Column("group", [row.group for row in of]),
         Column("radius", radii, "m"),
         Column("status", states, bad=[state != FITTED for state in states]),
     ]
     fitted = [n for n, row in enumerate(of) if row.is_fitted]
-    if len(of) > 1:
-        columns = [c for c in columns if any(c.bad) or len({str(c.values[n]) for n in fitted}) > 1]
+    columns += [c for c in others if any(c.bad) or len({str(c.values[n]) for n in fitted}) > 1]
     first = [Column("curve", [row.name for row in of]), Column("verdict", [r.verdict for r in of])]
     return Table([*first, *columns], "Each curve on its own, with its 95 % intervals.")
 

@@ -74,7 +74,8 @@ def _of_options(answer: Answer, members: Sequence[Member], config: FitConfig) ->
         yield Step("add --baseline offset", "the force before contact is not 0")
     if Flaw.DRIFT in flaws and config.baseline != "slope":
         yield Step("add --baseline slope", "the force before contact has a slope")
-    if Flaw.DIP in flaws and "adhesion" not in answer.chosen.types:
+    types = answer.chosen.objective.explanation.types
+    if Flaw.DIP in flaws and not {"adhesion"} & types.union(*answer.excused):
         yield Step("ask with --model adhesion", "the force dips before contact")
     if Flaw.SPIKES in flaws:
         why = "single points lie far from their neighbours, and shift the fit"
@@ -82,17 +83,23 @@ def _of_options(answer: Answer, members: Sequence[Member], config: FitConfig) ->
     undecided = answer.verdict in (Verdict.CANNOT_TELL, Verdict.UNDESCRIBED)
     rows = next((member.left_out for member in members if member.left_out), None)
     if undecided and rows:
-        why = f"the retraction, rows {rows[0]} to {rows[1]}, tells creep from tension"
+        why = f"rows {rows[0]} to {rows[1]}, the retraction, may tell them apart"
         yield Step("fit with --segment both", why)
     if config.thickness is None and any("layer" in fit.types for fit in answer.tied):
-        yield Step("give the --thickness of a thin sample", "a layer describes the curve as well")
+        why = "a layer on a rigid base describes the curve"
+        yield Step("give --thickness and --poissons-ratio of a thin sample", why)
+    if answer.untried:
+        why = "beside a tension there is no theory of a solid that relaxes and unloads"
+        yield Step("fit with --segment approach", why)
 
 
 def _of_measurement(answer: Answer) -> Iterator[Step]:
     """Yield what to measure, if something is open and a measurement would help."""
+    if answer.verdict is Verdict.UNDESCRIBED:
+        return
     if answer.verdict is Verdict.CANNOT_TELL:
         asked = next(f for f in answer.explanations if f.types == answer.decision.asked)
-        advice, aim = telling(asked, answer.tied_without), "tell them apart"
+        advice, aim = telling(asked, answer.tied_without), "tell these explanations apart"
     else:
         found = {name: answer.estimates.get(name) for name in (MODULUS, TENSION)}
         names = [name for name, estimate in found.items() if estimate and estimate.high is None]

@@ -6,14 +6,16 @@ from collections.abc import Sequence
 
 from pellicle.components import words_of_type
 from pellicle_fit.candidate import Candidate, Types
-from pellicle_fit.effect import Effect
+from pellicle_fit.effect import Adds, Effect, Records
 from pellicle_fit.rivals import Question
 
 
 def words(fit: Candidate) -> str:
     """Return the effects of an explanation in words, but for those that all have."""
     effects = fit.objective.explanation.effects
-    return in_words([effect for effect in effects if effect.type_name in fit.types])
+    # A baseline that all have says nothing of the solid.
+    of_solid = [effect for effect in effects if not isinstance(effect, (Adds, Records))]
+    return in_words([e for e in effects if e.type_name in fit.types] or of_solid)
 
 
 def words_of_types(question: Question, types: Types) -> str:
@@ -25,7 +27,7 @@ def words_of_types(question: Question, types: Types) -> str:
 
 def in_words(effects: Sequence[Effect]) -> str:
     """Return effects in words, the last after an "and"."""
-    return listed([words_of_type(type(e), e.type_name) for e in effects]) or "no effect"
+    return listed([words_of_type(type(e), e.type_name) for e in effects]) or "an elastic half-space"
 
 
 def listed(names: Sequence[str], last: str = "and", most: int = 20) -> str:

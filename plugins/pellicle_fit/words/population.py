@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,6 +17,9 @@ from .quantities import unit_of, words
 
 _NAMES = 10
 """Curves that would be helped alike and are named."""
+_STEPS = 6
+"""Kinds of steps that are told, those that help most curves."""
+MODULI = "reduced_modulus", "youngs_modulus"
 _GROUPS = 4
 """Groups of a population that are named in a sentence; of more, only all curves are."""
 
@@ -35,7 +39,9 @@ def sentences_of_population(fits: ManyFits) -> list[str]:
         row.fit.get("verdict", "") for row in rows if row.accepted
     ).most_common():
         counts += f"; verdicts: {', '.join(f'{count} {verdict}' for verdict, count in verdicts)}"
-    shown = {TENSION, *[part["parameter"] for part in parts if "modulus" in part["parameter"]][-1:]}
+    moduli = [part["parameter"] for part in parts if part["parameter"] in MODULI]
+    usual = {part["parameter"] for part in parts if 2 * part["n"] >= accepted}
+    shown = {TENSION, *moduli[-1:], *usual - {*MODULI}}
     groups = [group for group in dict.fromkeys(part["group"] for part in parts) if group != ALL]
     sentences = [counts]
     for group in groups if 0 < len(groups) <= _GROUPS else [ALL] * bool(parts):
@@ -47,22 +53,28 @@ def sentences_of_population(fits: ManyFits) -> list[str]:
                 low, median, high = (unit.number(value, 3) for value in quartiles)
                 closed = part["n"] - part["open"]
                 text = f"median {unit.with_unit(median)}, quartiles {low} to {high}, "
-                text = f"{text}of {closed} of {part['curves']} curves" if closed else "bounds alone"
+                text = f"{text}of {closed} of {part['curves']} curves" if closed else "only bounds"
                 medians.append(f"{words(part['parameter'])}: {text}")
-        sentences.append(f"{'' if group == ALL else f'{group}: '}{'; '.join(medians)}")
+        if medians:
+            sentences.append(f"{'' if group == ALL else f'{group}: '}{'; '.join(medians)}")
     if far := [row.name for row in rows if row.outlier]:
         sentences.append(f"far from the median modulus, and counted: {_listed(far)}")
     return sentences
 
 
 def advice_of_population(rows: Sequence[Row]) -> list[str]:
-    """Return what to do next, a line for each step with the curves that it would help."""
+    """Return what to do next, a line for each kind of step with the curves that it would help.
+
+    Steps of one kind differ in numbers alone.
+    """
     found: dict[str, dict[str, str]] = {}
+    kinds: dict[str, str] = {}
     for row in rows:
         for step in row.fit.get("next", ()):
-            found.setdefault(step["do"], {})[row.name] = step["why"]
+            do = kinds.setdefault(re.sub(r"\d[\d.]*", "", step["do"]), step["do"])
+            found.setdefault(do, {})[row.name] = step["why"]
     lines, fitted = [], sum(row.is_fitted for row in rows)
-    for do, whys in sorted(found.items(), key=lambda item: -len(item[1])):
+    for do, whys in sorted(found.items(), key=lambda item: -len(item[1]))[:_STEPS]:
         first, why = next(iter(whys.items()))
         which = f"all {fitted} curves" if len(whys) == fitted > 1 else _listed([*whys])
         example = "" if {*whys.values()} == {why} else f"{first}: "

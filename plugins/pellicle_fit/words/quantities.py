@@ -58,7 +58,10 @@ def quoted(estimate: Estimate, unit: Scale, digits: int, shown_unit: str = "") -
     The best value between ends that are far apart is one of many.
     """
     low, high, ends = estimate.low, estimate.high, interval(estimate, unit, digits)
-    is_narrow = low is not None and high is not None and high <= _WIDE * low
+    is_narrow = False
+    if low is not None and high is not None:
+        sizes = sorted((abs(low), abs(high)))
+        is_narrow = low * high > 0 and sizes[1] <= _WIDE * sizes[0]
     if estimate.held or is_narrow:
         return f"{unit.number(estimate.value, digits)}{shown_unit} ({ends})"
     return "not determined" if low is None and high is None else f"{ends}{shown_unit}"

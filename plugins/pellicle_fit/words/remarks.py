@@ -51,7 +51,7 @@ def remarks(answer: Answer) -> Iterator[str]:
     """Yield a warning of a modulus that is not held, and notes of what was not compared."""
     for fit in answer.not_held:
         modulus = readable(fit.estimates[MODULUS].value, "Pa", 3)
-        yield f"the modulus is not held: {words(fit)} would do with {modulus}, a small part of it"
+        yield f"the modulus is not held: with {words(fit)} one of {modulus} would do as well"
     if answer.tension_needed:
         yield Note("a surface more than half again as stiff as the bulk, not weighed, looks alike")
     reasons: dict[str, list[str]] = {}

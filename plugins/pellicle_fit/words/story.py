@@ -6,6 +6,8 @@ from itertools import chain
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
+from pellicle_fit.candidate import NONE
+from pellicle_fit.effect import Adds, Records
 from pellicle_fit.intervals import CONFIDENCE
 from pellicle_fit.recipe import Answer
 from pellicle_fit.verdict import Verdict
@@ -49,6 +51,9 @@ def numbers(fit: Fit, *, si: bool = False) -> str:
     asked, chosen = answer.question.asked, answer.chosen.types
     if asked is not None and asked.type_name in chosen:
         names += asked.open
+    # A baseline is the instrument's.
+    kept = (effect for effect in answer.question.kept if not isinstance(effect, (Adds, Records)))
+    names += chain.from_iterable(effect.open for effect in kept)
     parts = [f"{words_of(name)} {in_figures(estimates[name], si=si)}" for name in names]
     calibration = calibration_of(fit)
     if answer.verdict is Verdict.UNDESCRIBED:
@@ -84,7 +89,7 @@ def verdict(answer: Answer) -> str:
         case Verdict.NEEDED:
             beside = words_of_types(question, asked - word)
             pair = f", beside {beside}" if asked != word else ""
-            if not question.rivals:
+            if fits.keys() <= {NONE, word}:
                 return f"{subject} is needed{pair}; no rival was tried"
             nearest = f"; the nearest is {other}" if answer.decision.other else ""
             return f"{subject} is needed{pair}: nothing else tried fits as well{nearest}"
@@ -93,8 +98,10 @@ def verdict(answer: Answer) -> str:
             names = listed(tied, "or", _RIVALS)
             return f"{curves} cannot tell {words(fits[asked])} from {names}"
         case Verdict.OTHER:
-            first = f"{subject} is not needed" if word else f"more than {subject}"
-            return f"{first}; described better by {other}"
+            if word:
+                return f"{subject} is not needed; described better by {other}"
+            shows = "show" if several else "shows"
+            return f"{curves} {shows} more than {subject}; described better by {other}"
     if not word and len(fits) == 1:
         return f"{subject} was compared with nothing"
     return f"no sign of {subject if word else f'more than {subject}'}"
