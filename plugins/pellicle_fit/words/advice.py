@@ -88,7 +88,7 @@ def _of_options(answer: Answer, members: Sequence[Member], config: FitConfig) ->
     if config.thickness is None and any("layer" in fit.types for fit in answer.tied):
         why = "a layer on a rigid base describes the curve"
         yield Step("give --thickness and --poissons-ratio of a thin sample", why)
-    if answer.untried:
+    if answer.untried and answer.verdict is Verdict.UNDESCRIBED:
         why = "beside a tension there is no theory of a solid that relaxes and unloads"
         yield Step("fit with --segment approach", why)
 
