@@ -90,14 +90,18 @@ class Answer:
         )
 
     @property
+    def asked(self) -> Candidate:
+        """The best explanation with what is asked for."""
+        return next(fit for fit in self.explanations if fit.types == self.decision.asked)
+
+    @property
     def tied_without(self) -> list[Candidate]:
         """What explains the curves as well as the best with what is asked for, without it."""
-        word = self.question.word
-        asked = next(fit for fit in self.explanations if fit.types == self.decision.asked)
+        word, aic = self.question.word, self.asked.aic
         return [
             fit
             for fit in self.explanations
-            if not word <= fit.types and abs(fit.aic - asked.aic) < self.margin
+            if not word <= fit.types and abs(fit.aic - aic) < self.margin
         ]
 
     def _over_tied(self, name: str) -> Estimate:

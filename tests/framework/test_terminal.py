@@ -268,8 +268,8 @@ _WORDS = ["check c.toml", "explain tensed_membrane", "show a.h5", "show study"]
     [
         (
             "ascii",
-            ["new --example fit", "fit fit.toml"],
-            ["depth [?m]", "[mm?]", "title:    ? layer", "taken as exact"],
+            ["new --example fit", "fit fit.toml --details"],
+            ["depth [?m]", "[mm?]", "title:    ? layer", "?AIC", "taken as exact"],
         ),
         (
             "cp1252",

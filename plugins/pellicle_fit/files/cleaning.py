@@ -58,7 +58,8 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
     if left_out := z.size - 1 - last + first:
         text = f"rows {first + 1} to {last + 1} are the {segment}; the other {left_out} were left "
         messages.append(Note(f"{text}out"))
-    others = [p for p in passes(base) if not p.inward and p.first >= last]
+    back = [p for p in passes(base) if not p.inward and p.first >= last]
+    others = back if segment == "approach" else []
     if segment == "retract":
         messages.append("a retract is fitted as if nothing adhered: compare with the approach")
     rows = np.arange(first, last + 1)
@@ -74,9 +75,7 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
         time=None if t is None else t[rows],
         speed=None,
         messages=tuple(messages),
-        left_out=(others[0].first + 1, others[0].last + 1)
-        if others and segment == "approach"
-        else None,
+        left_out=(others[0].first + 1, others[0].last + 1) if others else None,
         unloading=rows >= unloading,
     )
 

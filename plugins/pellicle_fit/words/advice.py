@@ -98,8 +98,7 @@ def _of_measurement(answer: Answer) -> Iterator[Step]:
     if answer.verdict is Verdict.UNDESCRIBED:
         return
     if answer.verdict is Verdict.CANNOT_TELL:
-        asked = next(f for f in answer.explanations if f.types == answer.decision.asked)
-        advice, aim = telling(asked, answer.tied_without), "tell these explanations apart"
+        advice, aim = telling(answer.asked, answer.tied_without), "tell these explanations apart"
     else:
         found = {name: answer.estimates.get(name) for name in (MODULUS, TENSION)}
         names = [name for name, estimate in found.items() if estimate and estimate.high is None]

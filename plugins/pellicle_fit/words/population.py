@@ -13,13 +13,13 @@ from pellicle_fit.population.summary import ALL, QUARTILES, summary
 from pellicle_fit.recipe import TENSION
 
 from .effects import listed
-from .quantities import unit_of, words
+from .quantities import FEW, unit_of, words
 
 _NAMES = 10
 """Curves that would be helped alike and are named."""
 _STEPS = 6
 """Kinds of steps that are told, those that help most curves."""
-MODULI = "reduced_modulus", "youngs_modulus"
+_MODULI = "reduced_modulus", "youngs_modulus"
 _GROUPS = 4
 """Groups of a population that are named in a sentence; of more, only all curves are."""
 
@@ -39,9 +39,9 @@ def sentences_of_population(fits: ManyFits) -> list[str]:
         row.fit.get("verdict", "") for row in rows if row.accepted
     ).most_common():
         counts += f"; verdicts: {', '.join(f'{count} {verdict}' for verdict, count in verdicts)}"
-    moduli = [part["parameter"] for part in parts if part["parameter"] in MODULI]
+    moduli = [part["parameter"] for part in parts if part["parameter"] in _MODULI]
     usual = {part["parameter"] for part in parts if 2 * part["n"] >= accepted}
-    shown = {TENSION, *moduli[-1:], *usual - {*MODULI}}
+    shown = {TENSION, *moduli[-1:], *usual - {*_MODULI}}
     groups = [group for group in dict.fromkeys(part["group"] for part in parts) if group != ALL]
     sentences = [counts]
     for group in groups if 0 < len(groups) <= _GROUPS else [ALL] * bool(parts):
@@ -50,7 +50,7 @@ def sentences_of_population(fits: ManyFits) -> list[str]:
             if part["group"] == group and part["parameter"] in shown:
                 quartiles = [part[name] for name in QUARTILES[1:4]]
                 unit = unit_of([quartiles[1] or quartiles[2]], part["unit"])
-                low, median, high = (unit.number(value, 3) for value in quartiles)
+                low, median, high = (unit.number(value, FEW) for value in quartiles)
                 closed = part["n"] - part["open"]
                 text = f"median {unit.with_unit(median)}, quartiles {low} to {high}, "
                 text = f"{text}of {closed} of {part['curves']} curves" if closed else "only bounds"

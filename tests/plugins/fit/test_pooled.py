@@ -173,5 +173,6 @@ def test_command(measured: dict[str, tuple[Array, Array]], cli: Callable[..., Re
     shown = cli(*arguments).stdout
     assert "calibration taken as exact" in shown
     content = json.loads(Path("out/pool.json").read_text(encoding="utf-8"))
+    assert content["agreement"].startswith("the curves agree")
     assert content["reduced_modulus"]["low"] < TRUE_MODULUS < content["reduced_modulus"]["high"]
     assert Path("out/pool.png").exists()
