@@ -14,7 +14,6 @@ from bokeh.plotting import figure
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
-from pellicle.show import with_rim
 from pellicle.units import axis_unit
 
 from .solving import Frame
@@ -80,16 +79,11 @@ class Plots:
             }
 
     def draw(self, frame: Frame) -> None:
-        """Draw the load steps of a run, and a cut along x through its deepest point.
-
-        The cut is at the largest force.
-        """
-        deepest = frame.largest["displacement"].max("x").argmax("y")
-        cut = frame.largest.isel(y=int(deepest))
-        x, surface = cut["x"].values, -cut["displacement"].values
-        line = with_rim(cut) if cut["pressure"].values.min() >= 0 else cut
+        """Draw the load steps of a run, and a cut along x at the largest force."""
+        cut, line = frame.cut, frame.line
+        x, surface, gap = cut["x"].values, -cut["displacement"].values, cut["gap"].values
         pressure = line["pressure"].values
-        indenter = surface + np.maximum(cut["gap"].where(np.isfinite).values, 0.0)
+        indenter = surface + np.maximum(np.where(np.isfinite(gap), gap, np.nan), 0.0)
         depth, force = frame.steps["depth"].values, frame.steps["force"].values
         per_x = _label("x", x, "m", self.profile.xaxis, self.pressure.xaxis)
         per_height = _label("height", np.append(surface, indenter), "m", self.profile.yaxis)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from bokeh.document import Document
 
 import pellicle as pl
+from pellicle.show import with_rim
 from pellicle.units import readable
 
 if TYPE_CHECKING:
@@ -28,20 +29,22 @@ _LOCK: Final = threading.Lock()
 
 
 class Frame(NamedTuple):
-    """The result of a run, in SI, and its warnings."""
+    """The result of a run, in SI, with what is drawn of it."""
 
     steps: xr.Dataset
     """The load steps, of dimensions (step, x, y)."""
+    largest: xr.Dataset
+    """The load step with the largest force, of dimensions (x, y)."""
+    cut: xr.Dataset
+    """A cut through its deepest point, along x."""
+    line: xr.Dataset
+    """The pressure along the cut, up to the rim of contact."""
     remarks: tuple[str, ...]
-
-    @property
-    def largest(self) -> xr.Dataset:
-        """The load step with the largest force, of dimensions (x, y)."""
-        return self.steps.isel(step=int(self.steps["force"].values.argmax()))
+    """The warnings of the run."""
 
     def summary(self) -> str:
         """Return the numbers of the run at its largest force, as markup."""
-        step, lowest = self.largest, float(self.steps["force"].min())
+        step, lowest = self.largest, self.steps["force"].values.min()
         radius = math.sqrt(float(step["contact_area"]) / math.pi)
         words = (
             f"At a depth of {readable(float(step['depth']), 'm', 4)}: "
@@ -60,7 +63,12 @@ def solved(
     with _LOCK, warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         steps = pl.run(run, progress=progress).dataset
-    return Frame(steps, tuple(dict.fromkeys(str(entry.message) for entry in caught)))
+        # xarray catches warnings as well, so that the page must not ask it for what it draws.
+        largest = steps.isel(step=int(steps["force"].values.argmax()))
+        cut = largest.isel(y=int(largest["displacement"].max("x").argmax("y")))
+        line = with_rim(cut) if cut["pressure"].values.min() >= 0 else cut
+    remarks = tuple(dict.fromkeys(str(entry.message) for entry in caught))
+    return Frame(steps, largest, cut, line, remarks)
 
 
 class Solving:

@@ -154,6 +154,22 @@ def test_the_cut_goes_through_the_deepest_point(start: pl.Run) -> None:
     assert cut["indenter"][beneath].min() == pytest.approx(-2, rel=0.04)
 
 
+def test_drawing_leaves_the_warnings_of_the_process_alone(
+    start: pl.Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Another thread may be solving, and records its warnings in what all threads share."""
+
+    def refuse(*_: Any, **__: Any) -> None:
+        raise AssertionError("warnings are caught while a frame is drawn")
+
+    frame, page = solved(configuration_of(start)), Page(start)
+    page.rest()
+    with monkeypatch.context() as during:
+        during.setattr("warnings.catch_warnings", refuse)
+        page.explorer._show(configuration_of(start), frame)
+    assert page.explorer._result.text == frame.summary()
+
+
 def test_a_run_writes_nothing(start: pl.Run, tmp_path: Path, monkeypatch: Any) -> None:
     """Outputs that the file names stay in what is saved, but the server does not write them."""
     monkeypatch.chdir(tmp_path)
