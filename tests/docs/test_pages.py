@@ -1,0 +1,108 @@
+"""A reader finds: pages are short, links lead to their headings, and nothing stands twice."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from pathlib import Path
+
+import pytest
+
+from tests.docs.blocks import DOCS, PAGES, ROOT, blocks
+
+CEILINGS = {
+    "README": 800,
+    "index": 230,
+    "install": 280,
+    "first-contact": 1400,
+    "first-fit": 1200,
+    "notebook": 260,
+    "grid": 700,
+    "kernels": 900,
+    "indenters": 900,
+    "loading": 1250,
+    "adhesion": 1300,
+    "time": 950,
+    "results": 900,
+    "outputs": 1200,
+    "studies": 1200,
+    "fits": 1600,
+    "curves": 1400,
+    "gallery": 550,
+    "explore": 230,
+    "howdoi": 550,
+    "theory": 1500,
+    "solids": 1500,
+    "adhesion-theory": 650,
+    "solver": 2000,
+    "fit-method": 1300,
+    "validation": 1050,
+    "performance": 850,
+    "paper": 650,
+    "compare": 450,
+    "plugin": 1400,
+    "families": 1600,
+    "architecture": 450,
+    "decisions": 1500,
+    "run-file": 150,
+    "commands": 450,
+    "library": 250,
+    "glossary": 420,
+    "citing": 180,
+    "sources": 0,
+    "changelog": 5,
+}
+"""Words of each page that are written by hand."""
+_GENERATED = re.compile(r"<!-- generated: .*?<!-- end -->", re.DOTALL)
+_LONG = 60
+"""Characters of a line of code that stands on one page only."""
+
+
+def words(page: Path) -> int:
+    """Return the number of words of a page outside its generated parts."""
+    return len(_GENERATED.sub("", page.read_text(encoding="utf-8")).split())
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_page_is_short(page: Path) -> None:
+    """No page is longer than its ceiling, and each has one."""
+    assert words(page) <= CEILINGS[page.stem]
+
+
+def test_no_line_of_code_stands_on_two_pages() -> None:
+    """A second page links to the example of the first."""
+    found = defaultdict(set)
+    for page in PAGES:
+        for block in blocks(page):
+            for line in block.text.splitlines():
+                if len(line.strip()) >= _LONG:
+                    found[line.strip()].add(page.name)
+    assert not {line: pages for line, pages in found.items() if len(pages) > 1}
+
+
+def anchors(page: Path) -> set[str]:
+    """Return the anchors of the headings of a page, as repositories and MyST make them."""
+    text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    heads = re.findall(r"^#+ (.+)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", head.lower()).strip().replace(" ", "-") for head in heads}
+
+
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "CHANGELOG.md"], ids=lambda page: page.stem)
+def test_links_lead_somewhere(page: Path) -> None:
+    """Every relative link of a page is a file of the repository, and its anchor a heading there."""
+    text = page.read_text(encoding="utf-8")
+    assert not re.findall(r"\{(?:doc|ref)\}`", text), "links are written [words](page.md#heading)"
+    for target in re.findall(r"\]\(([^)\s]+)\)", text):
+        if target.startswith("http"):
+            continue
+        name, _, anchor = target.partition("#")
+        to = (page.parent / name) if name else page
+        assert to.exists(), target
+        if anchor:
+            assert anchor in anchors(to), target
+
+
+def test_every_page_has_a_place() -> None:
+    """Each page of the table of ceilings exists."""
+    assert {page.stem for page in PAGES} == {*CEILINGS}
+    assert DOCS.is_dir()
