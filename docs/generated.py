@@ -7,14 +7,23 @@ from __future__ import annotations
 
 import inspect
 import re
+import tomllib
 from collections.abc import Iterable
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import pellicle as pl
+from pellicle import analysis, testing
+from pellicle.commands import commands, typer_command
+from pellicle.components import words_of_type
+from pellicle.components.rules import CHEAP, required
 from pellicle.config.describe import FieldRow, field_rows
 from pellicle.config.explain import explanations
 from pellicle.units import readable
 from pellicle.variables import VARIABLES, Variable
+from pellicle_fit.effect import quantities
+from pellicle_fit.words.remarks import CHECKS
 
 _HEADINGS = {
     "kernel": "Kernels",
@@ -29,6 +38,7 @@ _HEADINGS = {
 }
 
 
+ROOT = Path(__file__).parents[1]
 _PART = re.compile(r"(<!-- generated: (\w+) -->\n).*?(\n<!-- end -->)", re.DOTALL)
 
 
@@ -134,6 +144,88 @@ def starter() -> str:
     return f"```toml\n{text}```"
 
 
+def options_of_commands() -> str:
+    """Return a section for each command: what it does, and a table of its arguments and options."""
+    parts = []
+    for name in commands():
+        command: Any = typer_command(name)
+        parts.append(f"### `pellicle {name}`\n\n{inspect.cleandoc(command.help)}\n")
+        cells = []
+        for parameter in command.params:
+            names = [*parameter.opts, *parameter.secondary_opts]
+            if parameter.param_type_name == "argument":
+                names = [parameter.metavar or parameter.name.upper()]
+            elif parameter.metavar:
+                names[-1] += f" {parameter.metavar}"
+            spelled = ", ".join(f"`{name}`" for name in names)
+            cells.append((spelled, _cell(" ".join((parameter.help or "").split()))))
+        parts.append(_table(("option", "meaning"), [c for c in cells if c[0] != "`--help`"]))
+        parts.append("")
+    return "\n".join(parts)
+
+
+def functions() -> str:
+    """Return a table of the public functions with their signatures and what they return."""
+    rows = []
+    for module in (pl, analysis):
+        names = pl.__all__ if module is pl else dir(module)
+        for name in names:
+            function = getattr(module, name)
+            public = inspect.isfunction(function) and not name.startswith("_")
+            if public and (module is pl or function.__module__.startswith(module.__name__)):
+                taken = ", ".join(inspect.signature(function).parameters)
+                does = (inspect.getdoc(function) or "").partition("\n")[0].replace("``", "`")
+                rows.append((f"`{module.__name__}.{name}({taken})`", does))
+    return _table(("function", "does"), rows)
+
+
+def extras() -> str:
+    """Return a table of the extras of the package."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    names = re.compile(r"[\w-]+(\[.*\])?")
+    cells = []
+    for extra, needed in project["optional-dependencies"].items():
+        packages = [match[0] for text in needed if (match := names.match(text))]
+        cells.append((f"`{extra}`", ", ".join(packages)))
+    return _table(("extra", "brings"), cells)
+
+
+def effects() -> str:
+    """Return a table of the effects of fits, with what is fitted of each."""
+    cells = []
+    for type_, entry in pl.registry().components["effect"].items():
+        names = ", ".join(f"`{name}`" for name in quantities(entry.component))  # type: ignore[arg-type]
+        cells.append((f"`{type_}`", words_of_type(entry.component, type_), names))
+    return _table(("effect", "in words", "fitted"), cells)
+
+
+def failed_checks() -> str:
+    """Return a table of the checks of the residuals of a fit."""
+    return _table(("code", "it says"), [(f"`{flaw.value}`", text) for flaw, text in CHECKS.items()])
+
+
+def studies() -> str:
+    """Return a table of the files of docs/studies."""
+    cells = []
+    for path in sorted((ROOT / "docs/studies").glob("*.toml")):
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        runs = len(pl.Study.from_toml(path).points) if "study" in data else 1
+        cells.append((f"[{path.stem}](studies/{path.name})", data["title"], str(runs)))
+    return _table(("file", "title", "runs"), cells)
+
+
+def rules_of_families() -> str:
+    """Return what each family's components have to keep, as the kit asks it."""
+    parts = []
+    for family in [name for name in _HEADINGS if name != "effect"]:
+        module = import_module(f"{testing.__name__}.{family}s")
+        rules = [*CHEAP.get(family, ()), *testing.rules_of(module.__name__)]
+        parts += [f"**{_HEADINGS[family]}**\n"]
+        parts += [f"- {required(rule).partition('. ')[0].rstrip('.')}." for rule in rules]
+        parts.append("")
+    return "\n".join(parts)
+
+
 PARTS = {
     part.__name__: part
     for part in (
@@ -145,6 +237,13 @@ PARTS = {
         statuses,
         stops,
         starter,
+        options_of_commands,
+        functions,
+        extras,
+        effects,
+        failed_checks,
+        studies,
+        rules_of_families,
     )
 }
 
