@@ -41,7 +41,7 @@ def test_sphinx_builds_without_a_warning(html: Path) -> None:
     """Sphinx makes every page, with the reference."""
     for page in DOCS.glob("*.md"):
         assert (html / f"{page.stem}.html").is_file()
-    solve = (html / "reference-solve.html").read_text(encoding="utf-8")
+    solve = (html / "library-run.html").read_text(encoding="utf-8")
     assert 'id="pellicle.run"' in solve
     signature = solve[solve.index('id="pellicle.displacement"') :].partition("</dt>")[0]
     words = re.sub(r"<[^>]+>|\s", "", signature)
