@@ -45,7 +45,7 @@ def test_a_result_shows_numbers_and_how_it_ended(result: pl.Result) -> None:
 def test_a_plot_is_upright(result: pl.Result) -> None:
     """X runs to the right: a domain wider than high gives a picture wider than high."""
     axes = Figure().subplots()
-    mesh = result.plot("gap", step=0, ax=axes)
+    mesh = result.plot("gap", step=1, ax=axes)
     assert axes.get_xlabel().startswith("x")
     assert mesh.get_array().shape == (18, 24)
     assert axes.get_aspect() == 1.0
@@ -56,8 +56,10 @@ def test_a_plot_is_upright(result: pl.Result) -> None:
     assert re.fullmatch(r"depth .* µm", axes.get_title())
     with pytest.raises(pl.ConfigError, match="not a field; give one of pressure"):
         result.plot("force", ax=axes)
-    for missing in (2, -3):
-        with pytest.raises(pl.ConfigError, match=rf"step: {missing} is not the index of one of 2"):
+    for missing in (0, 3):
+        with pytest.raises(
+            pl.ConfigError, match=rf"step: {missing} is not the number of a load step"
+        ):
             result.plot("gap", step=missing)
 
 

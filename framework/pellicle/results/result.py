@@ -157,7 +157,7 @@ class Result:
 
         return of_result(self)
 
-    def plot(self, variable: str = "pressure", *, step: int = -1, **options: Any) -> Any:
+    def plot(self, variable: str = "pressure", *, step: int | None = None, **options: Any) -> Any:
         """Draw a field of a load step as a map, x to the right and y up; grey without pressure.
 
         Parameters
@@ -165,7 +165,7 @@ class Result:
         variable
             Name of a field, such as pressure, displacement, gap or contact.
         step
-            Index of the load step from 0, as for ``isel``; -1 is the last.
+            Number of the load step, as in tables and in ``sel``; None for the last.
         **options
             Passed to `xarray.DataArray.plot.pcolormesh`, such as ``ax`` and ``cmap``; values are in
             the unit of the colour bar.
@@ -186,14 +186,14 @@ class Result:
                 f"{variable!r} is not a field; give one of {', '.join(map(str, fields))}",
                 "variable",
             )
-        steps = self.dataset.sizes["step"]
-        if not -steps <= step < steps:
+        numbers = self.dataset["step"].values.tolist()
+        if step is not None and step not in numbers:
             raise ConfigError(
-                f"{step} is not the index of one of {steps} load steps; give 0 for the first to "
-                f"{steps - 1} for the last, or -1 for the last",
+                f"{step} is not the number of a load step; give {numbers[0]} to {numbers[-1]}",
                 "step",
             )
-        data = self.dataset.isel(step=step)
+        index = -1 if step is None else numbers.index(step)
+        data = self.dataset.isel(step=index)
         field = data[variable]
         if variable == "pressure":
             field = field.where(data["contact"] | (field != 0))
@@ -205,7 +205,7 @@ class Result:
             scale, prefixed = axis_unit(field.values, str(field.attrs["units"]))
             field = (field * scale).assign_attrs(field.attrs | {"units": prefixed})
         mesh = field.plot.pcolormesh(x="x", y="y", **options)
-        title = label_of_step(self.dataset, step)
+        title = label_of_step(self.dataset, index)
         mesh.axes.set(aspect="equal", facecolor=_NO_CONTACT, title=title)
         return mesh
 
