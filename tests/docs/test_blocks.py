@@ -21,7 +21,15 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli.app import app
-from pellicle.components import AreaCorrection, Executor, Indenter, Kernel, Output, Solver
+from pellicle.components import (
+    AreaCorrection,
+    Executor,
+    Indenter,
+    Interaction,
+    Kernel,
+    Output,
+    Solver,
+)
 from pellicle.schema import ranges as axes
 from tests.docs.blocks import DOCS, PAGES, ROOT, Block, blocks
 from tests.shared_fits import share_fits
@@ -39,6 +47,7 @@ EXEMPT = [
 _TABLES: dict[str, Any] = {
     "kernel": Kernel,
     "indenter": Indenter,
+    "interaction": Interaction,
     "solver": Solver,
     "corrections": AreaCorrection,
     "outputs": Output,

@@ -264,6 +264,18 @@ def test_the_page_on_hertz_has_the_numbers_of_the_table() -> None:
     assert [round(100 * share) for share in shares] == list(map(int, claims))
 
 
+def test_the_theory_says_when_tension_matters() -> None:
+    """Force and area over Hertz at the same depth, and force at the same contact radius."""
+    table = re.search(r"\| paraboloid, \$s/a\$ (.*?) \*From", page("theory"))
+    assert table
+    numbers = [float(cell) for cell in re.findall(r"(\d+\.?\d*) \|", table[1])]
+    lengths, *rows = (numbers[n : n + 6] for n in range(0, 24, 6))
+    for length, *claims in zip(lengths, *rows, strict=True):
+        contact = row("tensed_paraboloid", s_over_a=length)
+        force, depth = contact["F_over_Hertz"], contact["depth_over_Hertz"]
+        assert claims == [round(x, 2) for x in (force / depth**1.5, 1 / depth, force)]
+
+
 @pytest.mark.parametrize("k", [0.3, 0.5, 0.8])
 def test_the_page_on_time_has_the_errors_of_the_first_steps(k: float) -> None:
     """The displacement of a step is taken as linear, where it grows as the contact does."""
