@@ -5,7 +5,7 @@ E* = 10 kPa, free boundary; 43.5 % at τ₀ = 0 and 7.95 % at 100 mN/m. docs/pap
 the mean and the spread of 64 realisations.
 
     python docs/images/rough_punch.py            (about two minutes on one core)
-    python docs/images/rough_punch.py --points 256 --seeds 3
+    python docs/images/rough_punch.py --points 256 --seeds 3     (longer waves: another surface)
 """
 
 from __future__ import annotations
