@@ -1,11 +1,11 @@
 """The published rough case: contact fraction at δ = 10σ for several seeds, two tensions.
 
 Yuan & Wang 2020, Figure 8: L = 1 mm, N = 1024, σ = 0.01 mm, H = 0.7, q₀ = 2π/L, q_s = 2π/(16L/N),
-E* = 10 kPa, free boundary; 43.5 % at τ₀ = 0 and 7.95 % at 100 mN/m. Prints the table of
-docs/performance.md.
+E* = 10 kPa, free boundary; 43.5 % at τ₀ = 0 and 7.95 % at 100 mN/m. docs/paper.md has
+the mean and the spread of 64 realisations.
 
     python docs/images/rough_punch.py            (about two minutes on one core)
-    python docs/images/rough_punch.py --points 256 --seeds 3
+    python docs/images/rough_punch.py --points 256 --seeds 3     (longer waves: another surface)
 """
 
 from __future__ import annotations

@@ -53,7 +53,7 @@ def test_the_folder_holds_the_tables_that_the_script_makes() -> None:
     """Every table has a file and a line of the page, and no other lies there."""
     files = {path.stem for path in (DOCS / "reference-data").glob("*.csv")}
     assert files == set(TABLES)
-    page = (DOCS / "reference-data.md").read_text(encoding="utf-8")
+    page = (DOCS / "validation.md").read_text(encoding="utf-8")
     assert all(f"[{name}](reference-data/{name}.csv)" in page for name in TABLES)
 
 
@@ -260,7 +260,7 @@ def test_the_page_on_hertz_has_the_numbers_of_the_table() -> None:
         contact = row("tensed_paraboloid", s_over_a=s_over_a)
         depth = contact["depth_over_Hertz"]
         shares += [contact["F_over_Hertz"] / depth**1.5 - 1, 1 - 1 / depth]
-    claims = re.findall(r"(\d+) %", page("coming-from"))[: len(shares)]
+    claims = re.findall(r"(\d+) %", page("compare"))[: len(shares)]
     assert [round(100 * share) for share in shares] == list(map(int, claims))
 
 
