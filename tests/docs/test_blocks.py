@@ -96,8 +96,6 @@ class Reader:
                 run, directory=self.folder / "toml", progress=False, threads=_ONE_THREAD
             )
             assert result.converged, block
-        elif "curves" in data:
-            pl.FitConfig(**data)
         else:
             check_part(data)
 
