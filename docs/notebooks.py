@@ -14,13 +14,12 @@ from typing import Any
 DOCS = Path(__file__).parent
 PAGE, NOTEBOOK = DOCS / "notebook.md", DOCS / "notebook.ipynb"
 _BLOCK = re.compile(r"^```python\n(.*?)^```\n", re.DOTALL | re.MULTILINE)
-_ROLE = re.compile(r"\{\w+\}`([^`]+)`")
 
 
 def cells(page: str) -> Iterator[dict[str, Any]]:
     """Yield the cells of a page, not executed."""
     for number, text in enumerate(_BLOCK.split(page)):
-        source = text.strip() if number % 2 else _ROLE.sub(r"*\1*", text).strip()
+        source = text.strip()
         if not source:
             continue
         cell: dict[str, Any] = {"id": f"cell-{number}", "metadata": {}, "source": source}
