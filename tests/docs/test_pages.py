@@ -76,9 +76,9 @@ def test_page_is_short(page: Path) -> None:
 
 
 def test_no_line_of_code_stands_on_two_pages() -> None:
-    """A second page links to the example of the first."""
+    """A second page links to the example of the first; README shows what two of them begin with."""
     found = defaultdict(set)
-    for page in PAGES:
+    for page in PAGES[1:]:
         for block in blocks(page):
             for line in block.text.splitlines():
                 if len(line.strip()) >= _LONG:
