@@ -254,7 +254,10 @@ class FitConfig(FromFile, Calibration):
     ] = Field(default_factory=lambda: registry().make(Executor, {"type": "serial"}))
     cache: Path | None = Field(None, description="folder that keeps simulated force curves")
     grid_points: int = Field(
-        GRID_POINTS, description="cells along each edge of the grids of a simulation"
+        GRID_POINTS,
+        ge=16,
+        multiple_of=2,
+        description="cells along each edge of the grids of a simulation",
     )
 
     @field_validator("fix", mode="before")
