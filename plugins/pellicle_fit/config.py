@@ -35,8 +35,7 @@ from pellicle.schema import (
 )
 from pellicle.units import PoissonsRatio, Quantity
 
-from .effect import Effect, Fitted, quantities
-from .explanation import Solid
+from .effect import Effect, Fitted, Solid, quantities
 from .files.columns import Calibration
 from .files.measurement import Segment
 from .files.missing import OPTIONS, MissingInputError

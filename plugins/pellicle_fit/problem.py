@@ -16,8 +16,7 @@ from pellicle.units import Quantity
 
 from .config import FREE, UNCERTAIN, FitConfig
 from .curve import Curve
-from .effect import Effect, quantities
-from .explanation import Solid
+from .effect import Effect, Solid, quantities
 from .files.cleaning import clean
 from .files.measurement import Measurement
 from .files.missing import MissingInputError
