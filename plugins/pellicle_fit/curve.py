@@ -90,8 +90,7 @@ class Curve:
     @property
     def passes(self) -> list[NDArray[np.intp]]:
         """The rows of each pass, that of the approach first."""
-        passes = (np.flatnonzero(~self.moves_out), np.flatnonzero(self.moves_out))
-        return [rows for rows in passes if rows.size]
+        return [np.flatnonzero(rows) for rows in (~self.moves_out, self.moves_out) if rows.any()]
 
     @cached_property
     def rests(self) -> Mask:
