@@ -71,23 +71,22 @@ class Candidate:
         for _ in range(_CORRECTIONS):
             objective, at = fit.objective, fit.minimum.at
             rows, means = fit.forces(), objective.forces(at)
-            curves = []
+            curves = [*fit.whole]
             parts = zip(fit.whole, objective.curves, rows, means, strict=True)
-            for whole, curve, force, mean in parts:
+            for i, (whole, curve, force, mean) in enumerate(parts):
                 if curve.counts is None:
-                    curves.append(whole)
                     continue
                 left = replace(whole, force=whole.force - force, stiffness=None)
                 measured = mean + left.binned(ROWS).force
                 tip = curve.base - (measured / curve.stiffness if curve.stiffness else 0.0)
-                curves.append(replace(curve, force=measured, position=tip))
+                curves[i] = replace(curve, force=measured, position=tip)
             objective = replace(objective, curves=tuple(curves))
             fit = replace(fit, objective=objective, minimum=objective.minimise(at))
         return fit
 
     def at_noise(self, noise: Sequence[float]) -> Candidate:
         """Return the same at another noise [N] of each curve."""
-        objective = self.objective.with_noise(noise)
+        objective = replace(self.objective, noise=tuple(noise))
         minimum = self.minimum._replace(chi_squared=objective.chi_squared(self.minimum.at))
         return replace(self, objective=objective, minimum=minimum)
 
@@ -103,15 +102,11 @@ class Candidate:
         found, row = [], 0
         rows_of = zip(objective.curves, forces, objective.noise, strict=True)
         for i, (curve, force, noise) in enumerate(rows_of):
-            rows = slice(row, row + force.size)
+            by_coordinates = jacobian[row : row + force.size] * noise
             known = objective.known(at, i)
-            depth = curve.base - known.solid.contact_point
-            d = memory[i] if memory else 0.0
-            one = judged(curve, curve.force - force, jacobian[rows] * noise, depth, d)
-            if (
-                np.max(curve.position) - known.solid.contact_point
-                > known.contact(curve).depth_limit
-            ):
+            point, d = known.solid.contact_point, memory[i] if memory else 0.0
+            one = judged(curve, curve.force - force, by_coordinates, curve.base - point, d)
+            if np.max(curve.position) - point > known.contact(curve).depth_limit:
                 one = one._replace(flaws=one.flaws | {Flaw.TOO_DEEP})
             found.append(one)
             row += force.size

@@ -35,8 +35,7 @@ from pellicle.schema import (
 )
 from pellicle.units import PoissonsRatio, Quantity
 
-from .effect import Effect, Fitted, quantities
-from .explanation import Solid
+from .effect import Effect, Fitted, Solid, quantities
 from .files.columns import Calibration
 from .files.measurement import Segment
 from .files.missing import OPTIONS, MissingInputError
@@ -254,7 +253,10 @@ class FitConfig(FromFile, Calibration):
     ] = Field(default_factory=lambda: registry().make(Executor, {"type": "serial"}))
     cache: Path | None = Field(None, description="folder that keeps simulated force curves")
     grid_points: int = Field(
-        GRID_POINTS, description="cells along each edge of the grids of a simulation"
+        GRID_POINTS,
+        ge=16,
+        multiple_of=2,
+        description="cells along each edge of the grids of a simulation",
     )
 
     @field_validator("fix", mode="before")

@@ -12,8 +12,6 @@ from pellicle.arrays import Array, Mask
 from pellicle.components import HasForceCurve
 from pellicle.errors import ConfigError
 
-_FEWEST = 8
-"""Rows that a curve has to have."""
 _DEEP, _LASTS = 0.02, 0.1
 """Distance of a dwell from the deepest row, over the range, and its least part of the loading."""
 _NEIGHBOURS = 4
@@ -51,16 +49,9 @@ class Curve:
     counts: Array | None = None
 
     def __post_init__(self) -> None:
-        arrays = {"position": self.position, "force": self.force, "time": self.time}
-        for name, values in arrays.items():
-            if values is None:
-                continue
-            if values.shape != self.position.shape or not np.all(np.isfinite(values)):
-                raise ConfigError("needs a finite number in each row", name)
-        if self.position.size < _FEWEST or not np.ptp(self.position) > 0 or not np.ptp(self.force):
-            raise ConfigError(f"needs {_FEWEST} rows in which position and force change", "curve")
-        if self.time is not None and np.any(np.diff(self.time) < 0):
-            raise ConfigError("has to grow from row to row", "time")
+        rows = np.stack([self.position, self.force])
+        if not (np.isfinite(rows).all() and np.ptp(rows, axis=1).all()):
+            raise ConfigError("needs finite positions and forces that change", "curve")
 
     @cached_property
     def base(self) -> Array:
@@ -73,11 +64,6 @@ class Curve:
         if self.time is None:
             raise ConfigError("is missing; give the time of each row, or a speed", "time")
         return self.time
-
-    @property
-    def duration(self) -> float:
-        """Time from the first row to the last [s]; 1 without times."""
-        return 1.0 if self.time is None else float(np.ptp(self.time))
 
     @cached_property
     def loading_time(self) -> float:
@@ -104,16 +90,13 @@ class Curve:
     @property
     def passes(self) -> list[NDArray[np.intp]]:
         """The rows of each pass, that of the approach first."""
-        passes = (np.flatnonzero(~self.moves_out), np.flatnonzero(self.moves_out))
-        return [rows for rows in passes if rows.size]
+        return [np.flatnonzero(rows) for rows in (~self.moves_out, self.moves_out) if rows.any()]
 
     @cached_property
     def rests(self) -> Mask:
         """Rows of a dwell: the deepest on the way in, if they last for a tenth of it."""
         deep = ~self.moves_out & (self.base >= self.base.max() - _DEEP * float(np.ptp(self.base)))
-        lasts = deep.any() and np.ptp(self.clock[deep]) > _LASTS * np.ptp(
-            self.clock[~self.moves_out]
-        )
+        lasts = deep.any() and np.ptp(self.clock[deep]) > _LASTS * self.loading_time
         return deep if lasts else np.zeros_like(deep)
 
     @cached_property
@@ -152,23 +135,17 @@ class Curve:
         """Square root of the rows that each row stands for, by which residuals are multiplied."""
         return np.ones_like(self.force) if self.counts is None else np.sqrt(self.counts)
 
-    def at_the_tip(self) -> Curve:
-        """Return the same curve with its noisy positions taken as they are, for first guesses."""
-        return replace(self, stiffness=None)
-
     def binned(self, bins: int) -> Curve:
         """Return the means of neighbours on each pass, at most ``bins`` of them.
 
         Over so short a way a force without jumps is straight: but for a constant, χ² of the rows is
         that of the means, weighted by their number.
         """
-        parts = [np.array_split(rows, min(bins, rows.size)) for rows in self.passes]
-        groups = [part for each in parts for part in each]
+        groups = [g for rows in self.passes for g in np.array_split(rows, min(bins, rows.size))]
         if len(groups) == self.force.size:
             return self
-        order = np.concatenate(groups)
-        counts = np.array([part.size for part in groups])
-        starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
+        order, counts = np.concatenate(groups), np.array([group.size for group in groups])
+        starts = np.cumsum(counts) - counts
 
         def mean(values: Array) -> Array:
             return np.asarray(np.add.reduceat(values[order], starts) / counts)

@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from itertools import product
-from typing import Any, ClassVar, Literal, NamedTuple, Self
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
 from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
@@ -36,13 +36,6 @@ class Weighed(float):
     """A quantity that is known from elsewhere, to a standard deviation [SI]: one more datum."""
 
     deviation: float
-
-    @classmethod
-    def of(cls, value: float, deviation: float) -> Weighed:
-        """Return a value with its deviation."""
-        weighed = cls(value)
-        weighed.deviation = deviation
-        return weighed
 
 
 @dataclass(frozen=True)
@@ -78,7 +71,9 @@ class Fitted(Quantity):
             return self(value)
         if value.keys() != {"value", "deviation"}:
             raise ValueError(f"{dict(value)} is not of the form {{ value = …, deviation = … }}")
-        return Weighed.of(self(value["value"]), Quantity(self.unit, above=0)(value["deviation"]))
+        weighed = Weighed(self(value["value"]))
+        weighed.deviation = Quantity(self.unit, above=0)(value["deviation"])
+        return weighed
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
@@ -86,11 +81,7 @@ class Fitted(Quantity):
         return core_schema.no_info_plain_validator_function(
             self.given,
             serialization=core_schema.plain_serializer_function_ser_schema(
-                lambda value: (
-                    {"value": float(value), "deviation": value.deviation}
-                    if isinstance(value, Weighed)
-                    else value
-                )
+                lambda v: {"value": float(v)} | vars(v) if isinstance(v, Weighed) else v
             ),
         )
 
@@ -122,12 +113,8 @@ class Fittable(Component):
     @property
     def open(self) -> Mapping[str, Fitted]:
         """The quantities that a fit determines, by name."""
-        found = {}
-        for name, quantity in quantities(type(self)).items():
-            value = getattr(self, name)
-            if value is None or isinstance(value, Weighed):
-                found[name] = quantity
-        return found
+        own = {name: (q, getattr(self, name)) for name, q in quantities(type(self)).items()}
+        return {name: q for name, (q, v) in own.items() if v is None or isinstance(v, Weighed)}
 
     def at(self, values: Values) -> Self:
         """Return the component with values of its open quantities."""
@@ -139,6 +126,16 @@ def quantities(component: type[Component]) -> Mapping[str, Fitted]:
     """Return the quantities of a component by name."""
     found = {name: quantity_of(info) for name, info in component.model_fields.items()}
     return {name: q for name, q in found.items() if isinstance(q, Fitted)}
+
+
+class Solid(Fittable):
+    """Elastic half-space, and where the indenter touches it first."""
+
+    family: ClassVar[str] = "solid"
+    reduced_modulus: Annotated[float, Fitted("Pa", above=0, log=True)] = fitted(
+        "reduced modulus E*"
+    )
+    contact_point: Annotated[float, Fitted("m", scope="curve")] = fitted("position of first touch")
 
 
 class Sizes(NamedTuple):
@@ -155,7 +152,8 @@ class Sizes(NamedTuple):
     @classmethod
     def of_curve(cls, curve: Curve) -> Sizes:
         """Return those of a curve."""
-        return cls(curve.span, curve.largest, curve.duration, curve.position.size)
+        time = 1.0 if curve.time is None else float(curve.time[-1] - curve.time[0])
+        return cls(curve.span, curve.largest, time, curve.position.size)
 
     def of(self, unit: str) -> float:
         """Return the order of magnitude of a quantity with a unit."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, ClassVar, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
@@ -14,20 +14,7 @@ from pellicle.errors import ConvergenceError
 
 from .contact import Contact
 from .curve import Curve
-from .effect import (
-    Adds,
-    Bends,
-    Effect,
-    Fittable,
-    Fitted,
-    Records,
-    Responds,
-    Response,
-    Sizes,
-    Yields,
-    fitted,
-    quantities,
-)
+from .effect import Adds, Bends, Effect, Records, Responds, Sizes, Solid, Yields, quantities
 
 _Kind = TypeVar("_Kind", bound=Effect)
 _BALANCE = 1e-10
@@ -48,16 +35,6 @@ _DEEPER = 2.0
 """Depth up to which the force is known while a balance is sought, over the deepest of the path."""
 
 
-class Solid(Fittable):
-    """Elastic half-space, and where the indenter touches it first."""
-
-    family: ClassVar[str] = "solid"
-    reduced_modulus: Annotated[float, Fitted("Pa", above=0, log=True)] = fitted(
-        "reduced modulus E*"
-    )
-    contact_point: Annotated[float, Fitted("m", scope="curve")] = fitted("position of first touch")
-
-
 @dataclass(frozen=True)
 class Explanation:
     """A solid and a set of effects, one of each type, with open quantities."""
@@ -66,7 +43,7 @@ class Explanation:
     effects: tuple[Effect, ...] = ()
 
     @property
-    def parts(self) -> tuple[Fittable, ...]:
+    def parts(self) -> tuple[Solid | Effect, ...]:
         """The components that have quantities."""
         return (self.solid, *self.effects)
 
@@ -80,19 +57,6 @@ class Explanation:
         found = [effect for effect in self.effects if isinstance(effect, kind)]
         return sorted(found, key=lambda effect: (effect.rank, effect.type_name))
 
-    def clash(self) -> str:
-        """Return why the effects are no legal set; empty if they are."""
-        ranks = [effect.rank for effect in self.of(Bends)]
-        responds = self.of(Responds)
-        if len(responds) > 1 or len(ranks) > len(set(ranks)):
-            return "two of them stand in one place"
-        names = [name for part in self.parts for name in quantities(type(part))]
-        if len(names) > len(set(names)):
-            return "two of them have a quantity of one name"
-        if responds and responds[0].balances and self.of(Yields):
-            return "nothing may be in series with what balances the cantilever itself"
-        return ""
-
     def contact(self, curve: Curve) -> Contact:
         """Return the contact of the curve's indenter, of known quantities."""
         contact = Contact.on_half_space(curve.indenter, self.solid.reduced_modulus)
@@ -101,10 +65,15 @@ class Explanation:
         return contact
 
     def excuse(self, curves: Sequence[Curve]) -> str:
-        """Return why the set cannot act on the curves; empty if it can."""
-        if clash := self.clash():
-            return clash
-        bends = self.of(Bends)
+        """Return why the set is not legal or cannot act on the curves; empty if it can."""
+        bends, responds = self.of(Bends), self.of(Responds)
+        if len(responds) > 1 or len(bends) > len({effect.rank for effect in bends}):
+            return "two of them stand in one place"
+        names = [name for part in self.parts for name in quantities(type(part))]
+        if len(names) > len(set(names)):
+            return "two of them have a quantity of one name"
+        if any(effect.balances for effect in responds) and self.of(Yields):
+            return "nothing may be in series with what balances the cantilever itself"
         for curve in curves:
             contact = Contact.on_half_space(curve.indenter, 1.0)
             for effect in (*bends, *(e for e in self.effects if e not in bends)):
@@ -118,7 +87,7 @@ class Explanation:
         """Return the error of its force over the largest one."""
         contact = self.contact(curve)
         of_effects = (effect.accuracy(contact, curve, self.types) for effect in self.effects)
-        return max(contact.error, *of_effects, 0.0)
+        return max((contact.error, *of_effects))
 
     def relaxed(self, time: float) -> float:
         """Return the modulus after a time [s] over E*."""
@@ -127,20 +96,21 @@ class Explanation:
     def force(self, curve: Curve) -> Array:
         """Return the force [N] that is recorded in each row, of known quantities.
 
-        Raises
-        ------
-        ConvergenceError
-            The solid and what is in series with it do not balance.
+        If the solid and what is in series with it do not balance, it is a ConvergenceError.
         """
-        force = self._pushed(curve)
-        for effect in self.of(Records):
+        stiffness, records = curve.stiffness, self.of(Records)
+        if stiffness is not None:
+            for effect in records:
+                stiffness = effect.stiffness(stiffness)
+        force = self._pushed(curve, 1 / stiffness if stiffness else 0.0)
+        for effect in records:
             force = effect.recorded(force, curve)
         return force
 
-    def _pushed(self, curve: Curve) -> Array:
-        """Return the true force [N] in each row."""
+    def _pushed(self, curve: Curve, softness: float) -> Array:
+        """Return the true force [N] in each row; the softness is the cantilever's [m/N]."""
         contact, depth = self.contact(curve), curve.base - self.solid.contact_point
-        softness, adds, yields = self._softness(curve), self.of(Adds), self.of(Yields)
+        adds, yields = self.of(Adds), self.of(Yields)
 
         def give(force: Array) -> Array:
             return sum((effect.give(force) for effect in yields), start=softness * force)
@@ -151,7 +121,7 @@ class Explanation:
             # A search may try contact points that no row reaches.
             deepest = float(max(np.max(depth), np.max(path), _SHALLOW * curve.span))
             contact = contact.tabulated(min(_DEEPER * deepest, contact.depth_limit))
-        response: Response = contact.force
+        response: Callable[[Array], Array] = contact.force
         balances = False
         for effect in self.of(Responds):
             response = effect.response(contact, curve, path, softness)
@@ -168,15 +138,6 @@ class Explanation:
         start = np.interp(depth, root**2 + give(contact.force(root**2)), root) ** 2
         return pushed(balanced(pushed, give, depth, np.where(depth > 0, start, depth)))
 
-    def _softness(self, curve: Curve) -> float:
-        """Return that of the cantilever [m/N]; 0 if it is stiff."""
-        if curve.stiffness is None:
-            return 0.0
-        stiffness = curve.stiffness
-        for effect in self.of(Records):
-            stiffness = effect.stiffness(stiffness)
-        return 1 / stiffness
-
 
 def balanced(
     pushed: Callable[[Array], Array], give: Callable[[Array], Array], base: Array, start: Array
@@ -185,12 +146,7 @@ def balanced(
 
     The sum grows with δ, so that there is one root.  Newton's method finds it from a good start;
     else it is bracketed by the base and the base less the give of the force there, or by what lies
-    beyond that where the give is negative.
-
-    Raises
-    ------
-    ConvergenceError
-        The sum does not grow, or there is no root.
+    beyond that where the give is negative.  If there is no root, it is a ConvergenceError.
     """
     scale = max(float(np.ptp(base)), 1e-300)
     step, far = _DIFFERENCE * np.sqrt(scale), 2 * np.sqrt(scale)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,7 +15,8 @@ from pellicle.units import readable
 
 from .candidate import Candidate
 from .curve import Curve
-from .objective import CONTACT_POINT, ROUGH
+from .explanation import Explanation
+from .objective import CONTACT_POINT, ROUGH, Objective
 
 _ROWS = 150
 """Rows of each pass of a forecast."""
@@ -31,8 +32,7 @@ _GAIN = 1.3
 """Least factor by which a measurement that is proposed has a smaller bound."""
 
 
-@dataclass(frozen=True)
-class Measurement:
+class Measurement(NamedTuple):
     """A curve that could be measured."""
 
     words: str
@@ -85,11 +85,16 @@ def tightening(fit: Candidate, names: Sequence[str]) -> Advice:
     """
     if not names:
         return Advice("")
-    now, best = _bounds(fit, [_predicted(fit, _again(fit))], names), Advice("")
+
+    def bounds(*further: Measurement) -> Array:
+        objective, start = _foretold(fit, fit, *further)
+        found = zip(objective.slots, objective.deviations(start), strict=True)
+        return np.array([bound for slot, bound in found if slot.name in names])
+
+    now, best = bounds(), Advice("")
     for measurement in measurements(fit):
         with suppress(PellicleError):
-            both = [_predicted(fit, _again(fit)), _predicted(fit, measurement)]
-            gain = float(np.min(now / _bounds(fit, both, names)))
+            gain = float(np.min(now / bounds(measurement)))
             # Two curves of one kind would bring √2.
             if gain > max(best.worth, _GAIN * np.sqrt(2)):
                 best = Advice(measurement.words, gain)
@@ -98,7 +103,7 @@ def tightening(fit: Candidate, names: Sequence[str]) -> Advice:
 
 def measurements(fit: Candidate) -> Iterator[Measurement]:
     """Yield measurements, the easiest first, that go beyond the first curve."""
-    curve, point = fit.whole[0], _point(fit)
+    curve, point = fit.whole[0], fit.objective.known(fit.minimum.at, 0).solid.contact_point
     low, high = float(curve.base.min()) - point, float(curve.base.max()) - point
     down = np.linspace(low, high, _ROWS)
     duration = curve.loading_time
@@ -125,71 +130,47 @@ def measurements(fit: Candidate) -> Iterator[Measurement]:
             yield Measurement(words, down, forth, inward, factor)
 
 
-def _point(fit: Candidate) -> float:
-    """Return the contact point of the first curve [m]."""
-    return fit.objective.known(fit.minimum.at, 0).solid.contact_point
-
-
-def _again(fit: Candidate) -> Measurement:
-    """Return the measurement that the first curve is."""
-    curve = fit.whole[0].binned(_ROWS)
-    return Measurement("", curve.base - _point(fit), curve.clock, curve.moves_out)
-
-
-def _predicted(fit: Candidate, measurement: Measurement) -> Curve:
-    """Return the curve that an explanation predicts, of contact point 0 and without noise."""
-    curve, known = fit.whole[0], fit.objective.known(fit.minimum.at, 0)
-    known = replace(known, solid=known.solid.model_copy(update={CONTACT_POINT: 0.0}))
-    indenter: Any = curve.indenter
-    if measurement.radius != 1:
-        indenter = indenter.model_copy(update={"radius": measurement.radius * indenter.radius})
-    force = curve.largest * np.maximum(measurement.base / np.max(measurement.base), 0.0)
-    # A memory sees the path that its own force leaves.
-    for _ in range(2):
-        position = measurement.base - (force / curve.stiffness if curve.stiffness else 0.0)
-        planned = Curve(
-            position, force, indenter, measurement.time, measurement.out, curve.stiffness
-        )
-        force = known.force(planned)
-    position = measurement.base - (force / curve.stiffness if curve.stiffness else 0.0)
-    return replace(planned, force=force, position=position)
-
-
-def _noise(fit: Candidate) -> float:
-    """Return the noise of a mean of rows of the first curve [N]."""
-    return float(fit.objective.noise[0] * np.sqrt(_ROWS / fit.whole[0].passes[0].size))
-
-
 def _separation(measurement: Measurement, truth: Candidate, guess: Candidate) -> float:
     """Return the least χ² of an explanation on curves that another predicts.
 
     A measurement that cannot be predicted, as by a cantilever that jumps, is worth nothing.
     """
     with suppress(PellicleError):
-        curves = _predicted(truth, _again(truth)), _predicted(truth, measurement)
-        objective = replace(guess.objective, curves=curves, noise=(_noise(truth),) * 2, memory=())
-        return objective.minimise(_start(guess, objective.slots), steps=ROUGH).chi_squared
+        objective, start = _foretold(truth, guess, measurement)
+        return objective.minimise(start, steps=ROUGH).chi_squared
     return 0.0
 
 
-def _bounds(fit: Candidate, curves: Sequence[Curve], names: Sequence[str]) -> Array:
-    """Return the Cramér–Rao bounds of quantities from curves of one noise."""
-    noise = (_noise(fit),) * len(curves)
-    objective = replace(fit.objective, curves=tuple(curves), noise=noise, memory=())
-    bounds = objective.deviations(_start(fit, objective.slots))
-    return np.array([bounds[k] for k, slot in enumerate(objective.slots) if slot.name in names])
+def _foretold(truth: Candidate, guess: Candidate, *further: Measurement) -> tuple[Objective, Array]:
+    """Return χ² of an explanation on what another predicts, and coordinates to start from.
+
+    It predicts the first curve again and further ones, which have no noise and touch at 0.
+    """
+    curve, known = truth.whole[0], truth.objective.known(truth.minimum.at, 0)
+    means, point = curve.binned(_ROWS), known.solid.contact_point
+    again = Measurement("", means.base - point, means.clock, means.moves_out)
+    known = replace(known, solid=known.solid.model_copy(update={CONTACT_POINT: 0.0}))
+    curves = tuple(_predicted(known, curve, one) for one in (again, *further))
+    # That of a mean of rows.
+    noise = float(truth.objective.noise[0] * np.sqrt(_ROWS / curve.passes[0].size))
+    objective = replace(guess.objective, curves=curves, noise=(noise,) * len(curves), memory=())
+    values = guess.objective.values(guess.minimum.at).items()
+    first = {name: value for (name, owner), value in values if not owner} | {CONTACT_POINT: 0.0}
+    start = [slot.coordinate(first.get(slot.name, 0.0)) for slot in objective.slots]
+    return objective, np.array(start)
 
 
-def _start(fit: Candidate, slots: Sequence[Any]) -> Array:
-    """Return the coordinates of the first curve for all curves, which touch at 0."""
-    values = fit.objective.values(fit.minimum.at)
-    return np.array(
-        [
-            slot.coordinate(
-                0.0
-                if slot.name == CONTACT_POINT
-                else values.get((slot.name, None), values.get((slot.name, 0), 0.0))
-            )
-            for slot in slots
-        ]
-    )
+def _predicted(known: Explanation, curve: Curve, measurement: Measurement) -> Curve:
+    """Return a measurement with the indenter and the cantilever of a curve."""
+    indenter: Any = curve.indenter
+    if measurement.radius != 1:
+        indenter = indenter.model_copy(update={"radius": measurement.radius * indenter.radius})
+    base, stiffness = measurement.base, curve.stiffness
+
+    def planned(force: Array) -> Curve:
+        tip = base - (force / stiffness if stiffness else 0.0)
+        return Curve(tip, force, indenter, measurement.time, measurement.out, stiffness)
+
+    roughly = planned(curve.largest * np.maximum(base / np.max(base), 0.0))
+    # A memory sees the path that its own force leaves.
+    return planned(known.force(planned(known.force(roughly))))

@@ -9,8 +9,6 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import stdtrit
 
-from pellicle.arrays import Array
-
 from .objective import Minimum, Objective
 
 CONFIDENCE = 0.95
@@ -39,11 +37,7 @@ class Estimate:
 
 
 class Better(Exception):  # noqa: N818 - not an error: the search continues from there
-    """A profile has reached a smaller χ² than the minimum from which it starts."""
-
-    def __init__(self, minimum: Minimum) -> None:
-        super().__init__(minimum)
-        self.minimum = minimum
+    """A profile has reached a smaller χ², its argument, than the minimum from which it starts."""
 
 
 def threshold_of(freedom: float) -> float:
@@ -61,23 +55,18 @@ def estimates(
 
     A quantity of one of several curves has the number of the curve behind its name.
     """
-
-    def found(improvement: float) -> dict[str, Estimate]:
-        return {
-            slot.name if not slot.curve else f"{slot.name}_{slot.curve}": _estimate(
-                objective, minimum, k, threshold, improvement
-            )
-            for k, slot in enumerate(objective.slots)
-            if not names or slot.name in names
-        }
-
-    for _ in range(_RESTARTS):
+    left = _RESTARTS
+    while True:
+        # Where χ² jumps, every way may end a little lower.
+        improvement, found = _IMPROVEMENT if left else np.inf, {}
         try:
-            return minimum, found(_IMPROVEMENT)
+            for k, slot in enumerate(objective.slots):
+                if not names or slot.name in names:
+                    name = slot.name if not slot.curve else f"{slot.name}_{slot.curve}"
+                    found[name] = _estimate(objective, minimum, k, threshold, improvement)
+            return minimum, found
         except Better as better:
-            minimum = objective.minimise(better.minimum.at)
-    # Where χ² jumps, every way may end a little lower.
-    return minimum, found(np.inf)
+            minimum, left = objective.minimise(better.args[0].at), left - 1
 
 
 def _estimate(
@@ -85,68 +74,42 @@ def _estimate(
 ) -> Estimate:
     """Return a quantity, with the ends at which χ² has risen by the threshold.
 
-    Raises
-    ------
-    Better
-        χ² is smaller on the way, by the improvement.
+    If χ² is smaller on the way, by the improvement, that is raised.
     """
-    jacobian = objective.jacobian(minimum.at, range(minimum.at.size))
-    others = [i for i in range(minimum.at.size) if i != k]
+    at, slot = minimum.at, objective.slots[k]
+    jacobian = objective.jacobian(at, range(at.size))
+    others = [i for i in range(at.size) if i != k]
     # Along a profile the other coordinates move, to first order, as this makes χ² least.
-    along = np.zeros(minimum.at.size)
+    along = np.zeros(at.size)
     along[k] = 1.0
     if others:
         along[others] = -np.linalg.lstsq(jacobian[:, others], jacobian[:, k], rcond=1e-12)[0]
-    rise = float(np.linalg.norm(jacobian @ along))
-    slot = objective.slots[k]
-    low, high = (
-        _end(objective, minimum, k, threshold, sign, along, rise, improvement) for sign in (-1, 1)
-    )
-    return Estimate(
-        slot.value(minimum.at[k]),
-        None if low is None else slot.value(low),
-        None if high is None else slot.value(high),
-        slot.quantity.unit,
-    )
+    # To first order an end lies here.
+    first = threshold**0.5 / max(float(np.linalg.norm(jacobian @ along)), 1e-12)
+    far = _REACH if slot.quantity.log else _FAR * max(abs(at[k]), 1.0)
 
-
-def _end(
-    objective: Objective,
-    minimum: Minimum,
-    k: int,
-    threshold: float,
-    sign: int,
-    along: Array,
-    rise: float,
-    improvement: float,
-) -> float | None:
-    """Return one end of an interval."""
-    if not np.isfinite(threshold):
-        return None
-    best, slot = minimum.at[k], objective.slots[k]
-    wall = abs(objective.limits[(sign + 1) // 2][k] - best)
-    far = _REACH if slot.quantity.log else _FAR * max(abs(best), 1.0)
-    limit = min(wall, far)
-    reached = {0.0: minimum}
-
-    def excess(distance: float) -> float:
+    def excess(distance: float, sign: int, reached: dict[float, Minimum]) -> float:
         if distance not in reached:
             near = max(d for d in reached if d <= distance)
             start = reached[near].at + sign * (distance - near) * along
-            start[k] = best + sign * distance
+            start[k] = at[k] + sign * distance
             reached[distance] = objective.minimise(start, (k,))
         chi_squared = reached[distance].chi_squared
         if chi_squared < minimum.chi_squared - improvement:
             raise Better(reached[distance])
         return float(np.sqrt(max(chi_squared - minimum.chi_squared, 0)) - threshold**0.5)
 
-    # To first order the end lies here.
-    distance, last = min(threshold**0.5 / max(rise, 1e-12), limit), 0.0
-    while limit > 0:
-        if excess(distance) > 0:
-            accuracy = _ACCURACY * distance
-            return float(best + sign * brentq(excess, last, distance, xtol=accuracy))
-        if distance >= limit:
-            return None
-        last, distance = distance, min(1.3 * distance, limit)
-    return None
+    def end(sign: int) -> float | None:
+        limit = min(abs(objective.limits[(sign + 1) // 2][k] - at[k]), far)
+        distance, last, way = min(first, limit), 0.0, (sign, {0.0: minimum})
+        while limit > 0 and np.isfinite(threshold):
+            if excess(distance, *way) > 0:
+                accuracy = _ACCURACY * distance
+                distance = brentq(excess, last, distance, way, xtol=accuracy)
+                return slot.value(at[k] + sign * distance)
+            if distance >= limit:
+                return None
+            last, distance = distance, min(1.3 * distance, limit)
+        return None
+
+    return Estimate(slot.value(at[k]), end(-1), end(1), slot.quantity.unit)

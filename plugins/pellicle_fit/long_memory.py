@@ -31,8 +31,7 @@ def differenced(rows: Array, exponent: float) -> Array:
     weights = _weights(size, exponent)
     spectrum = np.fft.rfft(rows, 2 * size, axis=0)
     shape = (-1, *(1,) * (rows.ndim - 1))
-    result: Array = np.fft.irfft(spectrum * weights.reshape(shape), 2 * size, axis=0)[:size]
-    return result
+    return np.fft.irfft(spectrum * weights.reshape(shape), 2 * size, axis=0)[:size]
 
 
 @lru_cache(maxsize=8)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import fdtrc, ndtri
 
-from pellicle.arrays import Array, Mask
+from pellicle.arrays import Array
 
 from .curve import Curve
 from .long_memory import differenced, exponent_of
@@ -36,26 +36,17 @@ _LEAST = 1e-6
 
 
 class Flaw(Enum):
-    """What contradicts an explanation, or only the noise; the value is its code."""
+    """What contradicts an explanation, or only the noise; `words.remarks` says each in words."""
 
     DIP = "dip"
-    """The force dips before contact."""
     OFFSET = "offset"
-    """The force before contact is not 0."""
     DRIFT = "drift"
-    """The force before contact has a slope."""
     SLOW = "slow"
-    """The noise is correlated."""
     SPIKES = "spikes"
-    """Single rows lie far from their neighbours."""
     STEPS = "steps"
-    """The detector's steps are coarser than the noise."""
     MISFIT = "misfit"
-    """In contact the residuals exceed the noise."""
     PATTERN = "pattern"
-    """In contact the residuals follow a pattern."""
     TOO_DEEP = "too_deep"
-    """The force of this contact is not known at the largest depth."""
 
 
 class Noise(NamedTuple):
@@ -90,23 +81,17 @@ def judged(
 ) -> Judged:
     """Return the noise that an explanation of least χ² leaves in a curve.
 
-    Of noise with a memory d, that of its fractional differences.
-
-    Parameters
-    ----------
-    residuals
-        Recorded force less that of the explanation [N].
-    jacobian
-        Derivatives of the explanation's force by its coordinates, of shape (n, coordinates).
-    depth
-        Position over the contact point [m].
+    Of noise with a memory d, that of its fractional differences.  Residuals are the recorded force
+    less that of the explanation [N], and ``jacobian`` the derivatives of the latter, of shape
+    (n, coordinates); depths are those of the base [m].
     """
-    correlated = {Flaw.SLOW} if memory else set()
+    flaws, step = {Flaw.SLOW} if memory else set(), _step(curve.force)
     if memory:
         residuals, jacobian = differenced(residuals, memory), differenced(jacobian, memory)
     before = (depth < -_NEAR * curve.span) & curve.first_pass
-    least = max(_LEAST * float(np.max(np.abs(curve.force))), _step(curve.force) / np.sqrt(12))
-    flaws = correlated | ({Flaw.SPIKES} if has_spikes(residuals, least) else set())
+    least = max(_LEAST * float(np.max(np.abs(curve.force))), step / np.sqrt(12))
+    if has_spikes(residuals, least):
+        flaws.add(Flaw.SPIKES)
     if before.sum() < _FEWEST:
         left = max(residuals.size - jacobian.shape[1], 1)
         noise = Noise(max(float(np.sqrt(np.sum(residuals**2) / left)), least), left)
@@ -115,7 +100,7 @@ def judged(
     rows = np.flatnonzero(before)[:: -1 if curve.moves_out[before][0] else 1]
     found, noise, far = _before_contact(residuals[rows], curve.base[rows], least)
     flaws |= found
-    if _step(curve.force) > _COARSE * neighbour_noise(residuals[rows]):
+    if step > _COARSE * neighbour_noise(residuals[rows]):
         flaws.add(Flaw.STEPS)
     inside, free = ~before, max(int(np.sum(~before)) - jacobian.shape[1], 1)
     scatter = Noise(float(np.sqrt(np.sum(residuals[inside] ** 2) / free)), free)
@@ -123,9 +108,11 @@ def judged(
     if scatter.exceeds(noise):
         flaws.add(Flaw.MISFIT)
         noise = Noise(scatter.deviation, min(noise.freedom, free))
-    sums = binned(residuals, jacobian, _bins(depth, before, curve.moves_out & curve.first_pass[0]))
-    neighbours = _neighbours(residuals[inside], least)
-    if sums and sums.exceeds(max(neighbours, far)):
+    bins = np.digitize(depth / depth.max(), _DEPTHS)
+    # A second pass has bins of its own.
+    bins += (len(_DEPTHS) + 1) * (curve.moves_out & curve.first_pass[0])
+    sums = binned(residuals, jacobian, np.where(before, -1, bins), 2 * (len(_DEPTHS) + 1))
+    if sums and sums.exceeds(max(_neighbours(residuals[inside], least), far)):
         flaws.add(Flaw.PATTERN)
         noise = max(noise, Noise(sums.deviation, sums.freedom))
     elif sums and Flaw.SLOW in flaws:
@@ -149,23 +136,22 @@ def _before_contact(force: Array, base: Array, least: float) -> tuple[set[Flaw],
     dips = depth < limit * independent.deviation
     # A dip may begin before its window.
     far = slice(0, max(force.size - 2 * window, force.size // 4) if dips else force.size)
-    rest = force - line @ np.linalg.lstsq(line[far], force[far], rcond=None)[0]
-    freedom = max(rest[far].size - 2, 1)
-    noise = Noise(max(float(np.sqrt(np.sum(rest[far] ** 2) / freedom)), least), freedom)
-    slow = noise
-    sums = binned(rest[far], line[far], _equal(rest[far].size))
+    rest = (force - line @ np.linalg.lstsq(line[far], force[far], rcond=None)[0])[far]
+    freedom = max(rest.size - 2, 1)
+    noise = Noise(max(float(np.sqrt(np.sum(rest**2) / freedom)), least), freedom)
+    sums = binned(rest, line[far], np.arange(rest.size) * _BINS // rest.size, _BINS)
     if sums and sums.exceeds(independent):
         flaws.add(Flaw.SLOW)
-        noise = slow = max(noise, sums)
+        noise = max(noise, sums)
     unit = line[far] / np.linalg.norm(line[far], axis=0)
-    limit_of_line = -float(ndtri(CHANCE / 2)) * slow.deviation
-    if dips and depth < limit * slow.deviation:
+    limit_of_line = -float(ndtri(CHANCE / 2)) * noise.deviation
+    if dips and depth < limit * noise.deviation:
         flaws.add(Flaw.DIP)
     elif abs(unit[:, 1] @ force[far]) > limit_of_line:
         flaws.add(Flaw.DRIFT)
     elif abs(unit[:, 0] @ force[far]) > limit_of_line:
         flaws.add(Flaw.OFFSET)
-    return flaws, noise, slow if Flaw.SLOW in flaws else independent
+    return flaws, noise, noise if Flaw.SLOW in flaws else independent
 
 
 def _dip(force: Array, trend: Array) -> tuple[float, int]:
@@ -183,12 +169,13 @@ def _dip(force: Array, trend: Array) -> tuple[float, int]:
     return min(found)
 
 
-def binned(residuals: Array, jacobian: Array, bins: Array) -> Noise | None:
+def binned(residuals: Array, jacobian: Array, bin_of: NDArray[np.intp], count: int) -> Noise | None:
     """Return the noise from sums over bins; None if no bin is left.
 
     A fit has made residuals orthogonal to the columns of its Jacobian, so these are projected out
     of the bins, a column each with 1 in its rows; the sums are then orthogonalised.
     """
+    bins = np.where(bin_of[:, None] == np.arange(count), 1.0, 0.0)
     norms = np.linalg.norm(jacobian, axis=0)
     span, _ = np.linalg.qr(jacobian[:, norms > 0] / norms[norms > 0])
     basis, sizes, _ = np.linalg.svd(bins - span @ (span.T @ bins), full_matrices=False)
@@ -211,22 +198,6 @@ def neighbour_noise(force: Array) -> float:
 def _neighbours(force: Array, least: float) -> Noise:
     """Return that noise, of two thirds as many degrees of freedom (von Neumann et al. 1941)."""
     return Noise(max(neighbour_noise(force), least), 2 * force.size / 3)
-
-
-def _equal(size: int) -> Array:
-    """Return a column for each of bins of about the same size."""
-    return _columns(np.arange(size) * _BINS // size, _BINS)
-
-
-def _bins(depth: Array, before: Mask, second: Mask) -> Array:
-    """Return a column for each bin in contact; a second pass has bins of its own."""
-    index = np.digitize(depth / depth.max(), _DEPTHS)
-    index = np.where(second, index + len(_DEPTHS) + 1, index)
-    return _columns(np.where(before, -1, index), 2 * (len(_DEPTHS) + 1))
-
-
-def _columns(index: NDArray[np.intp], count: int) -> Array:
-    return np.where(index[:, None] == np.arange(count), 1.0, 0.0)
 
 
 def _step(force: Array) -> float:

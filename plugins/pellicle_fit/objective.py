@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -58,14 +57,6 @@ class Slot(NamedTuple):
             return float(np.log(max(value, 1e-300) / self.scale))
         return value / self.scale
 
-    @property
-    def bounds(self) -> tuple[float, float]:
-        """Least and greatest value in SI."""
-        q = self.quantity
-        low = q.at_least if q.at_least is not None else q.above
-        high = q.at_most if q.at_most is not None else q.below
-        return -np.inf if low is None else low, np.inf if high is None else high
-
 
 class Minimum(NamedTuple):
     """A minimum of χ²."""
@@ -73,8 +64,7 @@ class Minimum(NamedTuple):
     at: Array
     """Coordinates."""
     chi_squared: float
-    converged: bool = True
-    """Whether the search ended; if not, χ² is an upper bound, in a valley without end."""
+    """An upper bound of it where the search did not end, in a valley without end."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,8 +86,6 @@ class Objective:
 
     The noise is then that of fractional differences.
     """
-    instant: bool = True
-    """Whether the modulus is that at the end of the loading, and not E*."""
 
     @cached_property
     def searched(self) -> int:
@@ -132,24 +120,24 @@ class Objective:
         return next((k for k, slot in enumerate(self.slots) if slot.name == name), None)
 
     @cached_property
-    def limits(self) -> tuple[Array, Array]:
-        """Least and greatest coordinates."""
+    def limits(self) -> Array:
+        """Least and greatest coordinates, of shape (2, coordinates)."""
         known: dict[str, tuple[float, float]] = {}
         for effect in self.explanation.effects:
             known |= effect.limits(self.sizes)
         ends = []
         for slot in self.slots:
-            reach = 10**_DECADES
-            low, high = slot.bounds
+            q, reach = slot.quantity, 10**_DECADES
+            low = next((end for end in (q.at_least, q.above) if end is not None), -np.inf)
+            high = next((end for end in (q.at_most, q.below) if end is not None), np.inf)
             if slot.name == CONTACT_POINT and slot.curve is not None:
                 z = self.curves[slot.curve].position
                 low, high = float(z.min() - _BEFORE * np.ptp(z)), float(z.max())
-            elif slot.quantity.log:
+            elif q.log:
                 low, high = slot.scale / reach, slot.scale * reach
             low, high = known.get(slot.name, (low, high))
             ends.append((slot.coordinate(low), slot.coordinate(high)))
-        low_ends, high_ends = np.array(ends).reshape(-1, 2).T
-        return low_ends, high_ends
+        return np.array(ends).reshape(-1, 2).T
 
     def acts(self, slot: Slot, curve: int) -> bool:
         """Return whether a coordinate is of a curve."""
@@ -166,7 +154,7 @@ class Objective:
         effects = tuple(effect.at(known) for effect, known in pairs)
         solid = self.explanation.solid.at(values[0])
         found = Explanation(solid, effects)
-        if self.instant and MODULUS in values[0]:
+        if MODULUS in values[0]:
             modulus = solid.reduced_modulus / found.relaxed(self.loading_time)
             found = replace(found, solid=solid.at(values[0] | {MODULUS: modulus}))
         return found
@@ -175,15 +163,14 @@ class Objective:
         """Return the force [N] of each curve that the explanation records."""
         return [self.known(at, i).force(curve) for i, curve in enumerate(self.curves)]
 
-    def residuals(self, at: Array) -> Array:
-        """Return (recorded − measured)/noise of all rows, then the terms of what is weighed."""
-        return np.concatenate(self.terms(at))
+    def terms(self, at: Array, known: Mapping[int, Array] | None = None) -> list[Array]:
+        """Return (recorded − measured)/noise of each curve, and the terms of what is weighed.
 
-    def terms(self, at: Array, known: Mapping[int, Array] = MappingProxyType({})) -> list[Array]:
-        """Return the residuals of each curve, unless they are known, and of what is weighed."""
+        Of some curves they may be known.
+        """
         terms = []
         for i, (curve, noise) in enumerate(zip(self.curves, self.noise, strict=True)):
-            if (term := known.get(i)) is None:
+            if (term := (known or {}).get(i)) is None:
                 force = self.known(at, i).force(curve)
                 term = curve.weights * (force - curve.force) / noise
                 if self.memory and self.memory[i]:
@@ -197,7 +184,7 @@ class Objective:
 
     def chi_squared(self, at: Array) -> float:
         """Return χ²."""
-        return float(np.sum(self.residuals(at) ** 2))
+        return float(np.sum(np.concatenate(self.terms(at)) ** 2))
 
     def jacobian(self, at: Array, free: Sequence[int], here: list[Array] | None = None) -> Array:
         """Return the derivatives of the residuals by some coordinates, from differences.
@@ -256,7 +243,7 @@ class Objective:
             at = found.x
             if found.success:
                 break
-        return Minimum(full(at), 2 * float(found.cost), bool(found.success))
+        return Minimum(full(at), 2 * float(found.cost))
 
     def best(
         self, starts: Iterable[Array], idle: tuple[float, float] = (np.inf, np.inf)
@@ -273,10 +260,6 @@ class Objective:
         low, high = idle
         return minima[0] if low < minima[0].chi_squared < high else self.minimise(left[0])
 
-    def with_noise(self, noise: Sequence[float]) -> Objective:
-        """Return χ² of another noise [N] of each curve."""
-        return replace(self, noise=tuple(noise))
-
     def values(self, at: Array) -> dict[tuple[str, int | None], float]:
         """Return values in SI by name, and curve of what is not shared."""
         pairs = zip(self.slots, at, strict=True)
@@ -284,11 +267,5 @@ class Objective:
 
     def at_values(self, known: dict[tuple[str, int | None], float]) -> Array:
         """Return coordinates of values, such as those of another explanation; NaN where unknown."""
-        return np.array(
-            [
-                slot.coordinate(known[slot.name, slot.curve])
-                if (slot.name, slot.curve) in known
-                else np.nan
-                for slot in self.slots
-            ]
-        )
+        values = [known.get((slot.name, slot.curve), np.nan) for slot in self.slots]
+        return np.array([s.coordinate(v) for s, v in zip(self.slots, values, strict=True)])

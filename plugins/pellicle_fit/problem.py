@@ -16,8 +16,7 @@ from pellicle.units import Quantity
 
 from .config import FREE, UNCERTAIN, FitConfig
 from .curve import Curve
-from .effect import Effect, quantities
-from .explanation import Solid
+from .effect import Effect, Solid, quantities
 from .files.cleaning import clean
 from .files.measurement import Measurement
 from .files.missing import MissingInputError
@@ -123,11 +122,10 @@ def _on_solid(
     if thickness == FREE:
         return [*indenters], [_effect("layer", poissons_ratio=ratio)], ratio
     if isinstance(thickness, float) and ratio is not None:
-        kernel = layer_table(ratio, thickness)
-    if kernel is not None:
-        layers = [layer_of(indenter, kernel, ratio) for indenter in indenters]
+        layers = [layer_of(indenter, ratio, thickness) for indenter in indenters]
         if layers[0] is not None and all(layers):
-            return [*indenters], [layers[0]], layers[0].poissons_ratio
+            return [*indenters], [layers[0]], ratio
+        kernel = layer_table(ratio, thickness)
     bodies: list[Any] = []
     for indenter, curve in zip(indenters, measured, strict=True):
         body = body_of(indenter, kernel, ratio)

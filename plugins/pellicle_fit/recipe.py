@@ -14,8 +14,7 @@ from pellicle.errors import ConfigError
 
 from .candidate import Candidate, Types, best_of
 from .curve import Curve
-from .effect import Effect, Records, quantities
-from .explanation import Solid
+from .effect import Effect, Records, Solid, quantities
 from .intervals import Estimate, estimates, threshold_of
 from .noise import CHANCE, Judged
 from .objective import MODULUS
@@ -108,14 +107,14 @@ class Answer:
         """Return the least interval that contains those of all that is tied."""
         tied = [fit for fit in self.tied if fit not in self.not_held]
         found = [fit.estimates[name] for fit in tied if name in fit.estimates]
+        own = self.chosen.estimates.get(name) or _held(self.chosen, name)
         if not found:
-            return _held(self.chosen, name)
+            return own
         lows = [e.low for e in found if e.low is not None]
         highs = [e.high for e in found if e.high is not None]
-        own = self.chosen.estimates.get(name)
-        value = own.value if own else _held(self.chosen, name).value
         low = min(lows) if len(lows) == len(tied) else None
-        return Estimate(value, low, max(highs) if len(highs) == len(found) else None, found[0].unit)
+        high = max(highs) if len(highs) == len(found) else None
+        return Estimate(own.value, low, high, found[0].unit)
 
 
 class Agreement(NamedTuple):
@@ -164,12 +163,12 @@ def timed(curves: Sequence[Curve]) -> tuple[Curve, ...]:
 
 
 def _held(fit: Candidate, name: str) -> Estimate:
-    """Return a quantity that an explanation does not fit: as given, or 0 where it has none."""
+    """Return a quantity that an explanation does not fit: as given, or 0 if it has no tension."""
     for part in fit.objective.explanation.parts:
         if (quantity := quantities(type(part)).get(name)) is not None:
             value = float(getattr(part, name))
             return Estimate(value, value, value, quantity.unit, held=True)
-    return Estimate(0.0, 0.0, 0.0, "N/m" if name == TENSION else "1", held=True)
+    return Estimate(0.0, 0.0, 0.0, "N/m", held=True)
 
 
 @strangers_named()
@@ -185,32 +184,17 @@ def answer(
 ) -> Answer:
     """Fit modulus, contact point and a model to curves of one solid, and weigh its rivals.
 
-    Parameters
-    ----------
-    curves
-        One curve, or several whose shared quantities are the same.
-    model
-        The question is whether the first effect that is none of the instrument is needed; the
-        others are kept in all explanations.
-    kept
-        Effects that all explanations have.
-    rivals
-        Sets of effects, each compared alone and beside what is asked for.
-    fix
-        Values of quantities of the solid, in SI or with units.
-    uncertainty
-        Effects whose quantities are weighed; they widen intervals and are in no comparison.
-    full
-        Whether every explanation has all its intervals.
+    The question is whether the first effect of the model that is none of the instrument is needed;
+    its others, and those ``kept``, are in all explanations.  Each set of rivals is compared alone
+    and beside what is asked for.  ``fix`` has values of quantities of the solid, in SI or with
+    units.  Effects of ``uncertainty``, whose quantities are weighed, widen intervals and are in no
+    comparison.  With ``full``, every explanation has all its intervals.
 
     Raises
     ------
-    ConfigError
-        A value is not allowed.
-    ConvergenceError
-        The force of a cantilever does not balance that of the solid.
-    PluginError
-        An effect that pellicle does not ship breaks its contract.
+    ConfigError, ConvergenceError, PluginError
+        A value is not allowed, cantilever and solid do not balance, or a stranger's effect breaks
+        its contract.
     """
     sets = tuple(map(tuple, rivals))
     refuse_broken([*model, *kept, *chain(*sets), *uncertainty])
@@ -219,12 +203,11 @@ def answer(
     kept = (*kept, *(effect for effect in model if effect is not asked))
     question = Question(Solid.model_validate(dict(fix or {})), asked, kept, sets)
     candidates, word = question.candidates(), question.word
-    reasons = {types: candidate.excuse(curves) for types, candidate in candidates.items()}
-    excused = {types: reason for types, reason in reasons.items() if reason}
+    excused = {types: why for types, one in candidates.items() if (why := one.excuse(curves))}
     if word in excused:
         raise ConfigError(f"cannot be fitted to this curve: {excused[word]}", "model")
     candidates = {types: one for types, one in candidates.items() if types not in excused}
-    fits = comparison(question, candidates, curves)
+    fits = dict(comparison(question, candidates, curves))
     best = best_of(fits.values())
     threshold = threshold_of(min(judged.noise.freedom for judged in best.judgements))
     margin = max(MARGIN, threshold)
@@ -232,19 +215,14 @@ def answer(
     chosen = choice(fits, word, decided, margin)
     agreement = agreement_of(fits[chosen])
     threshold *= agreement.factor
-    untried = tuple(
-        types
-        for types in excused
-        if word < types and types - word not in excused and question.responds(types - word)
-    )
+    pairs = [types for types in excused if word < types and types - word in fits]
+    untried = tuple(types for types in pairs if question.responds(types - word))
     # What may be right and has no model leaves nothing to bound.
     ends = not (untried and decided.verdict is Verdict.UNDESCRIBED)
     tied = ties(fits, word, decided, chosen, margin)
     for types in fits if full else tied:
-        wanted = full or types == chosen
-        fits[types] = with_estimates(
-            fits[types], threshold if ends else np.inf, uncertainty, everything=wanted
-        )
+        names = () if full or types == chosen else (MODULUS, TENSION)
+        fits[types] = with_estimates(fits[types], threshold if ends else np.inf, uncertainty, names)
     return Answer(
         tuple(sorted(fits.values(), key=lambda fit: fit.aic)),
         question,
@@ -261,9 +239,9 @@ def answer(
 
 
 def with_estimates(
-    fit: Candidate, threshold: float, extra: Sequence[Effect], *, everything: bool
+    fit: Candidate, threshold: float, extra: Sequence[Effect], names: Sequence[str]
 ) -> Candidate:
-    """Return an explanation with its estimates: all, or modulus and tension."""
+    """Return an explanation with the estimates of some of its quantities, or of all."""
     fit = fit.refined()
     objective, minimum = fit.objective, fit.minimum
     accuracy = max(
@@ -275,10 +253,6 @@ def with_estimates(
         objective = replace(objective, explanation=replace(known, effects=(*known.effects, *extra)))
         at = objective.at_values(fit.objective.values(minimum.at))
         minimum = objective.minimise(np.where(np.isnan(at), 0.0, at))
-    widened = threshold * max(1.0, accuracy) ** 2
-    minimum, found = estimates(
-        objective, minimum, widened, () if everything else (MODULUS, TENSION)
-    )
-    return (
-        replace(fit, estimates=found) if extra else replace(fit, minimum=minimum, estimates=found)
-    )
+    minimum, found = estimates(objective, minimum, threshold * max(1.0, accuracy) ** 2, names)
+    fit = replace(fit, estimates=found)
+    return fit if extra else replace(fit, minimum=minimum)

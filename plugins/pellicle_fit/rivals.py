@@ -7,12 +7,14 @@ from dataclasses import dataclass, replace
 
 from .candidate import NONE, ROWS, Candidate, Types, best_of, criterion
 from .curve import Curve
-from .effect import Effect, Responds, Sizes
-from .explanation import Explanation, Solid
+from .effect import Effect, Responds, Sizes, Solid
+from .explanation import Explanation
 from .noise import neighbour_noise
 from .objective import ROUGH, Objective
 from .starts import starts
+from .verdict import Fits
 
+Explanations = Mapping[Types, Explanation]
 _SAME = 0.01
 """Difference of χ² that decides nothing."""
 _FAR = 40.0
@@ -54,63 +56,62 @@ class Question:
         return found
 
 
-def comparison(
-    question: Question, candidates: Mapping[Types, Explanation], curves: tuple[Curve, ...]
-) -> dict[Types, Candidate]:
+def comparison(question: Question, candidates: Explanations, curves: tuple[Curve, ...]) -> Fits:
     """Return all explanations at their least χ², at the noise of the best.
 
     Noise that is correlated counts as such, unless the best explanation then fails: a bent baseline
     is no noise, and differences of it would remove the contact.
     """
-    white = (0.0,) * len(curves)
-    simple = _simple(question, candidates, curves, white)
+    word, white = question.word, (0.0,) * len(curves)
+    simple = _simple(candidates, word, curves, white)
     memory = tuple(judged.memory for judged in best_of(simple.values()).judgements)
     if any(memory):
-        fits = _beside(question, candidates, _simple(question, candidates, curves, memory))
+        fits = _all(candidates, word, _simple(candidates, word, curves, memory))
         if all(judged.describes for judged in best_of(fits.values()).judgements):
             return fits
-    return _beside(question, candidates, simple)
+    return _all(candidates, word, simple)
 
 
 def _simple(
-    question: Question,
-    candidates: Mapping[Types, Explanation],
-    curves: tuple[Curve, ...],
-    memory: tuple[float, ...],
-) -> dict[Types, Candidate]:
+    candidates: Explanations, word: Types, curves: tuple[Curve, ...], memory: tuple[float, ...]
+) -> Fits:
     """Return the explanations with and without what is asked for, at the noise of the best."""
     noise = tuple(neighbour_noise(curve.force) for curve in curves)
-    fits: dict[Types, Candidate] = {}
-    for types in dict.fromkeys((NONE, question.word)):
-        objective = _objective(candidates[types], curves, noise, memory)
-        parts = [(fit.objective, fit.minimum) for fit in fits.values()]
-        minimum = objective.best(starts(objective, parts, scan=True))
-        fits[types] = Candidate(types, objective, minimum, curves)
-    return at_common_noise(fits.values())
+    simple = {types: candidates[types] for types in (NONE, word)}
+    return at_common_noise(_sought(simple, word, {}, curves, noise, memory).values())
 
 
-def _beside(
-    question: Question, candidates: Mapping[Types, Explanation], simple: Mapping[Types, Candidate]
-) -> dict[Types, Candidate]:
+def _all(candidates: Explanations, word: Types, simple: Fits) -> Fits:
     """Return all explanations: first at the noise of the best of the simple ones.
 
     That only scales χ²; at last it is that of the best.
     """
-    fits, word = dict(simple), question.word
     best = best_of(simple.values())
-    curves, noise, memory = best.whole, best.objective.noise, best.objective.memory
+    known = best.whole, best.objective.noise, best.objective.memory
+    fits = _sought(candidates, word, simple, *known)
+    return at_common_noise([_restarted(fit, fits) for fit in fits.values()])
+
+
+def _sought(
+    candidates: Explanations,
+    word: Types,
+    simple: Fits,
+    curves: tuple[Curve, ...],
+    noise: tuple[float, ...],
+    memory: tuple[float, ...],
+) -> Fits:
+    """Return explanations at their least χ² at a noise, beside the simple ones if there are any."""
+    fits = dict(simple)
     for types, explanation in candidates.items():
         if types in fits:
             continue
         objective = _objective(explanation, curves, noise, memory)
         parts = [(fit.objective, fit.minimum) for part, fit in fits.items() if part < types]
         # A pair starts from its parts.
-        scan = not word < types or not word
-        idle = _idle(types, word, objective, fits)
-        minimum = objective.best(starts(objective, parts, scan=scan), idle)
-        fits[types] = Candidate(types, objective, minimum, curves)
-    better = [_restarted(fit, fits) for fit in fits.values()]
-    return at_common_noise(better)
+        at = starts(objective, parts, scan=not word < types or not word)
+        idle = [_idle(types, word, objective, fits)] if simple else []
+        fits[types] = Candidate(types, objective, objective.best(at, *idle), curves)
+    return fits
 
 
 def _objective(
@@ -129,12 +130,7 @@ def _objective(
     return replace(objective, curves=tuple(curve.binned(ROWS) for curve in curves))
 
 
-def _idle(
-    types: Types,
-    word: Types,
-    objective: Objective,
-    fits: Mapping[Types, Candidate],
-) -> tuple[float, float]:
+def _idle(types: Types, word: Types, objective: Objective, fits: Fits) -> tuple[float, float]:
     """Return between which χ² an explanation decides nothing.
 
     It is then far behind the best, or behind one of its parts; worse than nothing at all it cannot
@@ -145,32 +141,25 @@ def _idle(
         contained = [fits[part] for part in (word, types - word) if part in fits]
         low = min(low, *(fit.aic + 1 for fit in contained))
     high = min(fit.chi_squared for fit in contained)
+    simple = fits[word]
+    is_whole = objective.curves is simple.whole
     # Of means, χ² lacks the scatter of the rows about them.
-    scatter = (
-        0.0
-        if objective.curves is fits[word].whole
-        else fits[word].chi_squared - fits[word].minimum.chi_squared
-    )
+    scatter = 0.0 if is_whole else simple.chi_squared - simple.minimum.chi_squared
     return low - criterion(objective, 0.0) - scatter, high - scatter + _SAME
 
 
-def at_common_noise(fits: Collection[Candidate]) -> dict[Types, Candidate]:
+def at_common_noise(fits: Collection[Candidate]) -> Fits:
     """Return explanations at the noise of the best that passes its checks.
 
     If none does, at that of the best, which is widened where it fails.
     """
-    noise: list[float] = []
-    for fit in sorted(fits, key=lambda fit: fit.aic):
-        judgements = fit.judgements
-        passes = all(judgement.describes for judgement in judgements)
-        if passes or not noise:
-            noise = [judgement.noise.deviation for judgement in judgements]
-        if passes:
-            break
+    ranked = sorted(fits, key=lambda fit: fit.aic)
+    passing = (fit for fit in ranked if all(judged.describes for judged in fit.judgements))
+    noise = [judged.noise.deviation for judged in next(passing, ranked[0]).judgements]
     return {fit.types: fit.at_noise(noise) for fit in fits}
 
 
-def _restarted(fit: Candidate, fits: Mapping[Types, Candidate]) -> Candidate:
+def _restarted(fit: Candidate, fits: Fits) -> Candidate:
     """Return the least χ² from the minima of what it is a part of, too."""
     found = [fit.minimum]
     for whole in (other for types, other in fits.items() if fit.types and fit.types < types):

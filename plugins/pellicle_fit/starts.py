@@ -11,7 +11,7 @@ import numpy as np
 from pellicle.arrays import Array
 
 from .effect import powers
-from .objective import CONTACT_POINT, MODULUS, ROUGH, Minimum, Objective
+from .objective import CONTACT_POINT, MODULUS, ROUGH, Minimum, Objective, Slot
 
 _POINTS, _ROWS = 25, 120
 """Contact points that are scanned, and rows of each pass that a scan sees."""
@@ -27,19 +27,16 @@ def starts(
     objective: Objective, known: Sequence[tuple[Objective, Minimum]], *, scan: bool
 ) -> list[Array]:
     """Return coordinates to start from: of minima of other explanations, and of a scan."""
-    found = pooled(objective) if scan else []
-    own = list(_own(objective))
-    for other, minimum in _largest(known):
+    found, own = pooled(objective) if scan else [], list(_own(objective))
+    types = [other.explanation.types for other, _ in known]
+    for other, minimum in known:
+        # A search from a part of a part starts further off.
+        if any(other.explanation.types < larger for larger in types):
+            continue
         at = objective.at_values(other.values(minimum.at))
         # Starts that differ in what is known already are one.
         found += [*np.unique([np.where(np.isnan(at), guess, at) for guess in own], axis=0)]
     return found
-
-
-def _largest(known: Sequence[tuple[Objective, Minimum]]) -> list[tuple[Objective, Minimum]]:
-    """Return the minima of the largest parts: a search from a part of a part starts further off."""
-    types = [other.explanation.types for other, _ in known]
-    return [part for part, own in zip(known, types, strict=True) if not any(own < o for o in types)]
 
 
 def _own(objective: Objective) -> Iterator[Array]:
@@ -47,12 +44,8 @@ def _own(objective: Objective) -> Iterator[Array]:
     effects = objective.explanation.effects
     for choice in product(*(list(effect.starts(objective.sizes)) for effect in effects)):
         values = {name: value for start in choice for name, value in start.items()}
-        yield np.array(
-            [
-                slot.coordinate(values.get(slot.name, _GUESS * slot.scale))
-                for slot in objective.slots
-            ]
-        )
+        slots = ((slot, values.get(slot.name, _GUESS * slot.scale)) for slot in objective.slots)
+        yield np.array([slot.coordinate(value) for slot, value in slots])
 
 
 def pooled(objective: Objective) -> list[Array]:
@@ -63,18 +56,14 @@ def pooled(objective: Objective) -> list[Array]:
     for curve, noise in zip(objective.curves, objective.noise, strict=True):
         alone = replace(objective, curves=(curve,), noise=(noise,), memory=())
         minima = [alone.minimise(at, steps=ROUGH).at for at in scanned(alone)]
-        each.append(
-            [{name: value for (name, _), value in alone.values(at).items()} for at in minima]
-        )
+        each.append([{name: v for (name, _), v in alone.values(at).items()} for at in minima])
 
-    def value(name: str, curve: int | None, known: Sequence[dict[str, float]]) -> float:
-        shared = float(np.median([values[name] for values in known]))
-        return shared if curve is None else known[curve][name]
+    def value(slot: Slot, known: Sequence[dict[str, float]]) -> float:
+        shared = float(np.median([values[slot.name] for values in known]))
+        return slot.coordinate(shared if slot.curve is None else known[slot.curve][slot.name])
 
-    return [
-        np.array([s.coordinate(value(s.name, s.curve, known)) for s in objective.slots])
-        for known in zip(*each, strict=False)
-    ]
+    several = zip(*each, strict=False)
+    return [np.array([value(slot, known) for slot in objective.slots]) for known in several]
 
 
 def scanned(objective: Objective) -> list[Array]:
@@ -83,7 +72,8 @@ def scanned(objective: Objective) -> list[Array]:
     With all forces of an explanation its recorded force grows: at each point one factor is linear.
     """
     (curve,) = objective.curves
-    tips = replace(objective, curves=(curve.at_the_tip().binned(_ROWS),))
+    # Noisy positions are taken as they are.
+    tips = replace(objective, curves=(replace(curve, stiffness=None).binned(_ROWS),))
     point, modulus = objective.index(CONTACT_POINT), objective.index(MODULUS)
     last = curve.position.max() - _LAST * curve.span
     points = np.linspace(curve.position.min(), last, _POINTS if point is not None else 1)

@@ -23,8 +23,8 @@ from pellicle.units import quantity_of
 
 from .contact import Contact
 from .curve import Curve
-from .effect import Adds, Bends, Effect, Records, Responds, Sizes, Yields, quantities
-from .explanation import Explanation, Solid
+from .effect import Adds, Bends, Effect, Records, Responds, Sizes, Solid, Yields, quantities
+from .explanation import Explanation
 
 _PLACES = Bends, Responds, Adds, Yields, Records
 _MODULUS, _STIFFNESS, _SPEED = 2e3, 0.05, 1e-6

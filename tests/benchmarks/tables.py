@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from inspect import getfile
 from pathlib import Path
 from typing import Any
@@ -51,15 +50,3 @@ def in_process(
     if done.returncode:
         raise RuntimeError(done.stderr)
     return json.loads(done.stdout.splitlines()[-1]), done.stderr
-
-
-def curves_of_kinds(
-    description: str | None, kinds: Sequence[str], curves: int, seed: int
-) -> tuple[int, int, list[str]]:
-    """Return the number of curves, the seed and the kinds that the command line names."""
-    parser = argparse.ArgumentParser(description=description)
-    parser.add_argument("curves", type=int, nargs="?", default=curves, help="of each kind")
-    parser.add_argument("seed", type=int, nargs="?", default=seed)
-    parser.add_argument("kinds", nargs="*", default=list(kinds), metavar="kind")
-    options = parser.parse_args()
-    return options.curves, options.seed, options.kinds

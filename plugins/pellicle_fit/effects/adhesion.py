@@ -1,9 +1,7 @@
 """Adhesion in equilibrium, under tension and with a cantilever."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
-from typing import Annotated, ClassVar, Literal, NamedTuple
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,15 +23,6 @@ _CHANGE_POINT = 3
 """Quantities as which the choice of the rows that touch counts (Ninomiya 2015)."""
 _WIDTH, _JUMP = 3, 6.0
 """Rows whose means are compared, and standard errors beyond which they show a jump."""
-
-
-class Equilibria(NamedTuple):
-    """Contacts in equilibrium, of shape (n,)."""
-
-    position: Array
-    """Position of the base over the contact point [m]."""
-    force: Array
-    """[N]."""
 
 
 class Adhesion(Responds):
@@ -71,11 +60,12 @@ class Adhesion(Responds):
         """Return the force as a function of the base over the contact point."""
         from scipy.interpolate import CubicSpline
 
-        branch = self._branch(contact, float(np.max(path + softness * curve.smoothed)), softness)
-        end = branch.position[0]
-        root = np.sqrt(np.maximum(branch.position - end, 0.0))
+        deepest = float(np.max(path + softness * curve.smoothed))
+        position, force = self._branch(contact, deepest, softness)
+        end = position[0]
+        root = np.sqrt(np.maximum(position - end, 0.0))
         keep = np.append(True, root[1:] > np.maximum.accumulate(root)[:-1] + 1e-9 * root[-1])
-        spline = CubicSpline(root[keep], branch.force[keep])
+        spline = CubicSpline(root[keep], force[keep])
         ramp = _RAMP * curve.span / curve.passes[0].size
 
         def response(depth: Array) -> Array:
@@ -86,32 +76,31 @@ class Adhesion(Responds):
                 touches[rows] = touching
                 steep[rows] = _PENALTY * curve.largest / curve.span * np.minimum(beyond[rows], 0.0)
             at = np.sqrt(np.clip(beyond, 0.0, root[-1] ** 2))
-            force: Array = touches * (spline(at) + steep)
-            return force
+            return np.asarray(touches * (spline(at) + steep))
 
         return response
 
-    def _branch(self, contact: Contact, deepest: float, softness: float) -> Equilibria:
-        """Return the stable branch from its end to a position of the base [m]."""
+    def _branch(self, contact: Contact, deepest: float, softness: float) -> tuple[Array, Array]:
+        """Return `_equilibria` of the stable branch, from its end to a position of the base [m]."""
         scale = max(deepest, self.work_of_adhesion / contact.modulus)
         top = np.log(scale) + np.arange(0, _HIGHER, 0.5)
-        reaches = self._equilibria(contact, np.exp(top), softness).position >= deepest
+        reaches = self._equilibria(contact, np.exp(top), softness)[0] >= deepest
         top = top[int(np.argmax(reaches)) if reaches.any() else -1]
         grid = np.linspace(top - _DECADES * np.log(10), top, _SEARCHED)
         for _ in range(_REFINED):
-            least = int(np.argmin(self._equilibria(contact, np.exp(grid), softness).position))
+            least = int(np.argmin(self._equilibria(contact, np.exp(grid), softness)[0]))
             low, high = grid[max(least - 1, 0)], grid[min(least + 1, _SEARCHED - 1)]
             grid = np.linspace(low, high, _SEARCHED)
         start = grid[_SEARCHED // 2]
         nodes = np.exp(start + (top - start) * np.linspace(0, 1, _NODES) ** 2)
         return self._equilibria(contact, nodes, softness)
 
-    def _equilibria(self, contact: Contact, depth: Array, softness: float) -> Equilibria:
-        """Return the equilibria that without adhesion would have depths [m]."""
+    def _equilibria(self, contact: Contact, depth: Array, softness: float) -> tuple[Array, Array]:
+        """Return position of the base [m] and force [N] that without adhesion had depths [m]."""
         force, stiffness, radius, slope = contact.punch(depth)
         retraction = np.sqrt(4 * np.pi * self.work_of_adhesion * radius / slope)
         force = force - stiffness * retraction
-        return Equilibria(depth - retraction + softness * force, force)
+        return depth - retraction + softness * force, force
 
 
 def jumps(curve: Curve) -> Iterable[tuple[NDArray[np.intp], Mask]]:

@@ -1,7 +1,5 @@
 """A polymer brush in series with the solid."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A compliance in series: a soft holder, or a sensitivity that is off."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal
 
 from pellicle_fit.effect import Array, Fitted, Yields, fitted

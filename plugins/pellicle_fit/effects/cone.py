@@ -1,7 +1,5 @@
 """A cone in place of a bead."""
 
-from __future__ import annotations
-
 from typing import ClassVar, Literal
 
 import numpy as np

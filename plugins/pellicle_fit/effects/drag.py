@@ -1,7 +1,5 @@
 """A drag beside the solid."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal
 
 from pellicle_fit.effect import Adds, Array, Contact, Curve, Fitted, fitted

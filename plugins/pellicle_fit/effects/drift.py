@@ -1,10 +1,6 @@
 """A force of the instrument that drifts."""
 
-from __future__ import annotations
-
 from typing import Annotated, ClassVar, Literal
-
-import numpy as np
 
 from pellicle_fit.effect import Array, Contact, Curve, Fitted, Records, fitted
 
@@ -25,4 +21,4 @@ class Drift(Records, title="drift in time"):
 
     def recorded(self, force: Array, curve: Curve) -> Array:
         """Return F + rate × time since the first row [N]."""
-        return np.asarray(force + self.drift * (curve.clock - curve.clock[0]))
+        return force + self.drift * (curve.clock - float(curve.clock[0]))

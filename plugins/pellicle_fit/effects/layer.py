@@ -1,7 +1,5 @@
 """A layer on a rigid base."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 

@@ -1,7 +1,5 @@
 """A constant force of the instrument."""
 
-from __future__ import annotations
-
 from typing import Annotated, ClassVar, Literal
 
 from pellicle_fit.effect import Array, Curve, Fitted, Records, fitted

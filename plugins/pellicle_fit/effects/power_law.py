@@ -1,7 +1,5 @@
 """A solid that relaxes by a power law."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal
 
 from pellicle_fit.effect import Array, Fitted, fitted

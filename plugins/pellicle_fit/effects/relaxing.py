@@ -1,7 +1,5 @@
 """Solids that relax: Lee & Radok (1960) while the contact grows, Ting (1966) while it shrinks."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import replace
@@ -26,10 +24,6 @@ Primitive = Callable[[Array], Array]
 
 class Relaxing(Responds):
     """Solid whose modulus falls; a tension does not, and acts with the effective modulus."""
-
-    @abstractmethod
-    def relaxed(self, time: float) -> float:
-        """Return E(t)/E* after a time [s]."""
 
     @abstractmethod
     def primitive(self, time: Array) -> Array:
@@ -71,8 +65,7 @@ class Relaxing(Responds):
         )
         coefficients = chebyshev.chebfit(nodes, forces, _MODULI - 1)
         basis = chebyshev.chebvander((at - middle) / half, _MODULI - 1)
-        force: Array = share * np.sum(basis * coefficients.T, axis=1)
-        return force
+        return np.asarray(share * np.sum(basis * coefficients.T, axis=1))
 
 
 def course(
@@ -155,15 +148,13 @@ def _at(rows: Array, values: Array) -> tuple[NDArray[np.intp], Array]:
     index = np.clip((rows < values[:, None]).sum(axis=1) - 1, 0, rows.shape[1] - 2)
     row = np.arange(values.size)
     left, right = rows[row, index], rows[row, index + 1]
-    part: Array = (values - left) / np.maximum(right - left, 1e-300)
-    return index, np.clip(part, 0.0, 1.0)
+    return index, np.clip((values - left) / np.maximum(right - left, 1e-300), 0.0, 1.0)
 
 
 def _weights(at: Array, times: Array, primitive: Primitive) -> Array:
     """Return ∫ E(t − t′) dt′ / E* [s] over the intervals of times, of shape (at, intervals)."""
     sums = primitive(np.maximum(at[:, None] - times[None, :], 0.0))
-    weights: Array = sums[:, :-1] - sums[:, 1:]
-    return weights
+    return -np.diff(sums, axis=1)
 
 
 def _rates(times: Array, values: Array) -> Array:

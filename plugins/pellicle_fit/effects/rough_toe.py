@@ -1,7 +1,5 @@
 """The give of a rough tip or sample."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What effects have in common that put another shape in place of the indenter."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import ClassVar
 

@@ -1,7 +1,5 @@
 """Another size of the indenter."""
 
-from __future__ import annotations
-
 from typing import Annotated, ClassVar, Literal
 
 from pellicle_fit.effect import Bends, Contact, Fitted, fitted

@@ -1,10 +1,6 @@
 """A baseline with a slope."""
 
-from __future__ import annotations
-
 from typing import Annotated, ClassVar, Literal
-
-import numpy as np
 
 from pellicle_fit.effect import Array, Curve, Fitted, Records, fitted
 
@@ -19,4 +15,4 @@ class Slope(Records, title="a sloping baseline"):
 
     def recorded(self, force: Array, curve: Curve) -> Array:
         """Return F + slope × way from the first position [N]."""
-        return np.asarray(force + self.slope * (curve.base - curve.base.min()))
+        return force + self.slope * (curve.base - float(curve.base.min()))

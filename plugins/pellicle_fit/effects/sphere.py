@@ -1,7 +1,5 @@
 """A sphere in place of its shallow limit, and the reverse."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from pellicle_fit.effect import Contact, Curve
@@ -20,10 +18,9 @@ class Sphere(Shape, title="a sphere, or a paraboloid, instead"):
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Refuse shallow curves too, on which both are one."""
-        if excuse := super().excuse(contact, curve, beside):
-            return excuse
         deep = curve.span > SHALLOW * (contact.tip_radius or 0.0)
-        return "" if deep else "on a shallow curve sphere and paraboloid are one"
+        excuse = "" if deep else "on a shallow curve sphere and paraboloid are one"
+        return super().excuse(contact, curve, beside) or excuse
 
     def contact(self, contact: Contact) -> Contact:
         """Return the contact of the other shape."""

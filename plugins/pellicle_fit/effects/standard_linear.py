@@ -1,7 +1,5 @@
 """A solid that relaxes once, as the standard linear solid does."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Annotated, Literal
 

@@ -1,7 +1,5 @@
 """A surface that is stiffer or softer than the solid below."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 

@@ -1,7 +1,5 @@
 """The tension of the surface."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 

@@ -1,7 +1,5 @@
 """A paraboloid with a worn tip."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Annotated, Literal
 

@@ -12,8 +12,7 @@ from pellicle import registry
 from pellicle.errors import ConfigError, shown
 from pellicle.schema import evaluate, names_in, nearest
 from pellicle.units import one, readable, split
-from pellicle_fit.effect import Effect, Fittable, quantities
-from pellicle_fit.explanation import Solid
+from pellicle_fit.effect import Effect, Fittable, Solid, quantities
 
 from .row import ENDS, NUMBERS, Row
 

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
-
-import numpy as np
 
 from pellicle.components import HasForceCurve, HasLayerForceCurve, Indenter
 from pellicle.errors import ConfigError
@@ -37,28 +34,13 @@ def body_of(
     return Simulation(indenter, solid(kernel or "tensed_membrane", poissons_ratio))
 
 
-def layer_of(
-    indenter: object, kernel: str | Mapping[str, Any], poissons_ratio: float | None = None
-) -> Layer | None:
-    """Return the effect that a kernel is; None if it is no layer, or has to be simulated.
-
-    A bonded layer is what is elastic and has the compliance of one at its depth and ratio.
-    """
-    given = solid(kernel, poissons_ratio)
-    ratio, thickness = given.poissons_ratio, given.kernel.depth_to_base()
-    if ratio is None or ratio < 0 or math.isinf(thickness) or given.kernel.branches():
+def layer_of(indenter: object, poissons_ratio: float, thickness: float) -> Layer | None:
+    """Return the effect of a layer bonded to a rigid base; None if it has to be simulated."""
+    if not isinstance(indenter, HasLayerForceCurve) or poissons_ratio < 0:
         return None
-    bonded = solid(layer_table(ratio, thickness)).kernel
-    q = np.geomspace(1e-2, 1e2, 9) / thickness
-    is_bonded = np.allclose(given.kernel.compliance(q), bonded.compliance(q), rtol=1e-9, atol=0)
     # A punch is too wide for the curve at any depth, or at none.
-    if (
-        is_bonded
-        and isinstance(indenter, HasLayerForceCurve)
-        and indenter.layer_depth_limit(thickness, ratio) > 0
-    ):
-        return Layer(thickness=thickness, poissons_ratio=ratio)
-    return None
+    is_known = indenter.layer_depth_limit(thickness, poissons_ratio) > 0
+    return Layer(thickness=thickness, poissons_ratio=poissons_ratio) if is_known else None
 
 
 def layer_table(poissons_ratio: float, thickness: float) -> dict[str, Any]:

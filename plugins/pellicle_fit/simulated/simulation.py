@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 GRID_POINTS = 64
-_FEWEST = 16
 _OCTAVES = 6
 """Number of factors of 2 between the deepest and the shallowest node."""
 _RATIOS: Array = SCALE * np.expm1(np.linspace(0, stretched(np.array([30.0]))[0], 11))
@@ -63,14 +62,8 @@ class Simulation(NamedTuple):
         folder that keeps studies, the user's own if None; ``grid_points`` are the cells of each
         grid along x and y.
 
-        Raises
-        ------
-        ConfigError
-            The indenter ends where the grid does, or a field of the solid scales with the modulus.
-        ConvergenceError
-            A run of the study failed; its table says which and why.
-        StorageError
-            The folder cannot be used, or is locked by another process.
+        A run that fails is a ConvergenceError, a folder that cannot be used a StorageError; errors
+        as of `plan`, too.
         """
         nodes, study = plan(self.indenter, self.solid, deepest, grid_points)
         study["study"]["executor"] = {"type": executor} if isinstance(executor, str) else executor
@@ -91,20 +84,14 @@ def plan(
 ) -> tuple[Nodes, dict[str, Any]]:
     """Return the contacts that a force curve needs down to a depth [m], and the study of them.
 
-    Raises
-    ------
-    ConfigError
-        As for `Simulation.curve`.
+    ConfigError: the indenter ends where the grid does, or its contact nowhere, or a field of the
+    solid scales with the modulus.
     """
     if indenter.footprint != "unbounded":
         raise ConfigError(
             "ends where the grid does, so it has no force curve of its own; give one whose shape "
             "does not depend on the grid",
             "indenter",
-        )
-    if grid_points < _FEWEST or grid_points % 2:
-        raise ConfigError(
-            f"{grid_points} is not allowed; give an even number ≥ {_FEWEST}", "grid_points"
         )
     of_shape, of_solid = ([*values_of(part)] for part in (indenter, solid.kernel))
     values = [(quantity, value) for _, quantity, value in (*of_shape, *of_solid)]
@@ -146,11 +133,6 @@ def half_widths(indenter: Indenter, depth: float) -> tuple[float, float]:
 
     On any kernel whose Green's function is positive the contact lies inside that part of the
     indenter.
-
-    Raises
-    ------
-    ConfigError
-        The width exceeds 10⁹ times the depth.
     """
     half = np.array([depth, depth])
     while True:

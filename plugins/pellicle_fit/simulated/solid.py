@@ -88,10 +88,7 @@ def _field(table: Mapping[str, Any], name: str) -> tuple[str, FieldInfo]:
 def scaled(component: Component, unit: float, free: tuple[str, ...] = ()) -> dict[str, Any]:
     """Return the table of a component with every length divided by ``unit`` [m].
 
-    Raises
-    ------
-    ConfigError
-        A field at a path not in ``free`` scales with the modulus, which is not known.
+    A field at a path not in ``free`` that scales with the modulus is a ConfigError.
     """
     table: dict[str, Any] = component.model_dump(exclude_none=True)
     for path, quantity, value in values_of(component):

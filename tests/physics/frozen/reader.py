@@ -24,8 +24,8 @@ import pellicle as pl
 from pellicle_fit.candidate import Candidate
 from pellicle_fit.config import FitConfig
 from pellicle_fit.curve import Curve
-from pellicle_fit.effect import Effect, Sizes
-from pellicle_fit.explanation import Explanation, Solid
+from pellicle_fit.effect import Effect, Sizes, Solid
+from pellicle_fit.explanation import Explanation
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.intervals import Estimate
@@ -181,9 +181,13 @@ def _objective(
         (case.noise,) * len(curves),
         Sizes.of_curve(curves[0]),
         (memory,) * len(curves),
-        instant=False,
     )
-    return objective, np.array([s.coordinate(values.get(s.name, 0.0)) for s in objective.slots])
+    at = np.array([s.coordinate(values.get(s.name, 0.0)) for s in objective.slots])
+    if (modulus := objective.index("reduced_modulus")) is not None:
+        # The coordinate is the logarithm of what is left of E* at the end of the loading.
+        relaxed = values["reduced_modulus"] / objective.known(at, 0).solid.reduced_modulus
+        at[modulus] += np.log(relaxed)
+    return objective, at
 
 
 def _sorted(case: Case) -> bool:

@@ -14,7 +14,7 @@ from scipy.optimize import minimize
 import pellicle as pl
 from pellicle_fit.candidate import Candidate
 from pellicle_fit.noise import Flaw
-from pellicle_fit.verdict import MARGIN, Verdict, decision
+from pellicle_fit.verdict import Verdict, decision
 from pellicle_plugins.indenters.of_revolution import Cone, FlatPunch, Paraboloid, Sphere
 from tests.physics.frozen.fit_curves import MODULUS, RADIUS, Array
 from tests.plugins.fit.conftest import ends_of, holds
@@ -22,6 +22,7 @@ from tests.plugins.fit.conftest import ends_of, holds
 TENSION = 0.3 * RADIUS * MODULUS / 2
 """τ₀ at s = 0.3 R [N/m]."""
 BEAD = Paraboloid(radius=RADIUS)
+WHITE = np.random.default_rng(4).standard_normal(614)
 
 
 def curve(
@@ -194,15 +195,6 @@ def test_verdicts_follow_from_criteria(aic: dict[str, float], verdict: Verdict) 
     assert decision(fits, word, doubted=True, margin=4.0).verdict is Verdict.UNDESCRIBED
 
 
-@pytest.mark.parametrize("separation", [1.0, 4.0, 9.0, 16.0])
-def test_false_claims_at_the_margin(separation: float) -> None:
-    """Of two explanations the wrong one is preferred in at most 3 %, however far they are apart."""
-    # χ² differ by S without noise: with it by normal numbers about S of deviation 2√S.
-    draws = np.random.default_rng(1).standard_normal(100_000)
-    lead = separation + 2 * np.sqrt(separation) * draws
-    assert np.mean(lead < -MARGIN) < 0.03
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "protocol", "verdict"),
@@ -232,9 +224,7 @@ def test_ties_widen_the_interval() -> None:
     alone = fit(rows.depth, force, time=rows.time - rows.time[0])
     beside = fit(rows.depth, force, time=rows.time - rows.time[0], rivals=["power_law"])
     assert beside.verdict is Verdict.CANNOT_TELL
-    assert [sorted(e.types) for e in beside.answer.tied] == [["tension"], ["power_law"]] or len(
-        beside.answer.tied
-    ) > 1
+    assert len(beside.answer.tied) > 1
     assert ends_of(beside.reduced_modulus)[1] > ends_of(alone.reduced_modulus)[1]
 
 
@@ -256,7 +246,7 @@ def test_curves_that_disagree_widen_what_they_share(moduli: tuple[float, float])
     curves = {str(n): curve(seed=n, modulus=m) for n, m in enumerate(moduli)}
     pool = pl.fit_pooled(curves, indenter=BEAD, rivals=(), model=())
     low, high = ends_of(pool.reduced_modulus)
-    assert (pool.answer.agreement.factor > 1) == (moduli[0] != moduli[1])
+    assert ("do not agree" in pool.agreement) == (moduli[0] != moduli[1])
     assert ((high - low) / MODULUS > 0.05) == (moduli[0] != moduli[1])
 
 
@@ -270,17 +260,7 @@ def test_curves_that_disagree_widen_what_they_share(moduli: tuple[float, float])
         (lambda z, f: f * (1 - 0.4 * np.maximum(z - 1e-6, 0) / TOP), Flaw.PATTERN),
         (lambda z, f: np.where(np.arange(f.size) % 97, f, f + 0.2 * f.max()), Flaw.SPIKES),
         (lambda z, f: 0.04 * f.max() * np.round(f / (0.04 * f.max())), Flaw.STEPS),
-        (
-            lambda z, f: (
-                f
-                + 0.01
-                * f.max()
-                * np.convolve(
-                    np.random.default_rng(4).standard_normal(f.size + 14), np.ones(15) / 4, "valid"
-                )
-            ),
-            Flaw.SLOW,
-        ),
+        (lambda z, f: f + 0.01 * f.max() * np.convolve(WHITE, np.ones(15) / 4, "valid"), Flaw.SLOW),
     ],
 )
 def test_flaws_are_seen(change: Any, flaw: Flaw | None) -> None:
@@ -304,13 +284,11 @@ def test_noise_of_1_over_f_is_taken_so() -> None:
 def test_relaxation_beside_a_tension_has_no_model_of_retraction() -> None:
     """Where no explanation describes both passes and that one was not tried, nothing is bounded."""
     (rows,) = fit_verdicts.rows_of("both", TOP)
-    force = fit_verdicts.closed_form("power_law", relaxation_exponent=0.2)(
-        rows
-    ) + fit_verdicts.tensed(TENSION)(rows)
+    relaxing = fit_verdicts.closed_form("power_law", relaxation_exponent=0.2)
+    force = relaxing(rows) + fit_verdicts.tensed(TENSION)(rows)
     force = force + 0.003 * force.max() * np.random.default_rng(2).standard_normal(force.size)
-    found = fit(
-        rows.depth, force, time=rows.time - rows.time[0], rivals=["power_law"], segment="both"
-    )
+    time = rows.time - rows.time[0]
+    found = fit(rows.depth, force, time=time, rivals=["power_law"], segment="both")
     assert found.verdict is Verdict.UNDESCRIBED
     assert found.answer.untried
     assert found.reduced_modulus.low is found.reduced_modulus.high is None
