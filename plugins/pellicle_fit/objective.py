@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
@@ -152,12 +152,11 @@ class Objective:
                 values[slot.part][slot.name] = slot.value(coordinate)
         pairs = zip(self.explanation.effects, values[1:], strict=True)
         effects = tuple(effect.at(known) for effect, known in pairs)
-        solid = self.explanation.solid.at(values[0])
-        found = Explanation(solid, effects)
         if MODULUS in values[0]:
-            modulus = solid.reduced_modulus / found.relaxed(self.loading_time)
-            found = replace(found, solid=solid.at(values[0] | {MODULUS: modulus}))
-        return found
+            values[0][MODULUS] /= Explanation(self.explanation.solid, effects).relaxed(
+                self.loading_time
+            )
+        return Explanation(self.explanation.solid.at(values[0]), effects)
 
     def forces(self, at: Array) -> list[Array]:
         """Return the force [N] of each curve that the explanation records."""
