@@ -33,28 +33,15 @@ def read(path: Path, calibration: Calibration | None = None, segment: str = "app
     The columns of the calibration name other columns of a table, and the arrays of any HDF5 or
     MATLAB file.  Any other file is read by afmformats, which then selects the ``segment``.
     """
-
-    def state() -> int:
-        return path.stat().st_mtime_ns if path.exists() else 0
-
-    def check() -> None:
-        if state() != before:
-            raise StorageError(f"{path}: was changed while it was read; read it again")
+    readers = _readers(path, calibration or Calibration(), segment)
+    with path.open("rb") as file:
+        digest = hashlib.file_digest(file, "sha256").hexdigest()
 
     def curve(label: str) -> Measurement:
         measured = readers[label]()
-        check()
         origin = replace(measured.origin, file=str(path), curve=label or None, sha256=digest)
         return replace(measured, origin=origin)
 
-    before = state()
-    readers = _readers(path, calibration or Calibration(), segment)
-    try:
-        with path.open("rb") as file:
-            digest = hashlib.file_digest(file, "sha256").hexdigest()
-    except OSError as error:
-        raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
-    check()
     return {label: partial(curve, label) for label in readers}
 
 
@@ -77,8 +64,7 @@ def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
         tables = curves_of(path, cells, mapped) if cells else {}
         heads = cells.heads if cells else []
     hint = ""
-    is_known = mapped or any(is_curve(columns.keys()) for columns in tables.values())
-    if not is_known and not (cells and cells.is_commented):
+    if not mapped and not any(is_curve(columns.keys()) for columns in tables.values()):
         try:
             return afm.read_instrument(path, calibration, segment)
         except StorageError:
@@ -89,7 +75,6 @@ def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
             f"{path}: is neither text, nor HDF5, nor a readable file of an instrument{hint}; "
             f"export it as a table (a sheet as CSV) with a header such as {EXAMPLE!r}"
         )
-
     if cells is None:
         found = {role for columns in tables.values() for role in columns}
         wrong = [name for name, text in mapped.items() if text.split()[0] not in found]

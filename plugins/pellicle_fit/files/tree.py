@@ -101,8 +101,6 @@ def _leaves(node: Any, parts: list[str], label: str = "") -> Iterator[tuple[str,
     elif isinstance(node, Mapping):
         # A link of an HDF5 file may lead nowhere.
         yield from _leaves(node.get(part), rest, label)
-    elif part in (getattr(getattr(node, "dtype", None), "names", None) or ()):
-        yield from _leaves(node[part], rest, label)
 
 
 def _heads(node: Mapping[str, Any], depth: int, folder: str = "") -> Iterator[Head]:
@@ -110,5 +108,5 @@ def _heads(node: Mapping[str, Any], depth: int, folder: str = "") -> Iterator[He
         child = node.get(name)
         if isinstance(child, Mapping) and depth:
             yield from _heads(child, depth - 1, f"{folder}{name}/")
-        elif _kind(child) in "fiuV":
+        elif _kind(child) in "fiu":
             yield Head(f"{folder}{name}", f"{folder}{name}", _unit(child))
