@@ -24,20 +24,11 @@ class Note(str):
     __slots__ = ()
 
 
-class Axis(NamedTuple):
-    """Evenly spaced positions along an edge of a force map [m]: the first, and their distance."""
-
-    start: float
-    pitch: float
-    pixels: int
-
-
 class Site(NamedTuple):
-    """Where on the sample a curve was measured [m], and the axes of its map if the file has it."""
+    """Where on the sample a curve was measured [m]."""
 
     x: float
     y: float
-    grid: tuple[Axis, Axis] | None = None
 
 
 @dataclass(frozen=True)

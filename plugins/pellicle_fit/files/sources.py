@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import re
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from functools import partial
+from glob import glob, has_magic
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,7 +20,6 @@ from .measurement import Measurement, Readers, Segment, Site
 from .readers import SUFFIXES, TEXT, read
 from .text_table import FILE, read_cells
 
-_PATTERN = re.compile(r"[*?[]")
 _ARRAYS = ("position", "force", "time")
 
 Curves = str | Path | Sequence[str | Path] | Mapping[str, Sequence[ArrayLike]]
@@ -75,8 +73,7 @@ class CurveFile(NamedTuple):
         try:
             if {"x", "y"} <= fields.keys():
                 with all_problems() as within, within("x and y"):
-                    x, y = (Quantity("m")(fields.pop(name)) for name in ("x", "y"))
-                    site = Site(x, y)
+                    site = Site(*(Quantity("m")(fields.pop(name)) for name in "xy"))
             calibration = Calibration(**settings)
             if self.numbers is None:
                 readers = read(self.path, calibration, self.segment)
@@ -167,15 +164,12 @@ def gather(
 def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
     """Return the files that match a pattern such as ``"beads/*.csv"``; any other path as it is."""
     path = Path(folder, pattern)
-    if path.exists() or not _PATTERN.search(str(pattern)):
+    if path.exists() or not has_magic(str(pattern)):
         return [path]
-    anchor, files = Path(pattern).anchor, []
-    # Before Python 3.13, a pattern such as "**.csv" is a ValueError.
-    with suppress(ValueError):
-        files = sorted(Path(anchor or folder).glob(str(Path(pattern).relative_to(anchor))))
+    files = glob(str(pattern), root_dir=folder or None, recursive=True)
     if not files:
         raise ConfigError(f"{pattern}: matches no file; give files, or a folder of them", "curves")
-    return files
+    return sorted(Path(folder, file) for file in files)
 
 
 def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
@@ -185,8 +179,7 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
     units, and empty cells are left out.
     """
     if path.is_dir():
-        files = [file for file in sorted(path.iterdir()) if file.suffix.lower() in SUFFIXES]
-        files = [file for file in files if not file.name.startswith(".")]
+        files = [file for file in sorted(path.glob("[!.]*")) if file.suffix.lower() in SUFFIXES]
         if not files:
             raise ConfigError(f"{path}: holds no file of a known kind ({', '.join(SUFFIXES)})")
         return [(file, {}, None) for file in files]

@@ -18,34 +18,6 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Grid:
-    """The pixels of a force map."""
-
-    columns: int
-    rows: int
-    pitch: float
-    """Distance of neighbours [m]."""
-
-    def place(self, number: int) -> tuple[float, float]:
-        """Return the place [m] of a curve, row by row."""
-        row, column = divmod(number, self.columns)
-        return column * self.pitch, row * self.pitch
-
-    def metadata(self) -> dict[str, float]:
-        """Return centre, size and shape by the names of afmformats."""
-        pixels = {"x": self.columns, "y": self.rows}
-        return {
-            name: value
-            for axis, number in pixels.items()
-            for name, value in (
-                (f"grid center {axis}", (number - 1) / 2 * self.pitch),
-                (f"grid size {axis}", number * self.pitch),
-                (f"grid shape {axis}", number),
-            )
-        }
-
-
-@dataclass(frozen=True)
 class Recording:
     """Height of the cantilever's base [m], falling and rising again, and force [N]."""
 
@@ -55,8 +27,6 @@ class Recording:
     sensitivity: float = 50e-9
     place: tuple[float | str, float | str] | None = None
     """Where on the sample it was measured [m]."""
-    grid: Grid | None = None
-    """The map that it belongs to."""
 
     @property
     def segment(self) -> NDArray[np.uint8]:
@@ -112,8 +82,6 @@ def _exported(path: Path, recording: Recording, number: int):  # type: ignore[no
     }
     if recording.place is not None:
         metadata |= dict(zip(("position x", "position y"), recording.place, strict=True))
-    if recording.grid is not None:
-        metadata |= recording.grid.metadata()
     return AFMForceDistance(data, metadata)
 
 
@@ -121,13 +89,6 @@ def jpk(path: Path, *recordings: Recording) -> None:
     """Write a JPK archive: properties, and channels of big-endian integers; several make a map."""
     with zipfile.ZipFile(path, "w") as archive:
         general = "file-format-version=0.5\n"
-        if (grid := recordings[0].grid) is not None:
-            pattern = "force-scan-map.position-pattern.grid"
-            short = {"center x": "xcenter", "center y": "ycenter"}
-            short |= {"size x": "ulength", "size y": "vlength"}
-            short |= {"shape x": "ilength", "shape y": "jlength"}
-            for name, value in grid.metadata().items():
-                general += f"{pattern}.{short[name.removeprefix('grid ')]}={value!r}\n"
         if len(recordings) > 1:
             archive.writestr("header.properties", general)
             archive.writestr("index/", "")
