@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Mapping, Sequence
-from fnmatch import fnmatchcase
 from itertools import compress
 from pathlib import Path
 from typing import NamedTuple
@@ -28,7 +27,6 @@ _NORMAL = 1.4826
 """Standard deviation of a normal distribution over its median absolute deviation."""
 _LIMIT = 3.5
 """Distance from the median, in these deviations, beyond which a curve stands out."""
-_HEADS = ("curve", "name", "file")
 
 
 class Names(NamedTuple):
@@ -38,19 +36,14 @@ class Names(NamedTuple):
     reasons: Mapping[str, str]
     """What follows each name on its line."""
 
-    def entries(self, rows: Sequence[Row]) -> list[str]:
-        """Return the name in the list that means each curve: its name or its end, or a pattern.
+    def entry(self, row: Row) -> str:
+        """Return the name in the list that means a curve: its own, or the end of it; else none.
 
-        The end follows a slash: ``a.csv`` means ``day/a.csv``. Without any it is empty.
+        The end follows a slash: ``a.csv`` means ``day/a.csv``.
         """
-        patterns, found = [name for name in self.reasons if re.search(r"[*?[]", name)], []
-        for row in rows:
-            path = row.name.replace("\\", "/")
-            starts = [0, *(match.end() for match in re.finditer("/", path))]
-            ends = (path[start:] for start in starts if path[start:] in self.reasons)
-            fitting = (name for name in patterns if fnmatchcase(f"/{path}", f"*/{name}"))
-            found.append(next(ends, None) or next(fitting, ""))
-        return found
+        parts = row.name.replace("\\", "/").split("/")
+        ends = ("/".join(parts[start:]) for start in range(len(parts)))
+        return next((end for end in ends if end in self.reasons), "")
 
 
 def read_names(path: Path | None) -> Names | None:
@@ -64,15 +57,12 @@ def read_names(path: Path | None) -> Names | None:
     if path is None:
         return None
     try:
-        rows = [row for row in csv.reader(read_text(path).splitlines()) if row]
+        lines = [line for line in read_text(path).splitlines() if not line.startswith("#")]
+        rows = [[*map(str.strip, row)] for row in csv.reader(lines)]
     except (OSError, ValueError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or error
         raise StorageError(f"{path}: cannot be read as a list of curves ({reason})") from None
-    reasons = {}
-    for first, *others in rows:
-        name = first.strip().replace("\\", "/")
-        if name and name.lower() not in _HEADS and not name.startswith("#"):
-            reasons[name] = ", ".join(cell.strip() for cell in others)
+    reasons = {row[0].replace("\\", "/"): ", ".join(row[1:]) for row in rows if any(row)}
     return Names(path, reasons)
 
 
@@ -112,23 +102,21 @@ def judge(
     accepted ones if there is one, and obeys all rules; if there are none, if a model describes it.
     Outliers stay accepted.
     """
-    checks, notes, entries = [Rule(text) for text in rules], [], []
-    for names in (accepted, rejected):
-        entries.append([] if names is None else names.entries(rows))
-        if names is not None:
-            used = {*entries[-1]}
-            notes += [
-                f"{names.path} names {shown(name)}, which is none of the curves"
-                for name in names.reasons
-                if name not in used
-            ]
-    for number, row in enumerate(rows):
+    checks, notes = [Rule(text) for text in rules], []
+    for names in filter(None, (accepted, rejected)):
+        used = {names.entry(row) for row in rows}
+        notes += [
+            f"{names.path} names {shown(name)}, which is none of the curves"
+            for name in names.reasons
+            if name not in used
+        ]
+    for row in rows:
         if not row.is_fitted:
             row.reason = row.status
-        elif rejected is not None and (entry := entries[1][number]):
+        elif rejected and (entry := rejected.entry(row)):
             why = rejected.reasons[entry]
             row.reason = f"in {rejected.path.name}{f': {why}' if why else ''}"
-        elif accepted is not None and not entries[0][number]:
+        elif accepted and not accepted.entry(row):
             row.reason = f"not in {accepted.path.name}"
         elif not checks and row.fit["verdict"] == Verdict.UNDESCRIBED.value:
             row.reason = row.fit["comparison"]

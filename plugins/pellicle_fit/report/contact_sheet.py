@@ -80,5 +80,5 @@ def _numbers(row: Row) -> str:
         for name, symbol in SHOWN.items()
         if (e := row.estimates.get(name)) is not None and not (e.held and not e.value)
     ]
-    ratio = decimal(row.numbers["chi_squared"] / row.numbers["points"], 3)
-    return ", ".join([*texts, f"R² {row.numbers['r_squared']:.4f}", f"χ²/n {ratio}"])
+    ratio = decimal(row.fit["chi_squared"] / row.curve["points"], 3)
+    return ", ".join([*texts, f"R² {row.fit['r_squared']:.4f}", f"χ²/n {ratio}"])
