@@ -24,12 +24,7 @@ def checked_force(indenter: object, method: Method, depth: Array, *solid: float)
     name = f"{family} {getattr(indenter, 'type_name', type(indenter).__name__)!r}"
     given = depth.view()
     given.flags.writeable = False
-    try:
-        curve = getattr(indenter, method)(given, *solid)
-    except Exception as error:
-        # The command line prints the note instead of a traceback.
-        error.add_note(f"{name} failed in {method}()")
-        raise
+    curve = getattr(indenter, method)(given, *solid)
     force: Any = getattr(curve, "force", None)
     is_array = type(force) is np.ndarray and force.dtype == np.float64
     if not is_array or force.shape != depth.shape:

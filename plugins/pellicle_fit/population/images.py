@@ -32,7 +32,7 @@ def force_maps(rows: Sequence[Row]) -> tuple[dict[str, xr.Dataset], list[str]]:
     for name in dict.fromkeys(row.map for row in rows if row.site is not None):
         part = [row for row in rows if row.site is not None and row.map == name]
         places = np.array([row.site for row in part]).T
-        if np.unique(places, axis=1).shape[1] < 2:
+        if np.unique(places, axis=1).shape[1] < 2 or not any(row.accepted for row in part):
             continue
         x, y = map(_pixels, places)
         if x is None or y is None or x.size * y.size > _EMPTIEST * len(part):
@@ -95,7 +95,7 @@ def _pixels(values: Array) -> Array | None:
     # Where most neighbours are missing, the least gap is the pitch; else noise makes it too small.
     for guess in (float(np.median(gaps)), float(gaps.min())):
         count = round(span / guess)
-        pixels = float(centres[0]) + span / count * np.arange(count + 1)
+        pixels: Array = float(centres[0]) + span / count * np.arange(count + 1)
         if np.abs(values - pixels[_nearest(pixels, values)]).max() <= _OFF * span / count:
             return pixels
     return None

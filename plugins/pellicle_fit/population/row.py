@@ -57,7 +57,7 @@ class Row:
     """File of the force map that it belongs to."""
     site: Site | None = None
     """Where on the map it was measured."""
-    status: str = "not run"
+    status: str = ""
     """`FITTED`, or why there is no fit."""
     fit: dict[str, Any] = field(default_factory=dict)
     """JSON data of the fit, with r_squared, indentation [m] and largest_force [N]."""

@@ -40,14 +40,9 @@ def _page(rows: Sequence[Row], caption: str, figure: Figure) -> None:
         _curve(row, axes)
     for axes in cells[len(rows) :]:
         axes.set_axis_off()
-    # Nothing is drawn of these but the legend.
-    cells[-1].plot([], [], "o", **_DOTS, label="data")
-    cells[-1].plot([], [], "C0", label="fit")
-    for state, colour in _COLOURS.items():
-        cells[-1].fill_between([], [], facecolor="none", edgecolor=colour, label=state)
-    title = f"{caption}; each frame spans the range of its curve; hollow points: not accepted"
-    above: dict[str, Any] = {"loc": "outside upper center", "ncols": 6, "title_fontsize": 6}
-    figure.legend(title=title, fontsize=5, **above)
+    colours = "accepted: grey, stands out: orange, rejected: red, not fitted: black"
+    title = f"{caption}; data: points, hollow if not accepted; fit: line; frames of the range of "
+    figure.suptitle(f"{title}each curve, {colours}", fontsize=5)
 
 
 def _curve(row: Row, axes: Axes) -> None:

@@ -195,15 +195,13 @@ class Stops(Executor):
 
 @pytest.mark.slow
 def test_interrupted(tmp_path: Path) -> None:
-    """What was finished is in the table, and the rest is said not to have run."""
+    """What was finished is kept."""
     curves = {str(seed): curve(seed) for seed in range(3)}
     config = pl.FitConfig.merged(**BEAD, rivals=(), fix={"tension": 0})
     sources = config.sources(curves)
     stops = pl.FitConfig.merged(config, executor=Stops())
     with pytest.raises(KeyboardInterrupt):
         fit_sources(stops, sources, tmp_path, progress=False)
-    rows = json.loads((tmp_path / "fits.json").read_text(encoding="utf-8"))["curves"]
-    assert [row["status"] for row in rows] == ["fitted", "not run", "not run"]
     fits = fit_sources(config, sources, tmp_path, progress=False)
     assert (fits.resumed, fits.failed) == (1, 0)
 
