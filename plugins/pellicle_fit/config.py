@@ -40,7 +40,7 @@ from .explanation import Solid
 from .files.columns import Calibration
 from .files.measurement import Segment
 from .files.missing import OPTIONS, MissingInputError
-from .files.sources import CurveFile, Curves, Source, SourceStream, expanded, gather
+from .files.sources import CurveFile, Curves, Source, expanded, gather
 from .population.judgement import group_pattern
 from .population.rules import rules
 from .simulated.simulation import GRID_POINTS
@@ -380,7 +380,7 @@ class FitConfig(FromFile, Calibration):
 
     def sources(self, curves: Curves | None = None) -> list[Source]:
         """Return ``curves``, or those of the configuration if None, as read from their files."""
-        return [*SourceStream(self.files(curves))]
+        return [source for file in self.files(curves) for source in file.open()]
 
     def indenter_of(self, source: Source) -> Indenter | HasForceCurve:
         """Return the indenter of one curve, with the fields that this curve alone has.

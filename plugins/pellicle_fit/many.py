@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
 from importlib.metadata import version
-from operator import length_hint
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +22,7 @@ from pellicle.errors import ConfigError, PellicleError
 from pellicle.files import atomic_write, check_writable, write_json
 
 from .config import FitConfig
-from .files.sources import Curves, Source, SourceStream
+from .files.sources import Curves, Source
 from .population.fits import ManyFits, table
 from .population.images import force_maps
 from .population.judgement import group_of, group_pattern, judge, read_names
@@ -164,7 +164,8 @@ def _fit(
     """Return the fits of the arguments of `fit_many`."""
     config = FitConfig.merged(config, **options)
     folder = None if directory is None else Path(directory)
-    return fit_sources(config, SourceStream(config.files(curves)), folder, progress=progress)
+    stream = chain.from_iterable(file.open() for file in config.files(curves))
+    return fit_sources(config, stream, folder, progress=progress)
 
 
 def fit_sources(
@@ -192,11 +193,11 @@ def fit_sources(
         if directory is not None:
             check_writable(directory / "fits.h5")
             check_writable(directory / _JOURNAL / "fit.json")
-        with BatchProgress(length_hint(sources), 0, progress) as bar:
+        with BatchProgress(0, 0, progress) as bar:
             for batch in _batches(sources):
                 made = [_task(config, source, directory, fits, progress) for source in batch]
                 tasks = [task for task in made if task is not None]
-                bar.expect(length_hint(sources), len(batch) - len(tasks))
+                bar.expect(len(fits.rows), len(batch) - len(tasks))
                 mapped(config.executor, work, tasks, dict, _keep, bar)
         notes = judge(fits.rows, config.accept, *lists)
         fits.maps, of_maps = force_maps(fits.rows)

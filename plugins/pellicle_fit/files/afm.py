@@ -119,7 +119,7 @@ def _curve(
             columns = {role: c._replace(values=c.values[rows]) for role, c in columns.items()}
         own = Calibration(spring_constant=stiffness, speed=calibration.speed)
         curve, site = from_columns(columns, own), _site(metadata)
-    origin = replace(curve.origin, sensitivity=known["sensitivity"], library="afmformats")
+    origin = curve.origin._replace(sensitivity=known["sensitivity"], library="afmformats")
     return replace(curve, origin=origin, site=site)
 
 

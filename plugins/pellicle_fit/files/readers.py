@@ -39,7 +39,7 @@ def read(path: Path, calibration: Calibration | None = None, segment: str = "app
 
     def curve(label: str) -> Measurement:
         measured = readers[label]()
-        origin = replace(measured.origin, file=str(path), curve=label or None, sha256=digest)
+        origin = measured.origin._replace(file=str(path), curve=label or None, sha256=digest)
         return replace(measured, origin=origin)
 
     return {label: partial(curve, label) for label in readers}

@@ -62,8 +62,8 @@ class CurveFile(NamedTuple):
     segment: str
     calibration: Calibration
 
-    def open(self) -> tuple[list[str], Iterator[Source]]:
-        """Return the labels of its curves, and the curves, each read only as it is taken."""
+    def open(self) -> Iterator[Source]:
+        """Yield the curves, each read only as it is taken."""
         fields, site, path = dict(self.fields), None, str(self.path)
         settings = {
             name: fields.pop(name, getattr(self.calibration, name))
@@ -83,41 +83,18 @@ class CurveFile(NamedTuple):
                 arrays |= {"stiffness": calibration.spring_constant, "speed": calibration.speed}
                 readers = {"": partial(Measurement, **arrays)}
         except PellicleError as error:
-            return [""], iter([Source(path, error, fields, path, self.group, path)])
-
-        def sources() -> Iterator[Source]:
-            whole = str(self.table) if site and self.table else path
-            for label, reader in readers.items():
-                curve: Measurement | PellicleError
-                try:
-                    curve = reader()
-                    curve = replace(curve, site=site or curve.site)
-                except PellicleError as error:
-                    curve = error
-                name = f"{path}:{label}" if label else path
-                yield Source(name, curve, fields, path, self.group, whole)
-
-        return [*readers], sources()
-
-
-class SourceStream:
-    """The curves of many files, which are opened one after the other.
-
-    ``operator.length_hint`` counts a file that has not been opened yet as one curve.
-    """
-
-    def __init__(self, files: Sequence[CurveFile]) -> None:
-        self._files, self._count = files, len(files)
-
-    def __length_hint__(self) -> int:
-        return self._count
-
-    def __iter__(self) -> Iterator[Source]:
-        self._count = len(self._files)
-        for file in self._files:
-            labels, sources = file.open()
-            self._count += len(labels) - 1
-            yield from sources
+            yield Source(path, error, fields, path, self.group, path)
+            return
+        whole = str(self.table) if site and self.table else path
+        for label, reader in readers.items():
+            curve: Measurement | PellicleError
+            try:
+                curve = reader()
+                curve = replace(curve, site=site or curve.site)
+            except PellicleError as error:
+                curve = error
+            name = f"{path}:{label}" if label else path
+            yield Source(name, curve, fields, path, self.group, whole)
 
 
 def gather(
@@ -229,11 +206,12 @@ def read_curves(
     """
     curves: dict[str, Measurement] = {}
     errors: list[PellicleError] = []
-    for source in SourceStream(gather(path, segment, Calibration(**calibration), {})):
-        if isinstance(source.curve, Measurement):
-            curves[source.name] = source.curve
-        else:
-            errors.append(source.named(source.curve))
+    for file in gather(path, segment, Calibration(**calibration), {}):
+        for source in file.open():
+            if isinstance(source.curve, Measurement):
+                curves[source.name] = source.curve
+            else:
+                errors.append(source.named(source.curve))
     if not curves:
         raise ConfigError("\n".join(map(str, errors)))
     for error in errors:
