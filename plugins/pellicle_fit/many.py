@@ -299,11 +299,11 @@ def _identity(config: FitConfig, source: Source) -> str:
 
 def _stored(path: Path | None) -> dict[str, Any] | None:
     """Return the fit that a file stores; None if it stores none."""
-    content = None
     if path is not None:
         with suppress(OSError, ValueError):
-            content = json.loads(path.read_text(encoding="utf-8"))
-    return content if isinstance(content, dict) else None
+            content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+            return content
+    return None
 
 
 def _failure(error: Exception, name: str) -> str:

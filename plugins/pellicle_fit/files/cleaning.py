@@ -17,8 +17,6 @@ from .passes import first_out, passes
 
 _FEWEST, _FEW = 8, 30
 """Least number of points of a fit, and the least that need no warning."""
-_RATIO_LIMIT = 1e6
-"""Largest ratio of the stiffnesses of cantilever and curve, either way, that is fitted."""
 _SIGNIFICANT = 4.0
 """Standard errors that the rise of the force must exceed."""
 
@@ -36,11 +34,9 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
             raise ConfigError(
                 f"has {values.size} values and position {z.size}; give one for each position", name
             )
-    messages = list(curve.messages)
-    finite = np.isfinite(z) & np.isfinite(f)
+    messages, finite = [*curve.messages], np.isfinite(z) & np.isfinite(f)
     if missing := int(np.sum(~finite)):
-        text = f"{missing} of {z.size} rows hold no finite number and were left out"
-        messages.append(Note(text))
+        messages.append(Note(f"{missing} of {z.size} rows hold no finite number and were left out"))
     z, f, t = z[finite], f[finite], None if t is None else t[finite]
     if t is not None and not grows(t):
         raise ConfigError(
@@ -50,15 +46,15 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
     _check_count(z.size, "the curve")
     if not np.ptp(z):
         raise ConfigError(f"is {z[0]:g} m in every row; give a curve that moves", "position")
-    base = z if curve.stiffness is None else _base(z, f, curve.stiffness)
+    base = z if curve.stiffness is None else z + f / curve.stiffness
     _check_rise(base, f)
     if t is None and curve.speed is not None:
         t = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(base)))]) / curve.speed
     first, last, unloading = _rows(base, segment)
     if left_out := z.size - 1 - last + first:
-        text = f"rows {first + 1} to {last + 1} are the {segment}; the other {left_out} were left "
-        messages.append(Note(f"{text}out"))
-    back = [p for p in passes(base) if not p.inward and p.first >= last]
+        text = f"rows {first + 1} to {last + 1} are the {segment}; the other {left_out} were"
+        messages.append(Note(f"{text} left out"))
+    back = [one for one in passes(base) if not one.inward and one.first >= last]
     others = back if segment == "approach" else []
     if segment == "retract":
         messages.append("a retract is fitted as if nothing adhered: compare with the approach")
@@ -66,8 +62,6 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
     _check_count(rows.size, "it" if segment == "both" else f"its {segment}")
     if rows.size < _FEW:
         messages.append(f"only {rows.size} points: expect wide intervals")
-    if (count := np.unique(z[rows]).size) < _FEWEST:
-        raise ConfigError(f"has {count} different values; give at least {_FEWEST}", "position")
     return replace(
         curve,
         position=z[rows],
@@ -87,19 +81,6 @@ def _array(values: ArrayLike, name: str) -> Array:
     raise ConfigError(
         f"{shown(values)} is not a list of real numbers; give SI values, one curve at a time", name
     )
-
-
-def _base(z: Array, f: Array, stiffness: float) -> Array:
-    """Return the position of the cantilever's base [m]."""
-    slope = float(np.ptp(f)) / float(np.ptp(z))
-    if not 1 / _RATIO_LIMIT <= slope / stiffness <= _RATIO_LIMIT:
-        raise ConfigError(
-            f"of {readable(stiffness, 'N/m', 3)} is far from the {readable(slope, 'N/m', 3)} of "
-            "this curve itself, so that deflection and position differ by orders of magnitude; "
-            "give that of the cantilever with its unit",
-            "spring_constant",
-        )
-    return z + f / stiffness
 
 
 def _check_count(count: int, which: str) -> None:

@@ -130,11 +130,10 @@ def gather(
     gathered = []
     for number, (file, listed, table) in enumerate(files):
         group = listed.get(label.lower(), "")
-        if not is_field:
-            listed.pop(label.lower(), None)
-        fields = {name: values[number] for name, values in per_file.items()} | listed
+        given = {name: values[number] for name, values in per_file.items()}
+        given |= {name: v for name, v in listed.items() if is_field or name != label.lower()}
         numbers = curves[file] if isinstance(curves, Mapping) else None
-        gathered.append(CurveFile(file, numbers, fields, group, table, segment, calibration))
+        gathered.append(CurveFile(file, numbers, given, group, table, segment, calibration))
     return gathered
 
 
@@ -152,8 +151,7 @@ def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
 def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
     """Return the files that a path stands for, each with its fields in a list of files, and that.
 
-    A list of files is a table with a header such as ``file,radius [um]``; its values get their
-    units, and empty cells are left out.
+    A list is a table with a header such as ``file,radius [um]``; its empty cells are left out.
     """
     if path.is_dir():
         files = [file for file in sorted(path.glob("[!.]*")) if file.suffix.lower() in SUFFIXES]
@@ -164,11 +162,10 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
     if cells is None or FILE not in cells.names:
         return [(path, {}, None)]
     listed: list[tuple[Path, dict[str, str], Path | None]] = []
+    named = [(name, head.unit) for name, head in zip(cells.names, cells.heads, strict=True)]
     for row in cells.rows:
-        named = zip(cells.names, cells.heads, map(str.strip, row), strict=False)
-        fields = {
-            name: f"{cell} {head.unit}".strip() for name, head, cell in named if cell and head.text
-        }
+        pairs = zip(named, map(str.strip, row), strict=False)
+        fields = {name: f"{cell} {unit}".strip() for (name, unit), cell in pairs if cell and name}
         if FILE not in fields:
             raise ConfigError(f"{path}: has a row without a file; name one in each row")
         listed.append((path.parent / fields.pop(FILE), fields, path))

@@ -37,23 +37,14 @@ class Names(NamedTuple):
     """What follows each name on its line."""
 
     def entry(self, row: Row) -> str:
-        """Return the name in the list that means a curve: its own, or the end of it; else none.
-
-        The end follows a slash: ``a.csv`` means ``day/a.csv``.
-        """
+        """Return the name in the list that means a curve: ``a.csv`` means ``day/a.csv`` too."""
         parts = row.name.replace("\\", "/").split("/")
         ends = ("/".join(parts[start:]) for start in range(len(parts)))
         return next((end for end in ends if end in self.reasons), "")
 
 
 def read_names(path: Path | None) -> Names | None:
-    """Return the list of curves in a text file: a name on each line, and after a comma a reason.
-
-    Raises
-    ------
-    StorageError
-        The file cannot be read.
-    """
+    """Return the list of curves in a text file: a name on each line, and after a comma a reason."""
     if path is None:
         return None
     try:
@@ -69,20 +60,14 @@ def read_names(path: Path | None) -> Names | None:
 def group_pattern(group_by: str) -> re.Pattern[str] | None:
     """Return the regular expression of a pattern of file names; None if it names a column.
 
-    ``{group}`` and ``*`` stand for any characters but slashes, ``?`` for one of them.
-
-    Raises
-    ------
-    ConfigError
-        The pattern has more than one group.
+    ``{group}`` and ``*`` stand for any characters but slashes.
     """
     if GROUP not in group_by:
         return None
     if group_by.count(GROUP) > 1:
         raise ConfigError(f"{shown(group_by)} has {GROUP} twice; write it once", "group_by")
-    parts = {GROUP: "(?P<group>[^/]+?)", "*": "[^/]*", "?": "[^/]"}
-    pieces = re.split(r"(\{group\}|\*|\?)", group_by.replace("\\", "/"))
-    return re.compile("(?:.*/)?" + "".join(parts.get(p, re.escape(p)) for p in pieces))
+    text = re.escape(group_by.replace("\\", "/")).replace(r"\*", "[^/]*")
+    return re.compile("(?:.*/)?" + text.replace(re.escape(GROUP), "(?P<group>[^/]+?)"))
 
 
 def group_of(pattern: re.Pattern[str] | None, file: str, column: str) -> str:
