@@ -40,8 +40,6 @@ _DECADE = 10.0
 """Greatest over least value beyond which an axis is logarithmic."""
 _WIDTH, _AROUND = 3.7, 0.75
 """Width of a panel, and its height beside that of the image [inch]."""
-_EXTREMES = 1, 99
-"""Percentiles between which the colours change, so that one odd curve does not fade the rest."""
 
 
 def bars(rows: Sequence[Row]) -> list[Chart]:
@@ -145,10 +143,9 @@ def map_figure(
     It is grey where there is no value.
     """
     names = [name for name in (*SHOWN, CONTACT_HEIGHT) if name in images]
-    (across, along), sides = _pitches(images), [images[side].values for side in "xy"]
-    ends = zip(sides, (across, along), strict=True)
-    edges = np.ravel([(side[0] - pitch / 2, side[-1] + pitch / 2) for side, pitch in ends])
-    length, length_unit = axis_unit(edges, "m")
+    across, along = _pitches(images)
+    length, unit = axis_unit(np.concatenate([images[side].values for side in "xy"]), "m")
+    sides = {side: (side, images[side].values * length, {"units": unit}) for side in "xy"}
 
     def draw(figure: Figure) -> None:
         figure.suptitle(title, fontsize="medium")
@@ -158,17 +155,16 @@ def map_figure(
             heads = {name.replace("_", " "): images[name], "width of its 95 % interval": width}
             for axes, (head, image) in zip(pair, heads.items(), strict=True):
                 scale, unit = axis_unit(image.values, images[name].attrs["units"])
-                values = image.values * scale
-                finite = values[np.isfinite(values)]
-                low, high = np.percentile(finite if finite.size else (0.0, 1.0), _EXTREMES)
-                at = {"origin": "lower", "extent": edges * length, "vmin": low, "vmax": high}
-                shown = axes.imshow(values, **at)
-                axes.set_facecolor("0.8")
-                axes.set(xlabel=f"x [{length_unit}]", ylabel=f"y [{length_unit}]")
+                beside = {"label": unit, "shrink": 0.8}
+                # One odd curve does not fade the rest.
+                robust: dict[str, Any] = {"robust": True, "center": False, "extend": "both"}
+                shown = (image * scale).assign_coords(sides)
+                shown.plot.imshow(ax=axes, cbar_kwargs=beside, **robust)
+                # Pixels of a line of curves have no height.
+                axes.set(facecolor="0.8", aspect="equal" if min(image.shape) > 1 else "auto")
                 axes.set_title(head, fontsize="medium")
-                figure.colorbar(shown, ax=axes, label=unit, extend="both", shrink=0.8)
 
-    ratio = np.clip(np.ptp(edges[2:]) / np.ptp(edges[:2]), 0.2, 3.0)
+    ratio = np.clip(images["y"].size * along / (images["x"].size * across), 0.2, 3.0)
     height = (_WIDTH - 1.3) * float(ratio) + _AROUND
     return draw, (2 * _WIDTH, height * len(names) + 0.4)
 
