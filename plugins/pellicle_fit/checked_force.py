@@ -15,10 +15,7 @@ Method = Literal["force_curve", "layer_force_curve"]
 def checked_force(indenter: object, method: Method, depth: Array, *solid: float) -> Array:
     """Return F/E* [m²] of an indenter at depths of shape (n,) [m], on a solid or on a layer.
 
-    Raises
-    ------
-    PluginError
-        It is not an array of that shape, finite at every finite depth.
+    It has to be an array of that shape, finite at every finite depth.
     """
     family = getattr(indenter, "family", "component")
     name = f"{family} {getattr(indenter, 'type_name', type(indenter).__name__)!r}"

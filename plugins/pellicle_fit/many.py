@@ -179,11 +179,6 @@ def fit_sources(
     """Fit each curve that is not fitted yet, and write the files.
 
     Curves are read in batches, so that a population does not have to fit in memory.
-
-    Raises
-    ------
-    StorageError
-        The folder cannot be written, or another process uses it.
     """
     from .report.population import save_population
 

@@ -15,13 +15,7 @@ from .effect import Effect
 
 
 def refuse_broken(effects: Iterable[Effect]) -> None:
-    """Ask strangers' effects the rules of the kit that balance no forces.
-
-    Raises
-    ------
-    PluginError
-        An effect breaks one of them.
-    """
+    """Ask strangers' effects the rules of the kit that balance no forces."""
     installed = registry().components[Effect.family].values()
     shipped = {entry.component for entry in installed if entry.origin.is_own}
     for effect in effects:

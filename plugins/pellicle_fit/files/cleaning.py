@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 
@@ -13,7 +14,7 @@ from pellicle.errors import ConfigError, shown
 from pellicle.units import readable
 
 from .measurement import Measurement, Note, Segment, grows
-from .passes import first_out, passes
+from .passes import Pass, first_out, passes
 
 _FEWEST, _FEW = 8, 30
 """Least number of points of a fit, and the least that need no warning."""
@@ -50,12 +51,12 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
     _check_rise(base, f)
     if t is None and curve.speed is not None:
         t = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(base)))]) / curve.speed
-    first, last, unloading = _rows(base, segment)
+    found = passes(base)
+    first, last, unloading = _rows(base, found, segment)
     if left_out := z.size - 1 - last + first:
         text = f"rows {first + 1} to {last + 1} are the {segment}; the other {left_out} were"
         messages.append(Note(f"{text} left out"))
-    back = [one for one in passes(base) if not one.inward and one.first >= last]
-    others = back if segment == "approach" else []
+    others = [one for one in found if segment == "approach" and one.first >= last]
     if segment == "retract":
         messages.append("a retract is fitted as if nothing adhered: compare with the approach")
     rows = np.arange(first, last + 1)
@@ -113,9 +114,8 @@ def _check_rise(z: Array, f: Array) -> None:
         )
 
 
-def _rows(base: Array, segment: Segment) -> tuple[int, int, int]:
+def _rows(base: Array, found: Sequence[Pass], segment: Segment) -> tuple[int, int, int]:
     """Return the first and the last row of a segment, and the first of unloading."""
-    found = passes(base)
     if len(found) > 2:
         raise ConfigError(
             f"goes to and fro {len(found)} times: several curves, or rows out of order; give one "

@@ -51,13 +51,13 @@ def column_map(value: object) -> dict[str, str] | None:
     roles = (*NAMES, LABEL)
     found: dict[str, tuple[str, str]] = {}
     for column, text in table.items():
-        role, _, unit = " ".join(str(text).split()).partition(" ")
+        role, *unit = str(text).split() or [""]
         role = role.lower()
         if role not in roles:
             raise ConfigError(f"{shown(role)} is not a role; {nearest(role, roles)}", str(column))
         if role in found:
             raise ConfigError(f"{found[role][0]!r} and {column!r} are both {role}")
-        found[role] = str(column), f"{role} {unit}".strip() if role != LABEL else role
+        found[role] = str(column), " ".join([role, *unit] if role != LABEL else [role])
     return dict(found[role] for role in roles if role in found)
 
 

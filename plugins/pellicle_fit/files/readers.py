@@ -26,12 +26,8 @@ SUFFIXES = (*TEXT, *_TREES, *afm.SUFFIXES)
 def read(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Readers:
     """Return functions that read the curves of a file, and raise what this one does.
 
-    A table (CSV, TSV, semicolons, spaces) has a header such as ``position [um],force [nN]``; cells
-    that hold no number are NaN, columns of other names are ignored, and rows that differ in a
-    column ``curve`` are different curves.  An HDF5 file has datasets of the same names with an
-    attribute ``units``, or groups of them, one for each curve; a pellicle result is such a file.
-    The columns of the calibration name other columns of a table, and the arrays of any HDF5 or
-    MATLAB file.  Any other file is read by afmformats, which then selects the ``segment``.
+    The columns of the calibration name those of a table, and the arrays of an HDF5 or MATLAB file.
+    What is no such file is read by afmformats; of its labels the ``segment`` is selected.
     """
     readers = _readers(path, calibration or Calibration(), segment)
     with path.open("rb") as file:

@@ -107,10 +107,9 @@ def gather(
 ) -> list[CurveFile]:
     """Return all files, in order.
 
-    Each list in ``per_file`` has one value for each file (or for each curve that is given by its
-    numbers); spring_constant and sensitivity among them, and in a table that lists files, replace
-    those of the calibration.  In such a table, the columns x and y are the place on the sample, and
-    the column ``label`` holds the group of each curve, and may be a field of the indenter as well.
+    Each list in ``per_file`` has one value for each file.  In a table that lists files, the columns
+    x and y are the place on the sample, and the column ``label`` holds the group of each curve; it
+    may be a field of the indenter as well.
     """
     files: list[tuple[Any, dict[str, str], Path | None]]
     if isinstance(curves, Mapping):

@@ -163,22 +163,21 @@ def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, 
     mapped = mapped or {name: name for name in cells.names if name in (*NAMES, LABEL)}
     indices = {text: index_of(heads, name) for name, text in mapped.items()}
     roles = {text: index for text, index in indices.items() if index is not None}
-    label = roles.pop(LABEL, None)
-    curves: dict[str, list[list[str]]] = {} if rows else {"": []}
-    for row in rows:
+    label, columns = roles.pop(LABEL, None), []
+    for role, index in roles.items():
+        name, _, unit = role.partition(" ")
+        head, texts = heads[index], [row[index].strip() for row in rows]
+        values = _numbers(texts, separator, f"{path}: column {head.name}")
+        columns.append((name, unit or head.unit, values, head.name))
+    curves: dict[str, list[int]] = {} if rows else {"": []}
+    for number, row in enumerate(rows):
         # Without other columns, a column of labels is not one of curves.
         text = row[label].strip() if roles and label is not None else ""
-        curves.setdefault(text, []).append(row)
-    tables: dict[str, Columns] = {}
-    for text, own in curves.items():
-        columns = {}
-        for role, index in roles.items():
-            name, _, unit = role.partition(" ")
-            head, texts = heads[index], [row[index].strip() for row in own]
-            values = _numbers(texts, separator, f"{path}: column {head.name}")
-            columns[name] = Channel(unit or head.unit, values, head.name)
-        tables[text] = columns
-    return tables
+        curves.setdefault(text, []).append(number)
+    return {
+        text: {role: Channel(unit, values[own], name) for role, unit, values, name in columns}
+        for text, own in curves.items()
+    }
 
 
 def rises(path: Path, cells: Cells, place: str, signal: str) -> bool:

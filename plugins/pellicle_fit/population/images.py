@@ -95,7 +95,7 @@ def _pixels(values: Array) -> Array | None:
     # Where most neighbours are missing, the least gap is the pitch; else noise makes it too small.
     for guess in (float(np.median(gaps)), float(gaps.min())):
         count = round(span / guess)
-        pixels: Array = float(centres[0]) + span / count * np.arange(count + 1)
+        pixels = float(centres[0]) + span / count * np.arange(count + 1.0)
         if np.abs(values - pixels[_nearest(pixels, values)]).max() <= _OFF * span / count:
             return pixels
     return None

@@ -40,13 +40,7 @@ def units() -> dict[str, str]:
 
 
 class Rule:
-    """One or two comparisons of expressions and quantities.
-
-    Raises
-    ------
-    ConfigError
-        The text is not a comparison, names something unknown, or compares different dimensions.
-    """
+    """One or two comparisons of expressions and quantities; names and dimensions are checked."""
 
     def __init__(self, text: str) -> None:
         rule, unit_of = shown(text), units()

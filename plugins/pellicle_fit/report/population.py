@@ -177,13 +177,7 @@ def _pitches(images: xr.Dataset | xr.DataArray) -> tuple[float, float]:
 
 
 def save_population(fits: ManyFits, directory: Path, formats: Sequence[str]) -> tuple[Path, ...]:
-    """Write contact sheet, distributions and the images in ``maps``, and return the files.
-
-    Raises
-    ------
-    StorageError
-        A file cannot be written.
-    """
+    """Write contact sheet, distributions and the images in ``maps``, and return the files."""
     files = [save_pages(sheets(fits.rows), directory / "fits-curves.pdf", PAGE)]
     if charts := distributions(fits.rows):
         draw, size = figure_of(charts)
