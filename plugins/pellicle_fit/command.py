@@ -219,14 +219,13 @@ def _fit(
     from pellicle_fit.many import fit_sources
     from pellicle_fit.problem import problem
 
-    progress, files = not quiet and sys.stderr.isatty(), config.files()
-    stream = chain.from_iterable(file.open() for file in files)
+    progress, stream = not quiet and sys.stderr.isatty(), config.sources()
     sources, name, title = None, "pool", "Pooled fit"
     if config.pool:
         sources = [*stream]
-    elif [file.path for file in files] == [config.curves[0]]:
+    else:
         first = [*islice(stream, 2)]
-        if [source.name for source in first] == [str(files[0].path)]:
+        if [source.name for source in first] == [str(config.curves[0])]:
             sources, title = first, config.curves[0].stem
             name = f"{title}-fit"
         stream = chain(first, stream)

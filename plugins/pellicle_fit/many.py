@@ -9,7 +9,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
 from importlib.metadata import version
-from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -109,7 +108,9 @@ def fit_many(
     StorageError
         The folder cannot be used.
     """
-    return table(_fit(curves, config, directory, progress, options).rows)
+    config = FitConfig.merged(config, **options)
+    folder = None if directory is None else Path(directory)
+    return table(fit_sources(config, config.sources(curves), folder, progress=progress).rows)
 
 
 def fit_map(
@@ -144,7 +145,9 @@ def fit_map(
     StorageError
         The folder cannot be used.
     """
-    fits = _fit(curves, config, directory, progress, options)
+    config = FitConfig.merged(config, **options)
+    folder = None if directory is None else Path(directory)
+    fits = fit_sources(config, config.sources(curves), folder, progress=progress)
     if len(fits.maps) != 1:
         reason = "; ".join(fits.notes) or "their files do not say where curves were measured"
         raise ConfigError(
@@ -152,20 +155,6 @@ def fit_map(
         )
     (images,) = fits.maps.values()
     return images
-
-
-def _fit(
-    curves: Curves | None,
-    config: FitConfig | str | Path | None,
-    directory: str | Path | None,
-    progress: bool,
-    options: Mapping[str, Any],
-) -> ManyFits:
-    """Return the fits of the arguments of `fit_many`."""
-    config = FitConfig.merged(config, **options)
-    folder = None if directory is None else Path(directory)
-    stream = chain.from_iterable(file.open() for file in config.files(curves))
-    return fit_sources(config, stream, folder, progress=progress)
 
 
 def fit_sources(

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from glob import glob, has_magic
+from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -47,56 +48,6 @@ class Source(NamedTuple):
         return ConfigError(f"{self.name}: {str(error).removeprefix(f'{self.name}: ')}{hint}")
 
 
-class CurveFile(NamedTuple):
-    """A file of curves, or one curve given by its numbers; it is read only when it is opened."""
-
-    path: Any
-    """The file, or the name of the curve."""
-    numbers: Sequence[ArrayLike] | None
-    """Position [m], force [N] and perhaps time [s] of a curve that is given by its numbers."""
-    fields: Mapping[str, Any]
-    """Calibration, fields of the indenter, x and y that belong to this file alone."""
-    group: str
-    table: Path | None
-    """The table of files that lists it."""
-    segment: str
-    calibration: Calibration
-
-    def open(self) -> Iterator[Source]:
-        """Yield the curves, each read only as it is taken."""
-        fields, site, path = dict(self.fields), None, str(self.path)
-        settings = {
-            name: fields.pop(name, getattr(self.calibration, name))
-            for name in Calibration.model_fields
-        }
-        readers: Readers
-        try:
-            if {"x", "y"} <= fields.keys():
-                with all_problems() as within, within("x and y"):
-                    site = Site(*(Quantity("m")(fields.pop(name)) for name in "xy"))
-            calibration = Calibration(**settings)
-            if self.numbers is None:
-                readers = read(self.path, calibration, self.segment)
-            else:
-                # `clean` checks the arrays.
-                arrays: Any = dict(zip(_ARRAYS, self.numbers, strict=False))
-                arrays |= {"stiffness": calibration.spring_constant, "speed": calibration.speed}
-                readers = {"": partial(Measurement, **arrays)}
-        except PellicleError as error:
-            yield Source(path, error, fields, path, self.group, path)
-            return
-        whole = str(self.table) if site and self.table else path
-        for label, reader in readers.items():
-            curve: Measurement | PellicleError
-            try:
-                curve = reader()
-                curve = replace(curve, site=site or curve.site)
-            except PellicleError as error:
-                curve = error
-            name = f"{path}:{label}" if label else path
-            yield Source(name, curve, fields, path, self.group, whole)
-
-
 def gather(
     curves: Curves,
     segment: str,
@@ -104,8 +55,8 @@ def gather(
     per_file: Mapping[str, Sequence[Any]],
     label: str = "",
     is_field: bool = False,
-) -> list[CurveFile]:
-    """Return all files, in order.
+) -> Iterator[Source]:
+    """Return all curves, in order, each read only as it is taken.
 
     Each list in ``per_file`` has one value for each file.  In a table that lists files, the columns
     x and y are the place on the sample, and the column ``label`` holds the group of each curve; it
@@ -126,14 +77,55 @@ def gather(
                 "order",
                 name,
             )
-    gathered = []
+    opened = []
     for number, (file, listed, table) in enumerate(files):
         group = listed.get(label.lower(), "")
-        given = {name: values[number] for name, values in per_file.items()}
-        given |= {name: v for name, v in listed.items() if is_field or name != label.lower()}
+        fields = {name: values[number] for name, values in per_file.items()}
+        fields |= {name: v for name, v in listed.items() if is_field or name != label.lower()}
+        whole = str(table or file) if {"x", "y"} <= fields.keys() else str(file)
+        source = partial(Source, file=str(file), group=group, map=whole)
         numbers = curves[file] if isinstance(curves, Mapping) else None
-        gathered.append(CurveFile(file, numbers, given, group, table, segment, calibration))
-    return gathered
+        opened.append(_opened(file, source, fields, numbers, segment, calibration))
+    return chain.from_iterable(opened)
+
+
+def _opened(
+    path: Any,
+    source: Callable[..., Source],
+    fields: dict[str, Any],
+    numbers: Sequence[ArrayLike] | None,
+    segment: str,
+    calibration: Calibration,
+) -> Iterator[Source]:
+    """Yield the curves of a file, or the one called ``path`` that is given by ``numbers``."""
+    settings = {
+        name: fields.pop(name, getattr(calibration, name)) for name in Calibration.model_fields
+    }
+    readers: Readers
+    site = None
+    try:
+        if {"x", "y"} <= fields.keys():
+            with all_problems() as within, within("x and y"):
+                site = Site(*(Quantity("m")(fields.pop(name)) for name in "xy"))
+        calibration = Calibration(**settings)
+        if numbers is None:
+            readers = read(path, calibration, segment)
+        else:
+            # `clean` checks the arrays.
+            arrays: Any = dict(zip(_ARRAYS, numbers, strict=False))
+            arrays |= {"stiffness": calibration.spring_constant, "speed": calibration.speed}
+            readers = {"": partial(Measurement, **arrays)}
+    except PellicleError as error:
+        yield source(str(path), error, fields)
+        return
+    for label, reader in readers.items():
+        curve: Measurement | PellicleError
+        try:
+            curve = reader()
+            curve = replace(curve, site=site or curve.site)
+        except PellicleError as error:
+            curve = error
+        yield source(f"{path}:{label}" if label else str(path), curve, fields)
 
 
 def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
@@ -202,12 +194,11 @@ def read_curves(
     """
     curves: dict[str, Measurement] = {}
     errors: list[PellicleError] = []
-    for file in gather(path, segment, Calibration(**calibration), {}):
-        for source in file.open():
-            if isinstance(source.curve, Measurement):
-                curves[source.name] = source.curve
-            else:
-                errors.append(source.named(source.curve))
+    for source in gather(path, segment, Calibration(**calibration), {}):
+        if isinstance(source.curve, Measurement):
+            curves[source.name] = source.curve
+        else:
+            errors.append(source.named(source.curve))
     if not curves:
         raise ConfigError("\n".join(map(str, errors)))
     for error in errors:

@@ -202,7 +202,7 @@ def test_one_message_asks_for_all_that_an_export_lacks(tmp_path: Path, header: s
     path.write_text("\n".join([header, *lines]), encoding="utf-8")
     config = pl.FitConfig.merged(curves=[path], indenter="sphere")
     with pytest.raises(pl.ConfigError, match="missing: ") as raised:
-        config.indenter_of(config.sources()[0])
+        config.indenter_of(next(config.sources()))
     _, typed = str(raised.value).split("\n")
     assert typed.endswith('--radius "… um"')
     given = dict(re.findall(r'--(\S+) "([^"]*)"', typed))

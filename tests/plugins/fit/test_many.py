@@ -198,7 +198,7 @@ def test_interrupted(tmp_path: Path) -> None:
     """What was finished is kept."""
     curves = {str(seed): curve(seed) for seed in range(3)}
     config = pl.FitConfig.merged(**BEAD, rivals=(), fix={"tension": 0})
-    sources = config.sources(curves)
+    sources = [*config.sources(curves)]
     stops = pl.FitConfig.merged(config, executor=Stops())
     with pytest.raises(KeyboardInterrupt):
         fit_sources(stops, sources, tmp_path, progress=False)
