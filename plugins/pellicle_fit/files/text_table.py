@@ -63,8 +63,8 @@ def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | N
     with suppress(csv.Error):
         header, heads = _header(lines, data, mapped or {})
         below = [lines[number] for number in data if number > header]
-        # The heads of a table may be separated by other signs than its numbers.
-        separator = _separator((below or lines[header:])[0])
+        # The heads may be separated by other signs than the numbers, and a first row be short.
+        separator = next((s for s in map(_separator, below[:3]) if s != " "), " ")
         rows = _split(below, separator)
         # The rows of a list of files may have no number either.
         is_list = FILE in [head.name.lower() for head in heads]

@@ -247,20 +247,6 @@ def test_simulated_before_the_fits(monkeypatch: pytest.MonkeyPatch) -> None:
     xr.testing.assert_identical(copy, here)
 
 
-def test_labelled_curves(cli: Cli) -> None:
-    """Rows of a table that differ in the column curve are different curves."""
-    parts = [curve(seed) for seed in (1, 2)]
-    lines = [
-        f"{number},{z * 1e6:.9g},{f * 1e9:.9g}"
-        for number in (0, 1)
-        for z, f in zip(*parts[number], strict=True)
-    ]
-    Path("map.csv").write_text("\n".join([f"curve,{HEADER}", *lines]), encoding="utf-8")
-    statuses = json.loads(cli("map.csv", *OPTIONS, "--fix", "tension=0", "--json").stdout)["curves"]
-    assert [row["curve"] for row in statuses] == ["map.csv:0", "map.csv:1"]
-    assert all(row["status"] == "fitted" for row in statuses)
-
-
 def test_groups(tmp_path: Path) -> None:
     """Groups of an HDF5 file are curves; one that lacks a unit does not stop the others."""
     with h5py.File(tmp_path / "map.h5", "w") as file:

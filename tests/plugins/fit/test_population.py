@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import csv
-import errno
 import json
-import os
 import weakref
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -283,25 +281,3 @@ def test_two_at_once(cli: Cli, tmp_path: Path) -> None:
     # One curve alone is a population too.
     cli("day", *FIXED, "-o", "out")
     assert Path("out/fits-curves.pdf").is_file()
-
-
-@pytest.mark.slow
-def test_full_disk(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A full disk ends the fits in words; what was written stays, and the same command goes on."""
-    for seed in range(3):
-        save(tmp_path / "day" / f"{seed}.csv", *curve(seed))
-    synchronise, calls = os.fsync, 0
-
-    def full(file: int) -> None:
-        nonlocal calls
-        calls += 1
-        if calls > 1:
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        synchronise(file)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(os, "fsync", full)
-        result = cli("day", *FIXED, "-o", "out", code=2)
-    assert "cannot be written (No space left on device)" in result.stderr
-    assert [path.suffix for path in Path("out/curves").iterdir()] == [".json"]
-    assert "1 of 3 fits were done before" in cli("day", *FIXED, "-o", "out").output
