@@ -15,21 +15,13 @@ Method = Literal["force_curve", "layer_force_curve"]
 def checked_force(indenter: object, method: Method, depth: Array, *solid: float) -> Array:
     """Return F/E* [m²] of an indenter at depths of shape (n,) [m], on a solid or on a layer.
 
-    Raises
-    ------
-    PluginError
-        It is not an array of that shape, finite at every finite depth.
+    It has to be an array of that shape, finite at every finite depth.
     """
     family = getattr(indenter, "family", "component")
     name = f"{family} {getattr(indenter, 'type_name', type(indenter).__name__)!r}"
     given = depth.view()
     given.flags.writeable = False
-    try:
-        curve = getattr(indenter, method)(given, *solid)
-    except Exception as error:
-        # The command line prints the note instead of a traceback.
-        error.add_note(f"{name} failed in {method}()")
-        raise
+    curve = getattr(indenter, method)(given, *solid)
     force: Any = getattr(curve, "force", None)
     is_array = type(force) is np.ndarray and force.dtype == np.float64
     if not is_array or force.shape != depth.shape:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
+from itertools import chain, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -215,24 +216,23 @@ def _fit(
     config: FitConfig, directory: Path | None, formats: Sequence[str], *, quiet: bool
 ) -> tuple[Fit | ManyFits, str, str]:
     """Return the fit of the curves, the name of its files and the title of its page."""
-    from pellicle_fit.files.sources import SourceStream
     from pellicle_fit.many import fit_sources
     from pellicle_fit.problem import problem
 
-    progress, curves = not quiet and sys.stderr.isatty(), config.files()
+    progress, stream = not quiet and sys.stderr.isatty(), config.sources()
     sources, name, title = None, "pool", "Pooled fit"
     if config.pool:
-        sources = [*SourceStream(curves)]
-    elif [file.path for file in curves] == [config.curves[0]]:
-        labels, opened = curves[0].open()
-        if labels == [""]:
-            sources, title = [*opened], config.curves[0].stem
+        sources = [*stream]
+    else:
+        first = [*islice(stream, 2)]
+        if [source.name for source in first] == [str(config.curves[0])]:
+            sources, title = first, config.curves[0].stem
             name = f"{title}-fit"
+        stream = chain(first, stream)
     if sources is not None:
         return problem(config, sources, progress=progress).fit(progress=progress), name, title
     try:
-        stream, shown = SourceStream(curves), not quiet
-        fits = fit_sources(config, stream, directory, progress=shown, formats=formats)
+        fits = fit_sources(config, stream, directory, progress=not quiet, formats=formats)
     except KeyboardInterrupt:
         hint = f"; finished fits are in {directory}, and the same command continues"
         echo(f"interrupted{hint if directory else ''}", err=True)

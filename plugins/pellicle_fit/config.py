@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from itertools import chain
 from pathlib import Path
@@ -39,7 +39,7 @@ from .effect import Effect, Fitted, Solid, quantities
 from .files.columns import Calibration
 from .files.measurement import Segment
 from .files.missing import OPTIONS, MissingInputError
-from .files.sources import CurveFile, Curves, Source, SourceStream, expanded, gather
+from .files.sources import Curves, Source, expanded, gather
 from .population.judgement import group_pattern
 from .population.rules import rules
 from .simulated.simulation import GRID_POINTS
@@ -374,15 +374,11 @@ class FitConfig(FromFile, Calibration):
         """Return the whole configuration as JSON data, defaults included, in SI."""
         return self.model_dump(mode="json", exclude_none=True, fallback=str)
 
-    def files(self, curves: Curves | None = None) -> list[CurveFile]:
-        """Return the files of ``curves``, or of those of the configuration if None."""
+    def sources(self, curves: Curves | None = None) -> Iterator[Source]:
+        """Return ``curves``, or those of the configuration if None, each read as it is taken."""
         chosen, column = self.curves if curves is None else curves, self.group_by
         is_field = column in {"diameter", *_fields(self.indenter), *Calibration.model_fields}
         return gather(chosen, self.segment, self, self.per_file, column, is_field)
-
-    def sources(self, curves: Curves | None = None) -> list[Source]:
-        """Return ``curves``, or those of the configuration if None, as read from their files."""
-        return [*SourceStream(self.files(curves))]
 
     def indenter_of(self, source: Source) -> Indenter | HasForceCurve:
         """Return the indenter of one curve, with the fields that this curve alone has.

@@ -118,5 +118,5 @@ def fit_pooled(
         A folder cannot be read.
     """
     config = FitConfig.merged(config, pool=True, **options)
-    sources = config.sources(curves)
+    sources = [*config.sources(curves)]
     return problem(config, sources, progress=progress).fit(progress=progress)

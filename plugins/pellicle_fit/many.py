@@ -9,7 +9,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
 from importlib.metadata import version
-from operator import length_hint
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +21,7 @@ from pellicle.errors import ConfigError, PellicleError
 from pellicle.files import atomic_write, check_writable, write_json
 
 from .config import FitConfig
-from .files.sources import Curves, Source, SourceStream
+from .files.sources import Curves, Source
 from .population.fits import ManyFits, table
 from .population.images import force_maps
 from .population.judgement import group_of, group_pattern, judge, read_names
@@ -109,7 +108,9 @@ def fit_many(
     StorageError
         The folder cannot be used.
     """
-    return table(_fit(curves, config, directory, progress, options).rows)
+    config = FitConfig.merged(config, **options)
+    folder = None if directory is None else Path(directory)
+    return table(fit_sources(config, config.sources(curves), folder, progress=progress).rows)
 
 
 def fit_map(
@@ -144,7 +145,9 @@ def fit_map(
     StorageError
         The folder cannot be used.
     """
-    fits = _fit(curves, config, directory, progress, options)
+    config = FitConfig.merged(config, **options)
+    folder = None if directory is None else Path(directory)
+    fits = fit_sources(config, config.sources(curves), folder, progress=progress)
     if len(fits.maps) != 1:
         reason = "; ".join(fits.notes) or "their files do not say where curves were measured"
         raise ConfigError(
@@ -152,19 +155,6 @@ def fit_map(
         )
     (images,) = fits.maps.values()
     return images
-
-
-def _fit(
-    curves: Curves | None,
-    config: FitConfig | str | Path | None,
-    directory: str | Path | None,
-    progress: bool,
-    options: Mapping[str, Any],
-) -> ManyFits:
-    """Return the fits of the arguments of `fit_many`."""
-    config = FitConfig.merged(config, **options)
-    folder = None if directory is None else Path(directory)
-    return fit_sources(config, SourceStream(config.files(curves)), folder, progress=progress)
 
 
 def fit_sources(
@@ -177,13 +167,7 @@ def fit_sources(
 ) -> ManyFits:
     """Fit each curve that is not fitted yet, and write the files.
 
-    Curves are read in batches, so that a population does not have to fit in memory.  If
-    interrupted, the table has all fits that were finished.
-
-    Raises
-    ------
-    StorageError
-        The folder cannot be written, or another process uses it.
+    Curves are read in batches, so that a population does not have to fit in memory.
     """
     from .report.population import save_population
 
@@ -193,16 +177,12 @@ def fit_sources(
         if directory is not None:
             check_writable(directory / "fits.h5")
             check_writable(directory / _JOURNAL / "fit.json")
-        try:
-            with BatchProgress(length_hint(sources), 0, progress) as bar:
-                for batch in _batches(sources):
-                    _fit_batch(config, batch, directory, fits, bar, length_hint(sources), progress)
-        except BaseException:
-            # A table without any fit would replace an earlier one.
-            if directory is not None and any(row.is_fitted for row in fits.rows):
-                judge(fits.rows, config.accept, *lists)
-                _write(fits, config, watch, directory)
-            raise
+        with BatchProgress(0, 0, progress) as bar:
+            for batch in _batches(sources):
+                made = [_task(config, source, directory, fits, progress) for source in batch]
+                tasks = [task for task in made if task is not None]
+                bar.expect(len(fits.rows), len(batch) - len(tasks))
+                mapped(config.executor, work, tasks, dict, _keep, bar)
         notes = judge(fits.rows, config.accept, *lists)
         fits.maps, of_maps = force_maps(fits.rows)
         fits.notes = [*notes, *of_maps]
@@ -225,56 +205,48 @@ def _batches(sources: Iterable[Source]) -> Iterator[list[Source]]:
     yield batch
 
 
-def _fit_batch(
-    config: FitConfig,
-    sources: list[Source],
-    directory: Path | None,
-    fits: ManyFits,
-    bar: BatchProgress,
-    total: int,
-    progress: bool,
-) -> None:
-    """Fit each curve of a batch that is not fitted yet, and add a row for each."""
-    pattern, tasks = group_pattern(config.group_by), list[FitTask]()
+def _task(
+    config: FitConfig, source: Source, directory: Path | None, fits: ManyFits, progress: bool
+) -> FitTask | None:
+    """Add a row for a curve, and return the fit of it if there is none yet."""
+    row = Row(source.name, group_of(group_pattern(config.group_by), source.file, source.group))
+    fits.rows.append(row)
+    try:
+        config.indenter_of(source)
+    except ConfigError as error:
+        raise source.named(error) from None
+    try:
+        if isinstance(source.curve, PellicleError):
+            raise source.curve
+        row.map, row.site = source.map, source.curve.site
+        with suppress(TypeError, ValueError):
+            row.sketch = sketch(position=source.curve.position, force=source.curve.force)
+        path = directory and directory / _JOURNAL / f"{_identity(config, source)[:16]}.json"
+        if earlier := _stored(path):
+            # The file may have another name now.
+            own_data = {"name": source.name, "data": data_of(source.curve, config)}
+            row.keep(earlier | {"curves": [earlier["curves"][0] | own_data]})
+            fits.resumed += 1
+            return None
+        ready = problem(config, [source], progress=progress)
+    except PellicleError as error:
+        row.status = _failure(error, row.name)
+        return None
     # An executor need not pickle.
-    own = config.model_copy(update={"executor": registry().make(Executor, {"type": "serial"})})
-    for source in sources:
-        row = Row(source.name, group_of(pattern, source.file, source.group))
-        fits.rows.append(row)
-        try:
-            config.indenter_of(source)
-        except ConfigError as error:
-            raise source.named(error) from None
-        try:
-            if isinstance(source.curve, PellicleError):
-                raise source.curve
-            row.map, row.site = source.map, source.curve.site
-            with suppress(TypeError, ValueError):
-                row.sketch = sketch(position=source.curve.position, force=source.curve.force)
-            path = directory and directory / _JOURNAL / f"{_identity(config, source)[:16]}.json"
-            if earlier := _stored(path):
-                # The file may have another name now.
-                own_data = {"name": source.name, "data": data_of(source.curve, config)}
-                row.keep(earlier | {"curves": [earlier["curves"][0] | own_data]})
-                fits.resumed += 1
-            else:
-                ready = replace(problem(config, [source], progress=progress), config=own)
-                tasks.append(FitTask(row, ready, path))
-        except PellicleError as error:
-            row.status = _failure(error, row.name)
+    serial = registry().make(Executor, {"type": "serial"})
+    return FitTask(row, replace(ready, config=config.model_copy(update={"executor": serial})), path)
 
-    def keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool]:
-        row = task.row
-        if isinstance(outcome, Exception):
-            row.status = _failure(outcome, row.name)
-        else:
-            if task.path is not None:
-                write_json(outcome, task.path)
-            row.keep(outcome)
-        return row.status, not row.is_fitted
 
-    bar.expect(total, len(sources) - len(tasks))
-    mapped(config.executor, work, tasks, dict, keep, bar)
+def _keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool]:
+    """Keep what came of a fit in its row and its file; return the status, and whether it failed."""
+    row = task.row
+    if isinstance(outcome, Exception):
+        row.status = _failure(outcome, row.name)
+    else:
+        if task.path is not None:
+            write_json(outcome, task.path)
+        row.keep(outcome)
+    return row.status, not row.is_fitted
 
 
 def work(task: FitTask, say: Say) -> dict[str, Any]:
@@ -311,11 +283,11 @@ def _identity(config: FitConfig, source: Source) -> str:
 
 def _stored(path: Path | None) -> dict[str, Any] | None:
     """Return the fit that a file stores; None if it stores none."""
-    content = None
     if path is not None:
         with suppress(OSError, ValueError):
-            content = json.loads(path.read_text(encoding="utf-8"))
-    return content if isinstance(content, dict) else None
+            content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+            return content
+    return None
 
 
 def _failure(error: Exception, name: str) -> str:

@@ -54,7 +54,7 @@ class Stopwatch:
 def data_of(curve: Measurement, config: FitConfig) -> dict[str, Any]:
     """Return the origin of a curve, and which part of it is fitted, as JSON data."""
     return {
-        **curve.origin.to_dict(),
+        **curve.origin._asdict(),
         "spring_constant": curve.stiffness,
         "segment": config.segment,
         "baseline": config.baseline,

@@ -1,4 +1,4 @@
-"""Effects that pellicle does not ship: asked before a fit, and named where one of them fails."""
+"""Strangers' effects, asked before a fit; strangers' components, named where one fails."""
 
 from __future__ import annotations
 
@@ -15,13 +15,7 @@ from .effect import Effect
 
 
 def refuse_broken(effects: Iterable[Effect]) -> None:
-    """Ask strangers' effects the rules of the kit that balance no forces.
-
-    Raises
-    ------
-    PluginError
-        An effect breaks one of them.
-    """
+    """Ask strangers' effects the rules of the kit that balance no forces."""
     installed = registry().components[Effect.family].values()
     shipped = {entry.component for entry in installed if entry.origin.is_own}
     for effect in effects:
@@ -45,7 +39,7 @@ def _violation(effect: Effect) -> str:
 
 @contextmanager
 def strangers_named() -> Iterator[None]:
-    """Add a note that names the stranger's effect and its line to exceptions."""
+    """Add a note that names the stranger's component and its line to exceptions."""
     try:
         yield
     except PellicleError:
@@ -53,8 +47,9 @@ def strangers_named() -> Iterator[None]:
     except Exception as error:
         # The command line prints the note instead of a traceback.
         lines = {frame.filename: frame.lineno for frame in extract_tb(error.__traceback__)}
-        for type_, entry in registry().components[Effect.family].items():
-            file = getsourcefile(entry.component)
-            if file in lines and not entry.origin.is_own:
-                error.add_note(f"effect {type_!r} failed ({file}, line {lines[file]})")
+        for family, components in registry().components.items():
+            for type_, entry in components.items():
+                file = getsourcefile(entry.component)
+                if file in lines and not entry.origin.is_own:
+                    error.add_note(f"{family} {type_!r} failed ({file}, line {lines[file]})")
         raise

@@ -27,7 +27,7 @@ from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.columns import Calibration
 from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.files.readers import SUFFIXES
-from pellicle_fit.files.sources import SourceStream, gather
+from pellicle_fit.files.sources import gather
 
 RADIUS, RATIO = 10e-6, 0.5
 CALIBRATION = Calibration(spring_constant=0.05, sensitivity=50e-9)
@@ -144,7 +144,7 @@ def outcome(curve: Measurement | PellicleError) -> Outcome:
 def curves_of(path: Path) -> dict[str, Measurement | PellicleError]:
     """Return the curves of a file, with a calibration if it holds none."""
     for calibration in (Calibration(), CALIBRATION):
-        sources = SourceStream(gather(path, "approach", calibration, {}))
+        sources = gather(path, "approach", calibration, {})
         curves = {source.name: source.curve for source in sources}
         if any(isinstance(curve, Measurement) for curve in curves.values()):
             break

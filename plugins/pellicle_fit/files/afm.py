@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -17,7 +16,7 @@ from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.units import Quantity
 
 from .columns import Calibration, Channel, from_columns
-from .measurement import Axis, Measurement, Readers, Site
+from .measurement import Measurement, Readers, Site
 from .missing import OPTIONS, MissingInputError
 from .passes import labelled
 
@@ -46,7 +45,7 @@ def read_instrument(path: Path, calibration: Calibration, segment: str) -> Reade
     overrides = {words: value for words, value in given.items() if value is not None}
     if not path.is_file():
         raise StorageError(f"{path}: cannot be read (no such file)")
-    with _errors_and_warnings(path) as messages:
+    with _errors(path):
         loader = get_recipe(path).loader
         try:
             recordings = loader(path, meta_override=overrides)
@@ -57,23 +56,19 @@ def read_instrument(path: Path, calibration: Calibration, segment: str) -> Reade
         recordings = sorted(recordings, key=lambda recording: recording["metadata"]["enum"])
     return {
         "" if len(recordings) == 1 else str(recording["metadata"]["enum"]): partial(
-            _curve, path, recording, calibration, segment, messages
+            _curve, path, recording, calibration, segment
         )
         for recording in recordings
     }
 
 
 @contextmanager
-def _errors_and_warnings(path: Path) -> Iterator[list[str]]:
-    """Raise the errors of afmformats, some of which are not Exceptions, and list its warnings."""
+def _errors(path: Path) -> Iterator[None]:
+    """Raise the errors of afmformats, some of which are not Exceptions, as those of the file."""
     from afmformats import errors, meta
 
-    texts: list[str] = []
     try:
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            yield texts
-        texts += [f"afmformats: {warning.message}" for warning in caught]
+        yield
     except PellicleError:
         raise
     except errors.MissingMetaDataError as error:
@@ -90,14 +85,10 @@ def _without(path: Path, words: Sequence[str]) -> MissingInputError:
 
 
 def _curve(
-    path: Path,
-    recording: Mapping[str, Any],
-    calibration: Calibration,
-    segment: str,
-    messages: Sequence[str],
+    path: Path, recording: Mapping[str, Any], calibration: Calibration, segment: str
 ) -> Measurement:
     """Return one segment of one curve in SI."""
-    with _errors_and_warnings(path) as own:
+    with _errors(path):
         data, metadata = recording["data"], recording["metadata"]
         known = {}
         for words, name in _CALIBRATION.items():
@@ -110,7 +101,6 @@ def _curve(
                     name,
                 )
         stiffness = known["spring_constant"]
-        calibration = Calibration(spring_constant=stiffness, speed=calibration.speed)
         force = np.asarray(data["force"], dtype=float)
         source = next((name for name in (_TIP, *_HEIGHTS) if name in data), None)
         if source is None:
@@ -127,37 +117,16 @@ def _curve(
             labels = np.asarray(data["segment"])
             rows = labelled(position, labels, inward=segment == "approach")
             columns = {role: c._replace(values=c.values[rows]) for role, c in columns.items()}
-        curve = from_columns(columns, calibration)
-        site = _site(metadata)
-    return replace(
-        curve,
-        messages=tuple(dict.fromkeys((*messages, *own, *curve.messages))),
-        origin=replace(curve.origin, sensitivity=known["sensitivity"], library="afmformats"),
-        site=site,
-    )
+        own = Calibration(spring_constant=stiffness, speed=calibration.speed)
+        curve, site = from_columns(columns, own), _site(metadata)
+    origin = curve.origin._replace(sensitivity=known["sensitivity"], library="afmformats")
+    return replace(curve, origin=origin, site=site)
 
 
 def _site(metadata: Mapping[str, Any]) -> Site | None:
     """Return where on the sample a curve was measured; None if the file does not say it."""
-
-    def length(name: str) -> float:
-        # Files that were converted may hold a text with a unit.
-        return Quantity("m")(metadata.get(name))
-
-    def axis(letter: str) -> Axis:
-        # The size includes half a pixel beyond the first position and the last.
-        centre, size = length(f"grid center {letter}"), length(f"grid size {letter}")
-        count = int(metadata.get(f"grid shape {letter}", 0))
-        if count < 1 or size <= 0:
-            raise ValueError("the grid has no extent")
-        pitch = size / count
-        return Axis(centre - size / 2 + pitch / 2, pitch, count)
-
     try:
-        x, y = length("position x"), length("position y")
+        # Files that were converted may hold a text with a unit.
+        return Site(*(Quantity("m")(metadata.get(f"position {letter}")) for letter in "xy"))
     except ValueError:
         return None
-    try:
-        return Site(x, y, (axis("x"), axis("y")))
-    except (TypeError, ValueError):
-        return Site(x, y)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 
@@ -13,12 +14,10 @@ from pellicle.errors import ConfigError, shown
 from pellicle.units import readable
 
 from .measurement import Measurement, Note, Segment, grows
-from .passes import first_out, passes
+from .passes import Pass, first_out, passes
 
 _FEWEST, _FEW = 8, 30
 """Least number of points of a fit, and the least that need no warning."""
-_RATIO_LIMIT = 1e6
-"""Largest ratio of the stiffnesses of cantilever and curve, either way, that is fitted."""
 _SIGNIFICANT = 4.0
 """Standard errors that the rise of the force must exceed."""
 
@@ -36,11 +35,9 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
             raise ConfigError(
                 f"has {values.size} values and position {z.size}; give one for each position", name
             )
-    messages = list(curve.messages)
-    finite = np.isfinite(z) & np.isfinite(f)
+    messages, finite = [*curve.messages], np.isfinite(z) & np.isfinite(f)
     if missing := int(np.sum(~finite)):
-        text = f"{missing} of {z.size} rows hold no finite number and were left out"
-        messages.append(Note(text))
+        messages.append(Note(f"{missing} of {z.size} rows hold no finite number and were left out"))
     z, f, t = z[finite], f[finite], None if t is None else t[finite]
     if t is not None and not grows(t):
         raise ConfigError(
@@ -50,24 +47,22 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
     _check_count(z.size, "the curve")
     if not np.ptp(z):
         raise ConfigError(f"is {z[0]:g} m in every row; give a curve that moves", "position")
-    base = z if curve.stiffness is None else _base(z, f, curve.stiffness)
+    base = z if curve.stiffness is None else z + f / curve.stiffness
     _check_rise(base, f)
     if t is None and curve.speed is not None:
         t = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(base)))]) / curve.speed
-    first, last, unloading = _rows(base, segment)
+    found = passes(base)
+    first, last, unloading = _rows(base, found, segment)
     if left_out := z.size - 1 - last + first:
-        text = f"rows {first + 1} to {last + 1} are the {segment}; the other {left_out} were left "
-        messages.append(Note(f"{text}out"))
-    back = [p for p in passes(base) if not p.inward and p.first >= last]
-    others = back if segment == "approach" else []
+        text = f"rows {first + 1} to {last + 1} are the {segment}; the other {left_out} were"
+        messages.append(Note(f"{text} left out"))
+    others = [one for one in found if segment == "approach" and one.first >= last]
     if segment == "retract":
         messages.append("a retract is fitted as if nothing adhered: compare with the approach")
     rows = np.arange(first, last + 1)
     _check_count(rows.size, "it" if segment == "both" else f"its {segment}")
     if rows.size < _FEW:
         messages.append(f"only {rows.size} points: expect wide intervals")
-    if (count := np.unique(z[rows]).size) < _FEWEST:
-        raise ConfigError(f"has {count} different values; give at least {_FEWEST}", "position")
     return replace(
         curve,
         position=z[rows],
@@ -87,19 +82,6 @@ def _array(values: ArrayLike, name: str) -> Array:
     raise ConfigError(
         f"{shown(values)} is not a list of real numbers; give SI values, one curve at a time", name
     )
-
-
-def _base(z: Array, f: Array, stiffness: float) -> Array:
-    """Return the position of the cantilever's base [m]."""
-    slope = float(np.ptp(f)) / float(np.ptp(z))
-    if not 1 / _RATIO_LIMIT <= slope / stiffness <= _RATIO_LIMIT:
-        raise ConfigError(
-            f"of {readable(stiffness, 'N/m', 3)} is far from the {readable(slope, 'N/m', 3)} of "
-            "this curve itself, so that deflection and position differ by orders of magnitude; "
-            "give that of the cantilever with its unit",
-            "spring_constant",
-        )
-    return z + f / stiffness
 
 
 def _check_count(count: int, which: str) -> None:
@@ -132,9 +114,8 @@ def _check_rise(z: Array, f: Array) -> None:
         )
 
 
-def _rows(base: Array, segment: Segment) -> tuple[int, int, int]:
+def _rows(base: Array, found: Sequence[Pass], segment: Segment) -> tuple[int, int, int]:
     """Return the first and the last row of a segment, and the first of unloading."""
-    found = passes(base)
     if len(found) > 2:
         raise ConfigError(
             f"goes to and fro {len(found)} times: several curves, or rows out of order; give one "

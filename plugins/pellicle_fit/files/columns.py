@@ -51,13 +51,13 @@ def column_map(value: object) -> dict[str, str] | None:
     roles = (*NAMES, LABEL)
     found: dict[str, tuple[str, str]] = {}
     for column, text in table.items():
-        role, _, unit = " ".join(str(text).split()).partition(" ")
+        role, *unit = str(text).split() or [""]
         role = role.lower()
         if role not in roles:
             raise ConfigError(f"{shown(role)} is not a role; {nearest(role, roles)}", str(column))
         if role in found:
             raise ConfigError(f"{found[role][0]!r} and {column!r} are both {role}")
-        found[role] = str(column), f"{role} {unit}".strip() if role != LABEL else role
+        found[role] = str(column), " ".join([role, *unit] if role != LABEL else [role])
     return dict(found[role] for role in roles if role in found)
 
 
@@ -102,27 +102,21 @@ def is_curve(names: Set[str]) -> bool:
 
 def lacking(columns: Columns, calibration: Calibration) -> list[str]:
     """Return what is missing of a curve: columns or their units, then fields of a calibration."""
-    places, signals = (
-        [name for name in names if name in columns] for names in ((*_OF_TIP, *_OF_BASE), _SIGNALS)
-    )
-    of_tip = [name for name in places if name in _OF_TIP]
-    places = of_tip or places
-    lacks = [] if places else ["a position (or depth, extension, height)"]
-    if len(places) > 1:
-        lacks.append(f"which of {' and '.join(places)} is the position")
+    place = next((name for name in (*_OF_TIP, *_OF_BASE) if name in columns), "")
+    signals = [name for name in _SIGNALS if name in columns]
+    signals = signals if place in _OF_BASE else signals[:1]
+    lacks = [] if place else ["a position (or depth, extension, height)"]
     lacks += [] if signals else ["a force (or deflection)"]
-    if of_tip or not places:
-        signals = signals[:1]
     timed = ["time"] if "time" in columns and columns["time"].unit else []
-    for name in (*places, *signals, *timed):
+    for name in filter(None, (place, *signals, *timed)):
         unit = columns[name].unit
         if si_unit(unit) not in [*UNITS.get(name, "m")]:
             hint = f" ({shown(unit)} is not one of {name})" if unit else ""
             lacks.append(f"the unit of {columns[name].name or name}{hint}")
-    deflection = si_unit(columns[_SIGNALS[1]].unit) if _SIGNALS[1] in signals else "N"
-    bends = not of_tip and places and deflection == "N"
-    if calibration.spring_constant is None and ((signals and "force" not in columns) or bends):
+    bends = place in _OF_BASE and "deflection" not in signals
+    if calibration.spring_constant is None and (bends or signals == ["deflection"]):
         lacks.append("spring_constant")
+    deflection = si_unit(columns["deflection"].unit) if "deflection" in signals else "N"
     if calibration.sensitivity is None and deflection in ("V", ""):
         lacks.append("sensitivity" if deflection else "sensitivity if it is in volts")
     return lacks

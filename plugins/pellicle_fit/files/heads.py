@@ -53,11 +53,10 @@ def guessed(
     """
     columns = [(role, name, Head("", name, unit)) for role, (name, unit) in known.items()]
     for index, head in enumerate(heads):
-        safe = [text for text in (head.name, head.text) if not _UNSAFE.search(text)]
-        unique = [text for text in safe if sum(h.is_called(text) for h in heads) == 1]
-        words = [role for role, of in _ROLES.items() if re.search(of, head.name.lower())]
-        words.append(_BY_UNIT.get(si_unit(head.unit), ""))
-        columns.append((words[0], [*unique, str(index + 1)][0], head))
+        names = (t for t in (head.name, head.text) if sum(h.is_called(t) for h in heads) == 1)
+        name = next((text for text in names if not _UNSAFE.search(text)), str(index + 1))
+        words = (role for role, of in _ROLES.items() if re.search(of, head.name.lower()))
+        columns.append((next(words, _BY_UNIT.get(si_unit(head.unit), "")), name, head))
     found: dict[str, tuple[str, str, str]] = {}
     for role, name, head in columns:
         is_signal = role in ("force", "deflection")
@@ -70,10 +69,10 @@ def guessed(
             role = "force" if si_unit(unit) == "N" else "deflection"
         if kind and (unit or kind != "time"):
             found.setdefault(kind, (role, name, unit))
-    role, signal, _ = found.setdefault("signal", ("deflection", "<column>", ""))
-    is_tip = role == "force"
+    signal, name, _ = found.setdefault("signal", ("deflection", "<column>", ""))
     role, place, unit = found.setdefault("place", ("height", "<column>", ""))
-    if role == "height" and role not in known and "<" not in place + signal:
-        rising = "position" if is_tip and not _OF_BASE.search(place.lower()) else "extension"
-        found["place"] = (rising if rises is None or rises(place, signal) else role, place, unit)
+    if role == "height" and role not in known and "<" not in place + name:
+        is_tip = signal == "force" and not _OF_BASE.search(place.lower())
+        if rises is None or rises(place, name):
+            found["place"] = ("position" if is_tip else "extension", place, unit)
     return {role: (name, unit) for role, name, unit in found.values()}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
@@ -24,40 +24,26 @@ class Note(str):
     __slots__ = ()
 
 
-class Axis(NamedTuple):
-    """Evenly spaced positions along an edge of a force map [m]: the first, and their distance."""
-
-    start: float
-    pitch: float
-    pixels: int
-
-
 class Site(NamedTuple):
-    """Where on the sample a curve was measured [m], and the axes of its map if the file has it."""
+    """Where on the sample a curve was measured [m]."""
 
     x: float
     y: float
-    grid: tuple[Axis, Axis] | None = None
 
 
-@dataclass(frozen=True)
-class Origin:
+class Origin(NamedTuple):
     """Where a curve comes from; without a file it was given by its numbers."""
 
     file: str | None = None
     curve: str | None = None
     """Label of the curve in a file that holds several."""
     sha256: str | None = None
-    columns: Mapping[str, str] = field(default_factory=dict)
+    columns: Mapping[str, str] = {}
     """Name and unit of the column in each role."""
     sensitivity: float | None = None
     """Deflection of the cantilever over the signal of its detector [m/V], if it was used."""
     library: str | None = None
     """Package that read the file, if it is not pellicle."""
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return JSON data, in which nothing of the machine but the path appears."""
-        return vars(self) | {"columns": dict(self.columns)}
 
 
 @dataclass(frozen=True)

@@ -51,10 +51,8 @@ def missing_in(
 
     Of what is ``mapped``, the ``wrong`` names are those of no column, or of several.
     """
-    lacks = [
-        *(f"one column {name!r}" for name in dict.fromkeys(wrong)),
-        *lacking(columns, calibration),
-    ]
+    lacks = [f"one column {name!r}" for name in dict.fromkeys(wrong)]
+    lacks += lacking(columns, calibration)
     of_columns = [lack for lack in lacks if lack.split()[0] not in OPTIONS]
     text = ""
     if of_columns:

@@ -90,9 +90,8 @@ def _rest(rows: Array) -> int:
 def labelled(position: Array, labels: Array, *, inward: bool) -> slice:
     """Return the rows of the approach or of the retract, where a file labels segments.
 
-    Between them there may be pauses: the approach is the first segment that moves in by half of the
-    largest motion, the retract the last that moves out by as much; without such segments they are
-    the first and the last.
+    The approach is the first segment that moves in by half of the largest motion, the retract the
+    last that moves out by as much; without such segments they are the first and the last.
     """
     ends = [0, *(np.flatnonzero(np.diff(labels)) + 1), labels.size]
     segments = [*pairwise(ends)]

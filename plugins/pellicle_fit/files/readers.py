@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from pellicle.errors import ConfigError, StorageError
+from pellicle.errors import StorageError
 
 from . import afm
 from .columns import EXAMPLE, LABEL, NAMES, Calibration, Columns, from_columns, is_curve, lacking
@@ -26,48 +26,25 @@ SUFFIXES = (*TEXT, *_TREES, *afm.SUFFIXES)
 def read(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Readers:
     """Return functions that read the curves of a file, and raise what this one does.
 
-    A table (CSV, TSV, semicolons, spaces) has a header such as ``position [um],force [nN]``; cells
-    that hold no number are NaN, columns of other names are ignored, and rows that differ in a
-    column ``curve`` are different curves.  An HDF5 file has datasets of the same names with an
-    attribute ``units``, or groups of them, one for each curve; a pellicle result is such a file.
-    The columns of the calibration name other columns of a table, and the arrays of any HDF5 or
-    MATLAB file.  Any other file is read by afmformats, which then selects the ``segment``.
+    The columns of the calibration name those of a table, and the arrays of an HDF5 or MATLAB file.
+    What is no such file is read by afmformats; of its labels the ``segment`` is selected.
     """
-
-    def state() -> int:
-        return path.stat().st_mtime_ns if path.exists() else 0
-
-    def check() -> None:
-        if state() != before:
-            raise StorageError(f"{path}: was changed while it was read; read it again")
+    readers = _readers(path, calibration or Calibration(), segment)
+    with path.open("rb") as file:
+        digest = hashlib.file_digest(file, "sha256").hexdigest()
 
     def curve(label: str) -> Measurement:
         measured = readers[label]()
-        check()
-        origin = replace(measured.origin, file=str(path), curve=label or None, sha256=digest)
+        origin = measured.origin._replace(file=str(path), curve=label or None, sha256=digest)
         return replace(measured, origin=origin)
 
-    before = state()
-    readers = _readers(path, calibration or Calibration(), segment)
-    try:
-        with path.open("rb") as file:
-            digest = hashlib.file_digest(file, "sha256").hexdigest()
-    except OSError as error:
-        raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
-    check()
     return {label: partial(curve, label) for label in readers}
 
 
 def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
     suffix, mapped = path.suffix.lower(), calibration.columns or {}
-    # The columns of a table can be named though it is an instrument's.
+    # The columns of a table can be named though it is an instrument's; others state what they are.
     if suffix in afm.SUFFIXES and not (mapped and suffix == ".tab"):
-        if mapped:
-            raise ConfigError(
-                f"{path} is the file of an instrument, which states what its columns are; leave "
-                "columns out",
-                "columns",
-            )
         return afm.read_instrument(path, calibration, segment)
     cells = None
     if suffix in _TREES:
@@ -77,8 +54,7 @@ def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
         tables = curves_of(path, cells, mapped) if cells else {}
         heads = cells.heads if cells else []
     hint = ""
-    is_known = mapped or any(is_curve(columns.keys()) for columns in tables.values())
-    if not is_known and not (cells and cells.is_commented):
+    if not mapped and not any(is_curve(columns.keys()) for columns in tables.values()):
         try:
             return afm.read_instrument(path, calibration, segment)
         except StorageError:
@@ -89,7 +65,6 @@ def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
             f"{path}: is neither text, nor HDF5, nor a readable file of an instrument{hint}; "
             f"export it as a table (a sheet as CSV) with a header such as {EXAMPLE!r}"
         )
-
     if cells is None:
         found = {role for columns in tables.values() for role in columns}
         wrong = [name for name, text in mapped.items() if text.split()[0] not in found]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from glob import glob, has_magic
+from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,7 +21,6 @@ from .measurement import Measurement, Readers, Segment, Site
 from .readers import SUFFIXES, TEXT, read
 from .text_table import FILE, read_cells
 
-_PATTERN = re.compile(r"[*?[]")
 _ARRAYS = ("position", "force", "time")
 
 Curves = str | Path | Sequence[str | Path] | Mapping[str, Sequence[ArrayLike]]
@@ -49,80 +48,6 @@ class Source(NamedTuple):
         return ConfigError(f"{self.name}: {str(error).removeprefix(f'{self.name}: ')}{hint}")
 
 
-class CurveFile(NamedTuple):
-    """A file of curves, or one curve given by its numbers; it is read only when it is opened."""
-
-    path: Any
-    """The file, or the name of the curve."""
-    numbers: Sequence[ArrayLike] | None
-    """Position [m], force [N] and perhaps time [s] of a curve that is given by its numbers."""
-    fields: Mapping[str, Any]
-    """Calibration, fields of the indenter, x and y that belong to this file alone."""
-    group: str
-    table: Path | None
-    """The table of files that lists it."""
-    segment: str
-    calibration: Calibration
-
-    def open(self) -> tuple[list[str], Iterator[Source]]:
-        """Return the labels of its curves, and the curves, each read only as it is taken."""
-        fields, site, path = dict(self.fields), None, str(self.path)
-        settings = {
-            name: fields.pop(name, getattr(self.calibration, name))
-            for name in Calibration.model_fields
-        }
-        readers: Readers
-        try:
-            if {"x", "y"} <= fields.keys():
-                with all_problems() as within, within("x and y"):
-                    x, y = (Quantity("m")(fields.pop(name)) for name in ("x", "y"))
-                    site = Site(x, y)
-            calibration = Calibration(**settings)
-            if self.numbers is None:
-                readers = read(self.path, calibration, self.segment)
-            else:
-                # `clean` checks the arrays.
-                arrays: Any = dict(zip(_ARRAYS, self.numbers, strict=False))
-                arrays |= {"stiffness": calibration.spring_constant, "speed": calibration.speed}
-                readers = {"": partial(Measurement, **arrays)}
-        except PellicleError as error:
-            return [""], iter([Source(path, error, fields, path, self.group, path)])
-
-        def sources() -> Iterator[Source]:
-            whole = str(self.table) if site and self.table else path
-            for label, reader in readers.items():
-                curve: Measurement | PellicleError
-                try:
-                    curve = reader()
-                    curve = replace(curve, site=site or curve.site)
-                except PellicleError as error:
-                    curve = error
-                name = f"{path}:{label}" if label else path
-                yield Source(name, curve, fields, path, self.group, whole)
-
-        return [*readers], sources()
-
-
-class SourceStream:
-    """The curves of many files, which are opened one after the other.
-
-    ``operator.length_hint`` counts a file that has not been opened yet as one curve.
-    """
-
-    def __init__(self, files: Sequence[CurveFile]) -> None:
-        self._files, self._count = files, len(files)
-
-    def __length_hint__(self) -> int:
-        return self._count
-
-    def __iter__(self) -> Iterator[Source]:
-        self._count = len(self._files)
-        for file in self._files:
-            labels, sources = file.open()
-            self._count += len(labels) - 1
-            yield from sources
-
-
 def gather(
     curves: Curves,
     segment: str,
@@ -130,13 +55,12 @@ def gather(
     per_file: Mapping[str, Sequence[Any]],
     label: str = "",
     is_field: bool = False,
-) -> list[CurveFile]:
-    """Return all files, in order.
+) -> Iterator[Source]:
+    """Return all curves, in order, each read only as it is taken.
 
-    Each list in ``per_file`` has one value for each file (or for each curve that is given by its
-    numbers); spring_constant and sensitivity among them, and in a table that lists files, replace
-    those of the calibration.  In such a table, the columns x and y are the place on the sample, and
-    the column ``label`` holds the group of each curve, and may be a field of the indenter as well.
+    Each list in ``per_file`` has one value for each file.  In a table that lists files, the columns
+    x and y are the place on the sample, and the column ``label`` holds the group of each curve; it
+    may be a field of the indenter as well.
     """
     files: list[tuple[Any, dict[str, str], Path | None]]
     if isinstance(curves, Mapping):
@@ -153,40 +77,75 @@ def gather(
                 "order",
                 name,
             )
-    gathered = []
+    opened = []
     for number, (file, listed, table) in enumerate(files):
         group = listed.get(label.lower(), "")
-        if not is_field:
-            listed.pop(label.lower(), None)
-        fields = {name: values[number] for name, values in per_file.items()} | listed
+        fields = {name: values[number] for name, values in per_file.items()}
+        fields |= {name: v for name, v in listed.items() if is_field or name != label.lower()}
+        whole = str(table or file) if {"x", "y"} <= fields.keys() else str(file)
+        source = partial(Source, file=str(file), group=group, map=whole)
         numbers = curves[file] if isinstance(curves, Mapping) else None
-        gathered.append(CurveFile(file, numbers, fields, group, table, segment, calibration))
-    return gathered
+        opened.append(_opened(file, source, fields, numbers, segment, calibration))
+    return chain.from_iterable(opened)
+
+
+def _opened(
+    path: Any,
+    source: Callable[..., Source],
+    fields: dict[str, Any],
+    numbers: Sequence[ArrayLike] | None,
+    segment: str,
+    calibration: Calibration,
+) -> Iterator[Source]:
+    """Yield the curves of a file, or the one called ``path`` that is given by ``numbers``."""
+    settings = {
+        name: fields.pop(name, getattr(calibration, name)) for name in Calibration.model_fields
+    }
+    readers: Readers
+    site = None
+    try:
+        if {"x", "y"} <= fields.keys():
+            with all_problems() as within, within("x and y"):
+                site = Site(*(Quantity("m")(fields.pop(name)) for name in "xy"))
+        calibration = Calibration(**settings)
+        if numbers is None:
+            readers = read(path, calibration, segment)
+        else:
+            # `clean` checks the arrays.
+            arrays: Any = dict(zip(_ARRAYS, numbers, strict=False))
+            arrays |= {"stiffness": calibration.spring_constant, "speed": calibration.speed}
+            readers = {"": partial(Measurement, **arrays)}
+    except PellicleError as error:
+        yield source(str(path), error, fields)
+        return
+    for label, reader in readers.items():
+        curve: Measurement | PellicleError
+        try:
+            curve = reader()
+            curve = replace(curve, site=site or curve.site)
+        except PellicleError as error:
+            curve = error
+        yield source(f"{path}:{label}" if label else str(path), curve, fields)
 
 
 def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
     """Return the files that match a pattern such as ``"beads/*.csv"``; any other path as it is."""
     path = Path(folder, pattern)
-    if path.exists() or not _PATTERN.search(str(pattern)):
+    if path.exists() or not has_magic(str(pattern)):
         return [path]
-    anchor, files = Path(pattern).anchor, []
-    # Before Python 3.13, a pattern such as "**.csv" is a ValueError.
-    with suppress(ValueError):
-        files = sorted(Path(anchor or folder).glob(str(Path(pattern).relative_to(anchor))))
+    files = glob(str(pattern), root_dir=folder or None, recursive=True)
     if not files:
         raise ConfigError(f"{pattern}: matches no file; give files, or a folder of them", "curves")
-    return files
+    return sorted(Path(folder, file) for file in files)
 
 
 def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
     """Return the files that a path stands for, each with its fields in a list of files, and that.
 
-    A list of files is a table with a header such as ``file,radius [um]``; its values get their
-    units, and empty cells are left out.
+    A list is a table with a header such as ``file,radius [um]``; its empty cells are left out.
     """
     if path.is_dir():
-        files = [file for file in sorted(path.iterdir()) if file.suffix.lower() in SUFFIXES]
-        files = [file for file in files if not file.name.startswith(".")]
+        files = [file for file in sorted(path.glob("[!.]*")) if file.suffix.lower() in SUFFIXES]
         if not files:
             raise ConfigError(f"{path}: holds no file of a known kind ({', '.join(SUFFIXES)})")
         return [(file, {}, None) for file in files]
@@ -194,11 +153,10 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
     if cells is None or FILE not in cells.names:
         return [(path, {}, None)]
     listed: list[tuple[Path, dict[str, str], Path | None]] = []
+    named = [(name, head.unit) for name, head in zip(cells.names, cells.heads, strict=True)]
     for row in cells.rows:
-        named = zip(cells.names, cells.heads, map(str.strip, row), strict=False)
-        fields = {
-            name: f"{cell} {head.unit}".strip() for name, head, cell in named if cell and head.text
-        }
+        pairs = zip(named, map(str.strip, row), strict=False)
+        fields = {name: f"{cell} {unit}".strip() for (name, unit), cell in pairs if cell and name}
         if FILE not in fields:
             raise ConfigError(f"{path}: has a row without a file; name one in each row")
         listed.append((path.parent / fields.pop(FILE), fields, path))
@@ -236,7 +194,7 @@ def read_curves(
     """
     curves: dict[str, Measurement] = {}
     errors: list[PellicleError] = []
-    for source in SourceStream(gather(path, segment, Calibration(**calibration), {})):
+    for source in gather(path, segment, Calibration(**calibration), {}):
         if isinstance(source.curve, Measurement):
             curves[source.name] = source.curve
         else:

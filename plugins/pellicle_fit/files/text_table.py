@@ -6,7 +6,6 @@ import csv
 import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from itertools import takewhile
 from pathlib import Path
 from typing import NamedTuple
 
@@ -25,23 +24,19 @@ _HEAD = re.compile(r"([^\[(]*)(?:[\[(]([^\])]*)[\])])?")
 _WORD = re.compile(r"[^\s\[(]+(?:\s?[\[(][^\])]*[\])])?")
 """A column's name and unit in a header whose columns are separated by spaces."""
 _WHOLE = re.compile(r"[-+]?[1-9]\d{0,2}")
-_GROUPED = re.compile(rf"{_WHOLE.pattern}(?:,\d{{3}})+(?:\.\d*)?")
-"""A number whose thousands are separated by commas."""
+_GROUPED = re.compile(rf"{_WHOLE.pattern}(?:,\d{{3}})+")
+"""A number whose thousands may be separated by commas."""
 _COMMENT = ("#", "%")
 _PREAMBLE = 200
 """Lines in which a header is sought."""
-_UNIT_ROWS = 3
-"""Rows below a header that may hold units instead of numbers."""
 
 
 class Cells(NamedTuple):
-    """The cells of a table as texts, below its heads if there are any."""
+    """The cells of a table as texts, each row as long as the heads or longer."""
 
     heads: list[Head]
     rows: list[list[str]]
     separator: str
-    is_commented: bool
-    """Whether its heads are a comment that tells of a curve, so that no other format is sought."""
 
     @property
     def names(self) -> list[str]:
@@ -52,9 +47,7 @@ class Cells(NamedTuple):
 def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | None:
     """Return the cells of a table; None if the file is not text.
 
-    The header is the first line that has the ``mapped`` columns or, without them, those of a curve
-    or of a list of files, or the last such comment above it; else the last comment above numbers;
-    else the first line.
+    A row of units may follow the header, and the columns of a table without one have numbers.
     """
     try:
         text = read_text(path)
@@ -68,44 +61,47 @@ def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | N
         raise ConfigError(f"{path}: is empty; give a table with the header {EXAMPLE!r}")
     # A cell that is longer than any number is no text.
     with suppress(csv.Error):
-        mapped = mapped or {}
-        likely = (*data[:_PREAMBLE], *reversed(range(data[0])))
-        found = next((number for number in likely if _fits(_heads(lines[number]), mapped)), None)
-        if found is None and not mapped:
-            width = len(_heads(lines[data[-1]]))
-            alike = (
-                n
-                for n in likely
-                if len(heads := _heads(lines[n])) == width
-                and "<column>" not in dict(guessed(heads, {}).values())
-            )
-            found = next(alike, None)
-        header = data[0] if found is None else found
-        heads = _heads(lines[header])
-        if found is None and all(_is_number(head.text) for head in heads if head.text):
-            header -= 1
-            above = _heads(lines[header]) if header >= 0 else []
-            heads = above if len(above) == len(heads) else []
+        header, heads = _header(lines, data, mapped or {})
         below = [lines[number] for number in data if number > header]
-        # The heads of a table may be separated by other signs than its numbers.
-        separator = _separator(below[0] if header < data[0] else lines[header])
-        if below and separator == " ":
-            separator = _separator(below[-1])
+        # The heads may be separated by other signs than the numbers, and a first row be short.
+        separator = next((s for s in map(_separator, below[:3]) if s != " "), " ")
         rows = _split(below, separator)
-        names = {head.name.lower() for head in heads}
         # The rows of a list of files may have no number either.
-        has_units = heads and (mapped or FILE not in names or is_curve(names))
-        likely_units = rows[: _UNIT_ROWS if has_units else 0]
-        units = [*takewhile(lambda row: not any(map(_is_number, row)), likely_units)]
-        for index, head in enumerate(heads):
-            cells = [plain(row[index]).strip("[]()") for row in units if index < len(row)]
-            unit = head.unit or next(filter(si_unit, cells), "")
-            heads[index] = head._replace(unit=unit)
-        width = max(map(len, rows[len(units) :][:1]), default=0)
+        is_list = FILE in [head.name.lower() for head in heads]
+        if rows and not is_list and not any(map(_is_number, rows[0])):
+            units = [plain(cell).strip("[]()") for cell in rows.pop(0)]
+            units += [""] * len(heads)
+            heads = [
+                head._replace(unit=head.unit or (unit if si_unit(unit) else ""))
+                for head, unit in zip(heads, units, strict=False)
+            ]
+        width = max(map(len, rows[:1]), default=0)
         heads += [Head("", str(index + 1), "") for index in range(len(heads), width)]
-        is_commented = found is not None and found < data[0]
-        return Cells(heads, rows[len(units) :], separator, is_commented)
+        return Cells(heads, [row + [""] * (len(heads) - len(row)) for row in rows], separator)
     return None
+
+
+def _header(
+    lines: Sequence[str], data: Sequence[int], mapped: Mapping[str, str]
+) -> tuple[int, list[Head]]:
+    """Return the number of the line above the rows, and its heads.
+
+    It is the first line that has the ``mapped`` columns or, without them, those of a curve or of a
+    list of files, or may have them, or the last such comment above it; else the first line.
+    """
+    likely = (*data[:_PREAMBLE], *reversed(range(data[0])))
+    heads = {number: _heads(lines[number]) for number in likely}
+    for number in likely:
+        if _fits(heads[number], mapped):
+            return number, heads[number]
+    width = len(_heads(lines[data[-1]]))
+    for number in () if mapped else likely:
+        roles = guessed(heads[number], {}) if len(heads[number]) == width else {}
+        if roles and "<column>" not in dict(roles.values()):
+            return number, heads[number]
+    first = heads[data[0]]
+    are_numbers = all(_is_number(head.text) for head in first if head.text)
+    return (data[0] - 1, []) if are_numbers else (data[0], first)
 
 
 def _fits(heads: Sequence[Head], mapped: Mapping[str, str]) -> bool:
@@ -153,9 +149,9 @@ def _is_number(cell: str) -> bool:
 
 def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, Columns]:
     """Return the known columns of each curve of a table, or those that ``mapped`` names."""
-    heads, rows, separator, _ = cells
+    heads, rows, separator = cells
     named = sum(bool(head.text) for head in heads)
-    if not mapped and separator == "," and _fits(heads, mapped):
+    if not mapped and separator == "," and is_curve(set(cells.names)):
         for row in rows:
             if len(row) > named and all(map(_is_number, row)):
                 raise ConfigError(
@@ -167,23 +163,21 @@ def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, 
     mapped = mapped or {name: name for name in cells.names if name in (*NAMES, LABEL)}
     indices = {text: index_of(heads, name) for name, text in mapped.items()}
     roles = {text: index for text, index in indices.items() if index is not None}
-    label = roles.pop(LABEL, -1)
-    curves: dict[str, list[list[str]]] = {} if rows else {"": []}
-    for row in rows:
+    label, columns = roles.pop(LABEL, None), []
+    for role, index in roles.items():
+        name, _, unit = role.partition(" ")
+        head, texts = heads[index], [row[index].strip() for row in rows]
+        values = _numbers(texts, separator, f"{path}: column {head.name}")
+        columns.append((name, unit or head.unit, values, head.name))
+    curves: dict[str, list[int]] = {} if rows else {"": []}
+    for number, row in enumerate(rows):
         # Without other columns, a column of labels is not one of curves.
-        text = row[label].strip() if roles and 0 <= label < len(row) else ""
-        curves.setdefault(text, []).append(row)
-    tables: dict[str, Columns] = {}
-    for text, own in curves.items():
-        columns = {}
-        for role, index in roles.items():
-            name, _, unit = role.partition(" ")
-            head = heads[index]
-            texts = [row[index].strip() if index < len(row) else "" for row in own]
-            values = _numbers(texts, separator, f"{path}: column {head.name}")
-            columns[name] = Channel(unit or head.unit, values, head.name)
-        tables[text] = columns
-    return tables
+        text = row[label].strip() if roles and label is not None else ""
+        curves.setdefault(text, []).append(number)
+    return {
+        text: {role: Channel(unit, values[own], name) for role, unit, values, name in columns}
+        for text, own in curves.items()
+    }
 
 
 def rises(path: Path, cells: Cells, place: str, signal: str) -> bool:
@@ -203,23 +197,15 @@ def index_of(heads: Sequence[Head], name: str) -> int | None:
 
 
 def _numbers(cells: list[str], separator: str, column: str) -> Array:
-    """Return numbers; NaN where a cell holds none.
-
-    In a column that has points, a comma is not decimal, and may group thousands.
-    """
-    commas = [cell for cell in cells if "," in cell]
-    decimal = separator != "," and not any("." in cell for cell in cells)
-    grouped = all(map(_GROUPED.fullmatch, commas))
-    whole = next(filter(_WHOLE.fullmatch, cells), None) if commas and grouped else None
-    if decimal and whole:
+    """Return numbers; NaN where a cell holds none.  A comma in them is decimal, or refused."""
+    digits = [cell for cell in cells if _is_number(re.sub("[.,]", "", cell))]
+    commas, beside = ([cell for cell in digits if mark in cell] for mark in ",.")
+    if commas and all(map(_GROUPED.fullmatch, commas)):
+        beside += filter(_WHOLE.fullmatch, digits)
+    if commas and (beside or separator == ","):
         raise ConfigError(
-            f"{column} has {commas[0]!r} beside {whole!r}, so its commas may be those of decimals "
-            "or of thousands; export it without separators of thousands, and with decimals in all "
-            "rows"
+            f"{column} has {commas[0]!r} beside {[*beside, *digits][0]!r}, so its commas may be "
+            "those of decimals or of thousands; export it without separators of thousands, and "
+            "with decimals in all rows"
         )
-    mark = "." if decimal else "" if grouped else ","
-    values = np.full(len(cells), np.nan)
-    for number, cell in enumerate(cells):
-        with suppress(ValueError):
-            values[number] = float(cell.replace(",", mark))
-    return values
+    return np.array([float(c.replace(",", ".")) if _is_number(c) else np.nan for c in cells])

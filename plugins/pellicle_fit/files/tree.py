@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import nullcontext
 from itertools import islice
@@ -18,9 +19,6 @@ from .columns import NAMES, Channel, Columns
 from .heads import Head
 from .missing import SHOWN
 
-_DEEPEST = 8
-"""Largest depth of folders that a message describes; links can make circles."""
-
 
 def read_tree(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns], list[Head]]:
     """Return the columns of each curve of an HDF5 or a MATLAB file by its label, and all heads.
@@ -33,8 +31,9 @@ def read_tree(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns]
     is_matlab = path.suffix.lower() == ".mat"
     try:
         with nullcontext(read_mat(path)) if is_matlab else h5py.File(path) as root:
-            curves = _curves(root, mapped, is_matlab=is_matlab)
-            return curves, [*islice(_heads(root, _DEEPEST), SHOWN + 1)]
+            arrays = dict(_arrays(root if is_matlab else root["/"]))
+            heads = [Head(name, name, _unit(arrays[name])) for name in islice(arrays, SHOWN + 1)]
+            return _curves(arrays, mapped, is_matlab=is_matlab), heads
     except PellicleError:
         raise
     except (OSError, RuntimeError, ValueError) as error:
@@ -43,9 +42,19 @@ def read_tree(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns]
         raise StorageError(f"{path}: cannot be read as {kind} file ({reason})") from None
 
 
-def _kind(array: Any) -> str:
-    """Return the kind of the numbers of an array; a space for anything else."""
-    return str(getattr(getattr(array, "dtype", None), "kind", " "))
+def _arrays(
+    node: Mapping[str, Any], folder: str = "", above: tuple[object, ...] = ()
+) -> Iterator[tuple[str, Any]]:
+    """Yield the arrays of numbers in a folder and below by their paths."""
+    above = (*above, node)
+    for name in node:
+        # A link of an HDF5 file may lead nowhere, or back.
+        child = node.get(name)
+        if isinstance(child, Mapping):
+            if isinstance(child, dict) or child not in above:
+                yield from _arrays(child, f"{folder}{name}/", above)
+        elif getattr(getattr(child, "dtype", None), "kind", "") in ("f", "i", "u"):
+            yield f"{folder}{name}", child
 
 
 def _unit(array: Any) -> str:
@@ -54,22 +63,25 @@ def _unit(array: Any) -> str:
     return unit.decode() if isinstance(unit, bytes) else str(unit)
 
 
-def _curves(root: Any, mapped: Mapping[str, str], *, is_matlab: bool) -> dict[str, Columns]:
+def _curves(
+    arrays: Mapping[str, Any], mapped: Mapping[str, str], *, is_matlab: bool
+) -> dict[str, Columns]:
     """Return the arrays whose paths are ``mapped``, by the labels of their curves.
 
     The points of a curve are along the first axis of a matrix of MATLAB, or along the last.
     """
-    own = {name: name for name in NAMES if getattr(root.get(name), "ndim", 0) == 1}
+    own = {name: name for name in NAMES if name in arrays and arrays[name].ndim == 1}
     channels: dict[str, dict[str, Channel]] = {}
     for pattern, text in (mapped or own or {f"*/{name}": name for name in NAMES}).items():
         role, _, unit = text.partition(" ")
-        arrays = channels.setdefault(role, {})
-        # The separators of a path are slashes or points.
-        parts = pattern.strip("/").split("/")
-        if len(parts) == 1 and parts[0] not in root:
-            parts = parts[0].split(".")
-        for label, array in _leaves(root, parts):
-            if not mapped and array.ndim != 1:
+        labelled = channels.setdefault(role, {})
+        path = pattern.strip("/")
+        if "/" not in path and path not in arrays:
+            path = path.replace(".", "/")
+        named = re.compile(re.escape(path).replace(r"\*", "([^/]+)"))
+        for name, array in arrays.items():
+            match = named.fullmatch(name)
+            if match is None or not (mapped or array.ndim == 1):
                 continue
             values: Array = np.asarray(array, dtype=float)
             rows = {"": values.ravel()}
@@ -77,8 +89,8 @@ def _curves(root: Any, mapped: Mapping[str, str], *, is_matlab: bool) -> dict[st
                 values = np.moveaxis(values, 0, -1) if is_matlab else values
                 rows = {",".join(map(str, i)): values[i] for i in np.ndindex(values.shape[:-1])}
             for row, numbers in rows.items():
-                whole = "/".join(filter(None, (label, row)))
-                arrays[whole] = Channel(unit or _unit(array), numbers, pattern if mapped else "")
+                label = "/".join(filter(None, (*match.groups(), row)))
+                labelled[label] = Channel(unit or _unit(array), numbers, pattern if mapped else "")
     labels = dict.fromkeys(label for own in channels.values() for label in own if label)
     # An array that all curves share, such as the time, has no label.
     found = {
@@ -86,29 +98,3 @@ def _curves(root: Any, mapped: Mapping[str, str], *, is_matlab: bool) -> dict[st
         for label in labels or [""]
     }
     return {label: {r: c for r, c in columns.items() if c} for label, columns in found.items()}
-
-
-def _leaves(node: Any, parts: list[str], label: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the arrays at a path, each with the names that stand for its ``*``."""
-    if not parts:
-        if _kind(node) in "fiu":
-            yield label, node
-        return
-    part, *rest = parts
-    if isinstance(node, Mapping) and part == "*":
-        for name in node:
-            yield from _leaves(node.get(name), rest, f"{label}/{name}" if label else str(name))
-    elif isinstance(node, Mapping):
-        # A link of an HDF5 file may lead nowhere.
-        yield from _leaves(node.get(part), rest, label)
-    elif part in (getattr(getattr(node, "dtype", None), "names", None) or ()):
-        yield from _leaves(node[part], rest, label)
-
-
-def _heads(node: Mapping[str, Any], depth: int, folder: str = "") -> Iterator[Head]:
-    for name in node:
-        child = node.get(name)
-        if isinstance(child, Mapping) and depth:
-            yield from _heads(child, depth - 1, f"{folder}{name}/")
-        elif _kind(child) in "fiuV":
-            yield Head(f"{folder}{name}", f"{folder}{name}", _unit(child))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Mapping, Sequence
-from fnmatch import fnmatchcase
 from itertools import compress
 from pathlib import Path
 from typing import NamedTuple
@@ -28,7 +27,6 @@ _NORMAL = 1.4826
 """Standard deviation of a normal distribution over its median absolute deviation."""
 _LIMIT = 3.5
 """Distance from the median, in these deviations, beyond which a curve stands out."""
-_HEADS = ("curve", "name", "file")
 
 
 class Names(NamedTuple):
@@ -38,61 +36,38 @@ class Names(NamedTuple):
     reasons: Mapping[str, str]
     """What follows each name on its line."""
 
-    def entries(self, rows: Sequence[Row]) -> list[str]:
-        """Return the name in the list that means each curve: its name or its end, or a pattern.
-
-        The end follows a slash: ``a.csv`` means ``day/a.csv``. Without any it is empty.
-        """
-        patterns, found = [name for name in self.reasons if re.search(r"[*?[]", name)], []
-        for row in rows:
-            path = row.name.replace("\\", "/")
-            starts = [0, *(match.end() for match in re.finditer("/", path))]
-            ends = (path[start:] for start in starts if path[start:] in self.reasons)
-            fitting = (name for name in patterns if fnmatchcase(f"/{path}", f"*/{name}"))
-            found.append(next(ends, None) or next(fitting, ""))
-        return found
+    def entry(self, row: Row) -> str:
+        """Return the name in the list that means a curve: ``a.csv`` means ``day/a.csv`` too."""
+        parts = row.name.replace("\\", "/").split("/")
+        ends = ("/".join(parts[start:]) for start in range(len(parts)))
+        return next((end for end in ends if end in self.reasons), "")
 
 
 def read_names(path: Path | None) -> Names | None:
-    """Return the list of curves in a text file: a name on each line, and after a comma a reason.
-
-    Raises
-    ------
-    StorageError
-        The file cannot be read.
-    """
+    """Return the list of curves in a text file: a name on each line, and after a comma a reason."""
     if path is None:
         return None
     try:
-        rows = [row for row in csv.reader(read_text(path).splitlines()) if row]
+        lines = [line for line in read_text(path).splitlines() if not line.startswith("#")]
+        rows = [[*map(str.strip, row)] for row in csv.reader(lines)]
     except (OSError, ValueError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or error
         raise StorageError(f"{path}: cannot be read as a list of curves ({reason})") from None
-    reasons = {}
-    for first, *others in rows:
-        name = first.strip().replace("\\", "/")
-        if name and name.lower() not in _HEADS and not name.startswith("#"):
-            reasons[name] = ", ".join(cell.strip() for cell in others)
+    reasons = {row[0].replace("\\", "/"): ", ".join(row[1:]) for row in rows if any(row)}
     return Names(path, reasons)
 
 
 def group_pattern(group_by: str) -> re.Pattern[str] | None:
     """Return the regular expression of a pattern of file names; None if it names a column.
 
-    ``{group}`` and ``*`` stand for any characters but slashes, ``?`` for one of them.
-
-    Raises
-    ------
-    ConfigError
-        The pattern has more than one group.
+    ``{group}`` and ``*`` stand for any characters but slashes.
     """
     if GROUP not in group_by:
         return None
     if group_by.count(GROUP) > 1:
         raise ConfigError(f"{shown(group_by)} has {GROUP} twice; write it once", "group_by")
-    parts = {GROUP: "(?P<group>[^/]+?)", "*": "[^/]*", "?": "[^/]"}
-    pieces = re.split(r"(\{group\}|\*|\?)", group_by.replace("\\", "/"))
-    return re.compile("(?:.*/)?" + "".join(parts.get(p, re.escape(p)) for p in pieces))
+    text = re.escape(group_by.replace("\\", "/")).replace(r"\*", "[^/]*")
+    return re.compile("(?:.*/)?" + text.replace(re.escape(GROUP), "(?P<group>[^/]+?)"))
 
 
 def group_of(pattern: re.Pattern[str] | None, file: str, column: str) -> str:
@@ -112,23 +87,21 @@ def judge(
     accepted ones if there is one, and obeys all rules; if there are none, if a model describes it.
     Outliers stay accepted.
     """
-    checks, notes, entries = [Rule(text) for text in rules], [], []
-    for names in (accepted, rejected):
-        entries.append([] if names is None else names.entries(rows))
-        if names is not None:
-            used = {*entries[-1]}
-            notes += [
-                f"{names.path} names {shown(name)}, which is none of the curves"
-                for name in names.reasons
-                if name not in used
-            ]
-    for number, row in enumerate(rows):
+    checks, notes = [Rule(text) for text in rules], []
+    for names in filter(None, (accepted, rejected)):
+        used = {names.entry(row) for row in rows}
+        notes += [
+            f"{names.path} names {shown(name)}, which is none of the curves"
+            for name in names.reasons
+            if name not in used
+        ]
+    for row in rows:
         if not row.is_fitted:
             row.reason = row.status
-        elif rejected is not None and (entry := entries[1][number]):
+        elif rejected and (entry := rejected.entry(row)):
             why = rejected.reasons[entry]
             row.reason = f"in {rejected.path.name}{f': {why}' if why else ''}"
-        elif accepted is not None and not entries[0][number]:
+        elif accepted and not accepted.entry(row):
             row.reason = f"not in {accepted.path.name}"
         elif not checks and row.fit["verdict"] == Verdict.UNDESCRIBED.value:
             row.reason = row.fit["comparison"]

@@ -57,7 +57,7 @@ class Row:
     """File of the force map that it belongs to."""
     site: Site | None = None
     """Where on the map it was measured."""
-    status: str = "not run"
+    status: str = ""
     """`FITTED`, or why there is no fit."""
     fit: dict[str, Any] = field(default_factory=dict)
     """JSON data of the fit, with r_squared, indentation [m] and largest_force [N]."""
@@ -72,8 +72,6 @@ class Row:
     """What the fit says of the curve alone."""
     estimates: dict[str, Estimate] = field(default_factory=dict, init=False)
     """Modulus and tension over all that is tied, and the quantities of the chosen explanation."""
-    numbers: dict[str, float] = field(default_factory=dict, init=False)
-    """`NUMBERS` of the fit, in SI."""
 
     def __post_init__(self) -> None:
         if self.fit:
@@ -85,13 +83,6 @@ class Row:
         if "sketch" in fit:
             self.sketch = sketch(**fit["sketch"])
         (self.curve,) = fit["curves"]
-        counts = {
-            name: len(of[name]) for name, of in (("failed_checks", self.curve), ("messages", fit))
-        }
-        found = (
-            fit | {"points": self.curve["points"], "noise": self.curve["noise"]["value"]} | counts
-        )
-        self.numbers = {name: _number(found.get(name)) for name in NUMBERS}
         headline = {name: fit[name] for name in OVER_TIED if name in fit}
         # Modulus and tension come first.
         parameters = {**headline, **fit["parameters"], **headline}
@@ -111,13 +102,18 @@ class Row:
         return found is not None and not found.held and None not in (found.low, found.high)
 
     def values(self) -> dict[str, float]:
-        """Return all numbers in SI by name, ends of intervals too; an open end is NaN."""
-        ends = {
-            f"{name}{end}": _number(number)
+        """Return all numbers in SI by name, ends of intervals too; NaN is an open end, or none."""
+        if not self.fit:
+            return {}
+        counts = {"failed_checks": len(self.failed_checks), "messages": len(self.fit["messages"])}
+        noise = {"points": self.curve["points"], "noise": self.curve["noise"]["value"]}
+        known = self.fit | noise | counts
+        found = {
+            f"{name}{end}": number
             for name, e in self.estimates.items()
             for end, number in zip(ENDS, (e.value, e.low, e.high), strict=True)
-        }
-        return ends | self.numbers
+        } | {name: known.get(name) for name in NUMBERS}
+        return {name: np.nan if value is None else float(value) for name, value in found.items()}
 
     @property
     def model(self) -> str:
@@ -156,7 +152,3 @@ def units_of(rows: Iterable[Row]) -> dict[str, str]:
     """Return the unit of each of the values of rows by name."""
     units = {name: e.unit for row in rows for name, e in row.estimates.items()}
     return NUMBERS | {f"{name}{end}": unit for name, unit in units.items() for end in ENDS}
-
-
-def _number(value: float | None) -> float:
-    return np.nan if value is None else float(value)

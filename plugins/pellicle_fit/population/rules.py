@@ -31,45 +31,34 @@ _EXAMPLE = "write one such as 'r_squared > 0.95' or '1 kPa < reduced_modulus < 1
 def units() -> dict[str, str]:
     """Return the names that rules may contain, each with its unit."""
     effects = registry().components.get(Effect.family, {}).values()
-    components = [Solid, *(effect.component for effect in effects)]
     names = {"youngs_modulus": "Pa"}
-    for component in components:
+    for component in (Solid, *(effect.component for effect in effects)):
         if isinstance(component, type) and issubclass(component, Fittable):
             names |= {name: quantity.unit for name, quantity in quantities(component).items()}
-    ends = {f"{name}{end}": unit for name, unit in names.items() for end in ENDS}
-    return ends | NUMBERS
+    return {f"{name}{end}": unit for name, unit in names.items() for end in ENDS} | NUMBERS
 
 
 class Rule:
-    """One or two comparisons of expressions and quantities.
-
-    Raises
-    ------
-    ConfigError
-        The text is not a comparison, names something unknown, or compares different dimensions.
-    """
+    """One or two comparisons of expressions and quantities; names and dimensions are checked."""
 
     def __init__(self, text: str) -> None:
         rule, unit_of = shown(text), units()
         parts = [part.strip() for part in _COMPARISON.split(text)]
-        self.text, self._signs = text, parts[1::2]
+        self.text, self._signs, sides = text, parts[1::2], parts[::2]
         self._sides: list[float | str] = []
         self._units: dict[str, str] = {}
-        dimensions, sides = {}, parts[::2]
-        if len(sides) not in (2, 3) or not all(sides):
-            sides = []
-        for side in sides:
-            number = split(side)
-            if number is not None and not number[1][:1].isalpha():
+        dimensions = {}
+        for side in sides if len(sides) in (2, 3) and all(sides) else ():
+            number, names = split(side), names_in(side)
+            if number and number[1][:1].isalpha():
+                names = set()
+            else:
                 number = None
-            names = names_in(side) if number is None else set()
-            for name in sorted(names):
-                if name not in unit_of:
-                    raise ConfigError(f"{shown(name)} in {rule}: {nearest(name, unit_of)}")
-            units_here = {name: unit_of[name] for name in names}
-            ones = {name: 1.0 if unit == "1" else one(unit) for name, unit in units_here.items()}
+            for name in sorted(names - unit_of.keys()):
+                raise ConfigError(f"{shown(name)} in {rule}: {nearest(name, unit_of)}")
+            ones = {name: 1.0 if unit_of[name] == "1" else one(unit_of[name]) for name in names}
             try:
-                value = evaluate(side, ones) if number is None else number[0] * one(number[1])
+                value = number[0] * one(number[1]) if number else evaluate(side, ones)
             except ConfigError:
                 raise
             except ValueError as error:
@@ -78,7 +67,7 @@ class Rule:
             if number or names:
                 dimensions[str(getattr(value, "dimensionality", "dimensionless"))] = side
             self._sides.append(float(value.magnitude) if number else side)
-            self._units |= units_here
+            self._units |= {name: unit_of[name] for name in names}
         if not self._units:
             raise ConfigError(f"{rule} does not compare a number of the fit; {_EXAMPLE}")
         if len(dimensions) > 1:

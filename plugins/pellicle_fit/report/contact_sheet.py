@@ -40,14 +40,9 @@ def _page(rows: Sequence[Row], caption: str, figure: Figure) -> None:
         _curve(row, axes)
     for axes in cells[len(rows) :]:
         axes.set_axis_off()
-    # Nothing is drawn of these but the legend.
-    cells[-1].plot([], [], "o", **_DOTS, label="data")
-    cells[-1].plot([], [], "C0", label="fit")
-    for state, colour in _COLOURS.items():
-        cells[-1].fill_between([], [], facecolor="none", edgecolor=colour, label=state)
-    title = f"{caption}; each frame spans the range of its curve; hollow points: not accepted"
-    above: dict[str, Any] = {"loc": "outside upper center", "ncols": 6, "title_fontsize": 6}
-    figure.legend(title=title, fontsize=5, **above)
+    colours = "accepted: grey, stands out: orange, rejected: red, not fitted: black"
+    title = f"{caption}; data: points, hollow if not accepted; fit: line; frames of the range of "
+    figure.suptitle(f"{title}each curve, {colours}", fontsize=5)
 
 
 def _curve(row: Row, axes: Axes) -> None:
@@ -55,30 +50,22 @@ def _curve(row: Row, axes: Axes) -> None:
     state = "accepted" if row.accepted else "rejected" if row.is_fitted else "not fitted"
     axes.spines[:].set_color(_COLOURS["outlier" if row.outlier else state])
     axes.set(xticks=[], yticks=[])
-    name, reason = row.name[-_LETTERS:], row.reason[:_LETTERS]
-    above = (1.2, name, "black"), (1.11, _numbers(row), "black"), (1.02, reason, "C3")
-    texts = [(0.0, *text) for text in above]
+    texts = [row.name[-_LETTERS:], row.reason[:_LETTERS]]
+    if row.is_fitted:
+        shown = ((row.estimates.get(name), symbol) for name, symbol in SHOWN.items())
+        named = [
+            f"{symbol} {in_figures(e)}" for e, symbol in shown if e and (e.value or not e.held)
+        ]
+        ratio = decimal(row.fit["chi_squared"] / row.curve["points"], 3)
+        texts[1:1] = [", ".join(named), f"R² {row.fit['r_squared']:.4f}, χ²/n {ratio}"]
+    # A name may hold dollars, which are formulas to matplotlib.
+    words = for_document("\n".join(filter(None, texts))).replace("$", r"\$")
+    axes.set_title(words, loc="left", fontsize=4.5, in_layout=False)
     if row.sketch and row.sketch["position"].size:
         z, force = row.sketch["position"], row.sketch["force"]
         axes.plot(z, force, "o", mfc="0.6" if row.accepted else "none", **_DOTS)
         if "fit" in row.sketch:
             axes.plot(z, row.sketch["fit"], "C0", linewidth=0.7)
-        for up, values, unit in ((0.87, z, "m"), (0.78, force, "N")):
-            texts.append((0.04, up, readable(float(np.ptp(values)), unit, 3), "0.4"))
-    for x, y, text, colour in texts:
-        # A name may hold dollars, which are formulas to matplotlib.
-        words = for_document(text).replace("$", r"\$")
-        axes.text(x, y, words, fontsize=4.5, color=colour, transform=axes.transAxes)
-
-
-def _numbers(row: Row) -> str:
-    """Return what was fitted and the quality of the fit as a line."""
-    if not row.is_fitted:
-        return ""
-    texts = [
-        f"{symbol} {in_figures(e)}"
-        for name, symbol in SHOWN.items()
-        if (e := row.estimates.get(name)) is not None and not (e.held and not e.value)
-    ]
-    ratio = decimal(row.numbers["chi_squared"] / row.numbers["points"], 3)
-    return ", ".join([*texts, f"R² {row.numbers['r_squared']:.4f}", f"χ²/n {ratio}"])
+        ranges = readable(float(np.ptp(z)), "m", 3), readable(float(np.ptp(force)), "N", 3)
+        inside: dict[str, Any] = {"transform": axes.transAxes, "va": "top", "color": "0.4"}
+        axes.text(0.04, 0.95, "\n".join(ranges), fontsize=4.5, **inside)

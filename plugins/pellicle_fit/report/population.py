@@ -36,14 +36,10 @@ _OPEN_TOP = 1.1
 """Position of an open upper end, as a multiple of the largest value drawn."""
 _BINS = 5, 40
 """Least and greatest number of bins."""
-_GROUPS = 10
-"""Number of groups with a colour of their own; the others share the last."""
 _DECADE = 10.0
 """Greatest over least value beyond which an axis is logarithmic."""
 _WIDTH, _AROUND = 3.7, 0.75
 """Width of a panel, and its height beside that of the image [inch]."""
-_EXTREMES = 1, 99
-"""Percentiles between which the colours change, so that one odd curve does not fade the rest."""
 
 
 def bars(rows: Sequence[Row]) -> list[Chart]:
@@ -85,18 +81,17 @@ def distributions(rows: Sequence[Row]) -> list[Chart]:
     """Return histograms of E* and τ₀ of the drawable curves, by group, and E* against τ₀."""
     rows, charts = drawable(rows), list[Chart]()
     groups = list(dict.fromkeys(row.group for row in rows))
-    kinds = np.array([min(groups.index(row.group), _GROUPS - 1) for row in rows])
-    labels = [label(group) for group in groups[:_GROUPS]]
-    if len(groups) > _GROUPS:
-        labels[-1] = f"{len(groups) - _GROUPS + 1} other groups"
-    closed = {name: np.array([row.is_closed(name) for row in rows]) for name in _DRAWN}
-    for name, has in closed.items():
-        if has.any():
+    kinds = np.array([groups.index(row.group) for row in rows])
+    for name in _DRAWN:
+        closed = np.array([row.is_closed(name) for row in rows])
+        if closed.any():
             # One legend is enough.
-            shown = labels if len(labels) > 1 and not charts else [""] * len(labels)
-            charts.append(_histogram(name, _values(rows, name)[has], kinds[has], shown))
+            named = len(groups) > 1 and not charts
+            legends = [label(group) if named else "" for group in groups]
+            values = _values(rows, name)[closed]
+            charts.append(_histogram(_axis(name, values), values, kinds[closed], legends))
     if len(charts) == 2:
-        charts.append(_scatter(rows, kinds, len(labels)))
+        charts.append(_scatter(rows, kinds, len(groups)))
     return charts
 
 
@@ -109,14 +104,14 @@ def _axis(name: str, values: Array) -> Axis:
     return Axis(words(name), _DRAWN[name], log=is_wide)
 
 
-def _histogram(name: str, values: Array, kinds: Array, labels: Sequence[str]) -> Chart:
+def _histogram(axis: Axis, values: Array, kinds: Array, legends: Sequence[str]) -> Chart:
     """Return how many values lie in each bin, those of each kind on top of the others."""
-    axis, low, high = _axis(name, values), float(values.min()), float(values.max())
+    low, high = float(values.min()), float(values.max())
     number = int(np.clip(np.sqrt(values.size) * 2, *_BINS)) + 1
     high = high if high > low else low + (abs(low) or 1.0)
     edges = np.geomspace(low, high, number) if axis.log else np.linspace(low, high, number)
     series, floor = list[Series](), np.zeros(2 * number)
-    for kind, legend in enumerate(labels):
+    for kind, legend in enumerate(legends):
         counts, _ = np.histogram(values[kinds == kind], edges)
         top = floor + np.pad(np.repeat(counts, 2), 1)
         ends = {"low": floor, "high": top}
@@ -124,7 +119,7 @@ def _histogram(name: str, values: Array, kinds: Array, labels: Sequence[str]) ->
         floor = top
     median = guide([float(np.median(values))] * 2, [0.0, floor.max()])
     # In the order of the stack, from the top, so that no outline hides one below it.
-    return Chart(axis, [Axis("curves")], [*series[::-1], median], hues=len(labels))
+    return Chart(axis, [Axis("curves")], [*series[::-1], median], hues=len(legends))
 
 
 def _scatter(rows: Sequence[Row], kinds: Array, count: int) -> Chart:
@@ -148,31 +143,30 @@ def map_figure(
     It is grey where there is no value.
     """
     names = [name for name in (*SHOWN, CONTACT_HEIGHT) if name in images]
-    (x, y), (across, along) = (images[side].values for side in "xy"), _pitches(images)
-    edges = np.array([x[0] - across / 2, x[-1] + across / 2, y[0] - along / 2, y[-1] + along / 2])
-    length, length_unit = axis_unit(edges, "m")
+    across, along = _pitches(images)
+    length, unit = axis_unit(np.concatenate([images[side].values for side in "xy"]), "m")
+    sides = {side: (side, images[side].values * length, {"units": unit}) for side in "xy"}
 
     def draw(figure: Figure) -> None:
         figure.suptitle(title, fontsize="medium")
-        for number, name in enumerate(names):
+        panels: Any = figure.subplots(len(names), 2, squeeze=False)
+        for name, pair in zip(names, panels, strict=True):
             width = images[f"{name}_high"] - images[f"{name}_low"]
             heads = {name.replace("_", " "): images[name], "width of its 95 % interval": width}
-            for place, (head, image) in enumerate(heads.items(), 2 * number + 1):
+            for axes, (head, image) in zip(pair, heads.items(), strict=True):
                 scale, unit = axis_unit(image.values, images[name].attrs["units"])
-                values = image.values * scale
-                finite = values[np.isfinite(values)]
-                low, high = np.percentile(finite if finite.size else (0.0, 1.0), _EXTREMES)
-                axes = figure.add_subplot(len(names), 2, place)
-                extent: Any = edges * length
-                shown = axes.imshow(values, origin="lower", extent=extent, vmin=low, vmax=high)
-                axes.set_facecolor("0.8")
-                axes.set(xlabel=f"x [{length_unit}]", ylabel=f"y [{length_unit}]")
+                beside = {"label": unit, "shrink": 0.8}
+                # One odd curve does not fade the rest.
+                robust: dict[str, Any] = {"robust": True, "center": False, "extend": "both"}
+                shown = (image * scale).assign_coords(sides)
+                shown.plot.imshow(ax=axes, cbar_kwargs=beside, **robust)
+                # Pixels of a line of curves have no height.
+                axes.set(facecolor="0.8", aspect="equal" if min(image.shape) > 1 else "auto")
                 axes.set_title(head, fontsize="medium")
-                figure.colorbar(shown, ax=axes, label=unit, extend="both", shrink=0.8)
 
-    ratio = np.clip((edges[3] - edges[2]) / (edges[1] - edges[0]), 0.2, 3.0)
+    ratio = np.clip(images["y"].size * along / (images["x"].size * across), 0.2, 3.0)
     height = (_WIDTH - 1.3) * float(ratio) + _AROUND
-    return draw, (2 * _WIDTH, height * max(len(names), 1) + 0.4)
+    return draw, (2 * _WIDTH, height * len(names) + 0.4)
 
 
 def _pitches(images: xr.Dataset | xr.DataArray) -> tuple[float, float]:
@@ -183,13 +177,7 @@ def _pitches(images: xr.Dataset | xr.DataArray) -> tuple[float, float]:
 
 
 def save_population(fits: ManyFits, directory: Path, formats: Sequence[str]) -> tuple[Path, ...]:
-    """Write contact sheet, distributions and the images in ``maps``, and return the files.
-
-    Raises
-    ------
-    StorageError
-        A file cannot be written.
-    """
+    """Write contact sheet, distributions and the images in ``maps``, and return the files."""
     files = [save_pages(sheets(fits.rows), directory / "fits-curves.pdf", PAGE)]
     if charts := distributions(fits.rows):
         draw, size = figure_of(charts)

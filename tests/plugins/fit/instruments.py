@@ -5,7 +5,6 @@ Each writer takes a `Recording`, what a microscope sees of an approach and a ret
 
 from __future__ import annotations
 
-import struct
 import zipfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -18,34 +17,6 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Grid:
-    """The pixels of a force map."""
-
-    columns: int
-    rows: int
-    pitch: float
-    """Distance of neighbours [m]."""
-
-    def place(self, number: int) -> tuple[float, float]:
-        """Return the place [m] of a curve, row by row."""
-        row, column = divmod(number, self.columns)
-        return column * self.pitch, row * self.pitch
-
-    def metadata(self) -> dict[str, float]:
-        """Return centre, size and shape by the names of afmformats."""
-        pixels = {"x": self.columns, "y": self.rows}
-        return {
-            name: value
-            for axis, number in pixels.items()
-            for name, value in (
-                (f"grid center {axis}", (number - 1) / 2 * self.pitch),
-                (f"grid size {axis}", number * self.pitch),
-                (f"grid shape {axis}", number),
-            )
-        }
-
-
-@dataclass(frozen=True)
 class Recording:
     """Height of the cantilever's base [m], falling and rising again, and force [N]."""
 
@@ -55,8 +26,6 @@ class Recording:
     sensitivity: float = 50e-9
     place: tuple[float | str, float | str] | None = None
     """Where on the sample it was measured [m]."""
-    grid: Grid | None = None
-    """The map that it belongs to."""
 
     @property
     def segment(self) -> NDArray[np.uint8]:
@@ -112,8 +81,6 @@ def _exported(path: Path, recording: Recording, number: int):  # type: ignore[no
     }
     if recording.place is not None:
         metadata |= dict(zip(("position x", "position y"), recording.place, strict=True))
-    if recording.grid is not None:
-        metadata |= recording.grid.metadata()
     return AFMForceDistance(data, metadata)
 
 
@@ -121,13 +88,6 @@ def jpk(path: Path, *recordings: Recording) -> None:
     """Write a JPK archive: properties, and channels of big-endian integers; several make a map."""
     with zipfile.ZipFile(path, "w") as archive:
         general = "file-format-version=0.5\n"
-        if (grid := recordings[0].grid) is not None:
-            pattern = "force-scan-map.position-pattern.grid"
-            short = {"center x": "xcenter", "center y": "ycenter"}
-            short |= {"size x": "ulength", "size y": "vlength"}
-            short |= {"shape x": "ilength", "shape y": "jlength"}
-            for name, value in grid.metadata().items():
-                general += f"{pattern}.{short[name.removeprefix('grid ')]}={value!r}\n"
         if len(recordings) > 1:
             archive.writestr("header.properties", general)
             archive.writestr("index/", "")
@@ -206,56 +166,6 @@ def _jpk_header(recording: Recording, rows: NDArray[np.bool_], style: str, numbe
     return "\n".join(lines) + "\n"
 
 
-def ibw(path: Path, recording: Recording) -> None:
-    """Write an Asylum file: an Igor binary wave (version 5) with a note and labels of columns."""
-    columns = {
-        "Raw": -recording.height,
-        "Defl": recording.force / recording.spring_constant,
-        "ZSnsr": -recording.height,
-    }
-    note = "\r".join(
-        [
-            "ScanSize: 0",
-            "ImagingMode: Contact",
-            "NumPtsPerSec: 1000",
-            f"InvOLS: {float(recording.sensitivity)!r}",
-            "TriggerChannel: Force",
-            f"TriggerPoint: {float(recording.force.max())!r}",
-            f"SpringConstant: {recording.spring_constant!r}",
-            "InputTime: 1",
-            "ApproachVelocity: 1e-6",
-            "RetractVelocity: 1e-6",
-            "MicroscopeModel: MFP3D",
-            "Version: 1",
-            "Date: 2026-01-02",
-            "Time: 10:11:12 AM",
-        ]
-    ).encode()
-    data = np.column_stack(list(columns.values())).astype("<f8")
-    labels = b"".join(name.encode().ljust(32, b"\0") for name in ("", *columns))
-    header = bytearray(320)
-    struct.pack_into("<i", header, 12, data.size)
-    struct.pack_into("<h", header, 16, 4)
-    struct.pack_into("<h", header, 26, 1)
-    struct.pack_into("<4i", header, 68, *data.shape, 0, 0)
-    struct.pack_into("<8d", header, 84, *[1.0] * 4, *[0.0] * 4)
-    body = data.tobytes(order="F")
-    sizes = struct.pack(
-        "<3i i 4i 4i 3i",
-        *(len(header) + len(body), 0, len(note)),
-        0,
-        *(0, 0, 0, 0),
-        *(0, len(labels), 0, 0),
-        *(0, 0, 0),
-    )
-    # The 16-bit words of the two headers add up to nothing.
-    head = struct.pack("<2h", 5, 0) + sizes
-    total = sum(struct.unpack(f"<{(len(head) + len(header)) // 2}h", head + bytes(header)))
-    checksum = (-total + 2**15) % 2**16 - 2**15
-    head = struct.pack("<2h", 5, checksum) + sizes
-    path.write_bytes(head + bytes(header) + body + note + labels)
-
-
 def workshop(path: Path, recording: Recording) -> None:
     """Write an AFM Workshop table, in volts."""
     half = recording.force.size // 2
@@ -278,34 +188,11 @@ def workshop(path: Path, recording: Recording) -> None:
     path.write_text("\n".join(lines), encoding="utf-8")
 
 
-def chiaro(path: Path, recording: Recording) -> None:
-    """Write a table of an Optics11 Chiaro indenter, in the encoding of western Windows."""
-    bending = recording.force / recording.spring_constant
-    time = np.linspace(0, 1, recording.force.size)
-    piezo = -recording.height
-    columns = (time, 1e6 * recording.force, 1e9 * (piezo - bending), 1e9 * bending, 1e9 * piezo)
-    lines = [
-        "Date\t02/01/2026\tTime\t10:11:12\tStatus\tok",
-        "Device:\tChiaro",
-        f"k (N/m)\t{recording.spring_constant!r}",
-        "Software version\t3",
-        "Max load (µN)\t1",
-        "Piezo position (nm) (Measured)\t1000",
-        "Piezo speed  (µm/s)\t1",
-        "",
-        "Time (s)\tLoad (uN)\tIndentation (nm)\tCantilever (nm)\tPiezo (nm)",
-        *("\t".join(f"{value:.10g}" for value in row) for row in zip(*columns, strict=True)),
-    ]
-    path.write_text("\n".join(lines) + "\n", encoding="ISO-8859-1")
-
-
 WRITERS: dict[str, Callable[[Path, Recording], None]] = {
     "export.h5": hdf5,
     "export.tab": tab,
     "curve.jpk-force": jpk,
-    "curve.ibw": ibw,
     "workshop.csv": workshop,
-    "chiaro.txt": chiaro,
 }
 """Files of one curve."""
 MAPS: dict[str, Callable[[Path, Sequence[Recording]], None]] = {

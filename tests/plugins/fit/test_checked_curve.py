@@ -34,12 +34,6 @@ def liar(change: Callable[..., Any]) -> Any:
     return Bead(radius=1e-5)
 
 
-def moves_depth(curve: pl.ForceCurve, depth: Any) -> Any:
-    """Write to the depths."""
-    depth += 1e-6
-    return curve
-
-
 LIES: list[tuple[Callable[..., Any], str]] = [
     (lambda curve, depth: curve.force, "() returned "),
     (lambda curve, depth: curve._replace(force=curve.force[:-1]), "() returned "),
@@ -60,10 +54,3 @@ def test_a_force_curve_that_lies_is_refused(
     with pytest.raises(pl.PluginError) as error:
         pl.fit(DEPTH, FORCE, indenter=liar(change), rivals=[], **solid)
     assert f"indenter 'liar': {method}{words}" in str(error.value)
-
-
-def test_who_fails_is_named() -> None:
-    """The depths are read-only; whose code stumbled over that is said."""
-    with pytest.raises(ValueError, match="read-only") as error:
-        pl.fit(DEPTH, FORCE, indenter=liar(moves_depth))
-    assert error.value.__notes__ == ["indenter 'liar' failed in force_curve()"]

@@ -19,7 +19,7 @@ from PIL import Image
 
 import pellicle as pl
 from pellicle.errors import ConfigError
-from pellicle_fit.files.measurement import Axis, Site
+from pellicle_fit.files.measurement import Site
 from pellicle_fit.population.images import force_maps
 from pellicle_fit.population.row import Row
 from pellicle_plugins.indenters.of_revolution import Paraboloid
@@ -45,7 +45,7 @@ def truth(columns: int, rows: int) -> dict[str, NDArray[np.float64]]:
 
 def recordings(columns: int, rows: int) -> list[instruments.Recording]:
     """Return what an instrument sees at each pixel, with noise of 0.3 %."""
-    random, grid = np.random.default_rng(7), instruments.Grid(columns, rows, pitch=0.5e-6)
+    random = np.random.default_rng(7)
     bead, depth = Paraboloid(radius=10e-6), np.linspace(-0.5e-6, 1.5e-6, 60)
     images = [truth(columns, rows)[name].ravel().tolist() for name in NAMES]
     result = []
@@ -53,7 +53,8 @@ def recordings(columns: int, rows: int) -> list[instruments.Recording]:
         force = modulus * bead.force_curve(depth, 2 * tension / modulus).force
         noise = 0.003 * force.max() * random.standard_normal(depth.size)
         seen = instruments.record(depth - height, force, noise, spring_constant=0.05)
-        result.append(replace(seen, place=grid.place(number), grid=grid))
+        place = 0.5e-6 * (number % columns), 0.5e-6 * (number // columns)
+        result.append(replace(seen, place=place))
     return result
 
 
@@ -122,7 +123,7 @@ def test_killed_and_resumed(mapped: Path) -> None:
 @pytest.mark.slow
 def test_places_as_text(tmp_path: Path) -> None:
     """Places may be texts with units, in a file of afmformats or in a table of files."""
-    curves = [replace(c, place=None, grid=None) for c in recordings(3, 1)]
+    curves = [replace(c, place=None) for c in recordings(3, 1)]
     instruments.hdf5(tmp_path / "line.h5", *curves)
     with h5py.File(tmp_path / "line.h5", "r+") as file:
         for number, x in enumerate(("0 nm", "500 nm", "1 um")):
@@ -144,11 +145,11 @@ def test_places_as_text(tmp_path: Path) -> None:
     assert images["y"].values == pytest.approx([0, 3e-7])
 
 
-def placed(places: list[tuple[float, float]], grid: tuple[Axis, Axis] | None = None) -> list[Row]:
+def placed(places: list[tuple[float, float]]) -> list[Row]:
     """Return accepted rows at places [µm], their moduli in order."""
     rows = [row(f"m:{k}", 1e3 + k) for k in range(len(places))]
     for one, (x, y) in zip(rows, places, strict=True):
-        one.accepted, one.map, one.site = True, "m", Site(1e-6 * x, 1e-6 * y, grid)
+        one.accepted, one.map, one.site = True, "m", Site(1e-6 * x, 1e-6 * y)
     return rows
 
 
@@ -182,15 +183,6 @@ def test_odd_grids() -> None:
     rows = placed([(x + a, y + b) for (x, y), (a, b) in zip(snake, noise.tolist(), strict=True)])
     image, notes = only_image(rows)
     assert (image, notes) == ([[0, 1, -1, 2], [5, 4, -1, 3]], [])
-
-
-def test_stated_grid() -> None:
-    """A scan that was stopped has the size that its file states, unless curves are elsewhere."""
-    axes = Axis(0.0, 1e-6, 3), Axis(0.0, 1e-6, 3)
-    image, _ = only_image(placed([(0, 0), (1, 0), (2, 0), (0, 1)], axes))
-    assert image == [[0, 1, 2], [3, -1, -1], [-1, -1, -1]]
-    image, _ = only_image(placed([(0.5, 0), (1.5, 0), (0.5, 1), (1.5, 1)], axes))
-    assert image == [[0, 1], [2, 3]]
 
 
 def test_no_grid(tmp_path: Path) -> None:

@@ -60,31 +60,9 @@ def test_formats(tmp_path: Path, recording: instruments.Recording, name: str) ->
     instruments.WRITERS[name](path, recording)
     calibration = GIVEN if name == "workshop.csv" else None
     position, force = SEEN
-    approach = only(path, calibration)
-    if name == "curve.ibw":
-        # The file does not say where the approach ends: that is found from the position.
-        assert approach.force.size == 2 * force.size
-        first = slice(force.size)
-        approach = Measurement(approach.position[first], approach.force[first])
-    else:
-        retract = only(path, calibration, "retract").position
-        assert retract[0] - retract[-1] == pytest.approx(np.ptp(position), rel=0.03)
+    approach, retract = (only(path, calibration, one) for one in ("approach", "retract"))
+    assert retract.position[0] - retract.position[-1] == pytest.approx(np.ptp(position), rel=0.03)
     assert is_curve(approach, position, force)
-
-
-def test_approach_of_an_unlabelled_file_is_fitted(
-    tmp_path: Path, recording: instruments.Recording
-) -> None:
-    """A file of both passes is fitted by its approach, and the truth is found."""
-    instruments.ibw(tmp_path / "curve.ibw", recording)
-    measured = only(tmp_path / "curve.ibw")
-    fit = pl.fit(
-        measured.position, measured.force, indenter=BEAD, spring_constant=measured.stiffness
-    )
-    # The turn is found exactly, because the base of the cantilever has no noise.
-    assert fit.members[0].curve.position.size == 300
-    for estimate, truth in ((fit.reduced_modulus, MODULUS), (fit.tension, MODULUS * LENGTH / 2)):
-        assert holds(estimate, truth)
 
 
 @pytest.mark.parametrize("name", instruments.MAPS)

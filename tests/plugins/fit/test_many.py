@@ -195,15 +195,13 @@ class Stops(Executor):
 
 @pytest.mark.slow
 def test_interrupted(tmp_path: Path) -> None:
-    """What was finished is in the table, and the rest is said not to have run."""
+    """What was finished is kept."""
     curves = {str(seed): curve(seed) for seed in range(3)}
     config = pl.FitConfig.merged(**BEAD, rivals=(), fix={"tension": 0})
-    sources = config.sources(curves)
+    sources = [*config.sources(curves)]
     stops = pl.FitConfig.merged(config, executor=Stops())
     with pytest.raises(KeyboardInterrupt):
         fit_sources(stops, sources, tmp_path, progress=False)
-    rows = json.loads((tmp_path / "fits.json").read_text(encoding="utf-8"))["curves"]
-    assert [row["status"] for row in rows] == ["fitted", "not run", "not run"]
     fits = fit_sources(config, sources, tmp_path, progress=False)
     assert (fits.resumed, fits.failed) == (1, 0)
 
@@ -247,20 +245,6 @@ def test_simulated_before_the_fits(monkeypatch: pytest.MonkeyPatch) -> None:
     copy, here = (pl.fit_many(curves, **HERTZ | own) for own in (solid, {}))
     assert executors == [Keeps(), Keeps()]
     xr.testing.assert_identical(copy, here)
-
-
-def test_labelled_curves(cli: Cli) -> None:
-    """Rows of a table that differ in the column curve are different curves."""
-    parts = [curve(seed) for seed in (1, 2)]
-    lines = [
-        f"{number},{z * 1e6:.9g},{f * 1e9:.9g}"
-        for number in (0, 1)
-        for z, f in zip(*parts[number], strict=True)
-    ]
-    Path("map.csv").write_text("\n".join([f"curve,{HEADER}", *lines]), encoding="utf-8")
-    statuses = json.loads(cli("map.csv", *OPTIONS, "--fix", "tension=0", "--json").stdout)["curves"]
-    assert [row["curve"] for row in statuses] == ["map.csv:0", "map.csv:1"]
-    assert all(row["status"] == "fitted" for row in statuses)
 
 
 def test_groups(tmp_path: Path) -> None:

@@ -18,8 +18,6 @@ from click.testing import Result
 from matplotlib import pyplot
 
 import pellicle as pl
-from pellicle_fit.files.readers import read
-from pellicle_fit.files.text_table import read_cells
 from tests.pictures import drawn_width
 
 Cli = Callable[..., Result]
@@ -199,25 +197,6 @@ def test_bad_records(cli: Cli, content: str | None, words: str) -> None:
     if content is not None:
         Path("fit.json").write_text(content, encoding="utf-8")
     assert words in cli("--again", "fit.json", code=2).stderr
-
-
-def test_file_that_is_replaced_while_it_is_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A hash never belongs to another content than the numbers."""
-    path = tmp_path / "a.csv"
-    path.write_text("position [um],force [nN]\n1,2\n", encoding="utf-8")
-
-    def replaced(file: Path, *arguments: Any) -> Any:
-        cells = read_cells(file, *arguments)
-        other = tmp_path / "other"
-        other.write_text("position [um],force [nN]\n1,3\n", encoding="utf-8")
-        other.replace(file)
-        return cells
-
-    monkeypatch.setattr("pellicle_fit.files.readers.read_cells", replaced)
-    with pytest.raises(pl.StorageError, match="was changed while it was read"):
-        read(path)
 
 
 @pytest.mark.slow
