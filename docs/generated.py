@@ -194,7 +194,7 @@ def effects() -> str:
     """Return a table of the effects of fits, with what is fitted of each."""
     cells = []
     for type_, entry in pl.registry().components["effect"].items():
-        names = ", ".join(f"`{name}`" for name in quantities(entry.component))  # type: ignore[arg-type]
+        names = ", ".join(f"`{name}`" for name in quantities(entry.component))
         cells.append((f"`{type_}`", words_of_type(entry.component, type_), names))
     return _table(("effect", "in words", "fitted"), cells)
 

@@ -12,6 +12,8 @@ from pellicle.arrays import Array, Mask
 from pellicle.components import HasForceCurve
 from pellicle.errors import ConfigError
 
+_BRIEFEST = 0.01
+"""Least time in contact over that of the approach."""
 _DEEP, _LASTS = 0.02, 0.1
 """Distance of a dwell from the deepest row, over the range, and its least part of the loading."""
 _NEIGHBOURS = 4
@@ -69,6 +71,12 @@ class Curve:
     def loading_time(self) -> float:
         """Time of the approach [s]; that of the retraction if there is nothing else."""
         return float(np.ptp(self.clock[self.first_pass])) if self.time is not None else 1.0
+
+    def time_in_contact(self, contact_point: float) -> float:
+        """Return the time [s] from a first touch at a position [m] to the end of the approach."""
+        time, base = self.clock[self.first_pass], np.maximum.accumulate(self.base[self.first_pass])
+        touched = float(np.interp(contact_point, base, time))
+        return float(max(time[-1] - touched, _BRIEFEST * self.loading_time))
 
     @cached_property
     def moves_out(self) -> Mask:

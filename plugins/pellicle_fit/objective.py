@@ -13,7 +13,7 @@ from scipy.optimize import least_squares
 from pellicle.arrays import Array
 
 from .curve import Curve
-from .effect import Fitted, Sizes, Weighed
+from .effect import Fitted, Responds, Sizes, Weighed
 from .explanation import Explanation
 from .long_memory import differenced
 
@@ -93,10 +93,14 @@ class Objective:
         effects = self.explanation.effects
         return sum(effect.searched(curve) for effect in effects for curve in self.curves)
 
-    @cached_property
-    def loading_time(self) -> float:
-        """Time of loading [s], the geometric mean over the curves."""
-        return float(np.exp(np.mean([np.log(curve.loading_time) for curve in self.curves])))
+    def loading_time(self, at: Array) -> float:
+        """Return the time of loading in contact [s], the geometric mean over the curves."""
+        values, given = self.values(at), self.explanation.solid.contact_point
+        times = [
+            curve.time_in_contact(values.get((CONTACT_POINT, i), given))
+            for i, curve in enumerate(self.curves)
+        ]
+        return float(np.exp(np.mean(np.log(times))))
 
     @cached_property
     def slots(self) -> tuple[Slot, ...]:
@@ -152,10 +156,9 @@ class Objective:
                 values[slot.part][slot.name] = slot.value(coordinate)
         pairs = zip(self.explanation.effects, values[1:], strict=True)
         effects = tuple(effect.at(known) for effect, known in pairs)
-        if MODULUS in values[0]:
-            values[0][MODULUS] /= Explanation(self.explanation.solid, effects).relaxed(
-                self.loading_time
-            )
+        if MODULUS in values[0] and any(isinstance(effect, Responds) for effect in effects):
+            bare = Explanation(self.explanation.solid, effects)
+            values[0][MODULUS] /= bare.relaxed(self.loading_time(at))
         return Explanation(self.explanation.solid.at(values[0]), effects)
 
     def forces(self, at: Array) -> list[Array]:

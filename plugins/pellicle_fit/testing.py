@@ -53,7 +53,8 @@ class Case(NamedTuple):
 
     def force(self, *effects: Effect, contact_point: float = 0.0) -> Array:
         """Return the force [N] that is recorded with some effects."""
-        relaxed = Explanation(Solid(), effects).relaxed(self.curve.loading_time)
+        time = self.curve.time_in_contact(contact_point)
+        relaxed = Explanation(Solid(), effects).relaxed(time)
         solid = Solid(reduced_modulus=self.modulus / relaxed, contact_point=contact_point)
         return Explanation(solid, effects).force(self.curve)
 

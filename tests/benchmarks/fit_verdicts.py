@@ -56,6 +56,8 @@ class Truth(NamedTuple):
     coloured: bool = False
     spring: float | None = None
     """Spring constant of a cantilever [N/m], whose base is known exactly."""
+    relaxed: Callable[[float], float] = lambda _: 1.0
+    """Modulus after a time [s] over E*."""
 
 
 def rows_of(protocol: str, deepest: float) -> list[Rows]:
@@ -155,10 +157,17 @@ def truth_of(kind: str, random: np.random.Generator) -> Truth:
         case "hertz" | "1/f noise":
             return of(lambda rows: hertz(rows.depth), coloured=kind != "hertz")
         case "power law":
-            return of(closed_form("power_law", relaxation_exponent=uniform(0.05, 0.3)), "power_law")
+            alpha = uniform(0.05, 0.3)
+            force = closed_form("power_law", relaxation_exponent=alpha)
+            return of(force, "power_law", relaxed=lambda time: time**-alpha)
         case "standard linear":
             sizes = {"relaxed_share": uniform(0.15, 0.6), "relaxation_time": 10 ** uniform(-1.3, 0)}
-            return of(closed_form("standard_linear", **sizes), "standard_linear")
+            share, constant = sizes.values()
+            return of(
+                closed_form("standard_linear", **sizes),
+                "standard_linear",
+                relaxed=lambda time: 1 + share * np.expm1(-time / constant),
+            )
         case "adhesion":
             work = uniform(0.02, 0.1) * largest / (1.5 * np.pi * RADIUS)
             return of(closed_form("adhesion", work_of_adhesion=work), "adhesion")
@@ -257,6 +266,8 @@ def outcome(kind: str, protocol: str, number: int, seed: int) -> dict[str, Any]:
     seconds, answer = process_time() - began, fit.answer
     best = min(f.aic for f in answer.explanations)
     right = [f for f in answer.explanations if f.types == truth.right]
+    times = [rows.time[np.argmax(rows.depth)] for rows in rows_of(protocol, TOP)]
+    modulus = MODULUS * truth.relaxed(float(np.exp(np.mean(np.log(times)))))
     return {
         "kind": kind,
         "protocol": protocol,
@@ -268,7 +279,7 @@ def outcome(kind: str, protocol: str, number: int, seed: int) -> dict[str, Any]:
         "lead": answer.decision.lead,
         "other": sorted(answer.decision.other),
         "behind": right[0].aic - best if right else None,
-        "modulus": _held(answer.reduced_modulus, MODULUS),
+        "modulus": _held(answer.reduced_modulus, modulus),
         "tension": _held(answer.tension, truth.tension),
         "expected": expected(answer, truth, protocol) if truth.tension else None,
         "seconds": round(seconds, 2),

@@ -81,7 +81,8 @@ def main() -> None:
         head = "position [um],force [nN],time [s]"
         np.savetxt(path, table * [1e6, 1e9, 1], "%.7g", ",", header=head, comments="")
         distrust = bool(chosen.fault) or chosen.kind in FAULTY
-        lines.append((path.name, *chosen, MODULUS, truth.tension, distrust))
+        # The approach takes 1 s.
+        lines.append((path.name, *chosen, MODULUS * truth.relaxed(1.0), truth.tension, distrust))
     with answers.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         heads = "curve", "kind", "fault", "protocol", "noise", "modulus [Pa]", "tension [N/m]"
