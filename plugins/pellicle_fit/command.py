@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,8 +13,6 @@ from typer import Option
 import pellicle as pl
 from pellicle.cli import INTERRUPTED, NOT_CONVERGED, Format, echo, print_json
 from pellicle.errors import ConfigError
-
-from .print_fits import print_fit, print_fits, print_warnings, show_fits
 
 Text = str | None
 Texts = list[str] | None
@@ -141,28 +138,27 @@ def fit(
     """
     from pellicle_fit.config import FitConfig
     from pellicle_fit.population.fits import ManyFits
+    from pellicle_fit.print_fits import print_fit, print_fits
     from pellicle_fit.record import repetition
     from pellicle_fit.report.figures import save_figure
     from pellicle_fit.report.page import save_report
 
-    files = files or []
-    configs = [path for path in files if path.suffix.lower() == ".toml"]
+    configs = [path for path in files or () if path.suffix.lower() == ".toml"]
+    curves = tuple(path for path in files or () if path not in configs)
+    configs += [] if again is None else [again]
     if len(configs) > 1:
         raise ConfigError(
             f"{', '.join(map(str, configs))}: several configurations; give one, and name curves "
             "with the suffix .toml in it (curves = […])"
         )
-    repeated = None if again is None else repetition(again)
-    if repeated is not None and configs:
-        raise ConfigError(f"{configs[0]}: --again has a configuration of its own; leave one out")
     config = FitConfig.merged(
-        configs[0] if configs else repeated,
+        repetition(again) if again else next(iter(configs), None),
         [
-            *(_override("fix", text) for text in fix or ()),
-            *(_override("uncertainty", text) for text in uncertainty or ()),
+            *(f"fix.{text}" for text in fix or ()),
+            *(f"uncertainty.{text}" for text in uncertainty or ()),
             *(set_ or ()),
         ],
-        curves=tuple(path for path in files if path not in configs) or None,
+        curves=curves or None,
         indenter=indenter,
         radius=radius or None,
         diameter=diameter or None,
@@ -186,10 +182,8 @@ def fit(
         print_json(result.to_dict())
     elif isinstance(result, ManyFits):
         print_fits(result, quiet=quiet, directory=directory, si=si)
-    elif quiet:
-        print_warnings(result, details=True)
     else:
-        print_fit(result, details=details or result.config.compare, si=si)
+        print_fit(result, quiet=quiet, details=details or config.compare, si=si)
     written = [*many.files] if many else []
     if directory is not None and not isinstance(result, ManyFits):
         written.append(result.save(directory / f"{name}.json"))
@@ -208,7 +202,7 @@ def fit(
 @pl.hookimpl
 def register_commands(register: pl.RegisterCommand) -> None:
     """Register the command."""
-    register(fit, file="pellicle_fit.config:FitConfig", show=show_fits)
+    register(fit, file="pellicle_fit.config:FitConfig")
 
 
 def _fit(
@@ -238,16 +232,6 @@ def _fit(
         echo(f"interrupted{hint if directory else ''}", err=True)
         raise typer.Exit(INTERRUPTED) from None
     return fits, "fits", f"Fits of {len(fits.rows)} curves"
-
-
-def _override(key: str, text: str) -> str:
-    """Return ``name=value`` of an option in the form of ``--set``; a bare number is in SI."""
-    name, equals, value = text.partition("=")
-    if not equals:
-        raise ConfigError(f"{text!r} is not of the form name=value", key)
-    with suppress(ValueError):
-        value = repr(float(value))
-    return f"{key}.{name.strip()}={value.strip()}"
 
 
 def _sets(texts: list[str]) -> list[list[str]]:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping
-from contextlib import suppress
 from itertools import chain
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -53,12 +51,8 @@ DEFAULT_RIVALS: tuple[str | list[str], ...] = (
     *("brush", "compliance", "rough_toe"),
 )
 """What bends a curve as a tension does, and is compared unless a configuration says otherwise."""
-UNCERTAIN = {
-    "spring_constant": ("N/m", "spring"),
-    "sensitivity": ("m/V", "sensitivity"),
-    "radius": ("m", "size"),
-}
-"""What may be known to an uncertainty, its unit, and the effect whose error that is."""
+UNCERTAIN = {"spring_constant": "spring", "sensitivity": "sensitivity", "radius": "size"}
+"""What may be known to an uncertainty, and the effect whose error that is."""
 FREE = "free"
 """Thickness that the fit determines."""
 
@@ -101,17 +95,13 @@ def _indenter(value: object) -> Any:
     table = _component(value)
     if isinstance(table, HasForceCurve):
         return table
-    if isinstance(table, Mapping):
-        table = _with_radius(table)
     try:
         return registry().make(Indenter, table)
     except ConfigError as error:
-        if not isinstance(table, Mapping):
+        given = table if isinstance(table, Mapping) else {"": None}
+        if any(problem.field.partition(".")[0] in given for problem in error.problems):
             raise
-        problems = [p for p in error.problems if p.field.partition(".")[0] in table]
-        if problems:
-            raise ConfigError(problems) from None
-        return dict(table)
+        return dict(given)
 
 
 def _fields(indenter: object) -> Mapping[str, FieldInfo]:
@@ -129,22 +119,14 @@ def described(indenter: object) -> dict[str, Any]:
     return dict(indenter) if isinstance(indenter, Mapping) else {"type": type(indenter).__name__}
 
 
-def _uncertain(value: object) -> dict[str, float | str]:
-    """Return shares as numbers, and quantities as they are written, once they are checked."""
-    if not isinstance(value, Mapping):
-        raise ConfigError(f'{shown(value)} is not a table; give {{ spring_constant = "10 %" }}')
-    found: dict[str, float | str] = {}
-    for name, entry in value.items():
-        if name not in UNCERTAIN:
-            raise ConfigError(f"is not one of {', '.join(UNCERTAIN)}", str(name))
-        percent = isinstance(entry, str) and entry.rstrip().endswith("%")
-        unit = UNCERTAIN[name][0] if isinstance(entry, str) and not percent else "1"
-        try:
-            number = Quantity(unit, above=0)(entry.rstrip(" %") if percent else entry)
-        except ValueError as error:
-            raise ConfigError(f'{error}; or a share such as "5 %"', name) from None
-        found[name] = number / 100 if percent else number if unit == "1" else entry
-    return found
+def _share(value: object) -> float:
+    """Return a share; "5 %" is one of 0.05."""
+    percent = isinstance(value, str) and value.endswith("%")
+    try:
+        number = Quantity("1", above=0)(str(value)[:-1] if percent else value)
+    except ValueError as error:
+        raise ValueError(f'{error}, or a share such as "5 %"') from None
+    return number / 100 if percent else number
 
 
 class FitConfig(FromFile, Calibration):
@@ -209,14 +191,14 @@ class FitConfig(FromFile, Calibration):
         description="values of quantities of the solid, of the model and of rivals that are not "
         "fitted, such as tension = 0",
     )
-    uncertainty: Annotated[
-        dict[str, float | str],
-        BeforeValidator(_uncertain),
-        Field(
-            description="standard deviations of spring_constant, sensitivity and radius, each a "
-            "share such as 5 % or a quantity; without any, the calibration counts as exact"
-        ),
-    ] = Field(default_factory=dict)
+    uncertainty: dict[
+        Literal["spring_constant", "sensitivity", "radius"],
+        Annotated[float, BeforeValidator(_share, json_schema_input_type=float | str)],
+    ] = Field(
+        default_factory=dict,
+        description="standard deviations of spring_constant, sensitivity and radius, each a share "
+        "such as 5 %; without any, the calibration counts as exact",
+    )
     baseline: Literal["none", "offset", "slope"] = Field(
         "none", description="force before contact that is fitted: offset, or offset and slope"
     )
@@ -252,7 +234,7 @@ class FitConfig(FromFile, Calibration):
         BeforeValidator(_component),
         Field(description="executor of many fits and of simulations"),
     ] = Field(default_factory=lambda: registry().make(Executor, {"type": "serial"}))
-    cache: Path | None = Field(None, description="folder that keeps simulated force curves")
+    cache: InputPath | None = Field(None, description="folder that keeps simulated force curves")
     grid_points: int = Field(
         GRID_POINTS, description="cells along each edge of the grids of a simulation"
     )
@@ -302,20 +284,6 @@ class FitConfig(FromFile, Calibration):
         return cls.merged(path, overrides)
 
     @classmethod
-    def from_json(cls, text: str) -> Self:
-        """Return the configuration in a JSON text, such as `to_json` or the JSON of a fit.
-
-        Raises
-        ------
-        ConfigError
-            The text is not JSON, or holds no configuration.
-        """
-        with suppress(ValueError, AttributeError):
-            if isinstance(of_fit := json.loads(text).get("configuration"), dict):
-                text = json.dumps(of_fit)
-        return super().from_json(text)
-
-    @classmethod
     def merged(
         cls,
         base: FitConfig | Mapping[str, Any] | str | Path | None = None,
@@ -338,12 +306,8 @@ class FitConfig(FromFile, Calibration):
         if isinstance(base, (str, Path)):
             folder, data = Path(base).parent, read_toml(Path(base))
             if "curves" in data.keys() - options.keys():
-                paths = _as_list(data["curves"])
-                if all(isinstance(path, str) for path in paths):
-                    paths = [one for path in paths for one in expanded(path, folder)]
-                data["curves"] = paths
-            if isinstance(data.get("cache"), str):
-                data["cache"] = folder / data["cache"]
+                paths = map(str, _as_list(data["curves"]))
+                data["curves"] = [one for path in paths for one in expanded(path, folder)]
             with paths_relative_to(folder):
                 return cls.merged(data, overrides, **options)
         if isinstance(base, FitConfig):
@@ -391,23 +355,17 @@ class FitConfig(FromFile, Calibration):
             The indenter cannot have these fields, or needs others; what the file of the curve lacks
             is named as well.
         """
-        indenter: Any = self.indenter
-        if source.fields and not isinstance(indenter, (Indenter, Mapping)):
-            raise ConfigError(
-                f"{', '.join(source.fields)} cannot be set: the indenter is complete already"
-            )
+        indenter: Indenter | HasForceCurve | Mapping[str, Any] = self.indenter
         for name, value in _with_radius(source.fields).items():
             indenter = replaced(indenter, name, value)
-        if isinstance(indenter, HasForceCurve):
+        if not isinstance(indenter, Mapping):
             return indenter
-        lacks: dict[str, str] = {}
-        with problems_within("indenter"):
-            if isinstance(indenter, Mapping):
-                lacks = {} if "type" in indenter else {"indenter": "-i sphere"}
-                for name, field in _fields(indenter).items():
-                    if field.is_required() and name not in indenter:
-                        lacks[f"indenter.{name}"] = OPTIONS.get(name, f'--set indenter.{name}="…"')
-            if not lacks:
+        lacks = {} if "type" in indenter else {"indenter": "-i sphere"}
+        for name, field in _fields(indenter).items():
+            if field.is_required() and name not in indenter:
+                lacks[f"indenter.{name}"] = OPTIONS.get(name, f'--set indenter.{name}="…"')
+        if not lacks:
+            with problems_within("indenter"):
                 return registry().make(Indenter, indenter)
         curve, where = source.curve, f"{source.name}: " if source.name else ""
         if isinstance(curve, MissingInputError):

@@ -12,7 +12,6 @@ from pellicle import registry
 from pellicle.batch import status_line
 from pellicle.components import HasForceCurve, Indenter
 from pellicle.errors import ConfigError, PellicleError
-from pellicle.units import Quantity
 
 from .config import FREE, UNCERTAIN, FitConfig
 from .curve import Curve
@@ -101,12 +100,16 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
     # What is given leaves nothing to ask.
     given = [effect for effect in model if quantities(type(effect)) and not effect.open]
     baseline = [_effect(name) for name in _BASELINES[config.baseline]]
+    weighed = [(UNCERTAIN[name], share) for name, share in config.uncertainty.items()]
     question = {
         "model": [effect for effect in model if effect not in given],
         "rivals": [r for rival in config.rivals if (r := _known(rival, fix, ratio))],
         "kept": [*given, *baseline, *layers],
         "fix": {name: fix[name] for name in quantities(Solid).keys() & fix.keys()},
-        "uncertainty": _uncertain(config, measured, indenters),
+        "uncertainty": [
+            _effect(kind, **{f"{kind}_error": {"value": 0.0, "deviation": share}})
+            for kind, share in weighed
+        ],
         "full": config.compare,
     }
     return Problem(config, tuple(members), question, ratio, watch)
@@ -159,32 +162,6 @@ def _known(
         if own.get("tension") != 0:
             found.append(effect.model_copy(update=own))
     return found
-
-
-def _uncertain(
-    config: FitConfig, measured: Sequence[Measurement], indenters: Sequence[object]
-) -> list[Effect]:
-    """Return the effects that stand for the uncertainties of the calibration."""
-    known = {
-        "spring_constant": {curve.stiffness for curve in measured},
-        "sensitivity": {curve.origin.sensitivity for curve in measured},
-        "radius": {getattr(indenter, "radius", None) for indenter in indenters},
-    }
-    effects = []
-    for name, value in config.uncertainty.items():
-        unit, effect = UNCERTAIN[name]
-        if isinstance(value, str):
-            reference, *others = known[name]
-            if reference is None or others:
-                raise ConfigError(
-                    "is a quantity, and there is no one value to compare it with; give a share "
-                    "such as 5 %",
-                    f"uncertainty.{name}",
-                )
-            value = Quantity(unit)(value) / reference
-        weighed = {"value": 0.0, "deviation": value}
-        effects.append(_effect(effect, **{f"{effect}_error": weighed}))
-    return effects
 
 
 def _effect(name: str, **fields: Any) -> Effect:

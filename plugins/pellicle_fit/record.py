@@ -80,36 +80,22 @@ def repetition(path: Path) -> FitConfig:
     """Return the configuration that the JSON of a fit, of a pool or of many fits records.
 
     Its curves are sought from the current folder, as they were then.
-
-    Raises
-    ------
-    ConfigError
-        The file is not the JSON of a fit, or the curves were not read from files.
-    StorageError
-        The file cannot be read.
     """
-    content = content_of(path)
-    config = FitConfig.from_json(json.dumps(content))
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        configuration = content["configuration"]
+    except OSError as error:
+        raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except (ValueError, TypeError, KeyError):
+        raise ConfigError(
+            f"{path}: is not the JSON of a fit; give the file that pellicle fit -o leaves, such as "
+            "bead-fit.json or fits.json"
+        ) from None
+    config = FitConfig.of(configuration)
     curves = [one for row in content.get("curves", ()) for one in row.get("curves", [row])]
     if not config.curves or any(not c.get("data", {"file": path}).get("file") for c in curves):
         raise ConfigError(
             f"{path}: holds no fit of a file; numbers that were given in Python have to be given "
-            "again, with FitConfig.from_json"
+            "again, with the configuration in it"
         )
     return config
-
-
-def content_of(path: Path) -> dict[str, Any]:
-    """Return what the JSON file of a fit holds; errors as of `repetition`."""
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except ValueError:
-        content = None
-    if not isinstance(content, dict) or not isinstance(content.get("configuration"), dict):
-        raise ConfigError(
-            f"{path}: is not the JSON of a fit; give the file that pellicle fit -o leaves, such as "
-            "bead-fit.json or fits.json"
-        )
-    return content

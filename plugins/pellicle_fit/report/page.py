@@ -9,14 +9,13 @@ from pathlib import Path
 
 from pellicle import show
 from pellicle.components import Column, Table
-from pellicle.errors import first_of
 from pellicle.files import atomic_write
 from pellicle.show import Block, Code, Notice, Picture, Section, Text
 from pellicle_fit.config import FitConfig
 from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.result import Fit
 from pellicle_fit.verdict import Verdict
-from pellicle_fit.words.population import advice_of_population, sentences_of_population
+from pellicle_fit.words.population import advice_of_population, by_text, sentences_of_population
 from pellicle_fit.words.quantities import words
 from pellicle_fit.words.story import story
 
@@ -101,7 +100,7 @@ def _many(fits: ManyFits) -> list[Block]:
     blocks: list[Block] = [Text(line, lead=True) for line in sentences_of_population(fits)]
     if failed:
         lost = f"{len(failed)} of {len(rows)} curves could not be fitted:"
-        blocks.append(Notice(lost, good=False, details=_by_text(failed)))
+        blocks.append(Notice(lost, good=False, details=by_text(failed)))
     elif all(row.accepted for row in rows):
         blocks.append(Notice("Every curve was fitted and accepted.", good=True))
     if fits.notes:
@@ -109,7 +108,7 @@ def _many(fits: ManyFits) -> list[Block]:
     blocks += [*map(Text, advice_of_population(rows)), tables.rows(rows)]
     if any(row.accepted for row in rows):
         blocks.append(tables.groups(rows))
-    return [*blocks, *_told(_by_text(warnings), _by_text(notes))]
+    return [*blocks, *_told(by_text(warnings), by_text(notes))]
 
 
 def _told(warnings: Sequence[str], notes: Sequence[str]) -> Iterator[Block]:
@@ -118,14 +117,6 @@ def _told(warnings: Sequence[str], notes: Sequence[str]) -> Iterator[Block]:
         yield Notice("Warnings:", good=None, details=warnings)
     if notes:
         yield Table([Column("note", notes)], "Notes.", folded=True)
-
-
-def _by_text(pairs: Sequence[tuple[str, str]]) -> list[str]:
-    """Return each text once, behind the curves that it is of."""
-    found = dict[str, list[str]]()
-    for text, name in pairs:
-        found.setdefault(text, []).append(name)
-    return [f"{first_of(names)}: {text}" for text, names in found.items()]
 
 
 def _sentence(text: str) -> str:

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
+from pellicle.errors import first_of
 from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.population.row import Row
 from pellicle_fit.population.summary import ALL, QUARTILES, summary
@@ -86,3 +87,11 @@ def _listed(names: Sequence[str]) -> str:
     """Return names of curves, without folders if they differ without."""
     short = [Path(name).name for name in names]
     return listed(short if len({*short}) == len(names) else names, most=_NAMES)
+
+
+def by_text(pairs: Sequence[tuple[str, str]]) -> list[str]:
+    """Return each text once, behind the curves that it is of."""
+    found = dict[str, list[str]]()
+    for text, name in pairs:
+        found.setdefault(text, []).append(name)
+    return [f"{first_of(names)}: {text}" for text, names in found.items()]

@@ -175,7 +175,7 @@ def test_options_of_the_question(cli: Cli) -> None:
         ({"fix": {"tensoin": 0}}, "fix.tensoin: is no quantity of the model or of a rival"),
         ({"fix": {"tension": "3 Pa"}}, "fix.tension: '3 Pa'"),
         ({"fix": {"tension": 0, "reduced_modulus": 1}}, "fixes both modulus and tension"),
-        ({"uncertainty": {"mass": 0.1}}, "spring_constant, sensitivity, radius"),
+        ({"uncertainty": {"mass": 0.1}}, "Known: radius, sensitivity, spring_constant"),
         ({"uncertainty": {"radius": "3 N"}}, "uncertainty.radius: '3 N'"),
         ({"uncertainty": {"radius": "-3 %"}}, "uncertainty.radius"),
     ],

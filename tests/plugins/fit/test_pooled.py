@@ -149,8 +149,6 @@ def test_weighed_radii(measured: dict[str, tuple[Array, Array]]) -> None:
     assert holds(weighed.reduced_modulus, TRUE_MODULUS)
     assert holds(weighed.tension, TRUE_TENSION)
     assert weighed.chi_squared == exact.chi_squared
-    with pytest.raises(pl.ConfigError, match="no one value to compare it with; give a share"):
-        pooled(measured, uncertainty={"radius": "0.1 um"})
 
 
 def test_bad_pools(measured: dict[str, tuple[Array, Array]]) -> None:

@@ -123,9 +123,7 @@ def test_record(cli: Cli) -> None:
     assert content["versions"]["pellicle"] == pl.__version__
     assert content["versions"]["numpy"] == np.__version__
     assert "scipy" in content["versions"]
-    assert pl.FitConfig.from_json(json.dumps(content)) == pl.FitConfig.merged(
-        curves=FILE, **ARGUMENTS
-    )
+    assert pl.FitConfig(**content["configuration"]) == pl.FitConfig.merged(curves=FILE, **ARGUMENTS)
 
 
 @pytest.mark.slow
