@@ -27,9 +27,10 @@ def fit(
         list[Path] | None,
         typer.Argument(
             metavar="[CONFIG.toml] CURVES",
-            help="A configuration, whose values the options replace. Curves: files or a folder of "
-            "them: tables with a header such as position (um),force (nN); HDF5; formats of "
-            "instruments. Or a table file,radius (um) that lists files.",
+            help="A configuration, or the JSON of a fit to repeat; options replace its values. "
+            "Curves: files or a folder of them: tables with a header such as position (um),"
+            "force (nN); HDF5; formats of instruments. Or a table file,radius (um) that lists "
+            "files.",
         ),
     ] = None,
     indenter: Annotated[
@@ -118,13 +119,6 @@ def fit(
     report: Annotated[
         bool, Option("--report", help="Write a web page, to that folder or the current one.")
     ] = False,
-    again: Annotated[
-        Path | None,
-        Option(
-            metavar="FIT.json",
-            help="Repeat the fit that a JSON file records, from the folder where it was made.",
-        ),
-    ] = None,
     details: Annotated[
         bool, Option("--details", help="Of one fit, print all quantities, explanations, checks.")
     ] = False,
@@ -139,20 +133,18 @@ def fit(
     from pellicle_fit.config import FitConfig
     from pellicle_fit.population.fits import ManyFits
     from pellicle_fit.print_fits import print_fit, print_fits
-    from pellicle_fit.record import repetition
     from pellicle_fit.report.figures import save_figure
     from pellicle_fit.report.page import save_report
 
-    configs = [path for path in files or () if path.suffix.lower() == ".toml"]
+    configs = [path for path in files or () if path.suffix.lower() in (".toml", ".json")]
     curves = tuple(path for path in files or () if path not in configs)
-    configs += [] if again is None else [again]
     if len(configs) > 1:
         raise ConfigError(
             f"{', '.join(map(str, configs))}: several configurations; give one, and name curves "
             "with the suffix .toml in it (curves = […])"
         )
     config = FitConfig.merged(
-        repetition(again) if again else next(iter(configs), None),
+        next(iter(configs), None),
         [
             *(f"fix.{text}" for text in fix or ()),
             *(f"uncertainty.{text}" for text in uncertainty or ()),

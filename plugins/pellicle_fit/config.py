@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Mapping
 from itertools import chain
 from pathlib import Path
@@ -127,6 +128,27 @@ def _share(value: object) -> float:
     except ValueError as error:
         raise ValueError(f'{error}, or a share such as "5 %"') from None
     return number / 100 if percent else number
+
+
+def _recorded(path: Path) -> Any:
+    """Return the configuration in the JSON of a fit, of a pool or of many fits of files."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        data, rows = content["configuration"], content["curves"]
+        origins = [one["data"] for row in rows for one in row.get("curves", [row]) if "data" in one]
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except (ValueError, LookupError, TypeError, AttributeError):
+        raise ConfigError(
+            f"{path}: is not the JSON of a fit; give the file that pellicle fit -o leaves, such as "
+            "bead-fit.json or fits.json"
+        ) from None
+    if not data.get("curves") or not all(origin["file"] for origin in origins):
+        raise ConfigError(
+            f"{path}: holds no fit of a file; numbers that were given in Python have to be given "
+            "again, with its configuration"
+        )
+    return data
 
 
 class FitConfig(FromFile, Calibration):
@@ -292,6 +314,7 @@ class FitConfig(FromFile, Calibration):
     ) -> Self:
         """Return a configuration with options in place of the values of another or of a TOML file.
 
+        The JSON of a fit is one, too: its curves are sought from the current folder, as they were.
         An option that is None keeps the value of ``base``.  An option that is not a field of the
         configuration is a field of the indenter; a list for such a field, for spring_constant or
         for sensitivity has one value for each file.  Overrides replace values and options.
@@ -303,6 +326,8 @@ class FitConfig(FromFile, Calibration):
         """
         options = {name: value for name, value in options.items() if value is not None}
         options = _with_radius(options)
+        if isinstance(base, (str, Path)) and Path(base).suffix.lower() == ".json":
+            base = _recorded(Path(base))
         if isinstance(base, (str, Path)):
             folder, data = Path(base).parent, read_toml(Path(base))
             if "curves" in data.keys() - options.keys():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,7 @@ from .files.missing import MissingInputError
 from .files.sources import Source
 from .objective import CONTACT_POINT
 from .recipe import answer
-from .record import Stopwatch, data_of
+from .record import data_of, record_of
 from .result import Fit, Member
 from .simulated.body import body_of, layer_of, layer_table
 from .simulated.simulation import Simulation
@@ -44,34 +45,24 @@ class Problem:
     question: Mapping[str, Any]
     """What `answer` is asked of them."""
     poissons_ratio: float | None
-    watch: Stopwatch
+    began: float
+    """Value of ``perf_counter`` at the start."""
 
     def fit(self, *, progress: bool = False) -> Fit:
-        """Return the fit of the curves: one modulus, and what else they share.
-
-        Raises
-        ------
-        ConfigError, PluginError, ConvergenceError
-            The curves cannot be fitted.
-        """
+        """Return the fit of the curves: one modulus, and what else they share."""
         with status_line("fitting", progress):
             found = answer([member.curve for member in self.members], **self.question)
             advice = steps(found, self.members, self.config)
-        record = self.watch.record(self.config, [member.data for member in self.members])
+        data = [member.data for member in self.members]
+        record = record_of(self.config, data, self.began)
         return Fit(found, self.members, advice, self.poissons_ratio, self.config, record)
 
 
 def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = False) -> Problem:
-    """Return cleaned curves with their indenters, whose forces are simulated if need be.
-
-    Raises
-    ------
-    ConfigError, PluginError, ConvergenceError, StorageError
-        A curve or an option does not allow a fit, or a study failed.
-    """
+    """Return cleaned curves with their indenters, whose forces are simulated if need be."""
     if config.pool and len(sources) < 2:
         raise ConfigError("holds one curve, and a pool needs two; use fit", "curves")
-    watch, measured, indenters = Stopwatch(), [], []
+    began, measured, indenters = perf_counter(), [], []
     for source in sources:
         try:
             indenters.append(config.indenter_of(source))
@@ -112,7 +103,7 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
         ],
         "full": config.compare,
     }
-    return Problem(config, tuple(members), question, ratio, watch)
+    return Problem(config, tuple(members), question, ratio, began)
 
 
 def _on_solid(

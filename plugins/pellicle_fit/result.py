@@ -17,7 +17,6 @@ from .effect import quantities
 from .files.measurement import Note
 from .intervals import CONFIDENCE, Estimate
 from .recipe import Answer
-from .record import Record
 from .verdict import Verdict
 from .words.advice import Step
 from .words.effects import words
@@ -56,7 +55,7 @@ class Fit:
     """ν, if it was given."""
     config: FitConfig
     """The configuration of the fit."""
-    record: Record
+    record: Mapping[str, Any]
     """Versions, date and wall time."""
 
     @property
@@ -146,11 +145,6 @@ class Fit:
         """Return the force [N] of the chosen explanation at the rows of each curve."""
         return self.answer.chosen.forces()
 
-    def explained(self, *types: str) -> Candidate | None:
-        """Return an explanation by the types of its effects; None if it was not compared."""
-        found = (fit for fit in self.answer.explanations if fit.types == frozenset(types))
-        return next(found, None)
-
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as JSON data."""
         answer, chosen = self.answer, self.answer.chosen
@@ -179,7 +173,7 @@ class Fit:
             "messages": self.messages,
             "notes": self.notes,
             "configuration": self.config.to_dict(),
-            **self.record.to_dict(),
+            **self.record,
         }
 
     def _explanation(self, fit: Candidate) -> dict[str, Any]:

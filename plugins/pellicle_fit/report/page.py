@@ -16,7 +16,6 @@ from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.result import Fit
 from pellicle_fit.verdict import Verdict
 from pellicle_fit.words.population import advice_of_population, by_text, sentences_of_population
-from pellicle_fit.words.quantities import words
 from pellicle_fit.words.story import story
 
 from . import tables
@@ -55,17 +54,16 @@ def save_report(fit: Fit | ManyFits, path: Path, title: str) -> Path:
         for caption, (draw, size) in panels(fit).items()
     ]
     if isinstance(fit, Fit):
-        configuration, results, data = fit.config.to_dict(), _one(fit), _data(fit)
+        configuration, results = fit.config.to_dict(), _one(fit)
         code = [Code(fit.to_json(), "All numbers, in SI.", f"{path.stem}.json")]
     else:
-        configuration, results, data, code = fit.configuration, _many(fit), [], []
+        configuration, results, code = fit.configuration, _many(fit), []
     known = {name: value for name, value in configuration.items() if name not in _ELSEWHERE}
     inputs = show.input_table(known, FitConfig, "The indenter, and what was given or chosen.")
     sections = [
         Section("Result", results),
         Section("Figures", figures),
         Section("Inputs", [inputs] if known else []),
-        Section("Data", data),
         Section("As JSON", code),
     ]
     now = datetime.now(UTC).isoformat(" ", timespec="seconds").replace("+00:00", " UTC")
@@ -121,17 +119,3 @@ def _told(warnings: Sequence[str], notes: Sequence[str]) -> Iterator[Block]:
 
 def _sentence(text: str) -> str:
     return f"{text[:1].upper()}{text[1:]}."
-
-
-def _data(fit: Fit) -> list[Block]:
-    """Return the table of the files that were fitted, and the versions."""
-    units = {"spring_constant": "N/m", "sensitivity": "m/V"}
-    names, data = ("file", "curve", "columns", "segment", "baseline", "sha256", *units), []
-    for member in fit.members:
-        roles = member.data["columns"].items()
-        read = {"columns": ", ".join(f"{role} = {column}" for role, column in roles)}
-        data.append({name: (member.data | read)[name] or "" for name in names})
-    columns = [Column(words(n), [of[n] for of in data], units.get(n, "")) for n in names]
-    shown = [column for column in columns if any(column.values)]
-    versions = ", ".join(f"{name} {number}" for name, number in fit.record.versions.items())
-    return [Table(shown, "The data, and how they were read."), Text(f"Versions: {versions}.")]
