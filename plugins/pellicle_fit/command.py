@@ -13,6 +13,7 @@ from typer import Option
 import pellicle as pl
 from pellicle.cli import INTERRUPTED, NOT_CONVERGED, Format, echo, print_json
 from pellicle.errors import ConfigError
+from pellicle.files import write_json
 
 Text = str | None
 Texts = list[str] | None
@@ -92,9 +93,6 @@ def fit(
     pool: Annotated[
         bool, Option("--pool", help="Fit one modulus and one tension to all curves.")
     ] = False,
-    compare: Annotated[
-        bool, Option("--compare", help="Get and print intervals of all explanations.")
-    ] = False,
     set_: Annotated[
         Texts,
         Option(
@@ -157,15 +155,14 @@ def fit(
         half_angle=half_angle,
         poissons_ratio=poissons_ratio,
         thickness=thickness,
-        model=model and [name for names in _sets(model) for name in names],
-        rivals=rivals and _sets(rivals),
+        model=model and [name for name in model if name != "none"],
+        rivals=rivals and [text.split(",") for text in rivals if text != "none"],
         baseline=baseline,
         segment=segment,
         spring_constant=spring_constant,
         sensitivity=sensitivity,
         columns=columns,
         pool=pool or None,
-        compare=compare or None,
     )
     kinds = [str(kind) for kind in formats or [Format.PNG]]
     result, name, title = _fit(config, directory, kinds, quiet=quiet)
@@ -175,10 +172,10 @@ def fit(
     elif isinstance(result, ManyFits):
         print_fits(result, quiet=quiet, directory=directory, si=si)
     else:
-        print_fit(result, quiet=quiet, details=details or config.compare, si=si)
+        print_fit(result, quiet=quiet, details=details, si=si)
     written = [*many.files] if many else []
     if directory is not None and not isinstance(result, ManyFits):
-        written.append(result.save(directory / f"{name}.json"))
+        written.append(write_json(result.to_dict(), directory / f"{name}.json"))
         written += save_figure(result, directory / name, kinds)
     if report:
         written.append(save_report(result, (directory or Path()) / f"{name}.html", title))
@@ -224,8 +221,3 @@ def _fit(
         echo(f"interrupted{hint if directory else ''}", err=True)
         raise typer.Exit(INTERRUPTED) from None
     return fits, "fits", f"Fits of {len(fits.rows)} curves"
-
-
-def _sets(texts: list[str]) -> list[list[str]]:
-    """Return the sets of effects that an option names, each with commas; "none" is no set."""
-    return [[name.strip() for name in text.split(",")] for text in texts if text != "none"]

@@ -39,7 +39,7 @@ from .explanation import Solid
 from .files.columns import Calibration
 from .files.measurement import Segment
 from .files.missing import OPTIONS, MissingInputError
-from .files.sources import CurveFile, Curves, Source, SourceStream, expanded, gather
+from .files.sources import CurveFile, Curves, Source, expanded, gather
 from .population.judgement import group_pattern
 from .population.rules import rules
 from .simulated.simulation import GRID_POINTS
@@ -54,8 +54,6 @@ DEFAULT_RIVALS: tuple[str | list[str], ...] = (
 """What bends a curve as a tension does, and is compared unless a configuration says otherwise."""
 UNCERTAIN = {"spring_constant": "spring", "sensitivity": "sensitivity", "radius": "size"}
 """What may be known to an uncertainty, and the effect whose error that is."""
-FREE = "free"
-"""Thickness that the fit determines."""
 
 
 def _component(value: object) -> object:
@@ -139,14 +137,11 @@ def _recorded(path: Path) -> Any:
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read ({error.strerror or error})") from None
     except (ValueError, LookupError, TypeError, AttributeError):
-        raise ConfigError(
-            f"{path}: is not the JSON of a fit; give the file that pellicle fit -o leaves, such as "
-            "bead-fit.json or fits.json"
-        ) from None
+        data, origins = {}, []
     if not data.get("curves") or not all(origin["file"] for origin in origins):
         raise ConfigError(
-            f"{path}: holds no fit of a file; numbers that were given in Python have to be given "
-            "again, with its configuration"
+            f"{path}: is not the JSON of a fit of files; give one that pellicle fit -o leaves, "
+            "such as bead-fit.json or fits.json"
         )
     return data
 
@@ -188,7 +183,7 @@ class FitConfig(FromFile, Calibration):
     thickness: Annotated[float, Quantity("m", above=0)] | Literal["free"] | None = Field(
         None,
         description="of a layer bonded to a rigid base, in place of a half-space; "
-        f'"{FREE}" fits it. It needs poissons_ratio',
+        '"free" fits it. It needs poissons_ratio',
     )
     model: Annotated[
         tuple[_OneEffect, ...],
@@ -231,9 +226,6 @@ class FitConfig(FromFile, Calibration):
         "one value for each file",
     )
     pool: bool = Field(False, description="whether all curves share one modulus and one tension")
-    compare: bool = Field(
-        False, description="whether all explanations get intervals, and are printed"
-    )
     accept: Annotated[
         tuple[str, ...],
         _list(tuple[str, ...] | str),
@@ -367,19 +359,8 @@ class FitConfig(FromFile, Calibration):
         is_field = column in {"diameter", *_fields(self.indenter), *Calibration.model_fields}
         return gather(chosen, self.segment, self, self.per_file, column, is_field)
 
-    def sources(self, curves: Curves | None = None) -> list[Source]:
-        """Return ``curves``, or those of the configuration if None, as read from their files."""
-        return [*SourceStream(self.files(curves))]
-
     def indenter_of(self, source: Source) -> Indenter | HasForceCurve:
-        """Return the indenter of one curve, with the fields that this curve alone has.
-
-        Raises
-        ------
-        ConfigError
-            The indenter cannot have these fields, or needs others; what the file of the curve lacks
-            is named as well.
-        """
+        """Return the indenter of one curve, with its own fields; an error names all it lacks."""
         indenter: Indenter | HasForceCurve | Mapping[str, Any] = self.indenter
         for name, value in _with_radius(source.fields).items():
             indenter = replaced(indenter, name, value)

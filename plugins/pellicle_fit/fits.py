@@ -12,7 +12,7 @@ from pellicle.errors import ConfigError
 
 from .config import FitConfig
 from .files.measurement import Measurement
-from .files.sources import Curves
+from .files.sources import Curves, SourceStream
 from .problem import problem
 from .result import Fit
 
@@ -80,7 +80,7 @@ def fit(
         if force is None:
             raise ConfigError("is missing; give the force [N] at each position", "force")
         curves = {"": (positions[0], force) if time is None else (positions[0], force, time)}
-    source, *others = config.sources(curves)
+    source, *others = SourceStream(config.files(curves))
     if others:
         count = 1 + len(others)
         raise ConfigError(f"names {count} curves; use fit_many or fit_pooled", "curves")
@@ -118,5 +118,5 @@ def fit_pooled(
         A folder cannot be read.
     """
     config = FitConfig.merged(config, pool=True, **options)
-    sources = config.sources(curves)
+    sources = [*SourceStream(config.files(curves))]
     return problem(config, sources, progress=progress).fit(progress=progress)

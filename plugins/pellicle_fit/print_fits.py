@@ -36,10 +36,7 @@ def print_fit(fit: Fit, *, quiet: bool, details: bool, si: bool) -> None:
 
 
 def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None, si: bool) -> None:
-    """Print a line for each curve and for each group, and the notes on them.
-
-    Of many curves, lines are left out if the table is in the folder.
-    """
+    """Print a line for each curve, unless a folder has many, and for each group, and notes."""
     reasons = [(row.status.partition(": ")[2], row.name) for row in fits.rows]
     for line in by_text([pair for pair in reasons if pair[0]]):
         echo(line, err=True)

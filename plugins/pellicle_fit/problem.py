@@ -14,7 +14,7 @@ from pellicle.batch import status_line
 from pellicle.components import HasForceCurve, Indenter
 from pellicle.errors import ConfigError, PellicleError
 
-from .config import FREE, UNCERTAIN, FitConfig
+from .config import UNCERTAIN, FitConfig
 from .curve import Curve
 from .effect import Effect, quantities
 from .explanation import Solid
@@ -101,7 +101,6 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
             _effect(kind, **{f"{kind}_error": {"value": 0.0, "deviation": share}})
             for kind, share in weighed
         ],
-        "full": config.compare,
     }
     return Problem(config, tuple(members), question, ratio, began)
 
@@ -114,7 +113,7 @@ def _on_solid(
 ) -> tuple[list[Any], list[Effect], float | None]:
     """Return what has the force curve of each indenter, a layer beside it, and Poisson's ratio."""
     kernel, ratio, thickness = config.kernel, config.poissons_ratio, config.thickness
-    if thickness == FREE:
+    if thickness == "free":
         return [*indenters], [_effect("layer", poissons_ratio=ratio)], ratio
     if isinstance(thickness, float) and ratio is not None:
         kernel = layer_table(ratio, thickness)

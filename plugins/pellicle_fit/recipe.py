@@ -181,7 +181,6 @@ def answer(
     kept: Sequence[Effect] = (),
     fix: Mapping[str, float | str] | None = None,
     uncertainty: Sequence[Effect] = (),
-    full: bool = False,
 ) -> Answer:
     """Fit modulus, contact point and a model to curves of one solid, and weigh its rivals.
 
@@ -200,8 +199,6 @@ def answer(
         Values of quantities of the solid, in SI or with units.
     uncertainty
         Effects whose quantities are weighed; they widen intervals and are in no comparison.
-    full
-        Whether every explanation has all its intervals.
 
     Raises
     ------
@@ -240,8 +237,8 @@ def answer(
     # What may be right and has no model leaves nothing to bound.
     ends = not (untried and decided.verdict is Verdict.UNDESCRIBED)
     tied = ties(fits, word, decided, chosen, margin)
-    for types in fits if full else tied:
-        wanted = full or types == chosen
+    for types in tied:
+        wanted = types == chosen
         fits[types] = with_estimates(
             fits[types], threshold if ends else np.inf, uncertainty, everything=wanted
         )

@@ -17,10 +17,7 @@ from .files.measurement import Measurement
 
 
 def record_of(config: FitConfig, data: Iterable[dict[str, Any]], began: float) -> dict[str, Any]:
-    """Return versions, date and wall time [s] of a fit of curves with these `data_of`.
-
-    It ends now, and began when ``perf_counter`` returned ``began``.
-    """
+    """Return versions, date and wall time [s] of a fit since ``began`` of ``perf_counter``."""
     libraries = {entry["library"] for entry in data if entry["library"]}
     return {
         "versions": registry().all_versions(components_of(config), libraries),

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pellicle.arrays import Array
-from pellicle.files import json_text, write_json
+from pellicle.files import json_text
 
 from .candidate import Candidate
 from .config import FitConfig, described
@@ -231,16 +230,6 @@ class Fit:
         """Return what `to_dict` returns as JSON."""
         return json_text(self.to_dict())
 
-    def save(self, path: str | Path) -> Path:
-        """Write what `to_dict` returns to a JSON file, and return its path.
-
-        Raises
-        ------
-        StorageError
-            The file cannot be written.
-        """
-        return write_json(self.to_dict(), Path(path))
-
 
 def name_of(name: str, curve: int | None) -> str:
     """Return the name of a quantity of one of several curves: that of the first has no number."""
@@ -248,10 +237,7 @@ def name_of(name: str, curve: int | None) -> str:
 
 
 def parameters_of(fit: Candidate) -> dict[str, Estimate]:
-    """Return all quantities of an explanation, fitted and given, by name.
-
-    Those whose intervals were not sought have no ends.
-    """
+    """Return all quantities of an explanation by name; some intervals were not sought."""
     found, objective = {}, fit.objective
     for slot, at in zip(objective.slots, fit.minimum.at, strict=True):
         name = name_of(slot.name, slot.curve)

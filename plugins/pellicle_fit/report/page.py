@@ -24,7 +24,7 @@ from .figures import charts, panels
 _WIDE = 8.0
 """Width of figures from which on they have that of the page [inch]."""
 _ELSEWHERE = {
-    *("curves", "per_file", "rivals", "pool", "compare"),
+    *("curves", "per_file", "rivals", "pool"),
     *("executor", "cache", "grid_points"),
 }
 """Fields of a configuration that say nothing of the solid, or stand in the tables."""
@@ -99,8 +99,6 @@ def _many(fits: ManyFits) -> list[Block]:
     if failed:
         lost = f"{len(failed)} of {len(rows)} curves could not be fitted:"
         blocks.append(Notice(lost, good=False, details=by_text(failed)))
-    elif all(row.accepted for row in rows):
-        blocks.append(Notice("Every curve was fitted and accepted.", good=True))
     if fits.notes:
         blocks.append(Notice("Population:", good=None, details=fits.notes))
     blocks += [*map(Text, advice_of_population(rows)), tables.rows(rows)]

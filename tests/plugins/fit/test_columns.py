@@ -17,6 +17,7 @@ from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.columns import Calibration
 from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.files.readers import read
+from pellicle_fit.files.sources import SourceStream
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
 
@@ -202,7 +203,7 @@ def test_one_message_asks_for_all_that_an_export_lacks(tmp_path: Path, header: s
     path.write_text("\n".join([header, *lines]), encoding="utf-8")
     config = pl.FitConfig.merged(curves=[path], indenter="sphere")
     with pytest.raises(pl.ConfigError, match="missing: ") as raised:
-        config.indenter_of(config.sources()[0])
+        config.indenter_of(next(iter(SourceStream(config.files()))))
     _, typed = str(raised.value).split("\n")
     assert typed.endswith('--radius "… um"')
     given = dict(re.findall(r'--(\S+) "([^"]*)"', typed))
@@ -213,7 +214,7 @@ def test_one_message_asks_for_all_that_an_export_lacks(tmp_path: Path, header: s
         text = expected.replace("height <unit>", "height m").replace("<unit>", "V")
         given["columns"] = text.replace("<column>", "a")
     config = pl.FitConfig.merged(config, **given)
-    (source,) = config.sources()
+    (source,) = SourceStream(config.files())
     assert isinstance(source.curve, Measurement)
     assert np.all(np.diff(source.curve.position) > 0)
     assert config.indenter_of(source) == pl.indenter("sphere", radius="5 um")

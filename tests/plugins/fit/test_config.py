@@ -15,6 +15,7 @@ from click.testing import Result
 from jsonschema import Draft202012Validator
 
 import pellicle as pl
+from pellicle_fit.files.sources import SourceStream
 from pellicle_fit.record import components_of
 
 Cli = Callable[..., Result]
@@ -86,7 +87,7 @@ def test_a_diameter_is_two_radii(tmp_path: Path) -> None:
     }
     (tmp_path / "list.csv").write_text("file,diameter [um]\na.csv,8\n")
     measure(tmp_path / "a.csv")
-    (source,) = config.sources(tmp_path / "list.csv")
+    (source,) = SourceStream(config.files(tmp_path / "list.csv"))
     assert config.indenter_of(source) == pl.indenter("sphere", radius="4 um")
     with pytest.raises(pl.ConfigError, match="diameter: is given beside a radius"):
         pl.FitConfig.merged(indenter="sphere", radius="5 um", diameter="10 um")
@@ -101,9 +102,9 @@ def test_paths_start_from_the_folder_of_the_file(tmp_path: Path) -> None:
     text = f'curves = {names}\ncache = "studies"\nindenter = "cone"\n'
     (folder / "bead.toml").write_text(text, encoding="utf-8")
     config = pl.FitConfig.from_toml(folder / "bead.toml")
-    read = [Path(source.name).name for source in config.sources()]
+    read = [Path(source.name).name for source in SourceStream(config.files())]
     assert read == ["1.csv", "2.csv", "odd [3].csv", "table.toml"]
-    assert not any(isinstance(source.curve, Exception) for source in config.sources())
+    assert not any(isinstance(source.curve, Exception) for source in SourceStream(config.files()))
     assert config.cache == folder / "studies"
 
 

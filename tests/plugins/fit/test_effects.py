@@ -424,7 +424,6 @@ BROKEN: list[tuple[type[Effect], str, dict[str, Any], str]] = [
         {"force": lambda s, c, v, d: s.push * (d > 0.1 * s.over)},
         "jumps by",
     ),
-    (Push, "what_it_says_is_valid", {"accuracy": lambda s, c, v, b: 2.0}, "accuracy() is not"),
 ]
 
 

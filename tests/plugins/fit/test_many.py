@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 import pellicle as pl
 from pellicle.components import AnyTask, Executor, Outcome, Report, Say
 from pellicle.plugins import Registry
+from pellicle_fit.files.sources import SourceStream
 from pellicle_fit.many import fit_sources
 from pellicle_fit.simulated.simulation import Simulation
 from pellicle_plugins.indenters.of_revolution import Paraboloid
@@ -198,7 +199,7 @@ def test_interrupted(tmp_path: Path) -> None:
     """What was finished is in the table, and the rest is said not to have run."""
     curves = {str(seed): curve(seed) for seed in range(3)}
     config = pl.FitConfig.merged(**BEAD, rivals=(), fix={"tension": 0})
-    sources = config.sources(curves)
+    sources = [*SourceStream(config.files(curves))]
     stops = pl.FitConfig.merged(config, executor=Stops())
     with pytest.raises(KeyboardInterrupt):
         fit_sources(stops, sources, tmp_path, progress=False)

@@ -178,9 +178,12 @@ def test_again(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     ("content", "words"),
     [
         (None, "cannot be read"),
-        ("{", "is not the JSON of a fit"),
+        ("{", "is not the JSON of a fit of files"),
         ("[]", "is not the JSON of a fit"),
-        ('{"configuration": {"indenter": "cone"}, "curves": []}', "holds no fit of a file"),
+        (
+            '{"configuration": {"indenter": "cone"}, "curves": []}',
+            "is not the JSON of a fit of files",
+        ),
         (
             '{"configuration": {"indenter": "ball", "curves": "a.csv"}, "curves": []}',
             "'ball' is not an indenter",
