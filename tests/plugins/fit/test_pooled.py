@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 import pellicle as pl
 from pellicle_fit.words.story import story
 from pellicle_plugins.indenters.of_revolution import Paraboloid
-from tests.plugins.fit.conftest import ends_of, holds
+from tests.plugins.fit.conftest import holds
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
 
@@ -45,37 +45,6 @@ def measured() -> dict[str, tuple[Array, Array]]:
     """Return a curve for each radius."""
     random = np.random.default_rng(1)
     return {f"{1e6 * radius:.0f} um": curve(radius, random)[:2] for radius in RADII}
-
-
-@pytest.mark.slow
-def test_errors_reach_the_pooled_bound_and_intervals_shrink_to_it() -> None:
-    """Over random curves errors and intervals are those of the Cramér–Rao bound of the pool."""
-    random = np.random.default_rng(8)
-    errors, covered, widths, touched = [], [], [], []
-    for _ in range(10):
-        samples = [curve(radius, random, points=100) for radius in RADII]
-        fit = pooled({str(number): sample[:2] for number, sample in enumerate(samples)})
-        objective, at = fit.answer.chosen.objective, fit.answer.chosen.minimum.at
-        bounds = objective.deviations(at)
-        for slot, bound in zip(objective.slots, bounds, strict=True):
-            if slot.name == "contact_point":
-                continue
-            estimate, true = fit.estimates()[slot.name], TRUE_TENSION
-            deviation = bound * slot.scale
-            if slot.name == "reduced_modulus":
-                true, deviation = TRUE_MODULUS, bound * estimate.value
-            low, high = ends_of(estimate)
-            errors.append((estimate.value - true) / deviation)
-            covered.append(low < true < high)
-            widths.append((high - low) / 2 / deviation)
-        points = fit.estimates()["contact_point"], fit.estimates()["contact_point_1"]
-        touched += [holds(one, point) for one, (_, _, point) in zip(points, samples, strict=True)]
-    # Three standard deviations of the rms of 20 normal numbers, half of them independent.
-    assert 0.4 < np.sqrt(np.mean(np.square(errors))) < 1.6
-    assert sum(covered) >= 16
-    assert sum(touched) >= 16
-    # 1.96, but for the noise that is estimated from 23 points of each curve.
-    assert np.mean(widths) == pytest.approx(2.0, rel=0.1)
 
 
 def test_pool_of_the_same_curve_twice(measured: dict[str, tuple[Array, Array]]) -> None:
@@ -109,18 +78,6 @@ def test_what_is_said(measured: dict[str, tuple[Array, Array]]) -> None:
     # Without times all curves have one speed, not one duration.
     fast, slow = (curve.velocity.mean() for curve in fit.answer.chosen.whole)
     assert fast == pytest.approx(slow, rel=0.01)
-
-
-def test_curves_that_disagree() -> None:
-    """Two solids are not one: that is said, and the intervals are widened."""
-    random = np.random.default_rng(5)
-    curves = {
-        str(modulus): curve(radius, random, modulus=modulus)[:2]
-        for radius, modulus in zip(RADII, (2e3, 4e3), strict=True)
-    }
-    fit = pooled(curves)
-    assert "do not agree" in fit.agreement
-    assert fit.answer.threshold > 40
 
 
 @pytest.mark.slow
