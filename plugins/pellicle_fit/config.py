@@ -98,8 +98,9 @@ def _indenter(value: object) -> Any:
         return registry().make(Indenter, table)
     except ConfigError as error:
         given = table if isinstance(table, Mapping) else {"": None}
-        if any(problem.field.partition(".")[0] in given for problem in error.problems):
-            raise
+        problems = [one for one in error.problems if one.field.partition(".")[0] in given]
+        if problems:
+            raise ConfigError(problems) from None
         return dict(given)
 
 
