@@ -13,7 +13,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from importlib.metadata import EntryPoint, entry_points
-from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -33,7 +32,6 @@ class Command:
 
     function: Callable[..., None]
     file: str = ""
-    show: Callable[[Path, bool, bool], bool] | None = None
 
     def __post_init__(self) -> None:
         if not callable(self.function):

@@ -11,8 +11,6 @@ import pluggy
 from .origins import GROUP
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from .components import Component, Suite
 
 hookspec = pluggy.HookspecMarker(GROUP)
@@ -22,13 +20,7 @@ hookimpl = pluggy.HookimplMarker(GROUP)
 class RegisterCommand(Protocol):
     """Registers the command of an entry point ``command.NAME``."""
 
-    def __call__(
-        self,
-        function: Callable[..., None],
-        *,
-        file: str = "",
-        show: Callable[[Path, bool, bool], bool] | None = None,
-    ) -> None:
+    def __call__(self, function: Callable[..., None], *, file: str = "") -> None:
         """Register a command.
 
         Parameters
@@ -39,9 +31,6 @@ class RegisterCommand(Protocol):
         file
             ``"package.module:Model"``, the model of the TOML file that the command takes. Folders
             ``examples/NAME/`` of the package hold examples of it for ``pellicle new --example``.
-        show
-            Prints what the command left at a path, for ``pellicle show``, in SI or as JSON if asked
-            to; returns False, and prints nothing, where the command left nothing there.
         """
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from contextlib import suppress
 from itertools import chain, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -15,8 +14,7 @@ from typer import Option
 import pellicle as pl
 from pellicle.cli import INTERRUPTED, NOT_CONVERGED, Format, echo, print_json
 from pellicle.errors import ConfigError
-
-from .print_fits import print_fit, print_fits, print_warnings, show_fits
+from pellicle.files import write_json
 
 Text = str | None
 Texts = list[str] | None
@@ -31,9 +29,10 @@ def fit(
         list[Path] | None,
         typer.Argument(
             metavar="[CONFIG.toml] CURVES",
-            help="A configuration, whose values the options replace. Curves: files or a folder of "
-            "them: tables with a header such as position (um),force (nN); HDF5; formats of "
-            "instruments. Or a table file,radius (um) that lists files.",
+            help="A configuration, or the JSON of a fit to repeat; options replace its values. "
+            "Curves: files or a folder of them: tables with a header such as position (um),"
+            "force (nN); HDF5; formats of instruments. Or a table file,radius (um) that lists "
+            "files.",
         ),
     ] = None,
     indenter: Annotated[
@@ -95,9 +94,6 @@ def fit(
     pool: Annotated[
         bool, Option("--pool", help="Fit one modulus and one tension to all curves.")
     ] = False,
-    compare: Annotated[
-        bool, Option("--compare", help="Get and print intervals of all explanations.")
-    ] = False,
     set_: Annotated[
         Texts,
         Option(
@@ -122,13 +118,6 @@ def fit(
     report: Annotated[
         bool, Option("--report", help="Write a web page, to that folder or the current one.")
     ] = False,
-    again: Annotated[
-        Path | None,
-        Option(
-            metavar="FIT.json",
-            help="Repeat the fit that a JSON file records, from the folder where it was made.",
-        ),
-    ] = None,
     details: Annotated[
         bool, Option("--details", help="Of one fit, print all quantities, explanations, checks.")
     ] = False,
@@ -142,43 +131,39 @@ def fit(
     """
     from pellicle_fit.config import FitConfig
     from pellicle_fit.population.fits import ManyFits
-    from pellicle_fit.record import repetition
+    from pellicle_fit.print_fits import print_fit, print_fits
     from pellicle_fit.report.figures import save_figure
     from pellicle_fit.report.page import save_report
 
-    files = files or []
-    configs = [path for path in files if path.suffix.lower() == ".toml"]
+    configs = [path for path in files or () if path.suffix.lower() in (".toml", ".json")]
+    curves = tuple(path for path in files or () if path not in configs)
     if len(configs) > 1:
         raise ConfigError(
             f"{', '.join(map(str, configs))}: several configurations; give one, and name curves "
             "with the suffix .toml in it (curves = […])"
         )
-    repeated = None if again is None else repetition(again)
-    if repeated is not None and configs:
-        raise ConfigError(f"{configs[0]}: --again has a configuration of its own; leave one out")
     config = FitConfig.merged(
-        configs[0] if configs else repeated,
+        next(iter(configs), None),
         [
-            *(_override("fix", text) for text in fix or ()),
-            *(_override("uncertainty", text) for text in uncertainty or ()),
+            *(f"fix.{text}" for text in fix or ()),
+            *(f"uncertainty.{text}" for text in uncertainty or ()),
             *(set_ or ()),
         ],
-        curves=tuple(path for path in files if path not in configs) or None,
+        curves=curves or None,
         indenter=indenter,
         radius=radius or None,
         diameter=diameter or None,
         half_angle=half_angle,
         poissons_ratio=poissons_ratio,
         thickness=thickness,
-        model=model and [name for names in _sets(model) for name in names],
-        rivals=rivals and _sets(rivals),
+        model=model and [name for name in model if name != "none"],
+        rivals=rivals and [text.split(",") for text in rivals if text != "none"],
         baseline=baseline,
         segment=segment,
         spring_constant=spring_constant,
         sensitivity=sensitivity,
         columns=columns,
         pool=pool or None,
-        compare=compare or None,
     )
     kinds = [str(kind) for kind in formats or [Format.PNG]]
     result, name, title = _fit(config, directory, kinds, quiet=quiet)
@@ -187,13 +172,11 @@ def fit(
         print_json(result.to_dict())
     elif isinstance(result, ManyFits):
         print_fits(result, quiet=quiet, directory=directory, si=si)
-    elif quiet:
-        print_warnings(result, details=True)
     else:
-        print_fit(result, details=details or result.config.compare, si=si)
+        print_fit(result, quiet=quiet, details=details, si=si)
     written = [*many.files] if many else []
     if directory is not None and not isinstance(result, ManyFits):
-        written.append(result.save(directory / f"{name}.json"))
+        written.append(write_json(result.to_dict(), directory / f"{name}.json"))
         written += save_figure(result, directory / name, kinds)
     if report:
         written.append(save_report(result, (directory or Path()) / f"{name}.html", title))
@@ -209,7 +192,7 @@ def fit(
 @pl.hookimpl
 def register_commands(register: pl.RegisterCommand) -> None:
     """Register the command."""
-    register(fit, file="pellicle_fit.config:FitConfig", show=show_fits)
+    register(fit, file="pellicle_fit.config:FitConfig")
 
 
 def _fit(
@@ -238,18 +221,3 @@ def _fit(
         echo(f"interrupted{hint if directory else ''}", err=True)
         raise typer.Exit(INTERRUPTED) from None
     return fits, "fits", f"Fits of {len(fits.rows)} curves"
-
-
-def _override(key: str, text: str) -> str:
-    """Return ``name=value`` of an option in the form of ``--set``; a bare number is in SI."""
-    name, equals, value = text.partition("=")
-    if not equals:
-        raise ConfigError(f"{text!r} is not of the form name=value", key)
-    with suppress(ValueError):
-        value = repr(float(value))
-    return f"{key}.{name.strip()}={value.strip()}"
-
-
-def _sets(texts: list[str]) -> list[list[str]]:
-    """Return the sets of effects that an option names, each with commas; "none" is no set."""
-    return [[name.strip() for name in text.split(",")] for text in texts if text != "none"]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import suppress
 from itertools import chain
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -52,14 +51,8 @@ DEFAULT_RIVALS: tuple[str | list[str], ...] = (
     *("brush", "compliance", "rough_toe"),
 )
 """What bends a curve as a tension does, and is compared unless a configuration says otherwise."""
-UNCERTAIN = {
-    "spring_constant": ("N/m", "spring"),
-    "sensitivity": ("m/V", "sensitivity"),
-    "radius": ("m", "size"),
-}
-"""What may be known to an uncertainty, its unit, and the effect whose error that is."""
-FREE = "free"
-"""Thickness that the fit determines."""
+UNCERTAIN = {"spring_constant": "spring", "sensitivity": "sensitivity", "radius": "size"}
+"""What may be known to an uncertainty, and the effect whose error that is."""
 
 
 def _component(value: object) -> object:
@@ -100,17 +93,14 @@ def _indenter(value: object) -> Any:
     table = _component(value)
     if isinstance(table, HasForceCurve):
         return table
-    if isinstance(table, Mapping):
-        table = _with_radius(table)
     try:
         return registry().make(Indenter, table)
     except ConfigError as error:
-        if not isinstance(table, Mapping):
-            raise
-        problems = [p for p in error.problems if p.field.partition(".")[0] in table]
+        given = table if isinstance(table, Mapping) else {"": None}
+        problems = [one for one in error.problems if one.field.partition(".")[0] in given]
         if problems:
             raise ConfigError(problems) from None
-        return dict(table)
+        return dict(given)
 
 
 def _fields(indenter: object) -> Mapping[str, FieldInfo]:
@@ -128,22 +118,32 @@ def described(indenter: object) -> dict[str, Any]:
     return dict(indenter) if isinstance(indenter, Mapping) else {"type": type(indenter).__name__}
 
 
-def _uncertain(value: object) -> dict[str, float | str]:
-    """Return shares as numbers, and quantities as they are written, once they are checked."""
-    if not isinstance(value, Mapping):
-        raise ConfigError(f'{shown(value)} is not a table; give {{ spring_constant = "10 %" }}')
-    found: dict[str, float | str] = {}
-    for name, entry in value.items():
-        if name not in UNCERTAIN:
-            raise ConfigError(f"is not one of {', '.join(UNCERTAIN)}", str(name))
-        percent = isinstance(entry, str) and entry.rstrip().endswith("%")
-        unit = UNCERTAIN[name][0] if isinstance(entry, str) and not percent else "1"
-        try:
-            number = Quantity(unit, above=0)(entry.rstrip(" %") if percent else entry)
-        except ValueError as error:
-            raise ConfigError(f'{error}; or a share such as "5 %"', name) from None
-        found[name] = number / 100 if percent else number if unit == "1" else entry
-    return found
+def _share(value: object) -> float:
+    """Return a share; "5 %" is one of 0.05."""
+    percent = isinstance(value, str) and value.endswith("%")
+    try:
+        number = Quantity("1", above=0)(str(value)[:-1] if percent else value)
+    except ValueError as error:
+        raise ValueError(f'{error}, or a share such as "5 %"') from None
+    return number / 100 if percent else number
+
+
+def _recorded(path: Path) -> Any:
+    """Return the configuration in the JSON of a fit, of a pool or of many fits of files."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        data, rows = content["configuration"], content["curves"]
+        origins = [one["data"] for row in rows for one in row.get("curves", [row]) if "data" in one]
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except (ValueError, LookupError, TypeError, AttributeError):
+        data, origins = {}, []
+    if not data.get("curves") or not all(origin["file"] for origin in origins):
+        raise ConfigError(
+            f"{path}: is not the JSON of a fit of files; give one that pellicle fit -o leaves, "
+            "such as bead-fit.json or fits.json"
+        )
+    return data
 
 
 class FitConfig(FromFile, Calibration):
@@ -183,7 +183,7 @@ class FitConfig(FromFile, Calibration):
     thickness: Annotated[float, Quantity("m", above=0)] | Literal["free"] | None = Field(
         None,
         description="of a layer bonded to a rigid base, in place of a half-space; "
-        f'"{FREE}" fits it. It needs poissons_ratio',
+        '"free" fits it. It needs poissons_ratio',
     )
     model: Annotated[
         tuple[_OneEffect, ...],
@@ -208,14 +208,14 @@ class FitConfig(FromFile, Calibration):
         description="values of quantities of the solid, of the model and of rivals that are not "
         "fitted, such as tension = 0",
     )
-    uncertainty: Annotated[
-        dict[str, float | str],
-        BeforeValidator(_uncertain),
-        Field(
-            description="standard deviations of spring_constant, sensitivity and radius, each a "
-            "share such as 5 % or a quantity; without any, the calibration counts as exact"
-        ),
-    ] = Field(default_factory=dict)
+    uncertainty: dict[
+        Literal["spring_constant", "sensitivity", "radius"],
+        Annotated[float, BeforeValidator(_share, json_schema_input_type=float | str)],
+    ] = Field(
+        default_factory=dict,
+        description="standard deviations of spring_constant, sensitivity and radius, each a share "
+        "such as 5 %; without any, the calibration counts as exact",
+    )
     baseline: Literal["none", "offset", "slope"] = Field(
         "none", description="force before contact that is fitted: offset, or offset and slope"
     )
@@ -226,9 +226,6 @@ class FitConfig(FromFile, Calibration):
         "one value for each file",
     )
     pool: bool = Field(False, description="whether all curves share one modulus and one tension")
-    compare: bool = Field(
-        False, description="whether all explanations get intervals, and are printed"
-    )
     accept: Annotated[
         tuple[str, ...],
         _list(tuple[str, ...] | str),
@@ -251,7 +248,7 @@ class FitConfig(FromFile, Calibration):
         BeforeValidator(_component),
         Field(description="executor of many fits and of simulations"),
     ] = Field(default_factory=lambda: registry().make(Executor, {"type": "serial"}))
-    cache: Path | None = Field(None, description="folder that keeps simulated force curves")
+    cache: InputPath | None = Field(None, description="folder that keeps simulated force curves")
     grid_points: int = Field(
         GRID_POINTS,
         ge=16,
@@ -304,20 +301,6 @@ class FitConfig(FromFile, Calibration):
         return cls.merged(path, overrides)
 
     @classmethod
-    def from_json(cls, text: str) -> Self:
-        """Return the configuration in a JSON text, such as `to_json` or the JSON of a fit.
-
-        Raises
-        ------
-        ConfigError
-            The text is not JSON, or holds no configuration.
-        """
-        with suppress(ValueError, AttributeError):
-            if isinstance(of_fit := json.loads(text).get("configuration"), dict):
-                text = json.dumps(of_fit)
-        return super().from_json(text)
-
-    @classmethod
     def merged(
         cls,
         base: FitConfig | Mapping[str, Any] | str | Path | None = None,
@@ -326,6 +309,7 @@ class FitConfig(FromFile, Calibration):
     ) -> Self:
         """Return a configuration with options in place of the values of another or of a TOML file.
 
+        The JSON of a fit is one, too: its curves are sought from the current folder, as they were.
         An option that is None keeps the value of ``base``.  An option that is not a field of the
         configuration is a field of the indenter; a list for such a field, for spring_constant or
         for sensitivity has one value for each file.  Overrides replace values and options.
@@ -337,15 +321,13 @@ class FitConfig(FromFile, Calibration):
         """
         options = {name: value for name, value in options.items() if value is not None}
         options = _with_radius(options)
+        if isinstance(base, (str, Path)) and Path(base).suffix.lower() == ".json":
+            base = _recorded(Path(base))
         if isinstance(base, (str, Path)):
             folder, data = Path(base).parent, read_toml(Path(base))
             if "curves" in data.keys() - options.keys():
-                paths = _as_list(data["curves"])
-                if all(isinstance(path, str) for path in paths):
-                    paths = [one for path in paths for one in expanded(path, folder)]
-                data["curves"] = paths
-            if isinstance(data.get("cache"), str):
-                data["cache"] = folder / data["cache"]
+                paths = map(str, _as_list(data["curves"]))
+                data["curves"] = [one for path in paths for one in expanded(path, folder)]
             with paths_relative_to(folder):
                 return cls.merged(data, overrides, **options)
         if isinstance(base, FitConfig):
@@ -381,31 +363,18 @@ class FitConfig(FromFile, Calibration):
         return gather(chosen, self.segment, self, self.per_file, column, is_field)
 
     def indenter_of(self, source: Source) -> Indenter | HasForceCurve:
-        """Return the indenter of one curve, with the fields that this curve alone has.
-
-        Raises
-        ------
-        ConfigError
-            The indenter cannot have these fields, or needs others; what the file of the curve lacks
-            is named as well.
-        """
-        indenter: Any = self.indenter
-        if source.fields and not isinstance(indenter, (Indenter, Mapping)):
-            raise ConfigError(
-                f"{', '.join(source.fields)} cannot be set: the indenter is complete already"
-            )
+        """Return the indenter of one curve, with its own fields; an error names all it lacks."""
+        indenter: Indenter | HasForceCurve | Mapping[str, Any] = self.indenter
         for name, value in _with_radius(source.fields).items():
             indenter = replaced(indenter, name, value)
-        if isinstance(indenter, HasForceCurve):
+        if not isinstance(indenter, Mapping):
             return indenter
-        lacks: dict[str, str] = {}
-        with problems_within("indenter"):
-            if isinstance(indenter, Mapping):
-                lacks = {} if "type" in indenter else {"indenter": "-i sphere"}
-                for name, field in _fields(indenter).items():
-                    if field.is_required() and name not in indenter:
-                        lacks[f"indenter.{name}"] = OPTIONS.get(name, f'--set indenter.{name}="…"')
-            if not lacks:
+        lacks = {} if "type" in indenter else {"indenter": "-i sphere"}
+        for name, field in _fields(indenter).items():
+            if field.is_required() and name not in indenter:
+                lacks[f"indenter.{name}"] = OPTIONS.get(name, f'--set indenter.{name}="…"')
+        if not lacks:
+            with problems_within("indenter"):
                 return registry().make(Indenter, indenter)
         curve, where = source.curve, f"{source.name}: " if source.name else ""
         if isinstance(curve, MissingInputError):

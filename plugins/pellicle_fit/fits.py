@@ -67,7 +67,7 @@ def fit(
     """
     if isinstance(position, (str, Path)):
         file, position = Path(position), None
-        if file.suffix.lower() == ".toml" and config is None:
+        if file.suffix.lower() in (".toml", ".json") and config is None:
             config = file
         else:
             options["curves"] = file

@@ -10,6 +10,7 @@ from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,7 +29,7 @@ from .population.judgement import group_of, group_pattern, judge, read_names
 from .population.row import FAILED, Row, sketch
 from .population.summary import summary
 from .problem import Problem, problem
-from .record import Stopwatch, components_of, data_of
+from .record import components_of, data_of, record_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -172,7 +173,7 @@ def fit_sources(
     from .report.population import save_population
 
     lists = read_names(config.accepted), read_names(config.rejected)
-    fits, watch = ManyFits([], configuration=config.to_dict()), Stopwatch()
+    fits, began = ManyFits([], configuration=config.to_dict()), perf_counter()
     with nullcontext() if directory is None else locked(directory, "fits"):
         if directory is not None:
             check_writable(directory / "fits.h5")
@@ -187,7 +188,7 @@ def fit_sources(
         fits.maps, of_maps = force_maps(fits.rows)
         fits.notes = [*notes, *of_maps]
         if directory is not None:
-            tables = _write(fits, config, watch, directory)
+            tables = _write(fits, config, began, directory)
             fits.files = (*tables, *save_population(fits, directory, formats))
     return fits
 
@@ -298,17 +299,15 @@ def _failure(error: Exception, name: str) -> str:
     return f"{FAILED}{kind}{reason}"
 
 
-def _write(
-    fits: ManyFits, config: FitConfig, watch: Stopwatch, directory: Path
-) -> tuple[Path, ...]:
+def _write(fits: ManyFits, config: FitConfig, began: float, directory: Path) -> tuple[Path, ...]:
     """Write the tables of the curves and of the groups, and return their paths."""
     import pandas as pd
 
-    record = watch.record(config, [row.curve["data"] for row in fits.rows if row.is_fitted])
+    record = record_of(config, [row.curve["data"] for row in fits.rows if row.is_fitted], began)
     attributes = {
         "configuration": config.to_json(),
-        "versions": ", ".join(f"{name} {number}" for name, number in record.versions.items()),
-        "date": record.date,
+        "versions": ", ".join(f"{name} {number}" for name, number in record["versions"].items()),
+        "date": record["date"],
     }
     dataset = table(fits.rows).assign_attrs(attributes)
     hdf5, text, groups = (directory / f"fits{end}" for end in (".h5", ".csv", "-groups.csv"))
@@ -318,5 +317,5 @@ def _write(
     for path, content in ((text, frame.reset_index()), (groups, pd.DataFrame(summary(fits.rows)))):
         with atomic_write(path) as part:
             content.to_csv(part, index=False, na_rep="nan")
-    whole = fits.to_dict() | {"configuration": fits.configuration} | record.to_dict()
+    whole = fits.to_dict() | {"configuration": fits.configuration} | record
     return hdf5, text, groups, write_json(whole, directory / "fits.json")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -12,9 +13,8 @@ from pellicle import registry
 from pellicle.batch import status_line
 from pellicle.components import HasForceCurve, Indenter
 from pellicle.errors import ConfigError, PellicleError
-from pellicle.units import Quantity
 
-from .config import FREE, UNCERTAIN, FitConfig
+from .config import UNCERTAIN, FitConfig
 from .curve import Curve
 from .effect import Effect, Solid, quantities
 from .files.cleaning import clean
@@ -23,7 +23,7 @@ from .files.missing import MissingInputError
 from .files.sources import Source
 from .objective import CONTACT_POINT
 from .recipe import answer
-from .record import Stopwatch, data_of
+from .record import data_of, record_of
 from .result import Fit, Member
 from .simulated.body import body_of, layer_of, layer_table
 from .simulated.simulation import Simulation
@@ -44,34 +44,24 @@ class Problem:
     question: Mapping[str, Any]
     """What `answer` is asked of them."""
     poissons_ratio: float | None
-    watch: Stopwatch
+    began: float
+    """Value of ``perf_counter`` at the start."""
 
     def fit(self, *, progress: bool = False) -> Fit:
-        """Return the fit of the curves: one modulus, and what else they share.
-
-        Raises
-        ------
-        ConfigError, PluginError, ConvergenceError
-            The curves cannot be fitted.
-        """
+        """Return the fit of the curves: one modulus, and what else they share."""
         with status_line("fitting", progress):
             found = answer([member.curve for member in self.members], **self.question)
             advice = steps(found, self.members, self.config)
-        record = self.watch.record(self.config, [member.data for member in self.members])
+        data = [member.data for member in self.members]
+        record = record_of(self.config, data, self.began)
         return Fit(found, self.members, advice, self.poissons_ratio, self.config, record)
 
 
 def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = False) -> Problem:
-    """Return cleaned curves with their indenters, whose forces are simulated if need be.
-
-    Raises
-    ------
-    ConfigError, PluginError, ConvergenceError, StorageError
-        A curve or an option does not allow a fit, or a study failed.
-    """
+    """Return cleaned curves with their indenters, whose forces are simulated if need be."""
     if config.pool and len(sources) < 2:
         raise ConfigError("holds one curve, and a pool needs two; use fit", "curves")
-    watch, measured, indenters = Stopwatch(), [], []
+    began, measured, indenters = perf_counter(), [], []
     for source in sources:
         try:
             indenters.append(config.indenter_of(source))
@@ -100,15 +90,18 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
     # What is given leaves nothing to ask.
     given = [effect for effect in model if quantities(type(effect)) and not effect.open]
     baseline = [_effect(name) for name in _BASELINES[config.baseline]]
+    weighed = [(UNCERTAIN[name], share) for name, share in config.uncertainty.items()]
     question = {
         "model": [effect for effect in model if effect not in given],
         "rivals": [r for rival in config.rivals if (r := _known(rival, fix, ratio))],
         "kept": [*given, *baseline, *layers],
         "fix": {name: fix[name] for name in quantities(Solid).keys() & fix.keys()},
-        "uncertainty": _uncertain(config, measured, indenters),
-        "full": config.compare,
+        "uncertainty": [
+            _effect(kind, **{f"{kind}_error": {"value": 0.0, "deviation": share}})
+            for kind, share in weighed
+        ],
     }
-    return Problem(config, tuple(members), question, ratio, watch)
+    return Problem(config, tuple(members), question, ratio, began)
 
 
 def _on_solid(
@@ -119,7 +112,7 @@ def _on_solid(
 ) -> tuple[list[Any], list[Effect], float | None]:
     """Return what has the force curve of each indenter, a layer beside it, and Poisson's ratio."""
     kernel, ratio, thickness = config.kernel, config.poissons_ratio, config.thickness
-    if thickness == FREE:
+    if thickness == "free":
         return [*indenters], [_effect("layer", poissons_ratio=ratio)], ratio
     if isinstance(thickness, float) and ratio is not None:
         layers = [layer_of(indenter, ratio, thickness) for indenter in indenters]
@@ -157,32 +150,6 @@ def _known(
         if own.get("tension") != 0:
             found.append(effect.model_copy(update=own))
     return found
-
-
-def _uncertain(
-    config: FitConfig, measured: Sequence[Measurement], indenters: Sequence[object]
-) -> list[Effect]:
-    """Return the effects that stand for the uncertainties of the calibration."""
-    known = {
-        "spring_constant": {curve.stiffness for curve in measured},
-        "sensitivity": {curve.origin.sensitivity for curve in measured},
-        "radius": {getattr(indenter, "radius", None) for indenter in indenters},
-    }
-    effects = []
-    for name, value in config.uncertainty.items():
-        unit, effect = UNCERTAIN[name]
-        if isinstance(value, str):
-            reference, *others = known[name]
-            if reference is None or others:
-                raise ConfigError(
-                    "is a quantity, and there is no one value to compare it with; give a share "
-                    "such as 5 %",
-                    f"uncertainty.{name}",
-                )
-            value = Quantity(unit)(value) / reference
-        weighed = {"value": 0.0, "deviation": value}
-        effects.append(_effect(effect, **{f"{effect}_error": weighed}))
-    return effects
 
 
 def _effect(name: str, **fields: Any) -> Effect:

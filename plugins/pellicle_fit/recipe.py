@@ -180,7 +180,6 @@ def answer(
     kept: Sequence[Effect] = (),
     fix: Mapping[str, float | str] | None = None,
     uncertainty: Sequence[Effect] = (),
-    full: bool = False,
 ) -> Answer:
     """Fit modulus, contact point and a model to curves of one solid, and weigh its rivals.
 
@@ -188,7 +187,7 @@ def answer(
     its others, and those ``kept``, are in all explanations.  Each set of rivals is compared alone
     and beside what is asked for.  ``fix`` has values of quantities of the solid, in SI or with
     units.  Effects of ``uncertainty``, whose quantities are weighed, widen intervals and are in no
-    comparison.  With ``full``, every explanation has all its intervals.
+    comparison.
 
     Raises
     ------
@@ -220,8 +219,8 @@ def answer(
     # What may be right and has no model leaves nothing to bound.
     ends = not (untried and decided.verdict is Verdict.UNDESCRIBED)
     tied = ties(fits, word, decided, chosen, margin)
-    for types in fits if full else tied:
-        names = () if full or types == chosen else (MODULUS, TENSION)
+    for types in tied:
+        names = () if types == chosen else (MODULUS, TENSION)
         fits[types] = with_estimates(fits[types], threshold if ends else np.inf, uncertainty, names)
     return Answer(
         tuple(sorted(fits.values(), key=lambda fit: fit.aic)),

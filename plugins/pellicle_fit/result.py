@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pellicle.arrays import Array
-from pellicle.files import json_text, write_json
+from pellicle.files import json_text
 
 from .candidate import Candidate
 from .config import FitConfig, described
@@ -17,7 +16,6 @@ from .effect import quantities
 from .files.measurement import Note
 from .intervals import CONFIDENCE, Estimate
 from .recipe import Answer
-from .record import Record
 from .verdict import Verdict
 from .words.advice import Step
 from .words.effects import words
@@ -56,7 +54,7 @@ class Fit:
     """ν, if it was given."""
     config: FitConfig
     """The configuration of the fit."""
-    record: Record
+    record: Mapping[str, Any]
     """Versions, date and wall time."""
 
     @property
@@ -146,11 +144,6 @@ class Fit:
         """Return the force [N] of the chosen explanation at the rows of each curve."""
         return self.answer.chosen.forces()
 
-    def explained(self, *types: str) -> Candidate | None:
-        """Return an explanation by the types of its effects; None if it was not compared."""
-        found = (fit for fit in self.answer.explanations if fit.types == frozenset(types))
-        return next(found, None)
-
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as JSON data."""
         answer, chosen = self.answer, self.answer.chosen
@@ -179,7 +172,7 @@ class Fit:
             "messages": self.messages,
             "notes": self.notes,
             "configuration": self.config.to_dict(),
-            **self.record.to_dict(),
+            **self.record,
         }
 
     def _explanation(self, fit: Candidate) -> dict[str, Any]:
@@ -237,16 +230,6 @@ class Fit:
         """Return what `to_dict` returns as JSON."""
         return json_text(self.to_dict())
 
-    def save(self, path: str | Path) -> Path:
-        """Write what `to_dict` returns to a JSON file, and return its path.
-
-        Raises
-        ------
-        StorageError
-            The file cannot be written.
-        """
-        return write_json(self.to_dict(), Path(path))
-
 
 def name_of(name: str, curve: int | None) -> str:
     """Return the name of a quantity of one of several curves: that of the first has no number."""
@@ -254,10 +237,7 @@ def name_of(name: str, curve: int | None) -> str:
 
 
 def parameters_of(fit: Candidate) -> dict[str, Estimate]:
-    """Return all quantities of an explanation, fitted and given, by name.
-
-    Those whose intervals were not sought have no ends.
-    """
+    """Return all quantities of an explanation by name; some intervals were not sought."""
     found, objective = {}, fit.objective
     for slot, at in zip(objective.slots, fit.minimum.at, strict=True):
         name = name_of(slot.name, slot.curve)

@@ -154,29 +154,8 @@ def test_one_of_two_claimants_is_switched_off(
     assert call("hello").stdout == "hello you\n"
 
 
-SHOWS = """
-def show(path, si, json):
-    if not (path / "hello.txt").exists():
-        {otherwise}
-    echo((path / "hello.txt").read_text())
-    return True
-
-""" + registers("hello, show=show")
-
-
-def test_show_asks_the_command_that_left_something(install: Install) -> None:
-    """And says as ever what it cannot show where none did."""
-    install(SHOWS.format(otherwise="return False"))
-    Path("left").mkdir()
-    missing = call("show", "left", code=2).stderr
-    assert "is a folder that holds no result yet" in missing
-    Path("left/hello.txt").write_text("hello again", encoding="utf-8")
-    assert call("show", "left").stdout == "hello again\n"
-
-
 def test_what_fails_in_a_command_names_its_plugin(install: Install) -> None:
     """It is no fault of pellicle."""
-    install(f"def hello() -> None: 1 / 0\n{SHOWS.format(otherwise='raise KeyError(path)')}")
+    install("def hello() -> None: 1 / 0")
     origin = "error: command 'hello' of greetings 1.5 (entry point 'command.hello') failed"
     assert call("hello", code=2).stderr == f"{origin}: ZeroDivisionError: division by zero\n"
-    assert call("show", "nothing", code=2).stderr.startswith(f"{origin}: KeyError")

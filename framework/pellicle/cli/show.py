@@ -7,9 +7,6 @@ from typing import Annotated
 
 import typer
 
-from pellicle.commands import errors_attributed_to, usable_commands
-from pellicle.errors import StorageError
-
 from .printing import NOT_CONVERGED, echo
 
 
@@ -26,21 +23,14 @@ def show(
         bool, typer.Option("--json", help="Print the result as JSON, in SI units.")
     ] = False,
 ) -> None:
-    """Print the steps of a result, or the runs of a study, and its origin, or another table."""
+    """Print the steps of a result, or the runs of a study, and its origin."""
     from pellicle.results.result import Result, load
     from pellicle.show import sentences
     from pellicle.studies.runner import is_table, read
 
     from .results import exit_by_outcome, print_origin, print_outcome_json, print_tables
 
-    try:
-        outcome = read(results)[0] if is_table(results) else load(results)
-    except StorageError:
-        for name, command in usable_commands().items():
-            with errors_attributed_to(name):
-                if command.show and command.show(results, si, json):
-                    return
-        raise
+    outcome = read(results)[0] if is_table(results) else load(results)
     if json:
         print_outcome_json(outcome)
     else:

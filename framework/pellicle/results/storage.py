@@ -258,8 +258,8 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
             )
         if kind == "result" and (command := attributes.get("command")):
             raise StorageError(
-                f"{path}: a table that pellicle {command} wrote, not a result; pellicle show "
-                f"{path.parent} prints it; for more, see pellicle {command} --help"
+                f"{path}: a table that pellicle {command} wrote, not a result; "
+                f"xarray.load_dataset reads it; for more, see pellicle {command} --help"
             )
         if kind == "table" and "axes" not in attributes:
             raise StorageError(f"{path}: a result, not the table of a study")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -139,13 +139,6 @@ class Row:
             row["site"] = {"map": self.map, **self.site._asdict()}
         judgement = {"accepted": self.accepted, "reason": self.reason, "outlier": self.outlier}
         return row | judgement | self.fit
-
-    @classmethod
-    def from_dict(cls, data: Mapping[str, Any]) -> Self:
-        """Return the row that JSON data hold, without its place on a map."""
-        own = ("group", "status", "accepted", "reason", "outlier")
-        fit = {name: data[name] for name in data if name not in (*own, "curve", "site")}
-        return cls(data["curve"], fit=fit, **{name: data[name] for name in own})
 
 
 def units_of(rows: Iterable[Row]) -> dict[str, str]:

@@ -109,10 +109,7 @@ def plot(fit: Fit) -> Figure:
 
 
 def _curves(fit: Fit, rival: Candidate | None = None) -> Chart:
-    """Return data, fit and a rival of it over the indentation; below, residuals.
-
-    Several curves are relative to their largest depth and force.
-    """
+    """Return data and fits over the indentation, of several curves over its largest; residuals."""
     chosen, forces, count, series = fit.answer.chosen, fit.forces(), len(fit.members), []
     for number, (member, force) in enumerate(zip(fit.members, forces, strict=True)):
         curve, known = member.curve, chosen.objective.known(chosen.minimum.at, number)

@@ -9,15 +9,13 @@ from pathlib import Path
 
 from pellicle import show
 from pellicle.components import Column, Table
-from pellicle.errors import first_of
 from pellicle.files import atomic_write
 from pellicle.show import Block, Code, Notice, Picture, Section, Text
 from pellicle_fit.config import FitConfig
 from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.result import Fit
 from pellicle_fit.verdict import Verdict
-from pellicle_fit.words.population import advice_of_population, sentences_of_population
-from pellicle_fit.words.quantities import words
+from pellicle_fit.words.population import advice_of_population, by_text, sentences_of_population
 from pellicle_fit.words.story import story
 
 from . import tables
@@ -26,7 +24,7 @@ from .figures import charts, panels
 _WIDE = 8.0
 """Width of figures from which on they have that of the page [inch]."""
 _ELSEWHERE = {
-    *("curves", "per_file", "rivals", "pool", "compare"),
+    *("curves", "per_file", "rivals", "pool"),
     *("executor", "cache", "grid_points"),
 }
 """Fields of a configuration that say nothing of the solid, or stand in the tables."""
@@ -56,17 +54,16 @@ def save_report(fit: Fit | ManyFits, path: Path, title: str) -> Path:
         for caption, (draw, size) in panels(fit).items()
     ]
     if isinstance(fit, Fit):
-        configuration, results, data = fit.config.to_dict(), _one(fit), _data(fit)
+        configuration, results = fit.config.to_dict(), _one(fit)
         code = [Code(fit.to_json(), "All numbers, in SI.", f"{path.stem}.json")]
     else:
-        configuration, results, data, code = fit.configuration, _many(fit), [], []
+        configuration, results, code = fit.configuration, _many(fit), []
     known = {name: value for name, value in configuration.items() if name not in _ELSEWHERE}
     inputs = show.input_table(known, FitConfig, "The indenter, and what was given or chosen.")
     sections = [
         Section("Result", results),
         Section("Figures", figures),
         Section("Inputs", [inputs] if known else []),
-        Section("Data", data),
         Section("As JSON", code),
     ]
     now = datetime.now(UTC).isoformat(" ", timespec="seconds").replace("+00:00", " UTC")
@@ -101,15 +98,13 @@ def _many(fits: ManyFits) -> list[Block]:
     blocks: list[Block] = [Text(line, lead=True) for line in sentences_of_population(fits)]
     if failed:
         lost = f"{len(failed)} of {len(rows)} curves could not be fitted:"
-        blocks.append(Notice(lost, good=False, details=_by_text(failed)))
-    elif all(row.accepted for row in rows):
-        blocks.append(Notice("Every curve was fitted and accepted.", good=True))
+        blocks.append(Notice(lost, good=False, details=by_text(failed)))
     if fits.notes:
         blocks.append(Notice("Population:", good=None, details=fits.notes))
     blocks += [*map(Text, advice_of_population(rows)), tables.rows(rows)]
     if any(row.accepted for row in rows):
         blocks.append(tables.groups(rows))
-    return [*blocks, *_told(_by_text(warnings), _by_text(notes))]
+    return [*blocks, *_told(by_text(warnings), by_text(notes))]
 
 
 def _told(warnings: Sequence[str], notes: Sequence[str]) -> Iterator[Block]:
@@ -120,27 +115,5 @@ def _told(warnings: Sequence[str], notes: Sequence[str]) -> Iterator[Block]:
         yield Table([Column("note", notes)], "Notes.", folded=True)
 
 
-def _by_text(pairs: Sequence[tuple[str, str]]) -> list[str]:
-    """Return each text once, behind the curves that it is of."""
-    found = dict[str, list[str]]()
-    for text, name in pairs:
-        found.setdefault(text, []).append(name)
-    return [f"{first_of(names)}: {text}" for text, names in found.items()]
-
-
 def _sentence(text: str) -> str:
     return f"{text[:1].upper()}{text[1:]}."
-
-
-def _data(fit: Fit) -> list[Block]:
-    """Return the table of the files that were fitted, and the versions."""
-    units = {"spring_constant": "N/m", "sensitivity": "m/V"}
-    names, data = ("file", "curve", "columns", "segment", "baseline", "sha256", *units), []
-    for member in fit.members:
-        roles = member.data["columns"].items()
-        read = {"columns": ", ".join(f"{role} = {column}" for role, column in roles)}
-        data.append({name: (member.data | read)[name] or "" for name in names})
-    columns = [Column(words(n), [of[n] for of in data], units.get(n, "")) for n in names]
-    shown = [column for column in columns if any(column.values)]
-    versions = ", ".join(f"{name} {number}" for name, number in fit.record.versions.items())
-    return [Table(shown, "The data, and how they were read."), Text(f"Versions: {versions}.")]

@@ -146,10 +146,7 @@ def _quantity(
     digits: int = DIGITS,
     sought: Sequence[bool] = (),
 ) -> list[Column]:
-    """Return the column of a quantity with its intervals, if they were ``sought``; else none.
-
-    What is 0 because an explanation has none is left out.
-    """
+    """Return the column of a quantity, with intervals that were ``sought``; none if all lack it."""
     of = [None if e is None or (e.held and not e.value) else e for e in of]
     texts = [
         (quoted(e, unit, digits) if wanted else unit.number(e.value, digits)) if e else ""

@@ -37,10 +37,7 @@ class Step(NamedTuple):
 
 
 def steps(answer: Answer, members: Sequence[Member], config: FitConfig) -> list[Step]:
-    """Return what to do next, the most urgent first; empty if nothing would help.
-
-    What to measure is asked where nothing of the fit itself is to be mended first.
-    """
+    """Return what to do next, the most urgent first: mend the fit, else measure; or nothing."""
     first = [*_of_input(answer), *_of_options(answer, members, config)]
     return first or [*_of_measurement(answer)]
 

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
+from pellicle.errors import first_of
 from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.population.row import Row
 from pellicle_fit.population.summary import ALL, QUARTILES, summary
@@ -20,15 +21,12 @@ _NAMES = 10
 _STEPS = 6
 """Kinds of steps that are told, those that help most curves."""
 _MODULI = "reduced_modulus", "youngs_modulus"
-_GROUPS = 4
-"""Groups of a population that are named in a sentence; of more, only all curves are."""
 
 
 def sentences_of_population(fits: ManyFits) -> list[str]:
-    """Return how many curves were fitted and accepted, then the medians of each group.
+    """Return how many curves were fitted and accepted, then the medians unless there are groups.
 
-    Of curves in groups the median over all means little, so it is left to the table. The modulus is
-    Young's where Poisson's ratio is known.
+    Those of groups are in their table. The modulus is Young's where Poisson's ratio is known.
     """
     rows, parts = fits.rows, summary(fits.rows)
     fitted, accepted = sum(row.is_fitted for row in rows), sum(row.accepted for row in rows)
@@ -42,21 +40,18 @@ def sentences_of_population(fits: ManyFits) -> list[str]:
     moduli = [part["parameter"] for part in parts if part["parameter"] in _MODULI]
     usual = {part["parameter"] for part in parts if 2 * part["n"] >= accepted}
     shown = {TENSION, *moduli[-1:], *usual - {*_MODULI}}
-    groups = [group for group in dict.fromkeys(part["group"] for part in parts) if group != ALL]
-    sentences = [counts]
-    for group in groups if 0 < len(groups) <= _GROUPS else [ALL] * bool(parts):
-        medians = []
-        for part in parts:
-            if part["group"] == group and part["parameter"] in shown:
-                quartiles = [part[name] for name in QUARTILES[1:4]]
-                unit = unit_of([quartiles[1] or quartiles[2]], part["unit"])
-                low, median, high = (unit.number(value, FEW) for value in quartiles)
-                closed = part["n"] - part["open"]
-                text = f"median {unit.with_unit(median)}, quartiles {low} to {high}, "
-                text = f"{text}of {closed} of {part['curves']} curves" if closed else "only bounds"
-                medians.append(f"{words(part['parameter'])}: {text}")
-        if medians:
-            sentences.append(f"{'' if group == ALL else f'{group}: '}{'; '.join(medians)}")
+    sentences, medians = [counts], []
+    for part in parts if {part["group"] for part in parts} == {ALL} else ():
+        if part["parameter"] in shown:
+            quartiles = [part[name] for name in QUARTILES[1:4]]
+            unit = unit_of([quartiles[1] or quartiles[2]], part["unit"])
+            low, median, high = (unit.number(value, FEW) for value in quartiles)
+            closed = part["n"] - part["open"]
+            text = f"median {unit.with_unit(median)}, quartiles {low} to {high}, "
+            text = f"{text}of {closed} of {part['curves']} curves" if closed else "only bounds"
+            medians.append(f"{words(part['parameter'])}: {text}")
+    if medians:
+        sentences.append("; ".join(medians))
     if far := [row.name for row in rows if row.outlier]:
         sentences.append(f"far from the median modulus, and counted: {_listed(far)}")
     return sentences
@@ -86,3 +81,11 @@ def _listed(names: Sequence[str]) -> str:
     """Return names of curves, without folders if they differ without."""
     short = [Path(name).name for name in names]
     return listed(short if len({*short}) == len(names) else names, most=_NAMES)
+
+
+def by_text(pairs: Sequence[tuple[str, str]]) -> list[str]:
+    """Return each text once, behind the curves that it is of."""
+    found = dict[str, list[str]]()
+    for text, name in pairs:
+        found.setdefault(text, []).append(name)
+    return [f"{first_of(names)}: {text}" for text, names in found.items()]

@@ -64,8 +64,7 @@ def numbers(fit: Fit, *, si: bool = False) -> str:
 def calibration_of(fit: Fit) -> str:
     """Return to which uncertainties the calibration is known: exactly, if there are none."""
     known = [
-        f"{name.replace('_', ' ')} to {value if isinstance(value, str) else f'{100 * value:.3g} %'}"
-        for name, value in fit.config.uncertainty.items()
+        f"{words_of(name)} to {100 * share:.3g} %" for name, share in fit.config.uncertainty.items()
     ]
     return f"calibration weighed: {listed(known)}" if known else "calibration taken as exact"
 

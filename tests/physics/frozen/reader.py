@@ -30,7 +30,7 @@ from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.intervals import Estimate
 from pellicle_fit.objective import Minimum, Objective
-from pellicle_fit.recipe import answer
+from pellicle_fit.recipe import answer, with_estimates
 from tests import adhesive_paths
 from tests.physics.frozen.fit_curves import RADIUS, Case
 from tests.physics.frozen.not_frozen import VARIABLES
@@ -237,8 +237,10 @@ def fit(case: Case) -> dict[str, Any]:
         [_effect("tension", **known), *_given(case)],
         FitConfig(indenter={"type": "cone", "half_angle": 1.2}).rivals,
         fix=fixed,
-        full=case.full,
     )
+    explanations = found.explanations
+    if case.full:
+        explanations = tuple(with_estimates(fit, found.threshold, (), ()) for fit in explanations)
     none = next(fit.aic for fit in found.explanations if not fit.types)
     return {
         "noise": [judged.noise.deviation for judged in found.judgements],
@@ -257,7 +259,7 @@ def fit(case: Case) -> dict[str, Any]:
                 "delta_aic": fit.aic - none,
                 "parameters": {name: _estimate(e) for name, e in fit.estimates.items()},
             }
-            for fit in found.explanations
+            for fit in explanations
         },
     }
 

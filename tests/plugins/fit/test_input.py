@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import h5py
@@ -17,7 +16,6 @@ import pellicle as pl
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.measurement import Measurement
 from pellicle_plugins.indenters.of_revolution import Paraboloid
-from tests.pictures import drawn_width
 
 Array = NDArray[np.float64]
 MODULUS, TENSION, RADIUS, POINT = 5e3, 7.5e-3, 10e-6, 1e-6
@@ -41,33 +39,6 @@ def _write(position: Array, force: Array) -> None:
 
 def _holds(estimate: dict[str, Any], truth: float) -> bool:
     return bool(estimate["low"] <= truth <= estimate["high"])
-
-
-@pytest.mark.slow
-def test_command_gives_json(cli: Cli) -> None:
-    """JSON has value, interval and unit of each parameter, and the words."""
-    _write(*_curve())
-    report = json.loads(cli("curve.csv", *OPTIONS, "--poissons-ratio", "0.5", "--json").stdout)
-    assert _holds(report["reduced_modulus"], MODULUS)
-    assert _holds(report["tension"], TENSION)
-    assert _holds(report["parameters"]["contact_point"], POINT)
-    units = {name: known["unit"] for name, known in report["parameters"].items()}
-    assert units == {"reduced_modulus": "Pa", "tension": "N/m", "contact_point": "m"}
-    youngs = report["youngs_modulus"]
-    assert youngs["value"] == pytest.approx(0.75 * report["reduced_modulus"]["value"])
-    assert report["tension_needed"]
-    assert report["comparison"].startswith("tension is needed")
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("no_rivals")
-def test_command_leaves_files(cli: Cli) -> None:
-    """A folder gets JSON and figure, named after the curve."""
-    _write(*_curve())
-    shown = cli("curve.csv", *OPTIONS, "-o", "out").stdout
-    assert "wrote out/curve-fit.json" in shown
-    assert drawn_width(Path("out/curve-fit.png")) > 0.5
-    assert json.loads(Path("out/curve-fit.json").read_text(encoding="utf-8"))["verdict"]
 
 
 @pytest.mark.parametrize("dwell", [1, 20])

@@ -209,16 +209,9 @@ def test_files(cli: Cli, tmp_path: Path) -> None:
     page = Path("out/fits.html").read_text(encoding="utf-8")
     for words in ("slipped", "quartiles", "Each curve with its fit"):
         assert words in page
-    shown = CliRunner().invoke(app, ["show", "out"])
-    assert shown.exit_code == 1
-    assert [Path(line.split()[0]).name for line in shown.stdout.splitlines()[1:6]] == list(table)
-    assert "1 fitted curve was rejected" in shown.stderr
-    as_json = CliRunner().invoke(app, ["show", "out", "--json"])
-    assert json.loads(as_json.stdout) == json.loads(Path("out/fits.json").read_bytes())
-    for command in (["show", "out/fits.h5"], ["plot", "out"]):
-        refusal = CliRunner().invoke(app, command)
-        assert refusal.exit_code == 2
-        assert "a table that pellicle fit wrote" in refusal.stderr
+    refusal = CliRunner().invoke(app, ["show", "out/fits.h5"])
+    assert refusal.exit_code == 2
+    assert "a table that pellicle fit wrote" in refusal.stderr
     # Another choice costs no fit.
     notes = cli(*arguments, "--set", "accept=r_squared > 2", code=1).stderr
     assert "none of 5 curves was accepted" in notes

@@ -98,8 +98,7 @@ def test_bars_and_units() -> None:
 
 def test_likelihood_map(single: pl.Fit) -> None:
     """Its Δχ² are those of searches over the rest, and rise around the best pair."""
-    tensed = single.explained("tension")
-    assert tensed is not None
+    (tensed,) = (one for one in single.answer.explanations if one.types == {"tension"})
     moduli, tensions, rises = _grid(tensed)
     assert moduli.min() < MODULUS < moduli.max()
     assert -1e-6 < rises.min() < 0.5
