@@ -122,7 +122,7 @@ def measurements(fit: Candidate) -> Iterator[Measurement]:
     for factor in (1 / 3, 3.0):
         if high > 0 and (radius is None or factor * high <= _DEEPEST * radius):
             kind = "shallower" if factor < 1 else "deeper"
-            words = f"a {kind} curve, to {readable(factor * high, 'm', 2)}"
+            words = f"a {kind} curve, to a depth of {readable(factor * high, 'm', 2)}"
             yield Measurement(words, factor * down, factor * forth, inward)
     for factor in (1 / 3, 3.0):
         if radius is not None and high <= _DEEPEST * factor * radius:

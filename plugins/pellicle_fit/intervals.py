@@ -12,6 +12,7 @@ from scipy.special import stdtrit
 from .objective import Minimum, Objective
 
 CONFIDENCE = 0.95
+_WIDE = 2.0
 _REACH = np.log(100.0)
 """Change of a logarithm up to which an end is sought."""
 _FAR = 100.0
@@ -34,6 +35,17 @@ class Estimate:
     unit: str
     held: bool = False
     """Whether it was given, not fitted."""
+
+    @property
+    def is_narrow(self) -> bool:
+        """Whether the ends are of one sign and within a factor of 2.
+
+        Of a wider interval the best value is one of many, and is not quoted.
+        """
+        if self.low is None or self.high is None:
+            return False
+        low, high = sorted((abs(self.low), abs(self.high)))
+        return self.low * self.high > 0 and high <= _WIDE * low
 
 
 class Better(Exception):  # noqa: N818 - not an error: the search continues from there

@@ -18,7 +18,7 @@ CHANCE = 1e-3
 """Probability that a check flags a curve without fault."""
 _NEAR = 0.01
 """Distance from contact beyond which a row counts as before it, over the range of positions."""
-_FEWEST = 10
+FEWEST = 10
 """Rows before contact from which the noise is taken."""
 _WINDOWS = (1 / 2, 1 / 4, 1 / 8, 1 / 16, 1 / 32)
 """Rows next to contact in which a dip is sought, over those before it."""
@@ -92,7 +92,7 @@ def judged(
     least = max(_LEAST * float(np.max(np.abs(curve.force))), step / np.sqrt(12))
     if has_spikes(residuals, least):
         flaws.add(Flaw.SPIKES)
-    if before.sum() < _FEWEST:
+    if before.sum() < FEWEST:
         left = max(residuals.size - jacobian.shape[1], 1)
         noise = Noise(max(float(np.sqrt(np.sum(residuals**2) / left)), least), left)
         return Judged(noise, frozenset(flaws))

@@ -71,6 +71,11 @@ class Answer:
         return self.question.word == {TENSION} and self.verdict is Verdict.NEEDED
 
     @property
+    def tied_types(self) -> set[Types]:
+        """The sets of effects that are tied."""
+        return {fit.types for fit in self.tied}
+
+    @property
     def estimates(self) -> Mapping[str, Estimate]:
         """All quantities of the chosen explanation."""
         return self.chosen.estimates

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .row import FAILED, Row, units_of
+from .row import ENDS, FAILED, Row, units_of
 from .summary import summary
 
 if TYPE_CHECKING:
@@ -72,9 +72,20 @@ def _cells(row: Row) -> dict[str, Any]:
     data, texts = row.curve.get("data", {}), ("verdict", "comparison")
     place = {} if row.site is None else {"map": row.map, "x": row.site.x, "y": row.site.y}
     roles = data.get("columns", {}).items()
+    # What an explanation has none of, and what has no bound, would pass for a measured value.
+    unknown = [
+        name
+        for name, e in row.estimates.items()
+        if (e.held and not e.value) or (not e.held and e.low is None is e.high)
+    ]
+    unknown += [f"{name}{end}" for name in unknown for end in ENDS]
     return {
         "status": row.status,
-        **{name: value for name, value in row.values().items() if name not in _COUNTS},
+        **{
+            name: value
+            for name, value in row.values().items()
+            if name not in _COUNTS and name not in unknown
+        },
         "model": row.model,
         **{name: row.fit.get(name, "") for name in texts},
         "next": "; ".join(f"{step['do']}: {step['why']}" for step in row.fit.get("next", ())),

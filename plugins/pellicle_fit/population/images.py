@@ -71,7 +71,7 @@ def _numbers(row: Row) -> dict[str, float]:
         if estimate.held or name in _OF_BASELINE:
             continue
         value, low, high = (known[f"{name}{end}"] for end in ENDS)
-        value = value if row.is_closed(name) else np.nan
+        value = value if np.isfinite([low, high]).all() else np.nan
         if name == CONTACT_POINT:
             name, value, low, high = CONTACT_HEIGHT, -value, -high, -low
         numbers |= zip((f"{name}{end}" for end in ENDS), (value, low, high), strict=True)

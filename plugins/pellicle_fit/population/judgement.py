@@ -104,7 +104,7 @@ def judge(
         elif accepted and not accepted.entry(row):
             row.reason = f"not in {accepted.path.name}"
         elif not checks and row.fit["verdict"] == Verdict.UNDESCRIBED.value:
-            row.reason = row.fit["comparison"]
+            row.reason = row.fit["comparison"].partition(": ")[2].partition("; ")[0]
         else:
             row.reason = "; ".join(filter(None, (rule.objection(row) for rule in checks)))
         row.accepted = not row.reason
@@ -124,13 +124,13 @@ def judge(
 def outliers(rows: Sequence[Row]) -> list[Row]:
     """Return the rows whose log E* is further from the median than 3.5 robust deviations.
 
-    The median is that of the group; rows with an open interval are left out.
+    The median is that of the group; rows that do not determine it are left out.
     The deviation is 1.4826 times the median absolute deviation, which some of the outliers
     themselves do not change (Iglewicz and Hoaglin, 1993).
     """
     import pandas as pd
 
-    rows = [row for row in rows if row.is_closed(MODULUS)]
+    rows = [row for row in rows if row.determines(MODULUS)]
     logarithms = pd.Series(np.log([row.estimates[MODULUS].value for row in rows]))
     groups = pd.Series([row.group for row in rows], dtype=object)
     distances = (logarithms - logarithms.groupby(groups).transform("median")).abs()

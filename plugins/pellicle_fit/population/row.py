@@ -11,7 +11,6 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle_fit.files.measurement import Site
 from pellicle_fit.intervals import Estimate
-from pellicle_fit.verdict import Verdict
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -93,13 +92,10 @@ class Row:
         """Whether there is a fit."""
         return self.status == FITTED
 
-    def is_closed(self, name: str) -> bool:
-        """Return whether the interval of a quantity has both ends.
-
-        The value of an open interval is one of many that describe the curve as well.
-        """
+    def determines(self, name: str) -> bool:
+        """Return whether a quantity was fitted, and its interval is narrow enough to quote it."""
         found = self.estimates.get(name)
-        return found is not None and not found.held and None not in (found.low, found.high)
+        return found is not None and not found.held and found.is_narrow
 
     def values(self) -> dict[str, float]:
         """Return all numbers in SI by name, ends of intervals too; NaN is an open end, or none."""
@@ -124,8 +120,7 @@ class Row:
     def verdict(self) -> str:
         """What is said of the curve, as far as it fits a table; empty without a fit."""
         text = str(self.fit.get("comparison", "")).replace("this curve", "it")
-        undescribed = self.fit.get("verdict") == Verdict.UNDESCRIBED.value
-        return text if undescribed else text.partition(":")[0].removeprefix("it ")
+        return text.partition(":")[0].removeprefix("it ")
 
     @property
     def failed_checks(self) -> list[str]:

@@ -20,14 +20,14 @@ QUARTILES = "minimum", "lower_quartile", "median", "upper_quartile", "maximum"
 def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
     """Return a line for each parameter and group that has an accepted curve, then for all curves.
 
-    Of all ``curves`` of a group ``n`` are accepted. Those whose intervals are ``open`` change no
-    quartile, since their values are some of many; where all are, quartiles are NaN. Parameters that
+    Of all ``curves`` of a group ``n`` are accepted. Those whose intervals are ``open``, or too wide
+    to quote a value, change no quartile; where all are, quartiles are NaN. Parameters that
     were fixed have no line.
     """
     import pandas as pd
 
     fitted = [
-        (name, row.group, e.unit, e.value if row.is_closed(name) else np.nan, row.outlier)
+        (name, row.group, e.unit, e.value if row.determines(name) else np.nan, row.outlier)
         for name in dict.fromkeys((*OVER_TIED, *SHOWN))
         for row in rows
         if row.accepted and (e := row.estimates.get(name)) is not None and not e.held

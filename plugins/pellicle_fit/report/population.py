@@ -74,7 +74,7 @@ def bars(rows: Sequence[Row]) -> list[Chart]:
 
 def drawable(rows: Sequence[Row]) -> list[Row]:
     """Return the rows that are drawn: of accepted curves that have a closed interval."""
-    return [row for row in rows if row.accepted and any(map(row.is_closed, _DRAWN))]
+    return [row for row in rows if row.accepted and any(map(row.determines, _DRAWN))]
 
 
 def distributions(rows: Sequence[Row]) -> list[Chart]:
@@ -83,7 +83,7 @@ def distributions(rows: Sequence[Row]) -> list[Chart]:
     groups = list(dict.fromkeys(row.group for row in rows))
     kinds = np.array([groups.index(row.group) for row in rows])
     for name in _DRAWN:
-        closed = np.array([row.is_closed(name) for row in rows])
+        closed = np.array([row.determines(name) for row in rows])
         if closed.any():
             # One legend is enough.
             named = len(groups) > 1 and not charts

@@ -133,7 +133,7 @@ def _unit(fit: Fit, name: str, si: bool) -> Scale:
 def _usual(of: Sequence[Row], name: str, si: bool) -> Scale:
     """Return the unit of a quantity in all tables of curves: that of the median of those held."""
     found = {row: e for row in of if (e := row.estimates.get(name)) is not None}
-    closed = [e.value for row, e in found.items() if row.is_closed(name)]
+    closed = [e.value for row, e in found.items() if row.determines(name)]
     values = closed or [e.value for e in found.values() if e.value] or [0.0]
     unit = next((e.unit for e in found.values()), "")
     return unit_of([float(np.median(values))], unit, si=si)

@@ -9,8 +9,8 @@ import numpy as np
 
 from pellicle.units import readable
 from pellicle_fit.forecast import telling, tightening
-from pellicle_fit.noise import Flaw
-from pellicle_fit.objective import MODULUS
+from pellicle_fit.noise import FEWEST, Flaw
+from pellicle_fit.objective import CONTACT_POINT, MODULUS
 from pellicle_fit.recipe import TENSION, Answer
 from pellicle_fit.verdict import Verdict
 
@@ -54,6 +54,12 @@ def _of_input(answer: Answer) -> Iterator[Step]:
             why = "the depth of {} is {} times the radius of {}".format(*sizes)
             yield Step("check radius and units", why)
             break
+    for i, curve in enumerate(chosen.whole):
+        before = curve.position < chosen.objective.known(chosen.minimum.at, i).solid.contact_point
+        if CONTACT_POINT in chosen.estimates and before.sum() < FEWEST:
+            why = f"only {before.sum()} rows lie before it, so that no check can contradict the fit"
+            yield Step("begin curves before contact", why)
+            break
     for name, (least, most) in PLAUSIBLE.items():
         if (found := answer.estimates.get(name)) is None:
             continue
@@ -69,24 +75,24 @@ def _of_options(answer: Answer, members: Sequence[Member], config: FitConfig) ->
     flaws = {flaw for one in answer.judgements for flaw in one.flaws}
     if Flaw.OFFSET in flaws and config.baseline == "none":
         yield Step("add --baseline offset", "the force before contact is not 0")
-    if Flaw.DRIFT in flaws and config.baseline != "slope":
-        yield Step("add --baseline slope", "the force before contact has a slope")
     types = answer.chosen.objective.explanation.types
+    if (Flaw.DRIFT in flaws or "slope" in types) and config.baseline != "slope":
+        yield Step("add --baseline slope", "the force before contact has a slope")
     if Flaw.DIP in flaws and not {"adhesion"} & types.union(*answer.excused):
         yield Step("ask with --model adhesion", "the force dips before contact")
     if Flaw.SPIKES in flaws:
         why = "single points lie far from their neighbours, and shift the fit"
-        yield Step("delete outlying rows", why)
-    undecided = answer.verdict in (Verdict.CANNOT_TELL, Verdict.UNDESCRIBED)
+        yield Step("look at single outlying rows, and delete faulty ones", why)
     rows = next((member.left_out for member in members if member.left_out), None)
-    if undecided and rows:
+    if answer.verdict is Verdict.CANNOT_TELL and rows:
         why = f"rows {rows[0]} to {rows[1]}, the retraction, may tell them apart"
         yield Step("fit with --segment both", why)
     if config.thickness is None and any("layer" in fit.types for fit in answer.tied):
         why = "a layer on a rigid base describes the curve"
-        yield Step("give --thickness and --poissons-ratio of a thin sample", why)
+        ratio = "" if config.poissons_ratio is not None else " and --poissons-ratio"
+        yield Step(f"give --thickness{ratio} of a thin sample, or --thickness free", why)
     if answer.untried and answer.verdict is Verdict.UNDESCRIBED:
-        why = "beside a tension there is no theory of a solid that relaxes and unloads"
+        why = "tension with relaxation can be fitted to an approach alone"
         yield Step("fit with --segment approach", why)
 
 

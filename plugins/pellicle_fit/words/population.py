@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pellicle.errors import first_of
+from pellicle_fit.intervals import CONFIDENCE
 from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.population.row import Row
 from pellicle_fit.population.summary import ALL, QUARTILES, summary
@@ -20,6 +21,7 @@ _NAMES = 10
 """Curves that would be helped alike and are named."""
 _STEPS = 6
 """Kinds of steps that are told, those that help most curves."""
+_PERCENT = f"{100 * CONFIDENCE:.0f}"
 _MODULI = "reduced_modulus", "youngs_modulus"
 
 
@@ -33,10 +35,9 @@ def sentences_of_population(fits: ManyFits) -> list[str]:
     counts = f"{fitted} of {len(rows)} curves were fitted"
     if accepted != fitted:
         counts += f", {accepted} of them accepted"
-    if verdicts := Counter(
-        row.fit.get("verdict", "") for row in rows if row.accepted
-    ).most_common():
-        counts += f"; verdicts: {', '.join(f'{count} {verdict}' for verdict, count in verdicts)}"
+    verdicts = Counter(row.fit["verdict"] for row in rows if row.is_fitted).most_common()
+    if verdicts:
+        counts += f"; verdicts: {', '.join(f'{verdict} in {count}' for verdict, count in verdicts)}"
     moduli = [part["parameter"] for part in parts if part["parameter"] in _MODULI]
     usual = {part["parameter"] for part in parts if 2 * part["n"] >= accepted}
     shown = {TENSION, *moduli[-1:], *usual - {*_MODULI}}
@@ -48,13 +49,15 @@ def sentences_of_population(fits: ManyFits) -> list[str]:
             low, median, high = (unit.number(value, FEW) for value in quartiles)
             closed = part["n"] - part["open"]
             text = f"median {unit.with_unit(median)}, quartiles {low} to {high}, "
-            text = f"{text}of {closed} of {part['curves']} curves" if closed else "only bounds"
+            of = f"of the {closed} of {part['curves']} curves that determine it"
+            text = f"{text}{of}" if closed else "determined by no curve"
             medians.append(f"{words(part['parameter'])}: {text}")
     if medians:
         sentences.append("; ".join(medians))
     if far := [row.name for row in rows if row.outlier]:
         sentences.append(f"far from the median modulus, and counted: {_listed(far)}")
-    return sentences
+    calibrations = {row.fit["calibration"] for row in rows if row.is_fitted}
+    return [*sentences, *(f"intervals of {_PERCENT} %; {text}" for text in calibrations)]
 
 
 def advice_of_population(rows: Sequence[Row]) -> list[str]:

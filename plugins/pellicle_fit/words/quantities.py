@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from pellicle.components import Column
 from pellicle.units import DIGITS, Scale
 from pellicle_fit.intervals import Estimate
@@ -12,8 +14,8 @@ PLAUSIBLE = {"reduced_modulus": (1.0, 1e12), "tension": (0.0, 1.0), "thickness":
 """Values [SI] beyond which a unit is probably wrong."""
 FEW = 3
 """Significant digits in sentences, and in tables of many curves."""
-_WIDE = 2.0
-"""Ends over each other beyond which the best value between them is not quoted."""
+_SMALL = 1e-3
+"""Size in a unit below which numbers have an exponent."""
 _WORDS = {
     "youngs_modulus": "Young's modulus",
     "offset": "offset of the baseline",
@@ -53,16 +55,15 @@ def interval(estimate: Estimate, unit: Scale, digits: int = DIGITS) -> str:
 
 
 def quoted(estimate: Estimate, unit: Scale, digits: int, shown_unit: str = "") -> str:
-    """Return an estimate with its interval, ``5 mN/m (4.8 to 5.2)``; of a wide one the ends.
-
-    The best value between ends that are far apart is one of many.
-    """
-    low, high, ends = estimate.low, estimate.high, interval(estimate, unit, digits)
-    is_narrow = False
-    if low is not None and high is not None:
-        sizes = sorted((abs(low), abs(high)))
-        is_narrow = low * high > 0 and sizes[1] <= _WIDE * sizes[0]
-    if estimate.held or is_narrow:
+    """Return an estimate with its interval, ``5.0 mN/m (4.8 to 5.2)``; of a wide one the ends."""
+    low, high, value = estimate.low, estimate.high, estimate.value * unit.factor
+    if estimate.is_narrow and abs(value) >= _SMALL and low is not None and high is not None:
+        # As many decimals for all three, so that none seems to be another.
+        places = max(digits - 1 - int(np.floor(np.log10(abs(value)))), 0)
+        texts = (f"{number * unit.factor:.{places}f}" for number in (low, high))
+        return f"{value:.{places}f}{shown_unit} ({' to '.join(texts)})"
+    ends = interval(estimate, unit, digits)
+    if estimate.held or estimate.is_narrow:
         return f"{unit.number(estimate.value, digits)}{shown_unit} ({ends})"
     return "not determined" if low is None and high is None else f"{ends}{shown_unit}"
 

@@ -97,10 +97,11 @@ def verdict(answer: Answer) -> str:
             names = listed(tied, "or", _RIVALS)
             return f"{curves} cannot tell {words(fits[asked])} from {names}"
         case Verdict.OTHER:
+            better = [words(fit) for fit in answer.explanations if fit.types in answer.tied_types]
+            by = f"described better by {listed([w for w in better if w != subject], 'or', _RIVALS)}"
             if word:
-                return f"{subject} is not needed; described better by {other}"
-            shows = "show" if several else "shows"
-            return f"{curves} {shows} more than {subject}; described better by {other}"
+                return f"{subject} is not needed; {by}"
+            return f"{curves} {'show' if several else 'shows'} more than {subject}; {by}"
     if not word and len(fits) == 1:
         return f"{subject} was compared with nothing"
     return f"no sign of {subject if word else f'more than {subject}'}"

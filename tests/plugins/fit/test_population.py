@@ -58,7 +58,7 @@ def row(name: str, modulus: float | None = 1e3, *, is_open: bool = False, group:
     numbers = {"r_squared": 0.99, "chi_squared": 50.0, "indentation": 1e-6, "largest_force": 1e-8}
     model = {"effects": [], "words": "no effect"}
     fit = {"parameters": parameters, "curves": [curve], "messages": [], "model": model}
-    told = {"verdict": "no sign", "comparison": "no sign of tension"}
+    told = {"verdict": "no sign", "comparison": "no sign of tension", "calibration": "as exact"}
     return Row(name, group, fit=numbers | fit | parameters | told)
 
 
@@ -133,7 +133,7 @@ def test_outliers_are_kept() -> None:
     judge(rows, [], None, None)
     assert [r.name for r in rows if r.outlier] == ["3"]
     assert rows[3].accepted
-    assert sentences_of_population(ManyFits(rows))[-1].endswith("counted: 3")
+    assert sentences_of_population(ManyFits(rows))[-2].endswith("counted: 3")
     parts = {part["group"]: part for part in summary(rows)}
     assert (parts["soft/1"]["n"], parts["soft/1"]["outliers"], parts["all"]["n"]) == (20, 1, 40)
     soft = [r.estimates["reduced_modulus"].value for r in rows[:20]]
@@ -152,8 +152,8 @@ def test_open_intervals_have_no_median() -> None:
     assert not any(r.outlier for r in rows)
     (part,) = summary(rows)
     assert [part[k] for k in ("n", "open", "median", "maximum")] == [10, 5, 1.2e3, 1.4e3]
-    _, medians = sentences_of_population(ManyFits(rows))
-    assert medians.endswith("1.2 kPa, quartiles 1.1 to 1.3, of 5 of 10 curves")
+    _, medians, _ = sentences_of_population(ManyFits(rows))
+    assert "1.2 kPa, quartiles 1.1 to 1.3, of the 5 of 10 curves" in medians
     (part,) = summary(rows[5:])
     assert (part["n"], part["open"], np.isnan(part["median"])) == (5, 5, True)
     assert [r.name for r in drawable(rows)] == list("01234")
