@@ -84,6 +84,15 @@ class Candidate:
             fit = replace(fit, objective=objective, minimum=objective.minimise(at))
         return fit
 
+    def relaxed_for(self, time: float) -> Candidate:
+        """Return the same with the modulus after another time of loading [s]."""
+        old, at, k = self.objective, self.minimum.at.copy(), self.objective.index(MODULUS)
+        if k is not None:
+            known = old.known(at, 0)
+            at[k] += np.log(known.relaxed(time) / known.relaxed(old.loading_time))
+        objective, minimum = replace(old, loading_time=time), self.minimum._replace(at=at)
+        return replace(self, objective=objective, minimum=minimum)
+
     def at_noise(self, noise: Sequence[float]) -> Candidate:
         """Return the same at another noise [N] of each curve."""
         objective = replace(self.objective, noise=tuple(noise))

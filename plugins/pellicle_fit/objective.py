@@ -86,21 +86,14 @@ class Objective:
 
     The noise is then that of fractional differences.
     """
+    loading_time: float = 1.0
+    """Time from first touch to the end of the loading [s]."""
 
     @cached_property
     def searched(self) -> int:
         """As how many quantities criteria count discrete choices in the curves."""
         effects = self.explanation.effects
         return sum(effect.searched(curve) for effect in effects for curve in self.curves)
-
-    def loading_time(self, at: Array) -> float:
-        """Return the time of loading in contact [s], the geometric mean over the curves."""
-        values, given = self.values(at), self.explanation.solid.contact_point
-        times = [
-            curve.time_in_contact(values.get((CONTACT_POINT, i), given))
-            for i, curve in enumerate(self.curves)
-        ]
-        return float(np.exp(np.mean(np.log(times))))
 
     @cached_property
     def slots(self) -> tuple[Slot, ...]:
@@ -158,7 +151,7 @@ class Objective:
         effects = tuple(effect.at(known) for effect, known in pairs)
         if MODULUS in values[0] and any(isinstance(effect, Responds) for effect in effects):
             bare = Explanation(self.explanation.solid, effects)
-            values[0][MODULUS] /= bare.relaxed(self.loading_time(at))
+            values[0][MODULUS] /= bare.relaxed(self.loading_time)
         return Explanation(self.explanation.solid.at(values[0]), effects)
 
     def forces(self, at: Array) -> list[Array]:

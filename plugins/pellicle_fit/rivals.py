@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from .candidate import NONE, ROWS, Candidate, Types, best_of, criterion
 from .curve import Curve
 from .effect import Effect, Responds, Sizes, Solid
@@ -89,7 +91,14 @@ def _all(candidates: Explanations, word: Types, simple: Fits) -> Fits:
     best = best_of(simple.values())
     known = best.whole, best.objective.noise, best.objective.memory
     fits = _sought(candidates, word, simple, *known)
-    return at_common_noise([_restarted(fit, fits) for fit in fits.values()])
+    fits = at_common_noise([_restarted(fit, fits) for fit in fits.values()])
+    # The modulus of the end of the loading is that after the time since the best first touch.
+    best = best_of(fits.values())
+    solids = (best.objective.known(best.minimum.at, i).solid for i in range(len(best.whole)))
+    pairs = zip(best.whole, solids, strict=True)
+    times = [curve.time_in_contact(solid.contact_point) for curve, solid in pairs]
+    time = float(np.exp(np.mean(np.log(times))))
+    return {types: fit.relaxed_for(time) for types, fit in fits.items()}
 
 
 def _sought(
@@ -124,7 +133,8 @@ def _objective(
 
     No mean stands for rows between which a force jumps, and none has their memory.
     """
-    objective = Objective(explanation, curves, noise, Sizes.of_curve(curves[0]), memory)
+    sizes = Sizes.of_curve(curves[0])
+    objective = Objective(explanation, curves, noise, sizes, memory, sizes.time)
     if any(memory) or any(effect.jumps for effect in explanation.effects):
         return objective
     return replace(objective, curves=tuple(curve.binned(ROWS) for curve in curves))
