@@ -280,6 +280,7 @@ def outcome(kind: str, protocol: str, number: int, seed: int) -> dict[str, Any]:
         "other": sorted(answer.decision.other),
         "behind": right[0].aic - best if right else None,
         "modulus": _held(answer.reduced_modulus, modulus),
+        "off": _off(answer.reduced_modulus, modulus),
         "tension": _held(answer.tension, truth.tension),
         "expected": expected(answer, truth, protocol) if truth.tension else None,
         "seconds": round(seconds, 2),
@@ -290,6 +291,12 @@ def _held(estimate: pl.Estimate, truth: float) -> bool:
     """Return whether an interval holds a value."""
     low = -np.inf if estimate.low is None else estimate.low
     return bool(low <= truth <= (np.inf if estimate.high is None else estimate.high))
+
+
+def _off(estimate: pl.Estimate, truth: float) -> float:
+    """Return the distance of a value from the truth, over that of the end on its side."""
+    end = estimate.low if truth < estimate.value else estimate.high
+    return 0.0 if end is None else abs((truth - estimate.value) / (end - estimate.value))
 
 
 # --- The table -------------------------------------------------------------------------------
