@@ -265,6 +265,20 @@ def jumps_are_told(case: Case) -> str:
     return f"the force jumps by {jump:.2g} N" if jump > _LIMIT * case.curve.largest else ""
 
 
+@_in_each_case
+def what_it_says_is_valid(case: Case) -> str:
+    """accuracy() is a share, searched() a whole number ≥ 0; relaxed() and stiffness() are > 0."""
+    known, says = case.effect, {}
+    says["accuracy()"] = 0 <= known.accuracy(case.contact, case.curve, frozenset()) < 1
+    says["searched()"] = known.searched(case.curve) in range(100)
+    if isinstance(known, Responds):
+        says["relaxed()"] = 0 < known.relaxed(1.0) < np.inf
+    if isinstance(known, Records):
+        says["stiffness()"] = 0 < known.stiffness(_STIFFNESS) < np.inf
+    wrong = [name for name, is_valid in says.items() if not is_valid]
+    return f"{' and '.join(wrong)} is not" if wrong else ""
+
+
 def _cases(effect: Effect) -> Iterator[Case]:
     """Yield the effect on the curves on which it can act, at the first of its starts."""
     free = _free(effect)
@@ -308,5 +322,6 @@ QUICK = [
     returns_a_number_for_each_row,
     is_finite_everywhere,
     depths_grow,
+    what_it_says_is_valid,
 ]
 """Rules that balance no forces, which a fit asks of effects that pellicle does not ship."""

@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from pellicle.errors import StorageError
+from pellicle.errors import ConfigError, StorageError
 
 from . import afm
 from .columns import EXAMPLE, LABEL, NAMES, Calibration, Columns, from_columns, is_curve, lacking
@@ -43,8 +43,10 @@ def read(path: Path, calibration: Calibration | None = None, segment: str = "app
 
 def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
     suffix, mapped = path.suffix.lower(), calibration.columns or {}
-    # The columns of a table can be named though it is an instrument's; others state what they are.
+    # The columns of a table can be named though it is an instrument's.
     if suffix in afm.SUFFIXES and not (mapped and suffix == ".tab"):
+        if mapped:
+            raise ConfigError(f"{path} states what its columns are; leave columns out", "columns")
         return afm.read_instrument(path, calibration, segment)
     cells = None
     if suffix in _TREES:

@@ -410,6 +410,7 @@ BROKEN: list[tuple[type[Effect], str, dict[str, Any], str]] = [
     (Softening, "depths_grow", {"contact": _area(lambda a, d: a + 1e-14)}, "forces at"),
     (Soft, "depths_grow", {"give": lambda s, f: -100 * abs(s.soft) * f}, "from a depth of"),
     (Push, "jumps_are_told", {"force": lambda s, c, v, d: s.push * (d > s.over / 10)}, "jumps by"),
+    (Push, "what_it_says_is_valid", {"accuracy": lambda s, c, v, b: 2.0}, "accuracy() is not"),
 ]
 
 
