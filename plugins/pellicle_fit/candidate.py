@@ -47,6 +47,12 @@ class Candidate:
         """E* at the end of the loading [Pa]; None if it is given."""
         return self.objective.values(self.minimum.at).get((MODULUS, None))
 
+    @property
+    def contact_points(self) -> list[float]:
+        """Position of first touch on each curve [m]."""
+        at, curves = self.minimum.at, range(len(self.whole))
+        return [self.objective.known(at, i).solid.contact_point for i in curves]
+
     @cached_property
     def of_rows(self) -> Objective:
         """χ² of all rows as a function of its quantities."""

@@ -103,7 +103,7 @@ def tightening(fit: Candidate, names: Sequence[str]) -> Advice:
 
 def measurements(fit: Candidate) -> Iterator[Measurement]:
     """Yield measurements, the easiest first, that go beyond the first curve."""
-    curve, point = fit.whole[0], fit.objective.known(fit.minimum.at, 0).solid.contact_point
+    curve, point = fit.whole[0], fit.contact_points[0]
     low, high = float(curve.base.min()) - point, float(curve.base.max()) - point
     down = np.linspace(low, high, _ROWS)
     duration = curve.loading_time

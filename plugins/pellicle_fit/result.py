@@ -183,7 +183,7 @@ class Fit:
             "words": words(fit),
             "chi_squared": fit.chi_squared,
             "delta_aic": fit.aic - answer.explanations[0].aic,
-            "tied": any(fit.types == tied.types for tied in answer.tied),
+            "tied": fit.types in answer.tied_types,
             "holds_modulus": all(fit.types != other.types for other in answer.not_held),
             "parameters": {
                 name: vars(value)

@@ -94,9 +94,8 @@ def _all(candidates: Explanations, word: Types, simple: Fits) -> Fits:
     fits = at_common_noise([_restarted(fit, fits) for fit in fits.values()])
     # The modulus of the end of the loading is that after the time since the best first touch.
     best = best_of(fits.values())
-    solids = (best.objective.known(best.minimum.at, i).solid for i in range(len(best.whole)))
-    pairs = zip(best.whole, solids, strict=True)
-    times = [curve.time_in_contact(solid.contact_point) for curve, solid in pairs]
+    pairs = zip(best.whole, best.contact_points, strict=True)
+    times = [curve.time_in_contact(point) for curve, point in pairs]
     time = float(np.exp(np.mean(np.log(times))))
     return {types: fit.relaxed_for(time) for types, fit in fits.items()}
 

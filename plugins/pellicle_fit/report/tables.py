@@ -44,12 +44,11 @@ def estimates(fit: Fit, *, si: bool = False) -> Table:
 def explanations(fit: Fit, *, si: bool = False) -> Table:
     """Return a row for each explanation of the data that was compared, best first."""
     answer, compared = fit.answer, fit.answer.explanations
-    tied = {other.types for other in answer.tied}
     columns = [
         Column("explanation", [words_of(one) for one in compared]),
         Column("χ²", [one.chi_squared for one in compared], digits=5),
         Column("ΔAIC", [one.aic - compared[0].aic for one in compared], digits=3),
-        Column("tied", ["yes" if one.types in tied else "" for one in compared]),
+        Column("tied", ["yes" if one.types in answer.tied_types else "" for one in compared]),
     ]
     for name in (MODULUS, TENSION):
         values = [parameters_of(one).get(name) for one in compared]

@@ -45,19 +45,19 @@ def steps(answer: Answer, members: Sequence[Member], config: FitConfig) -> list[
 def _of_input(answer: Answer) -> Iterator[Step]:
     """Yield what is probably wrong with radius or units."""
     chosen = answer.chosen
-    for i, curve in enumerate(chosen.whole):
+    touched = [*zip(chosen.whole, chosen.contact_points, strict=True)]
+    for curve, point in touched:
         radius = getattr(curve.indenter, "radius", None)
-        point = chosen.objective.known(chosen.minimum.at, i).solid.contact_point
         depth = float(np.max(curve.position)) - point
         if radius and not _DEPTHS[0] <= depth / radius <= _DEPTHS[1]:
             sizes = readable(depth, "m", 3), f"{depth / radius:.3g}", readable(radius, "m", 3)
             why = "the depth of {} is {} times the radius of {}".format(*sizes)
             yield Step("check radius and units", why)
             break
-    for i, curve in enumerate(chosen.whole):
-        before = curve.position < chosen.objective.known(chosen.minimum.at, i).solid.contact_point
-        if CONTACT_POINT in chosen.estimates and before.sum() < FEWEST:
-            why = f"only {before.sum()} rows lie before it, so that no check can contradict the fit"
+    for curve, point in touched:
+        count = np.sum(curve.position < point)
+        if CONTACT_POINT in chosen.estimates and count < FEWEST:
+            why = f"only {count} rows lie before it, so that no check can contradict the fit"
             yield Step("begin curves before contact", why)
             break
     for name, (least, most) in PLAUSIBLE.items():
