@@ -38,11 +38,11 @@ class Estimate:
 
     @property
     def is_narrow(self) -> bool:
-        """Whether the ends are of one sign and within a factor of 2.
+        """Whether it was fitted, with ends of one sign and within a factor of 2.
 
         Of a wider interval the best value is one of many, and is not quoted.
         """
-        if self.low is None or self.high is None:
+        if self.held or self.low is None or self.high is None:
             return False
         low, high = sorted((abs(self.low), abs(self.high)))
         return self.low * self.high > 0 and high <= _WIDE * low

@@ -95,7 +95,7 @@ class Row:
     def determines(self, name: str) -> bool:
         """Return whether a quantity was fitted, and its interval is narrow enough to quote it."""
         found = self.estimates.get(name)
-        return found is not None and not found.held and found.is_narrow
+        return found is not None and found.is_narrow
 
     def values(self) -> dict[str, float]:
         """Return all numbers in SI by name, ends of intervals too; NaN is an open end, or none."""

@@ -97,8 +97,9 @@ def verdict(answer: Answer) -> str:
             names = listed(tied, "or", _RIVALS)
             return f"{curves} cannot tell {words(fits[asked])} from {names}"
         case Verdict.OTHER:
-            better = [words(fit) for fit in answer.explanations if fit.types in answer.tied_types]
-            by = f"described better by {listed([w for w in better if w != subject], 'or', _RIVALS)}"
+            alike = [fit for fit in answer.explanations if fit.types in answer.tied_types]
+            better = [fit for fit in alike if not (word <= fit.types if word else not fit.types)]
+            by = f"described better by {listed([*map(words, better)], 'or', _RIVALS)}"
             if word:
                 return f"{subject} is not needed; {by}"
             return f"{curves} {'show' if several else 'shows'} more than {subject}; {by}"

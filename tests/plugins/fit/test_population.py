@@ -22,6 +22,7 @@ from pellicle.errors import ConfigError, StorageError
 from pellicle_fit import many
 from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.files.sources import Source
+from pellicle_fit.intervals import Estimate
 from pellicle_fit.many import fit_sources
 from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.population.judgement import (
@@ -37,6 +38,7 @@ from pellicle_fit.population.summary import summary
 from pellicle_fit.report.contact_sheet import sheets
 from pellicle_fit.report.population import drawable
 from pellicle_fit.words.population import sentences_of_population
+from pellicle_fit.words.quantities import quoted, unit_of
 from tests.plugins.fit.test_many import BEAD, HERTZ, OPTIONS, curve, save
 
 Cli = Callable[..., Result]
@@ -157,6 +159,19 @@ def test_open_intervals_have_no_median() -> None:
     (part,) = summary(rows[5:])
     assert (part["n"], part["open"], np.isnan(part["median"])) == (5, 5, True)
     assert [r.name for r in drawable(rows)] == list("01234")
+
+
+def test_a_value_is_quoted_where_its_interval_determines_it() -> None:
+    """A given one is told as such; a wide interval has its ends alone."""
+    unit = unit_of([5e-3], "N/m")
+    for (low, high), held, text in (
+        ((4.8e-3, 5.2e-3), False, "5.00 (4.80 to 5.20)"),
+        ((5e-3, 5e-3), True, "5 (fixed)"),
+        ((2e-3, 9e-3), False, "2 to 9"),
+        ((None, 9e-3), False, "< 9"),
+        ((None, None), False, "not determined"),
+    ):
+        assert quoted(Estimate(5e-3, low, high, "N/m", held), unit, 3) == text
 
 
 def test_nothing_is_left() -> None:
