@@ -47,7 +47,7 @@ from .simulated.solid import solid
 DEFAULT_RIVALS: tuple[str | list[str], ...] = (
     *(["offset", "slope"], ["offset", "drift"], "drag"),
     *("power_law", "standard_linear", "adhesion"),
-    *("layer", "sphere", "cone", "worn_tip", "stiff_surface"),
+    *("layer", "sphere", "cone", "worn_tip", "stiff_surface", "softening"),
     *("brush", "compliance", "rough_toe"),
 )
 """What bends a curve as a tension does, and is compared unless a configuration says otherwise."""

@@ -17,8 +17,8 @@ from .curve import Curve
 from .effect import Adds, Bends, Effect, Records, Responds, Sizes, Solid, Yields, quantities
 
 _Kind = TypeVar("_Kind", bound=Effect)
-_BALANCE = 1e-10
-"""Error of a depth in balance over the largest way."""
+_BALANCE = 1e-6
+"""Last step of Newton's method over the largest way; what is left is about its square."""
 _DIFFERENCE = 1e-6
 """Step of slopes by √δ over the root of that way."""
 _AT_ONCE = 6

@@ -140,6 +140,14 @@ def test_a_stiff_surface() -> None:
         )
 
 
+def test_a_solid_that_softens() -> None:
+    """The force falls behind linearly, and is constant where it would fall."""
+    contact = Contact.on_half_space(body("paraboloid", radius=R), E)
+    soft = effect("softening", softening_length=2 * WIDE[-1]).contact(contact)
+    np.testing.assert_allclose(soft.force(WIDE), hertz(WIDE) * (1 - WIDE / (2 * WIDE[-1])))
+    assert soft.depth_limit == WIDE[-1]
+
+
 def test_a_tension() -> None:
     """The force is that of the indenter on a half-space under tension."""
     curve = bead()
