@@ -24,8 +24,8 @@ _SEARCHES = (("dogbox", 60), ("trf", 400))
 _TOLERANCE, _ROUGHLY = 1e-8, 1e-4
 ROUGH = 20
 """Steps of a search that tells whether a start is worth another."""
-_TRIED, _FEW, _MORE = 3, 6, 16
-"""Starts of least χ² from which a search takes a few steps, and more of the best."""
+_HALVING = ((4, 2), (16, 1))
+"""Steps from all starts that are left, and how many of the best are kept."""
 _BEFORE = 1.0
 """How far before the first row a contact may lie, over the range of positions."""
 _DECADES = 6.0
@@ -243,15 +243,17 @@ class Objective:
     def best(
         self, starts: Iterable[Array], idle: tuple[float, float] = (np.inf, np.inf)
     ) -> Minimum:
-        """Return the least minimum from several starts: few steps of some, more of the best.
+        """Return the least minimum from several starts: few steps of all, more of the best.
 
         One whose χ² is then in an ``idle`` range is not sought to the end.
         """
-        tried = sorted(starts, key=self.chi_squared)[:_TRIED]
-        minima = [self.minimise(start, steps=_FEW) for start in tried]
-        best = min(minima, key=lambda minimum: minimum.chi_squared)
-        rough, (low, high) = self.minimise(best.at, steps=_MORE), idle
-        return rough if low < rough.chi_squared < high else self.minimise(rough.at)
+        left = list(starts)
+        for steps, kept in _HALVING:
+            minima = [self.minimise(start, steps=steps) for start in left]
+            minima.sort(key=lambda minimum: minimum.chi_squared)
+            left = [minimum.at for minimum in minima[:kept]]
+        low, high = idle
+        return minima[0] if low < minima[0].chi_squared < high else self.minimise(left[0])
 
     def values(self, at: Array) -> dict[tuple[str, int | None], float]:
         """Return values in SI by name, and curve of what is not shared."""
