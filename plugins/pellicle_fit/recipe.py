@@ -41,8 +41,6 @@ class Answer:
     """Why explanations could not be compared."""
     judgements: tuple[Judged, ...]
     """Noise and flaws of each curve under the best explanation."""
-    margin: float
-    """ΔAIC below which explanations tie."""
     threshold: float
     """Δχ² at the ends of intervals, which a disagreement of curves widens."""
     agreement: Agreement
@@ -105,7 +103,7 @@ class Answer:
         return [
             fit
             for fit in self.explanations
-            if not word <= fit.types and abs(fit.aic - aic) < self.margin
+            if not word <= fit.types and abs(fit.aic - aic) < self.decision.margin
         ]
 
     def _over_tied(self, name: str) -> Estimate:
@@ -214,16 +212,16 @@ def answer(
     fits = dict(comparison(question, candidates, curves))
     best = best_of(fits.values())
     threshold = threshold_of(min(judged.noise.freedom for judged in best.judgements))
-    margin = max(MARGIN, threshold)
-    decided = decision(fits, word, doubted=doubtful(best.judgements), margin=margin)
-    chosen = choice(fits, word, decided, margin)
+    margin, doubted = max(MARGIN, threshold), doubtful(best.judgements)
+    decided = decision(fits, word, doubted=doubted, margin=margin)
+    chosen = choice(fits, word, decided)
     agreement = agreement_of(fits[chosen])
     threshold *= agreement.factor
     pairs = [types for types in excused if word < types and types - word in fits]
     untried = tuple(types for types in pairs if question.responds(types - word))
     # What may be right and has no model leaves nothing to bound.
     ends = not (untried and decided.verdict is Verdict.UNDESCRIBED)
-    tied = ties(fits, word, decided, chosen, margin)
+    tied = ties(fits, word, decided, chosen)
     for types in tied:
         names = () if types == chosen else (MODULUS, TENSION)
         fits[types] = with_estimates(fits[types], threshold if ends else np.inf, uncertainty, names)
@@ -235,7 +233,6 @@ def answer(
         tuple(fits[types] for types in tied),
         excused,
         tuple(best.judgements),
-        margin,
         threshold,
         agreement,
         untried,

@@ -161,7 +161,7 @@ class Fit:
             "calibration": calibration_of(self),
             "chi_squared": self.chi_squared,
             "threshold": answer.threshold,
-            "margin": answer.margin,
+            "margin": answer.decision.margin,
             "lead": answer.decision.lead,
             "explanations": [self._explanation(fit) for fit in answer.explanations],
             "excused": [

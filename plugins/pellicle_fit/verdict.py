@@ -17,7 +17,8 @@ MARGIN = 4.0
 EFFECT_MARGIN = 6.0
 """Difference of AIC by which an effect must beat its absence: chance does so in 0.2 %."""
 MANY_MARGIN = 12.0
-"""Difference of AIC by which the best of many rivals must beat no effect at all."""
+"""Difference of AIC by which the best of many rivals must beat no effect at all, and the best of
+many pairs all that lacks what is asked for."""
 SMALL = 0.2
 """Share of the moduli of others below which an explanation says that E* is not held."""
 Fits = Mapping[Types, Candidate]
@@ -48,6 +49,8 @@ class Decision(NamedTuple):
     """The best without."""
     lead: float
     """AIC of the latter over that of the former."""
+    margin: float
+    """ΔAIC below which explanations tie."""
 
 
 def decision(fits: Fits, word: Types, *, doubted: bool, margin: float) -> Decision:
@@ -57,6 +60,8 @@ def decision(fits: Fits, word: Types, *, doubted: bool, margin: float) -> Decisi
     asked = next(fit for fit in ranked if fit.types == word or leads(fit, word, fits))
     other = next(fit for fit in ranked if not word <= fit.types or not word)
     none, lead = fits[NONE].aic, other.aic - asked.aic
+    if lead > 0 and asked.types != word:
+        margin = max(margin, MANY_MARGIN)
     if doubted:
         verdict = Verdict.UNDESCRIBED
     elif none - asked.aic < EFFECT_MARGIN:
@@ -66,7 +71,7 @@ def decision(fits: Fits, word: Types, *, doubted: bool, margin: float) -> Decisi
         verdict = Verdict.NEEDED if lead > 0 else Verdict.OTHER
     else:
         verdict = Verdict.CANNOT_TELL
-    return Decision(verdict, asked.types, other.types, lead)
+    return Decision(verdict, asked.types, other.types, lead, margin)
 
 
 def leads(pair: Candidate, word: Types, fits: Fits) -> bool:
@@ -82,7 +87,7 @@ def leads(pair: Candidate, word: Types, fits: Fits) -> bool:
     return bulk and min(part.aic for part in parts) - pair.aic >= EFFECT_MARGIN
 
 
-def choice(fits: Fits, word: Types, decision: Decision, margin: float) -> Types:
+def choice(fits: Fits, word: Types, decision: Decision) -> Types:
     """Return the explanation whose estimates count."""
     match decision.verdict:
         case Verdict.NEEDED:
@@ -92,10 +97,10 @@ def choice(fits: Fits, word: Types, decision: Decision, margin: float) -> Types:
         case Verdict.NO_SIGN:
             return word
     best = best_of(fits.values())
-    return word if fits[word].aic - best.aic < margin else best.types
+    return word if fits[word].aic - best.aic < decision.margin else best.types
 
 
-def ties(fits: Fits, word: Types, decision: Decision, chosen: Types, margin: float) -> list[Types]:
+def ties(fits: Fits, word: Types, decision: Decision, chosen: Types) -> list[Types]:
     """Return the explanations that the curves cannot tell from the best and that lend values.
 
     The best is one of those that the verdict weighs: a pair that is little better than its parts
@@ -109,7 +114,9 @@ def ties(fits: Fits, word: Types, decision: Decision, chosen: Types, margin: flo
         if fit.types == chosen or (none and not fit.types):
             return True
         effects = fit.objective.explanation.effects
-        if fit.aic - least >= margin or not all(effect.holds_modulus for effect in effects):
+        if fit.aic - least >= decision.margin or not all(
+            effect.holds_modulus for effect in effects
+        ):
             return False
         if none:
             return fit.aic + EFFECT_MARGIN <= fits[NONE].aic

@@ -55,7 +55,7 @@ def explanations(fit: Fit, *, si: bool = False) -> Table:
         # Not of all explanations intervals are sought.
         sought = [name in one.estimates for one in compared]
         columns += _quantity(name, _unit(fit, name, si), values, sought=sought)
-    tie = f"below ΔAIC = {answer.margin:.3g} it is a tie"
+    tie = f"below ΔAIC = {answer.decision.margin:.3g} it is a tie"
     return Table(columns, f"What describes the data, best first; {tie}.", folded=True)
 
 

@@ -179,8 +179,9 @@ def test_means_of_rows_answer_as_all_rows_do(
         ({"": 5, "a": 0, "b": 9}, Verdict.NO_SIGN),
         ({"": 5, "a": 2, "b": -6}, Verdict.NO_SIGN),
         ({"": 13, "a": 10, "b": 0}, Verdict.OTHER),
-        # A pair counts if it is better than each of its parts.
+        # A pair counts if it is better than each of its parts, of many such.
         ({"": 50, "a": 20, "b": 12, "ab": 0}, Verdict.NEEDED),
+        ({"": 50, "a": 20, "b": 11, "ab": 0}, Verdict.CANNOT_TELL),
         ({"": 50, "a": 20, "b": 5, "ab": 0}, Verdict.OTHER),
     ],
 )
