@@ -72,10 +72,10 @@ class ControlRow:
 class Explorer:
     """The content of one visitor's page, and the run behind it, which is solved as it is."""
 
-    def __init__(self, run: pl.Run, measured: pl.Measurement | None, target: Document) -> None:
+    def __init__(self, run: pl.Run, target: Document) -> None:
         self._configuration: Mapping[str, Any] = configuration_of(run)
         self._solving = Solving(target, self._show)
-        self._plots = Plots(measured)
+        self._plots = Plots()
         self._rows = {of.path: ControlRow(of, self._change) for of in controls(run)}
         self._result = Div(sizing_mode="stretch_width")
         self._message = Div(render_as_text=True, sizing_mode="stretch_width")
@@ -85,22 +85,12 @@ class Explorer:
         # Bokeh takes text for a template too, which its types do not.
         template: Any = Path(__file__).with_name("page.html").read_text("utf-8")
         target.template = template
-        shift = Slider(
-            title="contact point of the measured curve, share of its range",
-            start=0.0,
-            end=1.0,
-            step=0.002,
-            value=self._plots.share,
-            visible=measured is not None,
-            sizing_mode="stretch_width",
-        )
-        shift.on_change("value", lambda attribute, old, new: self._plots.shift(new))
         of_run: list[Any] = [part for row in self._rows.values() for part in row.parts]
         parts = {
             "result": self._result,
             "message": self._message,
             "remarks": self._remarks,
-            "controls": column(*of_run, shift, sizing_mode="stretch_width"),
+            "controls": column(*of_run, sizing_mode="stretch_width"),
             "profile": self._plots.profile,
             "pressure": self._plots.pressure,
             "force": self._plots.force,

@@ -19,11 +19,11 @@ import numpy as np
 import psutil
 import pytest
 from bokeh.document import Document
-from bokeh.models.widgets import Slider, TextInput
+from bokeh.models.widgets import TextInput
 
 import pellicle as pl
 from pellicle.errors import ConfigError
-from pellicle_explore import plots, solving
+from pellicle_explore import solving
 from pellicle_explore.controls import changed, configuration_of, controls
 from pellicle_explore.page import Explorer
 from pellicle_explore.server import serve
@@ -77,20 +77,6 @@ def serving(fill: Callable[[Document], None]) -> Iterator[str]:
         stop()
         thread.join(20)
     assert not thread.is_alive()
-
-
-@pytest.fixture(scope="module")
-def curve(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a file with a measured curve: an approach and a retract, with a row missing."""
-    path = tmp_path_factory.mktemp("measured") / "bead.csv"
-    approach = np.linspace(-1e-6, 2e-6, 50)
-    position = np.concatenate([approach, approach[::-1]])
-    force = 4e-8 * (np.maximum(position, 0.0) / 1e-6) ** 1.5
-    force[60:] -= 1e-9
-    force[3] = np.nan
-    rows = np.column_stack([position, force])
-    np.savetxt(path, rows, delimiter=",", header="position [m],force [N]", comments="")
-    return path
 
 
 @pytest.fixture(scope="module")
@@ -183,9 +169,9 @@ def test_a_run_writes_nothing(start: pl.Run, tmp_path: Path, monkeypatch: Any) -
 class Page:
     """The page of an explorer without a browser; its callbacks are called one by one."""
 
-    def __init__(self, run: pl.Run, laid_over: pl.Measurement | None = None) -> None:
+    def __init__(self, run: pl.Run) -> None:
         self.document = Document()
-        self.explorer = Explorer(run, laid_over, self.document)
+        self.explorer = Explorer(run, self.document)
 
     def rest(self) -> None:
         """Call what the page is to call until nothing is left to be solved or shown."""
@@ -354,33 +340,6 @@ def test_slider_and_field_follow_each_other(start: pl.Run) -> None:
     assert page.saved["kernel"]["tension"] == "7 mN/m"
 
 
-def test_a_measured_curve_begins_at_its_contact_point(start: pl.Run, curve: Path) -> None:
-    """All rows with numbers are shown, and the contact point can be shifted."""
-    laid_over = plots.read_measured(curve)
-    assert laid_over.position.size == 99
-    assert plots._touch(laid_over) == pytest.approx(1 / 3, abs=0.1)
-    page = Page(start, laid_over)
-    page.rest()
-    slider = page.document.select_one({"type": Slider, "start": 0.0, "end": 1.0})
-    assert isinstance(slider, Slider)
-    slider.value = 0.5
-    data: Any = page.explorer._plots._curve.data
-    np.testing.assert_allclose(data["depth"], 1e6 * laid_over.position - 0.5, atol=1e-12)
-    np.testing.assert_allclose(data["force"], 1e9 * laid_over.force)
-
-
-def test_one_curve_is_laid_over(tmp_path: Path, curve: Path) -> None:
-    """A folder of curves, or a curve that does not move, is refused with what to give."""
-    for name in ("a.csv", "b.csv"):
-        (tmp_path / name).write_bytes(curve.read_bytes())
-    with pytest.raises(ConfigError, match=r"--curve: holds 2 curves; give a file with one"):
-        plots.read_measured(tmp_path)
-    still = tmp_path / "still.csv"
-    still.write_text("position [m],force [N]\n" + "1e-6,1e-9\n" * 9, encoding="utf-8")
-    with pytest.raises(ConfigError, match="give a curve that moves"):
-        plots.read_measured(still)
-
-
 def answer(address: str, path: str, **headers: str) -> http.client.HTTPResponse:
     """Return the response of the server at an address to a request."""
     connection = http.client.HTTPConnection(urlsplit(address).netloc, timeout=20)
@@ -457,12 +416,11 @@ def test_a_port_that_is_taken_is_said(address: str) -> None:
 
 
 @pytest.fixture
-def explorer(start: pl.Run, curve: Path) -> Iterator[str]:
+def explorer(start: pl.Run) -> Iterator[str]:
     """Return the address of a running explorer."""
-    laid_over = plots.read_measured(curve)
 
     def fill(document: Document) -> None:
-        Explorer(start, laid_over, document)
+        Explorer(start, document)
 
     with serving(fill) as running:
         yield running
