@@ -19,7 +19,7 @@ from .recipe import Answer
 from .verdict import Verdict
 from .words.advice import Step
 from .words.effects import words
-from .words.remarks import agreement, failed_checks, remarks
+from .words.remarks import agreement, remarks
 from .words.story import calibration_of, told, verdict
 
 if TYPE_CHECKING:
@@ -121,7 +121,7 @@ class Fit:
         """Warnings, and notes of what was done; those of one of several curves with its name."""
         several, found = len(self.members) > 1, []
         for member, judged in zip(self.members, self.answer.judgements, strict=True):
-            own = [*member.messages, *failed_checks(judged).values()]
+            own = [*member.messages, *judged.failed_checks.values()]
             found += [type(text)(f"{member.name}: {text}") if several else text for text in own]
         return [*found, *remarks(self.answer)]
 
@@ -203,7 +203,7 @@ class Fit:
             "points": member.curve.position.size,
             "noise": {"value": judged.noise.deviation, "unit": "N"},
             "failed_checks": [
-                {"code": code, "message": text} for code, text in failed_checks(judged).items()
+                {"code": code, "message": text} for code, text in judged.failed_checks.items()
             ],
             "messages": list(member.messages),
             **{slot.name: vars(parameters[name_of(slot.name, i)]) for slot in slots},

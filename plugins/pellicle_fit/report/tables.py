@@ -17,7 +17,6 @@ from pellicle_fit.result import Fit, name_of, parameters_of
 from pellicle_fit.words.effects import words as words_of
 from pellicle_fit.words.quantities import FEW, interval, quoted, unit_of, words
 from pellicle_fit.words.quantities import unit_of_estimate as unit_of_one
-from pellicle_fit.words.remarks import failed_checks
 
 _SI_DIGITS = 6
 """Significant digits of numbers in SI."""
@@ -66,7 +65,7 @@ def curves(fit: Fit, *, si: bool = False) -> Table:
     found = (own.get(name_of(CONTACT_POINT, i), own[CONTACT_POINT]) for i in range(len(members)))
     unit = _unit(fit, CONTACT_POINT, si)
     points = [f"{unit.number(e.value)} ({interval(e, unit)})" for e in found]
-    checks = [", ".join(failed_checks(judged)) for judged in judgements]
+    checks = [", ".join(judged.failed_checks) for judged in judgements]
     columns = [
         Column("curve", [member.name for member in members]),
         *([Column("radius", radii, "m")] if any(radii) else []),

@@ -1,4 +1,4 @@
-"""What is said of a fit beside its story: failed checks, agreement of curves, what was left out."""
+"""What is said of a fit beside its story: agreement of curves, what was left out."""
 
 from __future__ import annotations
 
@@ -8,29 +8,10 @@ import numpy as np
 
 from pellicle.units import decimal, readable
 from pellicle_fit.files.measurement import Note
-from pellicle_fit.noise import Flaw, Judged
 from pellicle_fit.objective import MODULUS
 from pellicle_fit.recipe import Answer
 
 from .effects import listed, words, words_of_types
-
-CHECKS = {
-    Flaw.TOO_DEEP: "the curve goes deeper than the force of this contact is known",
-    Flaw.OFFSET: "the force before contact is not 0",
-    Flaw.DRIFT: "the force before contact has a slope",
-    Flaw.DIP: "the force dips before contact: something attracts, or the baseline bends",
-    Flaw.MISFIT: "in contact the misfit exceeds the noise of the baseline",
-    Flaw.PATTERN: "in contact the misfit follows a pattern",
-    Flaw.SPIKES: "single points lie far from their neighbours and shift the fit",
-    Flaw.SLOW: "the noise before contact is correlated; intervals take it so",
-    Flaw.STEPS: "the steps of the detector are coarser than the noise",
-}
-"""What a flaw is, the plainest first; the first six contradict a model."""
-
-
-def failed_checks(judged: Judged) -> dict[str, str]:
-    """Return the code of each check that a curve fails, and what it says."""
-    return {flaw.value: text for flaw, text in CHECKS.items() if flaw in judged.flaws}
 
 
 def agreement(answer: Answer, names: Sequence[str]) -> str:

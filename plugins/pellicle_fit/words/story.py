@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 from pellicle_fit.candidate import NONE
 from pellicle_fit.effect import Adds, Records
 from pellicle_fit.intervals import CONFIDENCE
+from pellicle_fit.noise import Flaw
 from pellicle_fit.recipe import Answer
 from pellicle_fit.verdict import Verdict
 
 from .effects import in_words, listed, words, words_of_types
 from .quantities import in_figures
 from .quantities import words as words_of
-from .remarks import CHECKS
 
 if TYPE_CHECKING:
     from pellicle_fit.result import Fit
@@ -81,7 +81,7 @@ def verdict(answer: Answer) -> str:
     match answer.verdict:
         case Verdict.UNDESCRIBED:
             flaws = {flaw for one in answer.judgements if not one.describes for flaw in one.flaws}
-            why = next(text for flaw, text in CHECKS.items() if flaw in flaws)
+            why = next(flaw.value for flaw in Flaw if flaw in flaws)
             untried = listed([words_of_types(question, types) for types in answer.untried])
             text = f"no model describes {curves}: {why}"
             return f"{text}; {untried} could not be tried" if untried else text
