@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -45,25 +45,14 @@ class Measurement(NamedTuple):
     """Radius of the indenter over that of the curve."""
 
 
-@dataclass(frozen=True)
-class Advice:
-    """A measurement that would help."""
-
-    words: str
-    """The measurement; empty if none would."""
-    worth: float = 0.0
-    """Expected Δχ² between explanations, or by how much it tightens their quantities."""
-    count: int = 1
-    """How many curves of this kind it takes."""
-
-
-def telling(asked: Candidate, others: Sequence[Candidate]) -> Advice:
+def telling(asked: Candidate, others: Sequence[Candidate]) -> tuple[str, int]:
     """Return the measurement that tells an explanation from others that are as good now.
 
+    Beside its words, which are empty if none does, stands how many curves of this kind it takes.
     Each explanation makes the measurement that it predicts, without noise, and the rest are fitted
     to this and to the curve itself; the least χ² is what a measurement is worth.
     """
-    best = Advice("")
+    words, most = "", 0.0
     pairs = [(a, b) for other in others for a, b in ((asked, other), (other, asked))]
     for measurement in measurements(asked):
         worth = np.inf
@@ -71,34 +60,33 @@ def telling(asked: Candidate, others: Sequence[Candidate]) -> Advice:
             worth = min(worth, _separation(measurement, truth, guess))
             if worth < _USELESS:
                 break
-        if worth > best.worth:
-            best = Advice(measurement.words, worth, int(np.ceil(_NEEDED / worth)))
+        if worth > most:
+            words, most = measurement.words, worth
         if worth >= _NEEDED:
             break
-    return best if best.count <= _MANY else Advice("")
+    count = int(np.ceil(_NEEDED / most)) if words else 1
+    return (words, count) if count <= _MANY else ("", 1)
 
 
-def tightening(fit: Candidate, names: Sequence[str]) -> Advice:
-    """Return the measurement after which some quantities have smaller errors.
+def tightening(fit: Candidate, names: Sequence[str]) -> str:
+    """Return the measurement after which some quantities have smaller errors; empty if none has.
 
     What counts is the greatest of their Cramér–Rao bounds, each over that of the curve alone.
     """
-    if not names:
-        return Advice("")
 
     def bounds(*further: Measurement) -> Array:
         objective, start = _foretold(fit, fit, *further)
         found = zip(objective.slots, objective.deviations(start), strict=True)
         return np.array([bound for slot, bound in found if slot.name in names])
 
-    now, best = bounds(), Advice("")
+    # Two curves of one kind would bring √2.
+    now, words, most = bounds(), "", _GAIN * np.sqrt(2)
     for measurement in measurements(fit):
         with suppress(PellicleError):
             gain = float(np.min(now / bounds(measurement)))
-            # Two curves of one kind would bring √2.
-            if gain > max(best.worth, _GAIN * np.sqrt(2)):
-                best = Advice(measurement.words, gain)
-    return best
+            if gain > most:
+                words, most = measurement.words, gain
+    return words
 
 
 def measurements(fit: Candidate) -> Iterator[Measurement]:

@@ -19,8 +19,7 @@ from .recipe import Answer
 from .verdict import Verdict
 from .words.advice import Step
 from .words.effects import words
-from .words.remarks import agreement, remarks
-from .words.story import calibration_of, told, verdict
+from .words.story import agreement, calibration_of, remarks, told, verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
