@@ -22,16 +22,14 @@ def stretched(x: Array) -> Array:
 
 
 class Nodes(NamedTuple):
-    """Contacts between which forces are interpolated; lengths over `unit` serve every size."""
+    """Contacts between which forces are interpolated."""
 
-    unit: float
-    """[m]"""
     depths: Array
-    """Depths δ, increasing, of shape (m,)."""
+    """Depths δ [m], increasing, of shape (m,)."""
     ratios: Array
     """Ratios s/w, increasing from 0, of shape (n,)."""
     width: tuple[float, float]
-    """Slope of log w over log δ, and its value at δ = 1; w is about the width of the contact."""
+    """Slope of log w over log δ, and its value at δ = 1 m; w is about the width of the contact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +42,7 @@ class SimulatedCurve:
 
     nodes: Nodes
     log_forces: Array
-    """log(F/E*) over the unit squared, of shape (m, n)."""
+    """log(F/E*) in m², of shape (m, n)."""
     accuracy: float = 0.0
     """Largest relative change of a force when the cells along each axis are halved."""
     half_space: bool = True
@@ -53,21 +51,21 @@ class SimulatedCurve:
     @property
     def depth_limit(self) -> float:
         """Depth [m] of the deepest node."""
-        return float(self.nodes.depths[-1]) * self.nodes.unit
+        return float(self.nodes.depths[-1])
 
     @cached_property
     def _spline(self) -> RectBivariateSpline:
-        _, depths, ratios, _ = self.nodes
+        depths, ratios, _ = self.nodes
         return RectBivariateSpline(np.log(depths), stretched(ratios), self.log_forces)
 
     def force_curve(self, depth: Array, length: float) -> ForceCurve:
         """Return F/E* [m²] and its partial derivatives at depths [m] and s = ``length`` [m]."""
-        unit, depths, ratios, (slope, intercept) = self.nodes
+        depths, ratios, (slope, intercept) = self.nodes
         touching = depth > 0
-        d = np.maximum(depth[touching] / unit, 1e-60)
+        d = np.maximum(depth[touching], 1e-60)
         u = np.log(d)
         width = np.exp(intercept + slope * u)
-        x = length / unit / width
+        x = length / width
         t = stretched(x)
         u_inside = np.clip(u, *np.log(depths[[0, -1]]))
         t_inside = np.minimum(t, stretched(ratios[-1:])[0])
@@ -80,7 +78,7 @@ class SimulatedCurve:
         rate_u, rate_t = by_u + by_both * t_beyond, by_t + by_both * u_beyond
         rate_x = rate_t / (x + SCALE)
         out = np.zeros((3, depth.size))
-        out[0, touching] = force * unit**2
-        out[1, touching] = force * (rate_u - rate_x * x * slope) / d * unit
-        out[2, touching] = force * rate_x / width * unit
+        out[0, touching] = force
+        out[1, touching] = force * (rate_u - rate_x * x * slope) / d
+        out[2, touching] = force * rate_x / width
         return ForceCurve(*out)

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import platformdirs
 
-from pellicle import Grid, Study, registry, results, run_study
+from pellicle import Grid, Study, results, run_study
 from pellicle.arrays import Array
 from pellicle.components import Executor, Indenter
-from pellicle.errors import ConfigError, ConvergenceError, ConvergenceWarning, problems_within
+from pellicle.errors import ConfigError, ConvergenceError, ConvergenceWarning
 from pellicle.units import readable
 
 from .interpolated import SCALE, Nodes, SimulatedCurve, stretched
-from .solid import Solid, scaled, values_of
+from .solid import Solid, quantities_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -57,10 +57,8 @@ class Simulation(NamedTuple):
     ) -> SimulatedCurve:
         """Return the force curve down to a depth [m], from a study that is cached or run here.
 
-        The study has a reduced modulus of 1 Pa and lengths relative to a length of the problem, so
-        that one study serves every indenter and solid of the same proportions.  ``cache`` is the
-        folder that keeps studies, the user's own if None; ``grid_points`` are the cells of each
-        grid along x and y.
+        The study has a reduced modulus of 1 Pa.  ``cache`` is the folder that keeps studies, the
+        user's own if None; ``grid_points`` are the cells of each grid along x and y.
 
         A run that fails is a ConvergenceError, a folder that cannot be used a StorageError; errors
         as of `plan`, too.
@@ -84,8 +82,7 @@ def plan(
 ) -> tuple[Nodes, dict[str, Any]]:
     """Return the contacts that a force curve needs down to a depth [m], and the study of them.
 
-    ConfigError: the indenter ends where the grid does, or its contact nowhere, or a field of the
-    solid scales with the modulus.
+    ConfigError: the indenter ends where the grid does, or its contact nowhere.
     """
     if indenter.footprint != "unbounded":
         raise ConfigError(
@@ -93,23 +90,13 @@ def plan(
             "does not depend on the grid",
             "indenter",
         )
-    of_shape, of_solid = ([*values_of(part)] for part in (indenter, solid.kernel))
-    values = [(quantity, value) for _, quantity, value in (*of_shape, *of_solid)]
-    lengths = [value for quantity, value in values if quantity and quantity.unit == "m"]
-    # A number without a unit may be a length.
-    scales = all(quantity or isinstance(value, (str, int)) for quantity, value in values)
-    unit = next(value for value in (*lengths, deepest) if value > 0) if scales else 1.0
-    with problems_within("kernel"):
-        kernel = scaled(solid.kernel, unit, (solid.modulus, solid.tension))
-    shape = scaled(indenter, unit)
     # Rounded up, so that curves of about the same depth share a study.
-    top = int(np.ceil(np.log2(deepest / unit) - 1e-9))
+    top = int(np.ceil(np.log2(deepest) - 1e-9))
     depths: Array = 2.0 ** np.arange(top - _OCTAVES, top + 1, dtype=np.float64)
-    body = registry().make(Indenter, shape)
-    halves = np.array([half_widths(body, depth) for depth in depths])
+    halves = np.array([half_widths(indenter, depth) for depth in depths])
     slope, intercept = np.polyfit(np.log(depths), np.log(halves.prod(axis=1)) / 2, 1)
     widths = np.exp(intercept + slope * np.log(depths))
-    is_layered = any(quantity and quantity.unit == "m" for _, quantity, _ in of_solid)
+    is_layered = any(quantity.unit == "m" for _, quantity, _ in quantities_of(solid.kernel))
     boxes = 2 * (_MARGIN_OF_LAYERS if is_layered else _MARGIN) * halves
     contacts = {
         "loading.depth": np.repeat(depths, _RATIOS.size).tolist(),
@@ -117,15 +104,15 @@ def plan(
         "grid.size": np.repeat(boxes, _RATIOS.size, axis=0).tolist(),
     }
     study: dict[str, Any] = {
-        "title": f"force curve of {shape['type']} on {kernel['type']}",
+        "title": f"force curve of {indenter.type_name} on {solid.kernel.type_name}",
         "grid": {"points": grid_points, "size": 1.0},
-        "kernel": kernel,
-        "indenter": shape,
+        "kernel": solid.kernel.model_dump(exclude_none=True),
+        "indenter": indenter.model_dump(exclude_none=True),
         "loading": {"depth": 1.0},
         "outputs": [],
         "study": {"vary": {"grid.points": [grid_points, grid_points // 2]}, "zip": [contacts]},
     }
-    return Nodes(unit, depths, _RATIOS, (float(slope), float(intercept))), study
+    return Nodes(depths, _RATIOS, (float(slope), float(intercept))), study
 
 
 def half_widths(indenter: Indenter, depth: float) -> tuple[float, float]:
