@@ -180,7 +180,7 @@ def test_a_study_that_fails_is_no_force_curve(
     for _ in range(2):
         with pytest.raises(pl.ConvergenceError, match="of 8 runs 8 did not converge") as error:
             Simulation(pl.indenter("paraboloid", radius=1e-6), solid("tensed_membrane")).curve(
-                1e-6, cache=tmp_path, grid_points=16
+                2e-7, cache=tmp_path, grid_points=16
             )
     (folder,) = (tmp_path / "force-curves").iterdir()
     assert str(folder) in str(error.value)
