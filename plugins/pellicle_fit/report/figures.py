@@ -22,9 +22,8 @@ from pellicle_fit.result import Fit
 from pellicle_fit.words.effects import words as words_of
 
 from .contact_sheet import PAGE, sheets
-from .guides import guide
 from .likelihood_map import likelihood_map
-from .population import bars, distributions, map_figure
+from .population import bars, distributions, guide, map_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

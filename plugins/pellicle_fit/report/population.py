@@ -23,7 +23,6 @@ from pellicle_fit.recipe import TENSION
 from pellicle_fit.words.quantities import words
 
 from .contact_sheet import PAGE, sheets
-from .guides import guide
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,6 +39,12 @@ _DECADE = 10.0
 """Greatest over least value beyond which an axis is logarithmic."""
 _WIDTH, _AROUND = 3.7, 0.75
 """Width of a panel, and its height beside that of the image [inch]."""
+
+
+def guide(x: Sequence[float], y: Sequence[float], legend: str = "") -> Series:
+    """Return a thin dotted line that guides the eye, whose numbers are not written."""
+    ends = np.array(x, dtype=float), np.array(y, dtype=float)
+    return Series(*ends, legend=legend, look=Look(None, 3), role="reference", written=False)
 
 
 def bars(rows: Sequence[Row]) -> list[Chart]:
