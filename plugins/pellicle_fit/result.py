@@ -18,7 +18,7 @@ from .intervals import CONFIDENCE, Estimate
 from .recipe import Answer
 from .verdict import Verdict
 from .words.advice import Step
-from .words.effects import words
+from .words.names import words_of
 from .words.story import agreement, calibration_of, remarks, told, verdict
 
 if TYPE_CHECKING:
@@ -150,7 +150,7 @@ class Fit:
         return {
             **{name: vars(e) for name, e in self.estimates().items() if name in asked},
             "parameters": {name: vars(estimate) for name, estimate in own.items()},
-            "model": {"effects": sorted(chosen.types), "words": words(chosen)},
+            "model": {"effects": sorted(chosen.types), "words": words_of(chosen)},
             "verdict": self.verdict.value,
             "comparison": self.comparison,
             "tension_needed": self.tension_needed,
@@ -179,7 +179,7 @@ class Fit:
         answer = self.answer
         return {
             "effects": sorted(fit.types),
-            "words": words(fit),
+            "words": words_of(fit),
             "chi_squared": fit.chi_squared,
             "delta_aic": fit.aic - answer.explanations[0].aic,
             "tied": fit.types in answer.tied_types,

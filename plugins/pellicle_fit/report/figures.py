@@ -19,7 +19,7 @@ from pellicle_fit.objective import MODULUS
 from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import Fit
-from pellicle_fit.words.effects import words as words_of
+from pellicle_fit.words.names import words_of
 
 from .contact_sheet import PAGE, sheets
 from .likelihood_map import likelihood_map

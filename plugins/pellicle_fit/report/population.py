@@ -20,7 +20,7 @@ from pellicle_fit.population.images import CONTACT_HEIGHT
 from pellicle_fit.population.row import SHOWN, Row
 from pellicle_fit.population.summary import label
 from pellicle_fit.recipe import TENSION
-from pellicle_fit.words.quantities import words
+from pellicle_fit.words.names import words
 
 from .contact_sheet import PAGE, sheets
 

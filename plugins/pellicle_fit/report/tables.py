@@ -14,9 +14,7 @@ from pellicle_fit.population.row import FITTED, OVER_TIED, SHOWN, Row
 from pellicle_fit.population.summary import QUARTILES, summary
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import Fit, name_of, parameters_of
-from pellicle_fit.words.effects import words as words_of
-from pellicle_fit.words.quantities import FEW, interval, quoted, unit_of, words
-from pellicle_fit.words.quantities import unit_of_estimate as unit_of_one
+from pellicle_fit.words.names import FEW, interval, quoted, unit_of, unit_of_one, words, words_of
 
 _SI_DIGITS = 6
 """Significant digits of numbers in SI."""

@@ -14,8 +14,7 @@ from pellicle_fit.objective import CONTACT_POINT, MODULUS
 from pellicle_fit.recipe import TENSION, Answer
 from pellicle_fit.verdict import Verdict
 
-from .effects import listed
-from .quantities import PLAUSIBLE, words
+from .names import PLAUSIBLE, listed, words
 
 if TYPE_CHECKING:
     from pellicle_fit.config import FitConfig

@@ -19,9 +19,7 @@ from pellicle_fit.objective import MODULUS
 from pellicle_fit.recipe import Answer
 from pellicle_fit.verdict import Verdict
 
-from .effects import in_words, listed, words, words_of_types
-from .quantities import in_figures
-from .quantities import words as words_of
+from .names import in_figures, in_words, listed, words, words_of, words_of_types
 
 if TYPE_CHECKING:
     from pellicle_fit.result import Fit
@@ -60,7 +58,7 @@ def numbers(fit: Fit, *, si: bool = False) -> str:
     # A baseline is the instrument's.
     kept = (effect for effect in answer.question.kept if not isinstance(effect, (Adds, Records)))
     names += chain.from_iterable(effect.open for effect in kept)
-    parts = [f"{words_of(name)} {in_figures(estimates[name], si=si)}" for name in names]
+    parts = [f"{words(name)} {in_figures(estimates[name], si=si)}" for name in names]
     calibration = calibration_of(fit)
     if answer.verdict is Verdict.UNDESCRIBED:
         return f"not to be quoted: {', '.join(parts)}; {calibration}"
@@ -70,7 +68,7 @@ def numbers(fit: Fit, *, si: bool = False) -> str:
 def calibration_of(fit: Fit) -> str:
     """Return to which uncertainties the calibration is known: exactly, if there are none."""
     known = [
-        f"{words_of(name)} to {100 * share:.3g} %" for name, share in fit.config.uncertainty.items()
+        f"{words(name)} to {100 * share:.3g} %" for name, share in fit.config.uncertainty.items()
     ]
     return f"calibration weighed: {listed(known)}" if known else "calibration taken as exact"
 
@@ -80,8 +78,8 @@ def verdict(answer: Answer) -> str:
     several = len(answer.judgements) > 1
     curves = "these curves" if several else "this curve"
     question, fits = answer.question, {fit.types: fit for fit in answer.explanations}
-    word, asked, other = question.word, answer.decision.asked, words(fits[answer.decision.other])
-    subject = words(fits[word]) if word else "an elastic half-space"
+    word, asked, other = question.word, answer.decision.asked, words_of(fits[answer.decision.other])
+    subject = words_of(fits[word]) if word else "an elastic half-space"
     if question.kept and not word:
         subject += f" with {in_words(question.kept)}"
     match answer.verdict:
@@ -99,13 +97,13 @@ def verdict(answer: Answer) -> str:
             nearest = f"; the nearest is {other}" if answer.decision.other else ""
             return f"{subject} is needed{pair}: nothing else tried fits as well{nearest}"
         case Verdict.CANNOT_TELL:
-            tied = [words(fit) for fit in answer.tied_without]
+            tied = [words_of(fit) for fit in answer.tied_without]
             names = listed(tied, "or", _RIVALS)
-            return f"{curves} cannot tell {words(fits[asked])} from {names}"
+            return f"{curves} cannot tell {words_of(fits[asked])} from {names}"
         case Verdict.OTHER:
             alike = [fit for fit in answer.explanations if fit.types in answer.tied_types]
             better = [fit for fit in alike if not (word <= fit.types if word else not fit.types)]
-            by = f"described better by {listed([*map(words, better)], 'or', _RIVALS)}"
+            by = f"described better by {listed([*map(words_of, better)], 'or', _RIVALS)}"
             if word:
                 return f"{subject} is not needed; {by}"
             return f"{curves} {'show' if several else 'shows'} more than {subject}; {by}"
@@ -132,7 +130,7 @@ def remarks(answer: Answer) -> Iterator[str]:
     """Yield a warning of a modulus that is not held, and notes of what was not compared."""
     for fit in answer.not_held:
         modulus = readable(fit.estimates[MODULUS].value, "Pa", 3)
-        yield f"the modulus is not held: with {words(fit)} one of {modulus} would do as well"
+        yield f"the modulus is not held: with {words_of(fit)} one of {modulus} would do as well"
     if answer.tension_needed:
         yield Note("a surface more than half again as stiff as the bulk, not weighed, looks alike")
     reasons: dict[str, list[str]] = {}

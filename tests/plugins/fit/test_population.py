@@ -37,8 +37,8 @@ from pellicle_fit.population.rules import Rule
 from pellicle_fit.population.summary import summary
 from pellicle_fit.report.contact_sheet import sheets
 from pellicle_fit.report.population import drawable
+from pellicle_fit.words.names import quoted, unit_of
 from pellicle_fit.words.population import sentences_of_population
-from pellicle_fit.words.quantities import quoted, unit_of
 from tests.plugins.fit.test_many import BEAD, HERTZ, OPTIONS, curve, save
 
 Cli = Callable[..., Result]

@@ -15,9 +15,8 @@ from pellicle_fit.effects.layer import Layer
 from pellicle_fit.effects.tension import Tension
 from pellicle_fit.recipe import answer
 from pellicle_fit.simulated import simulation
-from pellicle_fit.simulated.body import body_of, layer_of, layer_table
 from pellicle_fit.simulated.interpolated import Nodes, SimulatedCurve
-from pellicle_fit.simulated.simulation import Simulation, plan
+from pellicle_fit.simulated.simulation import Simulation, body_of, layer_of, layer_table, plan
 from pellicle_fit.simulated.solid import solid
 from tests.plugins.fit.conftest import ends_of
 
