@@ -19,7 +19,6 @@ def explore(
         list[str] | None,
         typer.Option("--set", metavar="KEY=VALUE", help="Replace a value of the file."),
     ] = None,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0 for a free one.")] = 0,
     browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
 ) -> None:
     """Open a page with sliders for a run: pressure, profile and force curve follow them.
@@ -55,6 +54,6 @@ def explore(
         Explorer(run, document)
 
     try:
-        asyncio.run(serve(fill, port, tell))
+        asyncio.run(serve(fill, tell))
     except KeyboardInterrupt:
         echo("ended")
