@@ -57,7 +57,12 @@ def telling(asked: Candidate, others: Sequence[Candidate]) -> tuple[str, int]:
     for measurement in measurements(asked):
         worth = np.inf
         for truth, guess in pairs:
-            worth = min(worth, _separation(measurement, truth, guess))
+            # What cannot be predicted, as by a cantilever that jumps, is worth nothing.
+            least = 0.0
+            with suppress(PellicleError):
+                objective, start = _foretold(truth, guess, measurement)
+                least = objective.minimise(start, steps=ROUGH).chi_squared
+            worth = min(worth, least)
             if worth < _USELESS:
                 break
         if worth > most:
@@ -116,17 +121,6 @@ def measurements(fit: Candidate) -> Iterator[Measurement]:
         if radius is not None and high <= _DEEPEST * factor * radius:
             words = f"a second radius, {readable(factor * radius, 'm', 2)}"
             yield Measurement(words, down, forth, inward, factor)
-
-
-def _separation(measurement: Measurement, truth: Candidate, guess: Candidate) -> float:
-    """Return the least χ² of an explanation on curves that another predicts.
-
-    A measurement that cannot be predicted, as by a cantilever that jumps, is worth nothing.
-    """
-    with suppress(PellicleError):
-        objective, start = _foretold(truth, guess, measurement)
-        return objective.minimise(start, steps=ROUGH).chi_squared
-    return 0.0
 
 
 def _foretold(truth: Candidate, guess: Candidate, *further: Measurement) -> tuple[Objective, Array]:

@@ -77,14 +77,10 @@ def bars(rows: Sequence[Row]) -> list[Chart]:
     return [Chart(across, axes, series)] if axes and len(rows) <= _BARS else []
 
 
-def drawable(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows that are drawn: of accepted curves that have a closed interval."""
-    return [row for row in rows if row.accepted and any(map(row.determines, _DRAWN))]
-
-
 def distributions(rows: Sequence[Row]) -> list[Chart]:
-    """Return histograms of E* and τ₀ of the drawable curves, by group, and E* against τ₀."""
-    rows, charts = drawable(rows), list[Chart]()
+    """Return histograms of E* and τ₀ by group, and E* against τ₀, where intervals are closed."""
+    rows = [row for row in rows if row.accepted and any(map(row.determines, _DRAWN))]
+    charts = list[Chart]()
     groups = list(dict.fromkeys(row.group for row in rows))
     kinds = np.array([groups.index(row.group) for row in rows])
     for name in _DRAWN:
