@@ -28,15 +28,14 @@ def explore(
     import asyncio
     import logging
     import webbrowser
-    from importlib.util import find_spec
 
-    if find_spec("bokeh") is None:
+    try:
+        from bokeh.document import Document
+    except ImportError:
         raise ConfigError(
             "needs bokeh, which is not installed; install it by: pip install 'pellicle[explore]'",
             "explore",
-        )
-    from bokeh.document import Document
-
+        ) from None
     import pellicle as pl
     from pellicle_explore.page import Explorer
     from pellicle_explore.server import serve
