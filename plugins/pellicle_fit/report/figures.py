@@ -45,8 +45,8 @@ def panels(fit: Fit | ManyFits) -> dict[str, Drawing]:
     if isinstance(fit, Fit):
         return {caption: figure_of(beside) for caption, beside in charts(fit).items()}
     of_bars = "Filled, accepted curves; hollow, rejected ones; bars to 0 or a triangle are open."
-    closed = "Accepted curves, by group; in histograms, with closed intervals; dotted, the median."
-    beside = {of_bars: bars(fit.rows), f"{closed} Squares stand out.": distributions(fit.rows)}
+    closed = "Accepted curves with closed intervals, by group; dotted, the median."
+    beside = {of_bars: bars(fit.rows), closed: distributions(fit.rows)}
     found: dict[str, Drawing] = {caption: figure_of(of) for caption, of in beside.items() if of}
     for name, images in fit.maps.items():
         title = Path(name).name

@@ -78,31 +78,19 @@ def bars(rows: Sequence[Row]) -> list[Chart]:
 
 
 def distributions(rows: Sequence[Row]) -> list[Chart]:
-    """Return histograms of E* and τ₀ by group, and E* against τ₀, where intervals are closed."""
-    rows = [row for row in rows if row.accepted and any(map(row.determines, _DRAWN))]
-    charts = list[Chart]()
-    groups = list(dict.fromkeys(row.group for row in rows))
-    kinds = np.array([groups.index(row.group) for row in rows])
-    for name in _DRAWN:
-        closed = np.array([row.determines(name) for row in rows])
-        if closed.any():
+    """Return histograms of E* and τ₀ of the accepted curves, where intervals are closed."""
+    rows, charts = [row for row in rows if row.accepted], list[Chart]()
+    groups = list(dict.fromkeys(label(row.group) for row in rows))
+    for name, unit in _DRAWN.items():
+        closed = [row for row in rows if row.determines(name)]
+        values = np.array([row.estimates[name].value for row in closed])
+        if closed:
+            is_wide = name == MODULUS and bool(values.max() > _DECADE * values.min())
+            kinds = np.array([groups.index(label(row.group)) for row in closed])
             # One legend is enough.
-            named = len(groups) > 1 and not charts
-            legends = [label(group) if named else "" for group in groups]
-            values = _values(rows, name)[closed]
-            charts.append(_histogram(_axis(name, values), values, kinds[closed], legends))
-    if len(charts) == 2:
-        charts.append(_scatter(rows, kinds, len(groups)))
+            legends = groups if len(groups) > 1 and not charts else [""] * len(groups)
+            charts.append(_histogram(Axis(words(name), unit, log=is_wide), values, kinds, legends))
     return charts
-
-
-def _values(rows: Sequence[Row], name: str) -> Array:
-    return np.array([row.estimates[name].value for row in rows])
-
-
-def _axis(name: str, values: Array) -> Axis:
-    is_wide = name == MODULUS and bool(values.max() > _DECADE * values.min())
-    return Axis(words(name), _DRAWN[name], log=is_wide)
 
 
 def _histogram(axis: Axis, values: Array, kinds: Array, legends: Sequence[str]) -> Chart:
@@ -121,19 +109,6 @@ def _histogram(axis: Axis, values: Array, kinds: Array, legends: Sequence[str]) 
     median = guide([float(np.median(values))] * 2, [0.0, floor.max()])
     # In the order of the stack, from the top, so that no outline hides one below it.
     return Chart(axis, [Axis("curves")], [*series[::-1], median], hues=len(legends))
-
-
-def _scatter(rows: Sequence[Row], kinds: Array, count: int) -> Chart:
-    """Return tension against modulus, with other marks where the modulus stands out."""
-    modulus, tension = _values(rows, MODULUS), _values(rows, TENSION)
-    outlier, series = np.array([row.outlier for row in rows]), []
-    for marker, of in enumerate((~outlier, outlier)):
-        for kind in range(count):
-            shown = of & (kinds == kind)
-            look = Look(kind, None, marker, filled=True)
-            series.append(Series(modulus[shown], tension[shown], look=look))
-    axes = _axis(MODULUS, modulus), [_axis(TENSION, tension)]
-    return Chart(*axes, [one for one in series if one.x.size], hues=count)
 
 
 def map_figure(
