@@ -78,14 +78,12 @@ def curves(fit: Fit, *, si: bool = False) -> Table:
 
 def rows(of: Sequence[Row], *, si: bool = False) -> Table:
     """Return a row for each curve of a population; a column only if it tells curves apart."""
-    states = []
-    for row in of:
-        if row.is_fitted and not row.accepted:
-            # A verdict against all models stands in its own column.
-            reason = row.reason if row.reason != row.fit["comparison"] else ""
-            states.append(f"rejected: {reason}".removesuffix(": "))
-        else:
-            states.append("modulus stands out" * row.outlier or row.status.partition(":")[0])
+    states = [
+        f"rejected: {row.reason}"
+        if row.is_fitted and not row.accepted
+        else "modulus stands out" * row.outlier or row.status.partition(":")[0]
+        for row in of
+    ]
     radii = [row.curve.get("indenter", {}).get("radius", "") for row in of]
     has_youngs = any("youngs_modulus" in row.estimates for row in of)
     columns = list[Column]()
