@@ -7,7 +7,7 @@ import shutil
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import platformdirs
@@ -21,9 +21,6 @@ from pellicle_fit.effects.layer import Layer
 
 from .interpolated import SCALE, Nodes, SimulatedCurve, stretched
 from .solid import Solid, quantities_of, solid
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 GRID_POINTS = 64
 _OCTAVES = 6
@@ -64,12 +61,28 @@ class Simulation(NamedTuple):
         A run that fails is a ConvergenceError, a folder that cannot be used a StorageError; errors
         as of `plan`, too.
         """
-        nodes, study = plan(self.indenter, self.solid, deepest, grid_points)
-        study["study"]["executor"] = {"type": executor} if isinstance(executor, str) else executor
+        nodes, table = plan(self.indenter, self.solid, deepest, grid_points)
+        table["study"]["executor"] = {"type": executor} if isinstance(executor, str) else executor
+        study = Study.from_mapping(table)
+        runs = "".join(point.run.identity for point in study.points)
         folder = Path(cache) if cache else platformdirs.user_cache_path("pellicle")
-        table = _table(Study.from_mapping(study), folder / "force-curves", progress)
+        folder = folder / "force-curves" / hashlib.sha256(runs.encode()).hexdigest()[:16]
+        # Once all runs have converged they are deleted, so a table without them is whole.
+        if (folder / "study.h5").exists() and not (folder / "runs").exists():
+            found = results.table(folder / "study.h5")
+        else:
+            try:
+                with warnings.catch_warnings():
+                    warnings.simplefilter("error", ConvergenceWarning)
+                    found = run_study(study, folder, progress=progress)
+            except ConvergenceWarning as warning:
+                raise ConvergenceError(
+                    f"the force curve needs the study in {folder}: {warning}; another number of "
+                    "grid points may help"
+                ) from None
+            shutil.rmtree(folder / "runs")
         # Each contact on a grid of its own, and on one of half the cells.
-        forces = table["force"].values.reshape(2, nodes.depths.size, nodes.ratios.size)
+        forces = found["force"].values.reshape(2, nodes.depths.size, nodes.ratios.size)
         if not (forces > 0).all():
             raise ConvergenceError(
                 "some contacts of the study carry no force; give more grid points"
@@ -176,25 +189,3 @@ def half_widths(indenter: Indenter, depth: float) -> tuple[float, float]:
                 "give one whose contact ends",
                 "indenter",
             )
-
-
-def _table(study: Study, cache: Path, progress: bool) -> xr.Dataset:
-    """Return the table of a study, run unless it is cached.
-
-    Once all runs have converged they are deleted, so a table without them is whole.
-    """
-    runs = [point.run.identity for point in study.points]
-    folder = cache / hashlib.sha256("".join(runs).encode()).hexdigest()[:16]
-    if (folder / "study.h5").exists() and not (folder / "runs").exists():
-        return results.table(folder / "study.h5")
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", ConvergenceWarning)
-            table = run_study(study, folder, progress=progress)
-    except ConvergenceWarning as warning:
-        raise ConvergenceError(
-            f"the force curve needs the study in {folder}: {warning}; another number of grid "
-            "points may help"
-        ) from None
-    shutil.rmtree(folder / "runs")
-    return table
