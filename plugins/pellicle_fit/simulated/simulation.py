@@ -19,7 +19,7 @@ from pellicle.errors import ConfigError, ConvergenceError, ConvergenceWarning
 from pellicle.units import readable
 from pellicle_fit.effects.layer import Layer
 
-from .interpolated import SCALE, Nodes, SimulatedCurve, stretched
+from .interpolated import SCALE, SimulatedCurve, stretched
 from .solid import Solid, quantities_of, solid
 
 GRID_POINTS = 64
@@ -61,7 +61,7 @@ class Simulation(NamedTuple):
         A run that fails is a ConvergenceError, a folder that cannot be used a StorageError; errors
         as of `plan`, too.
         """
-        nodes, table = plan(self.indenter, self.solid, deepest, grid_points)
+        depths, width, table = plan(self.indenter, self.solid, deepest, grid_points)
         table["study"]["executor"] = {"type": executor} if isinstance(executor, str) else executor
         study = Study.from_mapping(table)
         runs = "".join(point.run.identity for point in study.points)
@@ -82,13 +82,14 @@ class Simulation(NamedTuple):
                 ) from None
             shutil.rmtree(folder / "runs")
         # Each contact on a grid of its own, and on one of half the cells.
-        forces = found["force"].values.reshape(2, nodes.depths.size, nodes.ratios.size)
+        forces = found["force"].values.reshape(2, depths.size, _RATIOS.size)
         if not (forces > 0).all():
             raise ConvergenceError(
                 "some contacts of the study carry no force; give more grid points"
             )
         accuracy = float(np.max(np.abs(forces[1] / forces[0] - 1)))
-        return SimulatedCurve(nodes, np.log(forces[0]), accuracy, self.solid.is_half_space)
+        half_space = self.solid.is_half_space
+        return SimulatedCurve(depths, _RATIOS, width, np.log(forces[0]), accuracy, half_space)
 
 
 def body_of(
@@ -129,8 +130,8 @@ def layer_table(poissons_ratio: float, thickness: float) -> dict[str, Any]:
 
 def plan(
     indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GRID_POINTS
-) -> tuple[Nodes, dict[str, Any]]:
-    """Return the contacts that a force curve needs down to a depth [m], and the study of them.
+) -> tuple[Array, tuple[float, float], dict[str, Any]]:
+    """Return depths of nodes down to one [m], the width of contacts there, and the study of them.
 
     ConfigError: the indenter ends where the grid does, or its contact nowhere.
     """
@@ -162,7 +163,7 @@ def plan(
         "outputs": [],
         "study": {"vary": {"grid.points": [grid_points, grid_points // 2]}, "zip": [contacts]},
     }
-    return Nodes(depths, _RATIOS, (float(slope), float(intercept))), study
+    return depths, (float(slope), float(intercept)), study
 
 
 def half_widths(indenter: Indenter, depth: float) -> tuple[float, float]:

@@ -15,7 +15,7 @@ from pellicle_fit.effects.layer import Layer
 from pellicle_fit.effects.tension import Tension
 from pellicle_fit.recipe import answer
 from pellicle_fit.simulated import simulation
-from pellicle_fit.simulated.interpolated import Nodes, SimulatedCurve
+from pellicle_fit.simulated.interpolated import SimulatedCurve
 from pellicle_fit.simulated.simulation import Simulation, body_of, layer_of, layer_table, plan
 from pellicle_fit.simulated.solid import solid
 from tests.plugins.fit.conftest import ends_of
@@ -36,16 +36,16 @@ def exact_nodes() -> SimulatedCurve:
     """Return a curve through exact forces of a sphere, at the nodes of its plan."""
     sphere = pl.indenter("sphere", radius=RADIUS)
     assert isinstance(sphere, pl.HasForceCurve)
-    nodes, _ = plan(sphere, solid("tensed_membrane"), 0.4 * RADIUS)
-    slope, intercept = nodes.width
-    widths = np.exp(intercept + slope * np.log(nodes.depths))
+    depths, width, _ = plan(sphere, solid("tensed_membrane"), 0.4 * RADIUS)
+    slope, intercept = width
+    widths, ratios = np.exp(intercept + slope * np.log(depths)), simulation._RATIOS
     forces = np.array(
         [
-            [sphere.force_curve(np.array([depth]), x * width).force[0] for x in nodes.ratios]
-            for depth, width in zip(nodes.depths, widths, strict=True)
+            [sphere.force_curve(np.array([depth]), x * wide).force[0] for x in ratios]
+            for depth, wide in zip(depths, widths, strict=True)
         ]
     )
-    return SimulatedCurve(nodes, np.log(forces), 0.01, half_space=False)
+    return SimulatedCurve(depths, ratios, width, np.log(forces), 0.01, half_space=False)
 
 
 @pytest.mark.parametrize("ratio", [0.0, 1e-3, 0.03, 0.5, 8.0])
@@ -169,9 +169,9 @@ def test_a_study_that_fails_is_no_force_curve(
 ) -> None:
     """Its table says which runs and why, and it is not taken for whole by the next fit."""
 
-    def hasty(*arguments: Any) -> tuple[Nodes, dict[str, Any]]:
-        nodes, study = plan(*arguments)
-        return nodes, study | {"solver": {"type": "active_set", "max_iterations": 1}}
+    def hasty(*arguments: Any) -> Any:
+        *nodes, study = plan(*arguments)
+        return *nodes, study | {"solver": {"type": "active_set", "max_iterations": 1}}
 
     monkeypatch.setattr(simulation, "_OCTAVES", 1)
     monkeypatch.setattr(simulation, "_RATIOS", simulation._RATIOS[:2])
