@@ -145,7 +145,7 @@ def map_figure(
     return draw, (2 * _WIDTH, height * len(names) + 0.4)
 
 
-def _pitches(images: xr.Dataset | xr.DataArray) -> tuple[float, float]:
+def _pitches(images: xr.Dataset) -> tuple[float, float]:
     """Return the sizes of a pixel along x and y [m]; a line of curves is one pixel wide."""
     sides = [images[name].values for name in "xy"]
     x, y = (float(side[1] - side[0]) if side.size > 1 else 0.0 for side in sides)
@@ -154,6 +154,8 @@ def _pitches(images: xr.Dataset | xr.DataArray) -> tuple[float, float]:
 
 def save_population(fits: ManyFits, directory: Path, formats: Sequence[str]) -> tuple[Path, ...]:
     """Write contact sheet, distributions and the images in ``maps``, and return the files."""
+    from PIL import Image
+
     files = [save_pages(sheets(fits.rows), directory / "fits-curves.pdf", PAGE)]
     if charts := distributions(fits.rows):
         draw, size = figure_of(charts)
@@ -163,21 +165,15 @@ def save_population(fits: ManyFits, directory: Path, formats: Sequence[str]) -> 
         # Two files may have the same name in different folders.
         same = stems.count(Path(name).stem) > 1
         path = directory / "maps" / f"{Path(name).stem}{f'-{number}' * same}"
+        across, along = _pitches(images)
+        per_cm = {"x_resolution": 1e-2 / across, "y_resolution": 1e-2 / along}
         for parameter, image in images.data_vars.items():
-            files.append(save_tiff(image, path.with_name(f"{path.name}-{parameter}.tif")))
+            files.append(path.with_name(f"{path.name}-{parameter}.tif"))
+            # Of 32-bit floats, with the largest y on top and pixels for each cm.
+            picture = Image.fromarray(image.values[::-1].astype(np.float32))
+            text = header(str(parameter), image)
+            with atomic_write(files[-1]) as part:
+                picture.save(part, format="TIFF", description=text, resolution_unit="cm", **per_cm)
         fill, size = map_figure(images, Path(name).name)
         files += save_figure(fill, path, formats, size)
     return tuple(files)
-
-
-def save_tiff(image: xr.DataArray, path: Path) -> Path:
-    """Write an image as TIFF of 32-bit floats, the largest y on top, with pixels for each cm."""
-    from PIL import Image
-
-    across, along = _pitches(image)
-    per_cm = {"x_resolution": 1e-2 / across, "y_resolution": 1e-2 / along}
-    picture = Image.fromarray(image.values[::-1].astype(np.float32))
-    text = header(str(image.name), image)
-    with atomic_write(path) as part:
-        picture.save(part, format="TIFF", description=text, resolution_unit="cm", **per_cm)
-    return path
