@@ -23,7 +23,7 @@ from pellicle.config.explain import explanations
 from pellicle.units import readable
 from pellicle.variables import VARIABLES, Variable
 from pellicle_fit.effect import quantities
-from pellicle_fit.words.remarks import CHECKS
+from pellicle_fit.noise import Flaw
 
 _HEADINGS = {
     "kernel": "Kernels",
@@ -201,7 +201,7 @@ def effects() -> str:
 
 def failed_checks() -> str:
     """Return a table of the checks of the residuals of a fit."""
-    return _table(("code", "it says"), [(f"`{flaw.value}`", text) for flaw, text in CHECKS.items()])
+    return _table(("code", "it says"), [(f"`{flaw.name.lower()}`", flaw.value) for flaw in Flaw])
 
 
 def studies() -> str:

@@ -46,13 +46,13 @@ def check(
             raise ConfigError(f"{problem} (run with {name})") if name else problem from None
         checked.append(words.Advised(name, task.run, advice, task.memory))
     if json:
-        data = [
-            of_run._asdict()
-            | {"steps": [step._asdict() for step in of_run.steps], "memory": needed}
-            for _, _, of_run, needed in checked
+        runs = [
+            ({"run": name} if is_study else {})
+            | advice._asdict()
+            | {"steps": [step._asdict() for step in advice.steps], "memory": needed}
+            for name, _, advice, needed in checked
         ]
-        of_runs = [{"run": one.name, **row} for one, row in zip(checked, data, strict=True)]
-        print_json({"runs": of_runs} if is_study else data[0])
+        print_json({"runs": runs} if is_study else runs[0])
     else:
         table, sentences = (
             (words.errors_of_runs(checked, allowed), words.advice_on_runs(checked, allowed))

@@ -19,11 +19,6 @@ def explore(
         list[str] | None,
         typer.Option("--set", metavar="KEY=VALUE", help="Replace a value of the file."),
     ] = None,
-    curve: Annotated[
-        Path | None,
-        typer.Option(help="Measured force curve to lay over, as for pellicle fit."),
-    ] = None,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0 for a free one.")] = 0,
     browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
 ) -> None:
     """Open a page with sliders for a run: pressure, profile and force curve follow them.
@@ -33,24 +28,21 @@ def explore(
     import asyncio
     import logging
     import webbrowser
-    from importlib.util import find_spec
 
-    if find_spec("bokeh") is None:
+    try:
+        from bokeh.document import Document
+    except ImportError:
         raise ConfigError(
             "needs bokeh, which is not installed; install it by: pip install 'pellicle[explore]'",
             "explore",
-        )
-    from bokeh.document import Document
-
+        ) from None
     import pellicle as pl
     from pellicle_explore.page import Explorer
-    from pellicle_explore.plots import read_measured
     from pellicle_explore.server import serve
 
     # It warns of each message to a page that has just been closed or reloaded.
     logging.getLogger("bokeh.server.views.ws").setLevel(logging.ERROR)
     run = pl.Run.from_toml(file or Path(__file__).with_name("start.toml"), set_ or [])
-    measured = read_measured(curve) if curve else None
 
     def tell(address: str) -> None:
         echo(f"{address}\nopen it in a browser on this machine; Ctrl-C ends it")
@@ -58,9 +50,9 @@ def explore(
             webbrowser.open(address)
 
     def fill(document: Document) -> None:
-        Explorer(run, measured, document)
+        Explorer(run, document)
 
     try:
-        asyncio.run(serve(fill, port, tell))
+        asyncio.run(serve(fill, tell))
     except KeyboardInterrupt:
         echo("ended")

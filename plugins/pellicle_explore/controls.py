@@ -1,4 +1,4 @@
-"""What the explorer changes in a run: its quantities, and whether the contact sticks.
+"""What the explorer changes in a run: its quantities.
 
 Configurations are mappings of the form of a run file, with the load steps as a list.
 """
@@ -90,18 +90,3 @@ def changed(
     data = dict(replaced(configuration, control.path, value))
     pl.Run.from_mapping(data)
     return data, number
-
-
-def sticking(configuration: Mapping[str, Any], interaction: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a configuration with a contact that sticks, and is pulled off to half the depth."""
-    depths = configuration["loading"]["depth"]
-    back = [*reversed(depths[:-1]), 0.0, -depths[-1] / 4, -depths[-1] / 2]
-    loaded = replaced(configuration, "loading.depth", [*depths, *back])
-    return {**loaded, "interaction": interaction}
-
-
-def letting_go(configuration: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a configuration without an interaction, and with the depths up to the largest."""
-    depths = configuration["loading"]["depth"]
-    loaded = replaced(configuration, "loading.depth", depths[: depths.index(max(depths)) + 1])
-    return {name: table for name, table in loaded.items() if name != "interaction"}

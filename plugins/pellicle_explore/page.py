@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Final
@@ -11,13 +10,13 @@ from typing import Any, Final
 import tomli_w
 from bokeh.document import Document
 from bokeh.layouts import column
-from bokeh.models.widgets import Checkbox, Div, PreText, Slider, TextInput
+from bokeh.models.widgets import Div, PreText, Slider, TextInput
 
 import pellicle as pl
 from pellicle.errors import PellicleError
 from pellicle.units import readable
 
-from .controls import Control, changed, configuration_of, controls, letting_go, sticking
+from .controls import Control, changed, configuration_of, controls
 from .plots import Plots
 from .solving import Frame, Solving
 
@@ -73,14 +72,11 @@ class ControlRow:
 class Explorer:
     """The content of one visitor's page, and the run behind it, which is solved as it is."""
 
-    def __init__(self, run: pl.Run, measured: pl.Measurement | None, target: Document) -> None:
+    def __init__(self, run: pl.Run, target: Document) -> None:
         self._configuration: Mapping[str, Any] = configuration_of(run)
-        self._interaction: Mapping[str, Any] | None = None
-        self._frame: Frame | None = None
         self._solving = Solving(target, self._show)
-        self._plots = Plots(measured)
-        self._rows: dict[str, ControlRow] = {}
-        self._panel = column(sizing_mode="stretch_width")
+        self._plots = Plots()
+        self._rows = {of.path: ControlRow(of, self._change) for of in controls(run)}
         self._result = Div(sizing_mode="stretch_width")
         self._message = Div(render_as_text=True, sizing_mode="stretch_width")
         self._remarks = Div(render_as_text=True, sizing_mode="stretch_width")
@@ -89,13 +85,12 @@ class Explorer:
         # Bokeh takes text for a template too, which its types do not.
         template: Any = Path(__file__).with_name("page.html").read_text("utf-8")
         target.template = template
-        self._list_controls()
-        others = self._other_controls(run, is_measured=measured is not None)
+        of_run: list[Any] = [part for row in self._rows.values() for part in row.parts]
         parts = {
             "result": self._result,
             "message": self._message,
             "remarks": self._remarks,
-            "controls": column(self._panel, *others, sizing_mode="stretch_width"),
+            "controls": column(*of_run, sizing_mode="stretch_width"),
             "profile": self._plots.profile,
             "pressure": self._plots.pressure,
             "force": self._plots.force,
@@ -107,56 +102,11 @@ class Explorer:
             target.add_root(part)
         self._solving.request(self._configuration)
 
-    def _other_controls(self, run: pl.Run, *, is_measured: bool) -> list[Any]:
-        """Return the switch of adhesion, and the slider that shifts the measured curve."""
-        # Only steps in depth follow a contact that jumps.
-        can_stick = run.loading.prescribed == "depth" and not run.loading.samples
-        is_stuck = run.interaction is not None
-        sticks = Checkbox(label="the contact sticks", active=is_stuck, visible=can_stick)
-        sticks.on_change("active", self._stick)
-        shift = Slider(
-            title="contact point of the measured curve, share of its range",
-            start=0.0,
-            end=1.0,
-            step=0.002,
-            value=self._plots.share,
-            visible=is_measured,
-            sizing_mode="stretch_width",
-        )
-        shift.on_change("value", lambda attribute, old, new: self._plots.shift(new))
-        return [sticks, shift]
-
-    def _list_controls(self) -> None:
-        """Show a row for each quantity; bokeh frees no parts, so rows are used again."""
-        parts: list[Any] = []
-        for control in controls(pl.Run.from_mapping(self._configuration)):
-            if control.path not in self._rows:
-                self._rows[control.path] = ControlRow(control, self._change)
-            parts += self._rows[control.path].parts
-        self._panel.children = parts
-
     def _change(self, control: Control, text: str) -> float:
         """Take a new value of a control; return it in SI, or raise a ValueError."""
         self._configuration, value = changed(self._configuration, control, text)
         self._solving.request(self._configuration)
         return value
-
-    def _stick(self, attribute: str, old: bool, new: bool) -> None:
-        if new:
-            jkr = {"type": "jkr", "work_of_adhesion": self._likely_work()}
-            self._configuration = sticking(self._configuration, self._interaction or jkr)
-        else:
-            self._interaction = self._configuration["interaction"]
-            self._configuration = letting_go(self._configuration)
-        self._list_controls()
-        self._solving.request(self._configuration)
-
-    def _likely_work(self) -> str:
-        """Return a work of adhesion that makes a pull-off of some per cent of the largest force."""
-        if self._frame is None or not self._frame.largest["force"] > 0:
-            return "1 mJ/m²"
-        force, area = (float(self._frame.largest[name]) for name in ("force", "contact_area"))
-        return readable(force / (60 * math.sqrt(area)), "J/m2", 2)
 
     def _show(self, solved: Mapping[str, Any], outcome: Frame | Exception) -> None:
         """Draw the frame of a configuration, or show the error of the present one."""
@@ -164,7 +114,6 @@ class Explorer:
             self._message.text = _error_text(outcome) if isinstance(outcome, Exception) else ""
             self._message.visible = isinstance(outcome, Exception)
         if isinstance(outcome, Frame):
-            self._frame = outcome
             self._plots.draw(outcome)
             self._result.text = outcome.summary()
             self._remarks.text = "\n".join(outcome.remarks)

@@ -18,24 +18,15 @@ from tornado.httpserver import HTTPServer
 from tornado.ioloop import IOLoop
 from tornado.routing import HostMatches, Rule, RuleRouter
 
-from pellicle.errors import ConfigError
-
 ADDRESS: Final = "127.0.0.1"
 
 
-async def serve(fill: Callable[[Document], None], port: int, tell: Callable[[str], None]) -> None:
+async def serve(fill: Callable[[Document], None], tell: Callable[[str], None]) -> None:
     """Serve a page to this machine until the task is cancelled; ``tell`` is given its address.
 
     Everything is below an address with a token, without which the answer is 404.
     """
-    try:
-        listener = socket.create_server((ADDRESS, port))
-    except OSError as error:
-        raise ConfigError(
-            f"port {port} of {ADDRESS} cannot be used ({error.strerror}); give another, or 0 for "
-            "any",
-            "--port",
-        ) from None
+    listener = socket.create_server((ADDRESS, 0))
     listener.setblocking(False)
     host, token = f"{ADDRESS}:{listener.getsockname()[1]}", secrets.token_urlsafe(32)
     application = BokehTornado(

@@ -10,8 +10,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.components import HasContactRadius, HasForceCurve
-
-from .checked_force import checked_force
+from pellicle.errors import PluginError, shown
 
 Area = Callable[[Array, float], Array]
 """F/E* [m²] at depths [m] and an elastocapillary length s = 2τ₀/E* [m]; 0 at depths ≤ 0."""
@@ -25,6 +24,25 @@ _NODES = 129
 """Nodes of a tabulated area, evenly spaced in the root of the depth."""
 
 
+def checked_area(indenter: object, curve: object, depth: Array) -> Array:
+    """Return F/E* [m²] of a force curve of an indenter, which may be a stranger's, at depths [m].
+
+    It has to be float64 of their shape (n,), finite at every finite depth.
+    """
+    area = getattr(curve, "force", None)
+    if not (
+        isinstance(area, np.ndarray)
+        and (area.dtype, area.shape) == (np.float64, depth.shape)
+        and np.isfinite(area[np.isfinite(depth)]).all()
+    ):
+        raise PluginError(
+            f"indenter {getattr(indenter, 'type_name', type(indenter).__name__)!r}: its force "
+            f"curve is {shown(curve)}; it has to be a ForceCurve whose force is an array of "
+            f"float64 of shape {depth.shape}, finite at all depths"
+        )
+    return area
+
+
 @dataclass(frozen=True)
 class OwnArea:
     """The area of an indenter with its lengths times a factor: λ² A₁(δ/λ, s/λ)."""
@@ -34,8 +52,9 @@ class OwnArea:
 
     def __call__(self, depth: Array, length: float) -> Array:
         """Return F/E* [m²]."""
-        size = self.size
-        return size**2 * checked_force(self.indenter, "force_curve", depth / size, length / size)
+        depth, length = depth / self.size, length / self.size
+        curve = self.indenter.force_curve(depth, length)
+        return self.size**2 * checked_area(self.indenter, curve, depth)
 
 
 @lru_cache(maxsize=64)

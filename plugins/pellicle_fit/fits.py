@@ -36,7 +36,7 @@ def fit(
 
     An indenter that has a force curve of its own (paraboloid, sphere, cone, flat_punch) is fitted
     at once.  Any other indenter, or any on another kernel, first needs a study of some 150 runs,
-    which is kept in ``cache`` and serves all curves of the same proportions.
+    which is kept in ``cache`` and serves all curves of about the same depth.
 
     Parameters
     ----------

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from dataclasses import replace
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
@@ -41,69 +41,61 @@ class Measurement(NamedTuple):
     time: Array
     out: Mask
     """Rows while the indenter moves out."""
-    radius: float = 1.0
-    """Radius of the indenter over that of the curve."""
+    indenter: Any
 
 
-@dataclass(frozen=True)
-class Advice:
-    """A measurement that would help."""
-
-    words: str
-    """The measurement; empty if none would."""
-    worth: float = 0.0
-    """Expected Δχ² between explanations, or by how much it tightens their quantities."""
-    count: int = 1
-    """How many curves of this kind it takes."""
-
-
-def telling(asked: Candidate, others: Sequence[Candidate]) -> Advice:
+def telling(asked: Candidate, others: Sequence[Candidate]) -> tuple[str, int]:
     """Return the measurement that tells an explanation from others that are as good now.
 
+    Beside its words, which are empty if none does, stands how many curves of this kind it takes.
     Each explanation makes the measurement that it predicts, without noise, and the rest are fitted
     to this and to the curve itself; the least χ² is what a measurement is worth.
     """
-    best = Advice("")
+    words, most = "", 0.0
     pairs = [(a, b) for other in others for a, b in ((asked, other), (other, asked))]
     for measurement in measurements(asked):
         worth = np.inf
         for truth, guess in pairs:
-            worth = min(worth, _separation(measurement, truth, guess))
+            # What cannot be predicted, as by a cantilever that jumps, is worth nothing.
+            least = 0.0
+            with suppress(PellicleError):
+                objective, start = _foretold(truth, guess, measurement)
+                least = objective.minimise(start, steps=ROUGH).chi_squared
+            worth = min(worth, least)
             if worth < _USELESS:
                 break
-        if worth > best.worth:
-            best = Advice(measurement.words, worth, int(np.ceil(_NEEDED / worth)))
+        if worth > most:
+            words, most = measurement.words, worth
         if worth >= _NEEDED:
             break
-    return best if best.count <= _MANY else Advice("")
+    count = int(np.ceil(_NEEDED / most)) if words else 1
+    return (words, count) if count <= _MANY else ("", 1)
 
 
-def tightening(fit: Candidate, names: Sequence[str]) -> Advice:
-    """Return the measurement after which some quantities have smaller errors.
+def tightening(fit: Candidate, names: Sequence[str]) -> str:
+    """Return the measurement after which some quantities have smaller errors; empty if none has.
 
     What counts is the greatest of their Cramér–Rao bounds, each over that of the curve alone.
     """
-    if not names:
-        return Advice("")
 
     def bounds(*further: Measurement) -> Array:
         objective, start = _foretold(fit, fit, *further)
         found = zip(objective.slots, objective.deviations(start), strict=True)
         return np.array([bound for slot, bound in found if slot.name in names])
 
-    now, best = bounds(), Advice("")
+    # Two curves of one kind would bring √2.
+    now, words, most = bounds(), "", _GAIN * np.sqrt(2)
     for measurement in measurements(fit):
         with suppress(PellicleError):
             gain = float(np.min(now / bounds(measurement)))
-            # Two curves of one kind would bring √2.
-            if gain > max(best.worth, _GAIN * np.sqrt(2)):
-                best = Advice(measurement.words, gain)
-    return best
+            if gain > most:
+                words, most = measurement.words, gain
+    return words
 
 
 def measurements(fit: Candidate) -> Iterator[Measurement]:
     """Yield measurements, the easiest first, that go beyond the first curve."""
-    curve, point = fit.whole[0], fit.contact_points[0]
+    curve, point, body = fit.whole[0], fit.contact_points[0], cast("Any", fit.whole[0].indenter)
     low, high = float(curve.base.min()) - point, float(curve.base.max()) - point
     down = np.linspace(low, high, _ROWS)
     duration = curve.loading_time
@@ -111,34 +103,24 @@ def measurements(fit: Candidate) -> Iterator[Measurement]:
     inward, out = np.zeros(_ROWS, dtype=bool), np.repeat([False, True], _ROWS)
     twice = np.append(forth, duration + forth)
     if not curve.moves_out.any():
-        yield Measurement("the retraction", np.append(down, down[::-1]), twice, out)
+        yield Measurement("the retraction", np.append(down, down[::-1]), twice, out, body)
     dwell = np.append(down, np.full(_ROWS, high))
     words = f"a dwell of {readable(duration, 's', 2)} at the largest depth"
-    yield Measurement(words, dwell, twice, np.zeros_like(out))
+    yield Measurement(words, dwell, twice, np.zeros_like(out), body)
     for factor in (0.1, 10.0):
         words = f"a second speed of {readable(factor * speed, 'm/s', 2)}"
-        yield Measurement(words, down, forth / factor, inward)
-    radius: float | None = getattr(curve.indenter, "radius", None)
+        yield Measurement(words, down, forth / factor, inward, body)
+    radius: float | None = getattr(body, "radius", None)
     for factor in (1 / 3, 3.0):
         if high > 0 and (radius is None or factor * high <= _DEEPEST * radius):
             kind = "shallower" if factor < 1 else "deeper"
             words = f"a {kind} curve, to a depth of {readable(factor * high, 'm', 2)}"
-            yield Measurement(words, factor * down, factor * forth, inward)
+            yield Measurement(words, factor * down, factor * forth, inward, body)
     for factor in (1 / 3, 3.0):
         if radius is not None and high <= _DEEPEST * factor * radius:
             words = f"a second radius, {readable(factor * radius, 'm', 2)}"
-            yield Measurement(words, down, forth, inward, factor)
-
-
-def _separation(measurement: Measurement, truth: Candidate, guess: Candidate) -> float:
-    """Return the least χ² of an explanation on curves that another predicts.
-
-    A measurement that cannot be predicted, as by a cantilever that jumps, is worth nothing.
-    """
-    with suppress(PellicleError):
-        objective, start = _foretold(truth, guess, measurement)
-        return objective.minimise(start, steps=ROUGH).chi_squared
-    return 0.0
+            other = body.model_copy(update={"radius": factor * radius})
+            yield Measurement(words, down, forth, inward, other)
 
 
 def _foretold(truth: Candidate, guess: Candidate, *further: Measurement) -> tuple[Objective, Array]:
@@ -148,7 +130,7 @@ def _foretold(truth: Candidate, guess: Candidate, *further: Measurement) -> tupl
     """
     curve, known = truth.whole[0], truth.objective.known(truth.minimum.at, 0)
     means, point = curve.binned(_ROWS), known.solid.contact_point
-    again = Measurement("", means.base - point, means.clock, means.moves_out)
+    again = Measurement("", means.base - point, means.clock, means.moves_out, curve.indenter)
     known = replace(known, solid=known.solid.model_copy(update={CONTACT_POINT: 0.0}))
     curves = tuple(_predicted(known, curve, one) for one in (again, *further))
     # That of a mean of rows.
@@ -161,15 +143,13 @@ def _foretold(truth: Candidate, guess: Candidate, *further: Measurement) -> tupl
 
 
 def _predicted(known: Explanation, curve: Curve, measurement: Measurement) -> Curve:
-    """Return a measurement with the indenter and the cantilever of a curve."""
-    indenter: Any = curve.indenter
-    if measurement.radius != 1:
-        indenter = indenter.model_copy(update={"radius": measurement.radius * indenter.radius})
-    base, stiffness = measurement.base, curve.stiffness
+    """Return a measurement with the cantilever of a curve."""
+    _, base, time, out, indenter = measurement
+    stiffness = curve.stiffness
 
     def planned(force: Array) -> Curve:
         tip = base - (force / stiffness if stiffness else 0.0)
-        return Curve(tip, force, indenter, measurement.time, measurement.out, stiffness)
+        return Curve(tip, force, indenter, time, out, stiffness)
 
     roughly = planned(curve.largest * np.maximum(base / np.max(base), 0.0))
     # A memory sees the path that its own force leaves.

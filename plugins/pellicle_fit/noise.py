@@ -36,17 +36,17 @@ _LEAST = 1e-6
 
 
 class Flaw(Enum):
-    """What contradicts an explanation, or only the noise; `words.remarks` says each in words."""
+    """What contradicts an explanation, the plainest first, or, the last three, only the noise."""
 
-    DIP = "dip"
-    OFFSET = "offset"
-    DRIFT = "drift"
-    SLOW = "slow"
-    SPIKES = "spikes"
-    STEPS = "steps"
-    MISFIT = "misfit"
-    PATTERN = "pattern"
-    TOO_DEEP = "too_deep"
+    TOO_DEEP = "the curve goes deeper than the force of this contact is known"
+    OFFSET = "the force before contact is not 0"
+    DRIFT = "the force before contact has a slope"
+    DIP = "the force dips before contact: something attracts, or the baseline bends"
+    MISFIT = "in contact the misfit exceeds the noise of the baseline"
+    PATTERN = "in contact the misfit follows a pattern"
+    SPIKES = "single points lie far from their neighbours and shift the fit"
+    SLOW = "the noise before contact is correlated; intervals take it so"
+    STEPS = "the steps of the detector are coarser than the noise"
 
 
 class Noise(NamedTuple):
@@ -74,6 +74,11 @@ class Judged(NamedTuple):
     def describes(self) -> bool:
         """Whether no flaw contradicts the explanation."""
         return self.flaws <= {Flaw.SLOW, Flaw.SPIKES, Flaw.STEPS}
+
+    @property
+    def failed_checks(self) -> dict[str, str]:
+        """Code of each flaw, and what it is in words."""
+        return {flaw.name.lower(): flaw.value for flaw in Flaw if flaw in self.flaws}
 
 
 def judged(

@@ -6,11 +6,11 @@ from pathlib import Path
 
 from pellicle.cli import echo, print_table
 
+from .noise import Flaw
 from .population.fits import ManyFits
 from .report import tables
 from .result import Fit
 from .words.population import advice_of_population, by_text, sentences_of_population
-from .words.remarks import CHECKS
 from .words.story import told
 
 _LINES = 50
@@ -29,7 +29,7 @@ def print_fit(fit: Fit, *, quiet: bool, details: bool, si: bool) -> None:
     all_checks = details or quiet or len(fit.members) > 1
     for text in fit.warnings:
         # The verdict tells the check that fails, and the next step what to do.
-        if all_checks or not text.endswith(tuple(CHECKS.values())):
+        if all_checks or text not in {flaw.value for flaw in Flaw}:
             echo(f"warning: {text}", err=True)
     for text in fit.notes if details or quiet else ():
         echo(f"note: {text}", err=True)

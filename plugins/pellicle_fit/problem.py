@@ -25,8 +25,7 @@ from .objective import CONTACT_POINT
 from .recipe import answer
 from .record import data_of, record_of
 from .result import Fit, Member
-from .simulated.body import body_of, layer_of, layer_table
-from .simulated.simulation import Simulation
+from .simulated.simulation import Simulation, body_of, layer_of, layer_table
 from .words.advice import steps
 
 _BASELINES = {"none": (), "offset": ("offset",), "slope": ("offset", "slope")}

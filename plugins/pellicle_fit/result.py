@@ -18,9 +18,8 @@ from .intervals import CONFIDENCE, Estimate
 from .recipe import Answer
 from .verdict import Verdict
 from .words.advice import Step
-from .words.effects import words
-from .words.remarks import agreement, failed_checks, remarks
-from .words.story import calibration_of, told, verdict
+from .words.names import words_of
+from .words.story import agreement, calibration_of, remarks, told, verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -121,7 +120,7 @@ class Fit:
         """Warnings, and notes of what was done; those of one of several curves with its name."""
         several, found = len(self.members) > 1, []
         for member, judged in zip(self.members, self.answer.judgements, strict=True):
-            own = [*member.messages, *failed_checks(judged).values()]
+            own = [*member.messages, *judged.failed_checks.values()]
             found += [type(text)(f"{member.name}: {text}") if several else text for text in own]
         return [*found, *remarks(self.answer)]
 
@@ -151,7 +150,7 @@ class Fit:
         return {
             **{name: vars(e) for name, e in self.estimates().items() if name in asked},
             "parameters": {name: vars(estimate) for name, estimate in own.items()},
-            "model": {"effects": sorted(chosen.types), "words": words(chosen)},
+            "model": {"effects": sorted(chosen.types), "words": words_of(chosen)},
             "verdict": self.verdict.value,
             "comparison": self.comparison,
             "tension_needed": self.tension_needed,
@@ -180,7 +179,7 @@ class Fit:
         answer = self.answer
         return {
             "effects": sorted(fit.types),
-            "words": words(fit),
+            "words": words_of(fit),
             "chi_squared": fit.chi_squared,
             "delta_aic": fit.aic - answer.explanations[0].aic,
             "tied": fit.types in answer.tied_types,
@@ -203,7 +202,7 @@ class Fit:
             "points": member.curve.position.size,
             "noise": {"value": judged.noise.deviation, "unit": "N"},
             "failed_checks": [
-                {"code": code, "message": text} for code, text in failed_checks(judged).items()
+                {"code": code, "message": text} for code, text in judged.failed_checks.items()
             ],
             "messages": list(member.messages),
             **{slot.name: vars(parameters[name_of(slot.name, i)]) for slot in slots},

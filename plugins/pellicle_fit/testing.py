@@ -11,7 +11,7 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import wraps
 from itertools import chain, islice, product
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
@@ -39,7 +39,6 @@ _HALVINGS = 12
 class Case(NamedTuple):
     """An effect of known quantities on a curve."""
 
-    words: str
     effect: Effect
     curve: Curve
     modulus: float = _MODULUS
@@ -60,13 +59,13 @@ class Case(NamedTuple):
     def scaled(self, length: float, force: float, time: float) -> Case:
         """Return the case with lengths, forces and times times factors, and so all quantities."""
         factor, update = Sizes(length, force, time, 0).of, {}
-        curve, body = self.curve, self.curve.indenter
+        curve, body = self.curve, cast("Any", self.curve.indenter)
         for name, info in type(self.effect).model_fields.items():
             quantity, value = quantity_of(info), getattr(self.effect, name)
             if quantity is not None and value is not None:
                 update[name] = value * factor(quantity.unit)
         if radius := getattr(body, "radius", None):
-            body = _bead(length * radius)
+            body = pl.indenter("paraboloid", radius=length * radius)
         curve = replace(
             curve,
             position=length * curve.position,
@@ -76,7 +75,7 @@ class Case(NamedTuple):
             stiffness=_STIFFNESS * factor("N/m"),
         )
         effect = self.effect.model_copy(update=update)
-        return Case(self.words, effect, curve, self.modulus * factor("Pa"))
+        return Case(effect, curve, self.modulus * factor("Pa"))
 
     def given(self, rows: Array) -> Array:
         """Return what the effect itself makes of depths [m] or, of an instrument, forces [N]."""
@@ -108,12 +107,18 @@ class Case(NamedTuple):
 
 
 def _in_each_case(rule: Callable[[Case], str]) -> Callable[[Effect], str]:
-    """Return the rule of an effect that one of its cases is."""
+    """Return the rule of an effect that those of it are, known, on the curves on which it acts."""
 
     @wraps(rule)
     def broken(effect: Effect) -> str:
-        told = ((case.words, rule(case)) for case in _cases(effect))
-        return next((f"{words}: {violation}" for words, violation in told if violation), "")
+        free = _free(effect)
+        for words, curve in _curves():
+            sizes, excused = Sizes.of_curve(curve), _excuse(effect, curve)
+            for start in () if excused else islice(free.starts(sizes), _VALUES):
+                known = free.known(sizes).model_copy(update=dict(start))
+                if violation := rule(Case(known, curve)):
+                    return f"{words}: {violation}"
+        return ""
 
     return broken
 
@@ -279,16 +284,6 @@ def what_it_says_is_valid(case: Case) -> str:
     return f"{' and '.join(wrong)} is not" if wrong else ""
 
 
-def _cases(effect: Effect) -> Iterator[Case]:
-    """Yield the effect on the curves on which it can act, at the first of its starts."""
-    free = _free(effect)
-    for words, curve in _curves():
-        if not _excuse(effect, curve):
-            sizes = Sizes.of_curve(curve)
-            for start in islice(free.starts(sizes), _VALUES):
-                yield Case(words, free.known(sizes).model_copy(update=dict(start)), curve)
-
-
 def _excuse(effect: Effect, curve: Curve) -> str:
     return effect.excuse(Contact.on_half_space(curve.indenter, 1.0), curve, frozenset())
 
@@ -298,14 +293,10 @@ def _free(effect: Effect) -> Effect:
     return effect.model_copy(update=dict.fromkeys(quantities(type(effect))))
 
 
-def _bead(radius: float) -> Any:
-    return pl.indenter("paraboloid", radius=radius)
-
-
 def _curves() -> Iterator[tuple[str, Curve]]:
     """Yield clean curves, whose base moves at a constant speed."""
-    cone: Any = pl.indenter("cone", half_angle=1.2)
-    bodies = {"a round tip": _bead(5e-6), "a cone": cone}
+    bead, cone = pl.indenter("paraboloid", radius=5e-6), pl.indenter("cone", half_angle=1.2)
+    bodies: dict[str, Any] = {"a round tip": bead, "a cone": cone}
     passes = {"the approach": _DEPTHS, "both passes": np.append(_DEPTHS, _DEPTHS[-2::-1])}
     for (tip, body), (words, depth) in product(bodies.items(), passes.items()):
         force = Contact.on_half_space(body, _MODULUS).force(depth)

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from pellicle.components import HasLayerForceCurve
 from pellicle.units import Quantity
-from pellicle_fit.checked_force import checked_force
+from pellicle_fit.contact import checked_area
 from pellicle_fit.effect import Array, Bends, Contact, Curve, Fitted, fitted
 
 _ERROR = 1e-4
@@ -39,8 +39,9 @@ class Layer(Bends, title="a thin layer"):
         layer = self.thickness / size, ratio
 
         def area(depth: Array, length: float) -> Array:
-            lengths = depth / size, length / size
-            return size**2 * checked_force(body, "layer_force_curve", *lengths, *layer)
+            depth = depth / size
+            curve = body.layer_force_curve(depth, length / size, *layer)
+            return size**2 * checked_area(body, curve, depth)
 
         limit = size * body.layer_depth_limit(*layer)
         return replace(contact, area=area, depth_limit=limit, half_space=False, error=_ERROR)

@@ -11,7 +11,7 @@ import numpy as np
 from pellicle.files import for_document
 from pellicle.units import decimal, readable
 from pellicle_fit.population.row import SHOWN, Row
-from pellicle_fit.words.quantities import in_figures
+from pellicle_fit.words.names import in_figures
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -19,12 +19,11 @@ from pellicle_fit.objective import MODULUS
 from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import Fit
-from pellicle_fit.words.effects import words as words_of
+from pellicle_fit.words.names import words_of
 
 from .contact_sheet import PAGE, sheets
-from .guides import guide
 from .likelihood_map import likelihood_map
-from .population import bars, distributions, map_figure
+from .population import bars, distributions, guide, map_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -46,8 +45,8 @@ def panels(fit: Fit | ManyFits) -> dict[str, Drawing]:
     if isinstance(fit, Fit):
         return {caption: figure_of(beside) for caption, beside in charts(fit).items()}
     of_bars = "Filled, accepted curves; hollow, rejected ones; bars to 0 or a triangle are open."
-    closed = "Accepted curves, by group; in histograms, with closed intervals; dotted, the median."
-    beside = {of_bars: bars(fit.rows), f"{closed} Squares stand out.": distributions(fit.rows)}
+    closed = "Accepted curves with closed intervals, by group; dotted, the median."
+    beside = {of_bars: bars(fit.rows), closed: distributions(fit.rows)}
     found: dict[str, Drawing] = {caption: figure_of(of) for caption, of in beside.items() if of}
     for name, images in fit.maps.items():
         title = Path(name).name

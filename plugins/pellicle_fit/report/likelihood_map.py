@@ -9,76 +9,57 @@ from pellicle.components import Axis, Chart, Look, Series
 from pellicle_fit.candidate import Candidate
 from pellicle_fit.objective import MODULUS
 from pellicle_fit.recipe import TENSION
-from pellicle_fit.result import parameters_of
-
-from .guides import guide
 
 _JOINT = {2.30: "68 % of the pair", 5.99: "95 % of the pair"}
 """Δχ² that bounds confidence regions of two quantities."""
-_MODULI, _TENSIONS = 31, 21
-"""Points along the modulus, and along the tension at each modulus."""
+_MODULI = 61
+"""Moduli at which all else is sought."""
 _HALF_WIDTH = 4.5
-"""Moduli and tensions drawn to either side, in standard deviations."""
+"""Distance of these to either side, in standard deviations."""
 _FURTHEST = np.log(10.0)
-"""Moduli drawn to either side at most, as a logarithm."""
+"""The same at most, as a logarithm."""
+_POINTS = 201
+"""Points of an edge."""
 
 
 def likelihood_map(explained: Candidate, widened: float) -> Chart:
     """Return the edges of what describes curves, with all but modulus and tension sought.
 
-    Δχ² at the edges is ``widened`` for curves that do not agree.
-    """
-    from matplotlib.figure import Figure
-
-    grid, own = _grid(explained, widened), parameters_of(explained)
-    edges = Figure().add_subplot().contour(*grid, [level * widened for level in _JOINT]).allsegs
-    series = [
-        Series(points[:, 0], points[:, 1], legend=name * (points is lines[0]), look=Look(0, line))
-        for line, (name, lines) in enumerate(zip(_JOINT.values(), edges, strict=True))
-        for points in lines
-    ]
-    modulus, tension = own[MODULUS], own[TENSION]
-    best = np.array([modulus.value]), np.array([tension.value])
-    series.append(Series(*best, legend="best", look=Look(0, None, 0)))
-    x, y = (np.concatenate(ends) for ends in zip(*((s.x, s.y) for s in series), strict=True))
-    across, along = [x.min(), x.max()], [y.min(), y.max()]
-    moduli = [guide([end] * 2, along) for end in (modulus.low, modulus.high) if end is not None]
-    tensions = [guide(across, [end] * 2) for end in (tension.low, tension.high) if end is not None]
-    named = guide([], [], "95 % of each alone")
-    axes = Axis("reduced modulus", "Pa"), [Axis("tension", "N/m")]
-    return Chart(*axes, [*series, *moduli, *tensions, named])
-
-
-def _grid(explained: Candidate, widened: float = 1.0) -> tuple[Array, Array, Array]:
-    """Return moduli [Pa], tensions [N/m] and Δχ², each of shape (moduli, tensions).
-
-    The tensions of a row surround the best tension at its modulus, so that the grid follows a
-    narrow ridge.
+    At each modulus χ² is a parabola of the tension, whose width is that to first order: the rest
+    moves as this makes χ² least. Δχ² at the edges is ``widened`` for curves that do not agree.
     """
     objective, best = explained.objective, explained.minimum
     names = [slot.name for slot in objective.slots]
     e, t = names.index(MODULUS), names.index(TENSION)
     rest = [k for k in range(len(names)) if k not in (e, t)]
-    reach = _HALF_WIDTH * np.sqrt(widened)
-    half_width = min(reach * objective.deviations(best.at)[e], _FURTHEST)
-    coordinates = best.at[e] + np.linspace(-half_width, half_width, _MODULI)
-    tensions = np.empty((_MODULI, _TENSIONS))
-    rises = np.empty_like(tensions)
-    for row, modulus in enumerate(coordinates):
+
+    def in_si(k: int, coordinates: Array) -> Array:
+        return np.array([objective.slots[k].value(coordinate) for coordinate in coordinates])
+
+    half_width = _HALF_WIDTH * np.sqrt(widened) * objective.deviations(best.at)[e]
+    moduli = best.at[e] + min(half_width, _FURTHEST) * np.linspace(-1.0, 1.0, _MODULI)
+    ridge = np.empty((4, _MODULI))
+    for column, modulus in enumerate(moduli):
         start = np.array(best.at)
         start[e] = modulus
-        ridge = objective.minimise(start, (e,)).at
-        # Away from the ridge the rest moves, to first order, as this makes χ² least.
-        by_tension = objective.jacobian(ridge, (t,))[:, 0]
-        by_rest = objective.jacobian(ridge, rest) if rest else np.empty((by_tension.size, 0))
-        along = -np.linalg.lstsq(by_rest, by_tension, rcond=1e-12)[0]
-        half = reach / np.linalg.norm(by_tension + by_rest @ along)
-        tensions[row] = np.linspace(max(ridge[t] - half, 0.0), ridge[t] + half, _TENSIONS)
-        for column, tension in enumerate(tensions[row]):
-            at = np.array(ridge)
-            at[t] = tension
-            at[rest] += along * (tension - ridge[t])
-            rises[row, column] = objective.chi_squared(at) - best.chi_squared
-    moduli = [objective.slots[e].value(modulus) for modulus in coordinates]
-    in_si = [[objective.slots[t].value(tension) for tension in row] for row in tensions]
-    return np.repeat(np.array(moduli)[:, None], _TENSIONS, axis=1), np.array(in_si), rises
+        at, chi_squared = objective.minimise(start, (e,))
+        by_tension, *by_rest = objective.jacobian(at, [t, *rest]).T
+        others = np.array(by_rest).reshape(len(rest), -1).T
+        along = by_tension - others @ np.linalg.lstsq(others, by_tension, rcond=1e-12)[0]
+        width = 1 / np.linalg.norm(along)
+        # Where the best tension is 0, χ² has a slope there.
+        slope = width * (along @ np.concatenate(objective.terms(at)))
+        ridge[:, column] = at[t], chi_squared - best.chi_squared, width, max(slope, 0.0)
+    rises, lowest, series = ridge[1], int(ridge[1].argmin()), []
+    angle = np.linspace(0.0, 2 * np.pi, _POINTS)
+    for line, (level, name) in enumerate(_JOINT.items()):
+        top, branches = level * widened, (slice(lowest, None, -1), slice(lowest, None))
+        left, right = (np.interp(top, rises[one], moduli[one]) for one in branches)
+        x = (left + right) / 2 - (right - left) / 2 * np.cos(angle)
+        tension, rise, width, slope = (np.interp(x, moduli, of) for of in ridge)
+        reach = width * (np.sqrt(slope**2 + np.maximum(top - rise, 0.0)) - slope)
+        y = np.maximum(tension + np.where(angle < np.pi, reach, -reach), 0.0)
+        series.append(Series(in_si(e, x), in_si(t, y), legend=name, look=Look(0, line)))
+    pair = in_si(e, best.at[[e]]), in_si(t, best.at[[t]])
+    series.append(Series(*pair, legend="best", look=Look(0, None, 0)))
+    return Chart(Axis("reduced modulus", "Pa"), [Axis("tension", "N/m")], series)

@@ -20,10 +20,9 @@ from pellicle_fit.population.images import CONTACT_HEIGHT
 from pellicle_fit.population.row import SHOWN, Row
 from pellicle_fit.population.summary import label
 from pellicle_fit.recipe import TENSION
-from pellicle_fit.words.quantities import words
+from pellicle_fit.words.names import words
 
 from .contact_sheet import PAGE, sheets
-from .guides import guide
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,6 +39,12 @@ _DECADE = 10.0
 """Greatest over least value beyond which an axis is logarithmic."""
 _WIDTH, _AROUND = 3.7, 0.75
 """Width of a panel, and its height beside that of the image [inch]."""
+
+
+def guide(x: Sequence[float], y: Sequence[float], legend: str = "") -> Series:
+    """Return a thin dotted line that guides the eye, whose numbers are not written."""
+    ends = np.array(x, dtype=float), np.array(y, dtype=float)
+    return Series(*ends, legend=legend, look=Look(None, 3), role="reference", written=False)
 
 
 def bars(rows: Sequence[Row]) -> list[Chart]:
@@ -72,36 +77,20 @@ def bars(rows: Sequence[Row]) -> list[Chart]:
     return [Chart(across, axes, series)] if axes and len(rows) <= _BARS else []
 
 
-def drawable(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows that are drawn: of accepted curves that have a closed interval."""
-    return [row for row in rows if row.accepted and any(map(row.determines, _DRAWN))]
-
-
 def distributions(rows: Sequence[Row]) -> list[Chart]:
-    """Return histograms of E* and τ₀ of the drawable curves, by group, and E* against τ₀."""
-    rows, charts = drawable(rows), list[Chart]()
-    groups = list(dict.fromkeys(row.group for row in rows))
-    kinds = np.array([groups.index(row.group) for row in rows])
-    for name in _DRAWN:
-        closed = np.array([row.determines(name) for row in rows])
-        if closed.any():
+    """Return histograms of E* and τ₀ of the accepted curves, where intervals are closed."""
+    rows, charts = [row for row in rows if row.accepted], list[Chart]()
+    groups = list(dict.fromkeys(label(row.group) for row in rows))
+    for name, unit in _DRAWN.items():
+        closed = [row for row in rows if row.determines(name)]
+        values = np.array([row.estimates[name].value for row in closed])
+        if closed:
+            is_wide = name == MODULUS and bool(values.max() > _DECADE * values.min())
+            kinds = np.array([groups.index(label(row.group)) for row in closed])
             # One legend is enough.
-            named = len(groups) > 1 and not charts
-            legends = [label(group) if named else "" for group in groups]
-            values = _values(rows, name)[closed]
-            charts.append(_histogram(_axis(name, values), values, kinds[closed], legends))
-    if len(charts) == 2:
-        charts.append(_scatter(rows, kinds, len(groups)))
+            legends = groups if len(groups) > 1 and not charts else [""] * len(groups)
+            charts.append(_histogram(Axis(words(name), unit, log=is_wide), values, kinds, legends))
     return charts
-
-
-def _values(rows: Sequence[Row], name: str) -> Array:
-    return np.array([row.estimates[name].value for row in rows])
-
-
-def _axis(name: str, values: Array) -> Axis:
-    is_wide = name == MODULUS and bool(values.max() > _DECADE * values.min())
-    return Axis(words(name), _DRAWN[name], log=is_wide)
 
 
 def _histogram(axis: Axis, values: Array, kinds: Array, legends: Sequence[str]) -> Chart:
@@ -120,19 +109,6 @@ def _histogram(axis: Axis, values: Array, kinds: Array, legends: Sequence[str]) 
     median = guide([float(np.median(values))] * 2, [0.0, floor.max()])
     # In the order of the stack, from the top, so that no outline hides one below it.
     return Chart(axis, [Axis("curves")], [*series[::-1], median], hues=len(legends))
-
-
-def _scatter(rows: Sequence[Row], kinds: Array, count: int) -> Chart:
-    """Return tension against modulus, with other marks where the modulus stands out."""
-    modulus, tension = _values(rows, MODULUS), _values(rows, TENSION)
-    outlier, series = np.array([row.outlier for row in rows]), []
-    for marker, of in enumerate((~outlier, outlier)):
-        for kind in range(count):
-            shown = of & (kinds == kind)
-            look = Look(kind, None, marker, filled=True)
-            series.append(Series(modulus[shown], tension[shown], look=look))
-    axes = _axis(MODULUS, modulus), [_axis(TENSION, tension)]
-    return Chart(*axes, [one for one in series if one.x.size], hues=count)
 
 
 def map_figure(
@@ -169,7 +145,7 @@ def map_figure(
     return draw, (2 * _WIDTH, height * len(names) + 0.4)
 
 
-def _pitches(images: xr.Dataset | xr.DataArray) -> tuple[float, float]:
+def _pitches(images: xr.Dataset) -> tuple[float, float]:
     """Return the sizes of a pixel along x and y [m]; a line of curves is one pixel wide."""
     sides = [images[name].values for name in "xy"]
     x, y = (float(side[1] - side[0]) if side.size > 1 else 0.0 for side in sides)
@@ -178,6 +154,8 @@ def _pitches(images: xr.Dataset | xr.DataArray) -> tuple[float, float]:
 
 def save_population(fits: ManyFits, directory: Path, formats: Sequence[str]) -> tuple[Path, ...]:
     """Write contact sheet, distributions and the images in ``maps``, and return the files."""
+    from PIL import Image
+
     files = [save_pages(sheets(fits.rows), directory / "fits-curves.pdf", PAGE)]
     if charts := distributions(fits.rows):
         draw, size = figure_of(charts)
@@ -187,21 +165,15 @@ def save_population(fits: ManyFits, directory: Path, formats: Sequence[str]) -> 
         # Two files may have the same name in different folders.
         same = stems.count(Path(name).stem) > 1
         path = directory / "maps" / f"{Path(name).stem}{f'-{number}' * same}"
+        across, along = _pitches(images)
+        per_cm = {"x_resolution": 1e-2 / across, "y_resolution": 1e-2 / along}
         for parameter, image in images.data_vars.items():
-            files.append(save_tiff(image, path.with_name(f"{path.name}-{parameter}.tif")))
+            files.append(path.with_name(f"{path.name}-{parameter}.tif"))
+            # Of 32-bit floats, with the largest y on top and pixels for each cm.
+            picture = Image.fromarray(image.values[::-1].astype(np.float32))
+            text = header(str(parameter), image)
+            with atomic_write(files[-1]) as part:
+                picture.save(part, format="TIFF", description=text, resolution_unit="cm", **per_cm)
         fill, size = map_figure(images, Path(name).name)
         files += save_figure(fill, path, formats, size)
     return tuple(files)
-
-
-def save_tiff(image: xr.DataArray, path: Path) -> Path:
-    """Write an image as TIFF of 32-bit floats, the largest y on top, with pixels for each cm."""
-    from PIL import Image
-
-    across, along = _pitches(image)
-    per_cm = {"x_resolution": 1e-2 / across, "y_resolution": 1e-2 / along}
-    picture = Image.fromarray(image.values[::-1].astype(np.float32))
-    text = header(str(image.name), image)
-    with atomic_write(path) as part:
-        picture.save(part, format="TIFF", description=text, resolution_unit="cm", **per_cm)
-    return path

@@ -14,10 +14,7 @@ from pellicle_fit.population.row import FITTED, OVER_TIED, SHOWN, Row
 from pellicle_fit.population.summary import QUARTILES, summary
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import Fit, name_of, parameters_of
-from pellicle_fit.words.effects import words as words_of
-from pellicle_fit.words.quantities import FEW, interval, quoted, unit_of, words
-from pellicle_fit.words.quantities import unit_of_estimate as unit_of_one
-from pellicle_fit.words.remarks import failed_checks
+from pellicle_fit.words.names import FEW, interval, quoted, unit_of, unit_of_one, words, words_of
 
 _SI_DIGITS = 6
 """Significant digits of numbers in SI."""
@@ -66,7 +63,7 @@ def curves(fit: Fit, *, si: bool = False) -> Table:
     found = (own.get(name_of(CONTACT_POINT, i), own[CONTACT_POINT]) for i in range(len(members)))
     unit = _unit(fit, CONTACT_POINT, si)
     points = [f"{unit.number(e.value)} ({interval(e, unit)})" for e in found]
-    checks = [", ".join(failed_checks(judged)) for judged in judgements]
+    checks = [", ".join(judged.failed_checks) for judged in judgements]
     columns = [
         Column("curve", [member.name for member in members]),
         *([Column("radius", radii, "m")] if any(radii) else []),
@@ -81,14 +78,12 @@ def curves(fit: Fit, *, si: bool = False) -> Table:
 
 def rows(of: Sequence[Row], *, si: bool = False) -> Table:
     """Return a row for each curve of a population; a column only if it tells curves apart."""
-    states = []
-    for row in of:
-        if row.is_fitted and not row.accepted:
-            # A verdict against all models stands in its own column.
-            reason = row.reason if row.reason != row.fit["comparison"] else ""
-            states.append(f"rejected: {reason}".removesuffix(": "))
-        else:
-            states.append("modulus stands out" * row.outlier or row.status.partition(":")[0])
+    states = [
+        f"rejected: {row.reason}"
+        if row.is_fitted and not row.accepted
+        else "modulus stands out" * row.outlier or row.status.partition(":")[0]
+        for row in of
+    ]
     radii = [row.curve.get("indenter", {}).get("radius", "") for row in of]
     has_youngs = any("youngs_modulus" in row.estimates for row in of)
     columns = list[Column]()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
@@ -21,19 +20,6 @@ def stretched(x: Array) -> Array:
     return np.log1p(x / SCALE)
 
 
-class Nodes(NamedTuple):
-    """Contacts between which forces are interpolated; lengths over `unit` serve every size."""
-
-    unit: float
-    """[m]"""
-    depths: Array
-    """Depths δ, increasing, of shape (m,)."""
-    ratios: Array
-    """Ratios s/w, increasing from 0, of shape (n,)."""
-    width: tuple[float, float]
-    """Slope of log w over log δ, and its value at δ = 1; w is about the width of the contact."""
-
-
 @dataclass(frozen=True, eq=False)
 class SimulatedCurve:
     """F/E* of an indenter on a solid under tension, interpolated between the runs of a study.
@@ -42,9 +28,14 @@ class SimulatedCurve:
     linearly.
     """
 
-    nodes: Nodes
+    depths: Array
+    """Depths δ of nodes [m], increasing, of shape (m,)."""
+    ratios: Array
+    """Ratios s/w of nodes, increasing from 0, of shape (n,)."""
+    width: tuple[float, float]
+    """Slope of log w over log δ, and its value at δ = 1 m; w is about the width of the contact."""
     log_forces: Array
-    """log(F/E*) over the unit squared, of shape (m, n)."""
+    """log(F/E*) in m², of shape (m, n)."""
     accuracy: float = 0.0
     """Largest relative change of a force when the cells along each axis are halved."""
     half_space: bool = True
@@ -53,24 +44,22 @@ class SimulatedCurve:
     @property
     def depth_limit(self) -> float:
         """Depth [m] of the deepest node."""
-        return float(self.nodes.depths[-1]) * self.nodes.unit
+        return float(self.depths[-1])
 
     @cached_property
     def _spline(self) -> RectBivariateSpline:
-        _, depths, ratios, _ = self.nodes
-        return RectBivariateSpline(np.log(depths), stretched(ratios), self.log_forces)
+        return RectBivariateSpline(np.log(self.depths), stretched(self.ratios), self.log_forces)
 
     def force_curve(self, depth: Array, length: float) -> ForceCurve:
         """Return F/E* [m²] and its partial derivatives at depths [m] and s = ``length`` [m]."""
-        unit, depths, ratios, (slope, intercept) = self.nodes
-        touching = depth > 0
-        d = np.maximum(depth[touching] / unit, 1e-60)
+        touching, (slope, intercept) = depth > 0, self.width
+        d = np.maximum(depth[touching], 1e-60)
         u = np.log(d)
         width = np.exp(intercept + slope * u)
-        x = length / unit / width
+        x = length / width
         t = stretched(x)
-        u_inside = np.clip(u, *np.log(depths[[0, -1]]))
-        t_inside = np.minimum(t, stretched(ratios[-1:])[0])
+        u_inside = np.clip(u, *np.log(self.depths[[0, -1]]))
+        t_inside = np.minimum(t, stretched(self.ratios[-1:])[0])
         value, by_u, by_t, by_both = (
             self._spline(u_inside, t_inside, dx=dx, dy=dy, grid=False)
             for dx, dy in ((0, 0), (1, 0), (0, 1), (1, 1))
@@ -80,7 +69,7 @@ class SimulatedCurve:
         rate_u, rate_t = by_u + by_both * t_beyond, by_t + by_both * u_beyond
         rate_x = rate_t / (x + SCALE)
         out = np.zeros((3, depth.size))
-        out[0, touching] = force * unit**2
-        out[1, touching] = force * (rate_u - rate_x * x * slope) / d * unit
-        out[2, touching] = force * rate_x / width * unit
+        out[0, touching] = force
+        out[1, touching] = force * (rate_u - rate_x * x * slope) / d
+        out[2, touching] = force * rate_x / width
         return ForceCurve(*out)

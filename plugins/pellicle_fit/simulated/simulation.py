@@ -7,22 +7,20 @@ import shutil
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import platformdirs
 
-from pellicle import Grid, Study, registry, results, run_study
+from pellicle import Grid, Study, results, run_study
 from pellicle.arrays import Array
-from pellicle.components import Executor, Indenter
-from pellicle.errors import ConfigError, ConvergenceError, ConvergenceWarning, problems_within
+from pellicle.components import Executor, HasForceCurve, HasLayerForceCurve, Indenter
+from pellicle.errors import ConfigError, ConvergenceError, ConvergenceWarning
 from pellicle.units import readable
+from pellicle_fit.effects.layer import Layer
 
-from .interpolated import SCALE, Nodes, SimulatedCurve, stretched
-from .solid import Solid, scaled, values_of
-
-if TYPE_CHECKING:
-    import xarray as xr
+from .interpolated import SCALE, SimulatedCurve, stretched
+from .solid import Solid, quantities_of, solid
 
 GRID_POINTS = 64
 _OCTAVES = 6
@@ -57,35 +55,85 @@ class Simulation(NamedTuple):
     ) -> SimulatedCurve:
         """Return the force curve down to a depth [m], from a study that is cached or run here.
 
-        The study has a reduced modulus of 1 Pa and lengths relative to a length of the problem, so
-        that one study serves every indenter and solid of the same proportions.  ``cache`` is the
-        folder that keeps studies, the user's own if None; ``grid_points`` are the cells of each
-        grid along x and y.
+        The study has a reduced modulus of 1 Pa.  ``cache`` is the folder that keeps studies, the
+        user's own if None; ``grid_points`` are the cells of each grid along x and y.
 
         A run that fails is a ConvergenceError, a folder that cannot be used a StorageError; errors
         as of `plan`, too.
         """
-        nodes, study = plan(self.indenter, self.solid, deepest, grid_points)
-        study["study"]["executor"] = {"type": executor} if isinstance(executor, str) else executor
+        depths, width, table = plan(self.indenter, self.solid, deepest, grid_points)
+        table["study"]["executor"] = {"type": executor} if isinstance(executor, str) else executor
+        study = Study.from_mapping(table)
+        runs = "".join(point.run.identity for point in study.points)
         folder = Path(cache) if cache else platformdirs.user_cache_path("pellicle")
-        table = _table(Study.from_mapping(study), folder / "force-curves", progress)
+        folder = folder / "force-curves" / hashlib.sha256(runs.encode()).hexdigest()[:16]
+        # Once all runs have converged they are deleted, so a table without them is whole.
+        if (folder / "study.h5").exists() and not (folder / "runs").exists():
+            found = results.table(folder / "study.h5")
+        else:
+            try:
+                with warnings.catch_warnings():
+                    warnings.simplefilter("error", ConvergenceWarning)
+                    found = run_study(study, folder, progress=progress)
+            except ConvergenceWarning as warning:
+                raise ConvergenceError(
+                    f"the force curve needs the study in {folder}: {warning}; another number of "
+                    "grid points may help"
+                ) from None
+            shutil.rmtree(folder / "runs")
         # Each contact on a grid of its own, and on one of half the cells.
-        forces = table["force"].values.reshape(2, nodes.depths.size, nodes.ratios.size)
+        forces = found["force"].values.reshape(2, depths.size, _RATIOS.size)
         if not (forces > 0).all():
             raise ConvergenceError(
                 "some contacts of the study carry no force; give more grid points"
             )
         accuracy = float(np.max(np.abs(forces[1] / forces[0] - 1)))
-        return SimulatedCurve(nodes, np.log(forces[0]), accuracy, self.solid.is_half_space)
+        half_space = self.solid.is_half_space
+        return SimulatedCurve(depths, _RATIOS, width, np.log(forces[0]), accuracy, half_space)
+
+
+def body_of(
+    indenter: Indenter | HasForceCurve,
+    kernel: str | Mapping[str, Any] | None = None,
+    poissons_ratio: float | None = None,
+) -> HasForceCurve | Simulation:
+    """Return what has the force curve of an indenter, or the simulation that gives one.
+
+    The solid is that of a kernel without modulus and tension; a half-space under tension if None.
+
+    Raises
+    ------
+    ConfigError, PluginError
+        The kernel cannot be fitted, or is given beside a force curve that includes its solid.
+    """
+    if kernel is None and isinstance(indenter, HasForceCurve):
+        return indenter
+    if not isinstance(indenter, Indenter):
+        raise ConfigError("cannot be given with a force curve, which includes its solid", "kernel")
+    return Simulation(indenter, solid(kernel or "tensed_membrane", poissons_ratio))
+
+
+def layer_of(indenter: object, poissons_ratio: float, thickness: float) -> Layer | None:
+    """Return the effect of a layer bonded to a rigid base; None if it has to be simulated."""
+    if not isinstance(indenter, HasLayerForceCurve) or poissons_ratio < 0:
+        return None
+    # A punch is too wide for the curve at any depth, or at none.
+    is_known = indenter.layer_depth_limit(thickness, poissons_ratio) > 0
+    return Layer(thickness=thickness, poissons_ratio=poissons_ratio) if is_known else None
+
+
+def layer_table(poissons_ratio: float, thickness: float) -> dict[str, Any]:
+    """Return the table of a layer bonded to a rigid base, under tension."""
+    substrate = {"type": "bonded_layer", "thickness": thickness, "poissons_ratio": poissons_ratio}
+    return {"type": "coated", "substrate": substrate}
 
 
 def plan(
     indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GRID_POINTS
-) -> tuple[Nodes, dict[str, Any]]:
-    """Return the contacts that a force curve needs down to a depth [m], and the study of them.
+) -> tuple[Array, tuple[float, float], dict[str, Any]]:
+    """Return depths of nodes down to one [m], the width of contacts there, and the study of them.
 
-    ConfigError: the indenter ends where the grid does, or its contact nowhere, or a field of the
-    solid scales with the modulus.
+    ConfigError: the indenter ends where the grid does, or its contact nowhere.
     """
     if indenter.footprint != "unbounded":
         raise ConfigError(
@@ -93,23 +141,13 @@ def plan(
             "does not depend on the grid",
             "indenter",
         )
-    of_shape, of_solid = ([*values_of(part)] for part in (indenter, solid.kernel))
-    values = [(quantity, value) for _, quantity, value in (*of_shape, *of_solid)]
-    lengths = [value for quantity, value in values if quantity and quantity.unit == "m"]
-    # A number without a unit may be a length.
-    scales = all(quantity or isinstance(value, (str, int)) for quantity, value in values)
-    unit = next(value for value in (*lengths, deepest) if value > 0) if scales else 1.0
-    with problems_within("kernel"):
-        kernel = scaled(solid.kernel, unit, (solid.modulus, solid.tension))
-    shape = scaled(indenter, unit)
     # Rounded up, so that curves of about the same depth share a study.
-    top = int(np.ceil(np.log2(deepest / unit) - 1e-9))
+    top = int(np.ceil(np.log2(deepest) - 1e-9))
     depths: Array = 2.0 ** np.arange(top - _OCTAVES, top + 1, dtype=np.float64)
-    body = registry().make(Indenter, shape)
-    halves = np.array([half_widths(body, depth) for depth in depths])
+    halves = np.array([half_widths(indenter, depth) for depth in depths])
     slope, intercept = np.polyfit(np.log(depths), np.log(halves.prod(axis=1)) / 2, 1)
     widths = np.exp(intercept + slope * np.log(depths))
-    is_layered = any(quantity and quantity.unit == "m" for _, quantity, _ in of_solid)
+    is_layered = any(quantity.unit == "m" for _, quantity, _ in quantities_of(solid.kernel))
     boxes = 2 * (_MARGIN_OF_LAYERS if is_layered else _MARGIN) * halves
     contacts = {
         "loading.depth": np.repeat(depths, _RATIOS.size).tolist(),
@@ -117,15 +155,15 @@ def plan(
         "grid.size": np.repeat(boxes, _RATIOS.size, axis=0).tolist(),
     }
     study: dict[str, Any] = {
-        "title": f"force curve of {shape['type']} on {kernel['type']}",
+        "title": f"force curve of {indenter.type_name} on {solid.kernel.type_name}",
         "grid": {"points": grid_points, "size": 1.0},
-        "kernel": kernel,
-        "indenter": shape,
+        "kernel": solid.kernel.model_dump(exclude_none=True),
+        "indenter": indenter.model_dump(exclude_none=True),
         "loading": {"depth": 1.0},
         "outputs": [],
         "study": {"vary": {"grid.points": [grid_points, grid_points // 2]}, "zip": [contacts]},
     }
-    return Nodes(unit, depths, _RATIOS, (float(slope), float(intercept))), study
+    return depths, (float(slope), float(intercept)), study
 
 
 def half_widths(indenter: Indenter, depth: float) -> tuple[float, float]:
@@ -152,25 +190,3 @@ def half_widths(indenter: Indenter, depth: float) -> tuple[float, float]:
                 "give one whose contact ends",
                 "indenter",
             )
-
-
-def _table(study: Study, cache: Path, progress: bool) -> xr.Dataset:
-    """Return the table of a study, run unless it is cached.
-
-    Once all runs have converged they are deleted, so a table without them is whole.
-    """
-    runs = [point.run.identity for point in study.points]
-    folder = cache / hashlib.sha256("".join(runs).encode()).hexdigest()[:16]
-    if (folder / "study.h5").exists() and not (folder / "runs").exists():
-        return results.table(folder / "study.h5")
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", ConvergenceWarning)
-            table = run_study(study, folder, progress=progress)
-    except ConvergenceWarning as warning:
-        raise ConvergenceError(
-            f"the force curve needs the study in {folder}: {warning}; another number of grid "
-            "points may help"
-        ) from None
-    shutil.rmtree(folder / "runs")
-    return table

@@ -10,13 +10,10 @@ import numpy as np
 from pydantic.fields import FieldInfo
 
 from pellicle import registry
-from pellicle.components import Component, Kernel
+from pellicle.components import Kernel
 from pellicle.errors import ConfigError, problems_within, shown
-from pellicle.schema import Model, get, replaced, walk
+from pellicle.schema import get, replaced, walk
 from pellicle.units import Quantity, quantity_of
-
-_DIGITS = 12
-"""Digits of a scaled length, so that problems of equal proportions share a study."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +43,7 @@ def solid(spec: str | Mapping[str, Any], poissons_ratio: float | None = None) ->
     ------
     ConfigError, PluginError
         The kernel is not valid, has no field for the reduced modulus or the tension, has a value
-        for one of them, or another Poisson's ratio.
+        for one of them or for what scales with the modulus, or another Poisson's ratio.
     """
     table: Any = {"type": spec} if isinstance(spec, str) else dict(spec)
     with problems_within("kernel"):
@@ -62,6 +59,13 @@ def solid(spec: str | Mapping[str, Any], poissons_ratio: float | None = None) ->
         if ratio is None and poissons_ratio is not None and info.is_required():
             ratio, table = poissons_ratio, replaced(table, path, poissons_ratio)
         kernel = registry().make(Kernel, replaced(replaced(table, modulus, 1.0), tension, 0.0))
+        for field, quantity, value in quantities_of(kernel):
+            if value and field not in (modulus, tension) and quantity.powers()[0]:
+                raise ConfigError(
+                    f"{shown(value)} {quantity.unit} scales with the modulus, which is not known "
+                    "yet; a fit allows only lengths and plain numbers, so leave it out",
+                    field,
+                )
         own = get(kernel.model_dump(), path)
         if None not in (own, poissons_ratio) and own != poissons_ratio:
             raise ConfigError(
@@ -69,6 +73,13 @@ def solid(spec: str | Mapping[str, Any], poissons_ratio: float | None = None) ->
                 path,
             )
     return Solid(kernel, modulus, tension, poissons_ratio if ratio is None else ratio)
+
+
+def quantities_of(kernel: Kernel) -> Iterator[tuple[str, Quantity, float]]:
+    """Yield path, quantity and value [SI] of each quantity of a kernel that has a value."""
+    for path, value, info in walk(kernel):
+        if info is not None and isinstance(value, float) and (quantity := quantity_of(info)):
+            yield path, quantity, value
 
 
 def _field(table: Mapping[str, Any], name: str) -> tuple[str, FieldInfo]:
@@ -83,31 +94,3 @@ def _field(table: Mapping[str, Any], name: str) -> tuple[str, FieldInfo]:
     if name == "tension":
         remedy = 'put it under a skin: type = "coated", with this kernel as its substrate'
     raise ConfigError(f"{table.get('type')!r} has no field {name}; {remedy}")
-
-
-def scaled(component: Component, unit: float, free: tuple[str, ...] = ()) -> dict[str, Any]:
-    """Return the table of a component with every length divided by ``unit`` [m].
-
-    A field at a path not in ``free`` that scales with the modulus is a ConfigError.
-    """
-    table: dict[str, Any] = component.model_dump(exclude_none=True)
-    for path, quantity, value in values_of(component):
-        if quantity is None or path in free:
-            continue
-        force, length, _ = quantity.powers()
-        if force and value:
-            raise ConfigError(
-                f"{shown(value)} {quantity.unit} scales with the modulus, which is not known "
-                "yet; a fit allows only lengths and plain numbers, so leave it out",
-                path,
-            )
-        table = replaced(table, path, float(f"{value / unit**length:.{_DIGITS}g}"))
-    return table
-
-
-def values_of(component: Component) -> Iterator[tuple[str, Quantity | None, Any]]:
-    """Yield path, quantity and value of each field that has a value, except the type."""
-    for path, value, info in walk(component):
-        is_type = path.rpartition(".")[2] == "type"
-        if info is not None and value is not None and not isinstance(value, Model) and not is_type:
-            yield path, quantity_of(info) if isinstance(value, float) else None, value

@@ -14,8 +14,7 @@ from pellicle_fit.objective import CONTACT_POINT, MODULUS
 from pellicle_fit.recipe import TENSION, Answer
 from pellicle_fit.verdict import Verdict
 
-from .effects import listed
-from .quantities import PLAUSIBLE, words
+from .names import PLAUSIBLE, listed, words
 
 if TYPE_CHECKING:
     from pellicle_fit.config import FitConfig
@@ -101,14 +100,16 @@ def _of_measurement(answer: Answer) -> Iterator[Step]:
     if answer.verdict is Verdict.UNDESCRIBED:
         return
     if answer.verdict is Verdict.CANNOT_TELL:
-        advice, aim = telling(answer.asked, answer.tied_without), "tell these explanations apart"
+        measure, count = telling(answer.asked, answer.tied_without)
+        aim = "tell these explanations apart"
     else:
         found = {name: answer.estimates.get(name) for name in (MODULUS, TENSION)}
         names = [name for name, estimate in found.items() if estimate and estimate.high is None]
-        advice, aim = tightening(answer.chosen, names), f"bound {listed([*map(words, names)])}"
-    if advice.words:
-        count = f"{advice.count} curves of this kind" if advice.count > 1 else "it"
-        yield Step(f"measure {advice.words}", f"{count} would {aim}")
+        measure, count = tightening(answer.chosen, names) if names else "", 1
+        aim = f"bound {listed([*map(words, names)])}"
+    if measure:
+        curves = f"{count} curves of this kind" if count > 1 else "it"
+        yield Step(f"measure {measure}", f"{curves} would {aim}")
     elif answer.verdict is Verdict.CANNOT_TELL:
         why = "no other speed, dwell, pass, depth or radius would tell them apart"
         yield Step("measure with less noise", why)

@@ -14,8 +14,7 @@ from pellicle_fit.population.row import Row
 from pellicle_fit.population.summary import ALL, QUARTILES, summary
 from pellicle_fit.recipe import TENSION
 
-from .effects import listed
-from .quantities import FEW, unit_of, words
+from .names import FEW, listed, unit_of, words
 
 _NAMES = 10
 """Curves that would be helped alike and are named."""

@@ -1,21 +1,25 @@
-"""What a laboratory reads of a fit: the numbers asked for, the verdict, and what to do next."""
+"""What a laboratory reads of a fit: the numbers asked for, the verdict, what to do, remarks."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from itertools import chain
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from pellicle.units import decimal, readable
 from pellicle_fit.candidate import NONE
 from pellicle_fit.effect import Adds, Records
+from pellicle_fit.files.measurement import Note
 from pellicle_fit.intervals import CONFIDENCE
+from pellicle_fit.noise import Flaw
+from pellicle_fit.objective import MODULUS
 from pellicle_fit.recipe import Answer
 from pellicle_fit.verdict import Verdict
 
-from .effects import in_words, listed, words, words_of_types
-from .quantities import in_figures
-from .quantities import words as words_of
-from .remarks import CHECKS
+from .names import in_figures, in_words, listed, words, words_of, words_of_types
 
 if TYPE_CHECKING:
     from pellicle_fit.result import Fit
@@ -54,7 +58,7 @@ def numbers(fit: Fit, *, si: bool = False) -> str:
     # A baseline is the instrument's.
     kept = (effect for effect in answer.question.kept if not isinstance(effect, (Adds, Records)))
     names += chain.from_iterable(effect.open for effect in kept)
-    parts = [f"{words_of(name)} {in_figures(estimates[name], si=si)}" for name in names]
+    parts = [f"{words(name)} {in_figures(estimates[name], si=si)}" for name in names]
     calibration = calibration_of(fit)
     if answer.verdict is Verdict.UNDESCRIBED:
         return f"not to be quoted: {', '.join(parts)}; {calibration}"
@@ -64,7 +68,7 @@ def numbers(fit: Fit, *, si: bool = False) -> str:
 def calibration_of(fit: Fit) -> str:
     """Return to which uncertainties the calibration is known: exactly, if there are none."""
     known = [
-        f"{words_of(name)} to {100 * share:.3g} %" for name, share in fit.config.uncertainty.items()
+        f"{words(name)} to {100 * share:.3g} %" for name, share in fit.config.uncertainty.items()
     ]
     return f"calibration weighed: {listed(known)}" if known else "calibration taken as exact"
 
@@ -74,14 +78,14 @@ def verdict(answer: Answer) -> str:
     several = len(answer.judgements) > 1
     curves = "these curves" if several else "this curve"
     question, fits = answer.question, {fit.types: fit for fit in answer.explanations}
-    word, asked, other = question.word, answer.decision.asked, words(fits[answer.decision.other])
-    subject = words(fits[word]) if word else "an elastic half-space"
+    word, asked, other = question.word, answer.decision.asked, words_of(fits[answer.decision.other])
+    subject = words_of(fits[word]) if word else "an elastic half-space"
     if question.kept and not word:
         subject += f" with {in_words(question.kept)}"
     match answer.verdict:
         case Verdict.UNDESCRIBED:
             flaws = {flaw for one in answer.judgements if not one.describes for flaw in one.flaws}
-            why = next(text for flaw, text in CHECKS.items() if flaw in flaws)
+            why = next(flaw.value for flaw in Flaw if flaw in flaws)
             untried = listed([words_of_types(question, types) for types in answer.untried])
             text = f"no model describes {curves}: {why}"
             return f"{text}; {untried} could not be tried" if untried else text
@@ -93,16 +97,48 @@ def verdict(answer: Answer) -> str:
             nearest = f"; the nearest is {other}" if answer.decision.other else ""
             return f"{subject} is needed{pair}: nothing else tried fits as well{nearest}"
         case Verdict.CANNOT_TELL:
-            tied = [words(fit) for fit in answer.tied_without]
+            tied = [words_of(fit) for fit in answer.tied_without]
             names = listed(tied, "or", _RIVALS)
-            return f"{curves} cannot tell {words(fits[asked])} from {names}"
+            return f"{curves} cannot tell {words_of(fits[asked])} from {names}"
         case Verdict.OTHER:
             alike = [fit for fit in answer.explanations if fit.types in answer.tied_types]
             better = [fit for fit in alike if not (word <= fit.types if word else not fit.types)]
-            by = f"described better by {listed([*map(words, better)], 'or', _RIVALS)}"
+            by = f"described better by {listed([*map(words_of, better)], 'or', _RIVALS)}"
             if word:
                 return f"{subject} is not needed; {by}"
             return f"{curves} {'show' if several else 'shows'} more than {subject}; {by}"
     if not word and len(fits) == 1:
         return f"{subject} was compared with nothing"
     return f"no sign of {subject if word else f'more than {subject}'}"
+
+
+def agreement(answer: Answer, names: Sequence[str]) -> str:
+    """Return whether several curves agree on what they share; empty for one."""
+    found = answer.agreement
+    if not found.degrees:
+        return ""
+    if found.factor == 1:
+        return "the curves agree on what they share"
+    wider = decimal(np.sqrt(found.factor), 2)
+    return (
+        f"the curves do not agree on what they share, {names[found.worst]} least of all; the "
+        f"intervals are {wider} times wider for it"
+    )
+
+
+def remarks(answer: Answer) -> Iterator[str]:
+    """Yield a warning of a modulus that is not held, and notes of what was not compared."""
+    for fit in answer.not_held:
+        modulus = readable(fit.estimates[MODULUS].value, "Pa", 3)
+        yield f"the modulus is not held: with {words_of(fit)} one of {modulus} would do as well"
+    if answer.tension_needed:
+        yield Note("a surface more than half again as stiff as the bulk, not weighed, looks alike")
+    reasons: dict[str, list[str]] = {}
+    question = answer.question
+    for types, reason in answer.excused.items():
+        # Nothing is said of a rival that only beside what is asked could not be compared.
+        if not (question.word and question.word <= types):
+            reasons.setdefault(reason, []).append(words_of_types(question, types))
+    if reasons:
+        parts = (f"{listed(names)} ({reason})" for reason, names in reasons.items())
+        yield Note(f"not compared: {'; '.join(parts)}")

@@ -34,23 +34,22 @@ def liar(change: Callable[..., Any]) -> Any:
     return Bead(radius=1e-5)
 
 
-LIES: list[tuple[Callable[..., Any], str]] = [
-    (lambda curve, depth: curve.force, "() returned "),
-    (lambda curve, depth: curve._replace(force=curve.force[:-1]), "() returned "),
-    (lambda curve, depth: curve._replace(force=curve.force + 0j), "() returned "),
-    (lambda curve, depth: curve._replace(force=np.nan * depth), "().force has values that are NaN"),
-]
-
-
 @pytest.mark.parametrize(
     "solid", [{}, {"thickness": 1e-5, "poissons_ratio": 0.5}], ids=["half-space", "layer"]
 )
-@pytest.mark.parametrize(("change", "words"), LIES, ids=["bare", "short", "complex", "NaN"])
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda curve, depth: curve.force,
+        lambda curve, depth: curve._replace(force=curve.force[:-1]),
+        lambda curve, depth: curve._replace(force=curve.force + 0j),
+        lambda curve, depth: curve._replace(force=np.nan * depth),
+    ],
+    ids=["bare", "short", "complex", "NaN"],
+)
 def test_a_force_curve_that_lies_is_refused(
-    change: Callable[..., Any], words: str, solid: dict[str, Any]
+    change: Callable[..., Any], solid: dict[str, Any]
 ) -> None:
     """No modulus is fitted by a force that is none."""
-    method = "layer_force_curve" if solid else "force_curve"
-    with pytest.raises(pl.PluginError) as error:
+    with pytest.raises(pl.PluginError, match="indenter 'liar': its force curve is "):
         pl.fit(DEPTH, FORCE, indenter=liar(change), rivals=[], **solid)
-    assert f"indenter 'liar': {method}{words}" in str(error.value)

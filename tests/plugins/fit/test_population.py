@@ -36,9 +36,9 @@ from pellicle_fit.population.row import Row
 from pellicle_fit.population.rules import Rule
 from pellicle_fit.population.summary import summary
 from pellicle_fit.report.contact_sheet import sheets
-from pellicle_fit.report.population import drawable
+from pellicle_fit.report.population import distributions
+from pellicle_fit.words.names import quoted, unit_of
 from pellicle_fit.words.population import sentences_of_population
-from pellicle_fit.words.quantities import quoted, unit_of
 from tests.plugins.fit.test_many import BEAD, HERTZ, OPTIONS, curve, save
 
 Cli = Callable[..., Result]
@@ -158,7 +158,7 @@ def test_open_intervals_have_no_median() -> None:
     assert "1.2 kPa, quartiles 1.1 to 1.3, of the 5 of 10 curves" in medians
     (part,) = summary(rows[5:])
     assert (part["n"], part["open"], np.isnan(part["median"])) == (5, 5, True)
-    assert [r.name for r in drawable(rows)] == list("01234")
+    assert distributions(rows)[0].series[-1].x.tolist() == [1.2e3, 1.2e3]
 
 
 def test_a_value_is_quoted_where_its_interval_determines_it() -> None:

@@ -15,7 +15,7 @@ import pellicle as pl
 from pellicle_fit.population.judgement import judge
 from pellicle_fit.report import tables
 from pellicle_fit.report.figures import charts, panels, save_figure
-from pellicle_fit.report.likelihood_map import _grid
+from pellicle_fit.report.likelihood_map import likelihood_map
 from pellicle_fit.report.page import save_report
 from pellicle_fit.report.population import bars
 from pellicle_fit.words.story import story
@@ -97,16 +97,16 @@ def test_bars_and_units() -> None:
 
 
 def test_likelihood_map(single: pl.Fit) -> None:
-    """Its Δχ² are those of searches over the rest, and rise around the best pair."""
+    """On its edges Δχ² is that of searches over the rest, to some per cent."""
     (tensed,) = (one for one in single.answer.explanations if one.types == {"tension"})
-    moduli, tensions, rises = _grid(tensed)
-    assert moduli.min() < MODULUS < moduli.max()
-    assert -1e-6 < rises.min() < 0.5
-    objective, names = tensed.objective, [slot.name for slot in tensed.objective.slots]
+    objective = tensed.objective
+    edges = zip(likelihood_map(tensed, 1.0).series, (2.30, 5.99), strict=False)
+    names = [slot.name for slot in objective.slots]
     k = [names.index(name) for name in ("reduced_modulus", "tension")]
-    for place in ((10, 4), (20, 15)):
-        at = np.array(tensed.minimum.at)
-        pair = moduli[place], tensions[place]
-        at[k] = [objective.slots[i].coordinate(value) for i, value in zip(k, pair, strict=True)]
-        rise = objective.minimise(at, k).chi_squared - tensed.minimum.chi_squared
-        assert rises[place] == pytest.approx(rise, rel=0.02, abs=0.02)
+    for edge, level in edges:
+        for point in range(0, 200, 25):
+            at = np.array(tensed.minimum.at)
+            pair = edge.x[point], edge.y[point]
+            at[k] = [objective.slots[i].coordinate(v) for i, v in zip(k, pair, strict=True)]
+            rise = objective.minimise(at, k).chi_squared - tensed.minimum.chi_squared
+            assert rise == pytest.approx(level, rel=0.12)

@@ -1,4 +1,4 @@
-"""Which quantities of a fit are shown, and their names, units and intervals as people read them."""
+"""Names of explanations and quantities, and numbers with intervals, as people read them."""
 
 from __future__ import annotations
 
@@ -6,9 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pellicle.components import Column
+from pellicle.components import Column, words_of_type
 from pellicle.units import DIGITS, Scale
+from pellicle_fit.candidate import Candidate, Types
+from pellicle_fit.effect import Adds, Effect, Records
 from pellicle_fit.intervals import Estimate
+from pellicle_fit.rivals import Question
 
 PLAUSIBLE = {"reduced_modulus": (1.0, 1e12), "tension": (0.0, 1.0), "thickness": (1e-9, 1.0)}
 """Values [SI] beyond which a unit is probably wrong."""
@@ -30,12 +33,40 @@ def words(name: str) -> str:
     return name.replace("_", " ")
 
 
+def words_of(fit: Candidate) -> str:
+    """Return the effects of an explanation in words, but for those that all have."""
+    effects = fit.objective.explanation.effects
+    # A baseline that all have says nothing of the solid.
+    of_solid = [effect for effect in effects if not isinstance(effect, (Adds, Records))]
+    return in_words([e for e in effects if e.type_name in fit.types] or of_solid)
+
+
+def words_of_types(question: Question, types: Types) -> str:
+    """Return effects of a question in words."""
+    effects = {effect.type_name: effect for rival in question.rivals for effect in rival}
+    effects |= {question.asked.type_name: question.asked} if question.asked else {}
+    return in_words([effect for name, effect in effects.items() if name in types])
+
+
+def in_words(effects: Sequence[Effect]) -> str:
+    """Return effects that act together in words."""
+    names = [words_of_type(type(effect), effect.type_name) for effect in effects]
+    return listed(names, "with") or "an elastic half-space"
+
+
+def listed(names: Sequence[str], last: str = "and", most: int = 20) -> str:
+    """Return names with commas and a word before the last; of many, how many more there are."""
+    if len(names) > most:
+        names = [*names[:most], f"{len(names) - most} more"]
+    return f" {last} ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
+
+
 def unit_of(values: Sequence[float], unit: str, *, si: bool = False) -> Scale:
     """Return the unit in which values in SI are shown, with one prefix unless ``si``."""
     return Column("", values, unit).unit_and_digits(si=si)[0]
 
 
-def unit_of_estimate(estimate: Estimate, *, si: bool = False) -> Scale:
+def unit_of_one(estimate: Estimate, *, si: bool = False) -> Scale:
     """Return the unit for the value and the ends of an estimate, as `unit_of` does."""
     ends = [end for end in (estimate.low, estimate.high) if end is not None]
     # The value of an interval that is open to one side is not shown.
@@ -70,5 +101,5 @@ def quoted(estimate: Estimate, unit: Scale, digits: int, shown_unit: str = "") -
 
 def in_figures(estimate: Estimate, *, si: bool = False) -> str:
     """Return an estimate with its interval and its unit."""
-    unit = unit_of_estimate(estimate, si=si)
+    unit = unit_of_one(estimate, si=si)
     return quoted(estimate, unit, FEW, f" {unit.unit}".rstrip())
