@@ -80,11 +80,6 @@ class AdhesiveCurve(TableFigure):
         """Suffixes of the figure, of the curve and of its summary."""
         return (*super().suffixes, "-summary.csv")
 
-    def check(self, runs: Runs) -> None:
-        """Refuse runs that have no adhesive curve."""
-        for *_, run in self.opened(runs):
-            _refuse(run)
-
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
         """Yield the curves, and the tables of their points and of their ends."""
         drawn = [self._drawn(name, run) for name, _, run in self.opened(runs)]

@@ -50,10 +50,6 @@ class Patches(TableFigure):
         ),
     ] = 4
 
-    def check(self, runs: Runs) -> None:
-        """Refuse an axis or a label that the table does not have; four cells are no grid."""
-        list(self.picked(runs))
-
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
         """Yield all patches, and the map of the last curve beside the numbers of patches."""
         rows, series, panels = self._found(runs)
