@@ -34,6 +34,10 @@ class Spectrum(TableFigure):
     type: Literal["spectrum"] = "spectrum"
     examples = ({"by": "step", "label": "{depth * 1e6} µm"},)
 
+    def check(self, runs: Runs) -> None:
+        """Refuse an axis or a label that the table does not have; four cells are no grid."""
+        list(self.picked(runs))
+
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
         """Yield the spectra, and the numbers of all rings."""
         curves = [(name, _spectra(step)) for name, step in self.steps(runs)]
