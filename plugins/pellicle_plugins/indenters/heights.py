@@ -17,14 +17,12 @@ from pellicle.errors import ConfigError
 from pellicle.files import read_text
 from pellicle.schema import InputPath, read_mat
 
-from .file_checks import require_content, require_file, require_memory
+from .file_checks import require_file
 from .from_heights import FromHeights, HeightUnit
 from .text_table import FORMAT_MARKS, read_tables
 
 _KINDS = {".npy": "npy", ".h5": "hdf5", ".hdf5": "hdf5", ".nc": "hdf5", ".mat": "mat"}
 """What a file is by its ending; text otherwise."""
-_BYTES = 10
-"""Peak memory while an array is read and checked, per value beside the value itself [bytes]."""
 
 
 class Heights(FromHeights):
@@ -106,10 +104,6 @@ def _load(path: Path, dataset: str | None) -> Any:
                 _require_kind(array, str(path), "path")
                 if (expected := shape_of_run()) is not None:
                     _require_shape(array.shape, expected, str(path), "path")
-                require_content(array.size, path)
-                needed = float(array.size) * (array.dtype.itemsize + _BYTES)
-                subject = f"{path} with its {array.shape[0]} × {array.shape[1]} values"
-                require_memory(needed, subject, "resample it", "path")
             return array[...]
     except ConfigError:
         raise

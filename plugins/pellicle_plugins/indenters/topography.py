@@ -17,7 +17,6 @@ from pellicle.errors import ConfigError
 from pellicle.schema import InputPath
 from pellicle.units import Length, Quantity, readable
 
-from .file_checks import require_memory
 from .from_heights import FromHeights, HeightUnit
 from .sampling import UniformAxis
 from .scan import Scan
@@ -27,8 +26,6 @@ _Position = Annotated[float, Quantity("m", at_least=0)]
 _Level = Literal["none", "mean", "tilt", "curvature"]
 _LEVELS: tuple[_Level, ...] = get_args(_Level)
 """In the order of the degree of the subtracted polynomial, which is −1 for none."""
-_PER_FILLED = 900
-"""Peak memory per missing point that is filled in [bytes], for 10 to 30 % of 2000² points."""
 _LARGE, _STEEP = 0.1, 1.0
 """Size [m] and rms slope above which a wrong unit is more likely than such a surface."""
 
@@ -196,12 +193,6 @@ class Topography(FromHeights):
                     f"fill allows {self.fill:.2%}; raise it, or move or shrink the domain",
                     "fill",
                 )
-            require_memory(
-                _PER_FILLED * float(missing.sum()),
-                f"filling in {share:.2%} of {heights.shape[0]} × {heights.shape[1]} points",
-                "move or shrink the domain",
-                "fill",
-            )
             masked = np.ma.masked_array(np.where(missing, 0.0, heights), mask=missing)
             scan = library().Topography(masked, heights.shape)
             # The missing heights solve Laplace's equation.

@@ -468,27 +468,13 @@ def test_without_the_library(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) ->
         pl.indenter("topography", path=tmp_path / "a.gwy")
 
 
-@pytest.mark.parametrize(
-    ("available", "message"),
-    [
-        # The file has 10,526 bytes, and 39 × 33 points.
-        (1e4, r"^path: .*, a file of 1\.05e-05 GB, needs about 1\.05e-05 GB, and 1e-05 GB"),
-        (2e4, r"^path: .* with its 39 × 33 points needs about 9\.27e-05 GB, .*export a part"),
-    ],
-)
-def test_huge_file_is_refused_before_it_is_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, available: float, message: str
+def test_huge_scan_is_refused_before_it_is_read(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """Memory is estimated from the length of the file, then from the points in its header."""
+    """Memory is estimated from the 39 × 33 points in its header."""
     path = tmp_path / "a.gwy"
     path.write_bytes(GWY.read_bytes())
-    monkeypatch.setattr(memory, "available", lambda: available)
+    monkeypatch.setattr(memory, "available", lambda: 2e4)
+    message = r"^path: .* with its 39 × 33 points needs about 9\.27e-05 GB, .*export a part"
     with pytest.raises(pl.ConfigError, match=message):
         pl.indenter("topography", path=path)
-
-    # Filling takes memory by the number of missing points.
-    monkeypatch.setattr(memory, "available", lambda: None)
-    holes = pl.indenter("topography", path=X3P, fill=0.01)
-    monkeypatch.setattr(memory, "available", lambda: 6e3)
-    with pytest.raises(pl.ConfigError, match=r"^fill: filling in 0\.54% .* needs about 6\.3e-06"):
-        holes.profile(*GRID.coordinates())
