@@ -10,7 +10,7 @@ import xarray as xr
 from scipy.optimize import brentq
 
 from pellicle_plugins.closed_forms.hertz import ellipse, sphere
-from pellicle_plugins.closed_forms.sneddon import cone, flat_punch
+from pellicle_plugins.closed_forms.sneddon import cone
 from tests.physics.tables import half_space, heights, paraboloid
 from tests.physics.tables import step as solved
 
@@ -84,12 +84,11 @@ def test_the_sphere_is_stiffer_than_its_paraboloid_by_the_quartic_term(solver: s
 
 def test_flat_punch_force_converges_at_first_order(solver: str) -> None:
     """The force of a punch, singular at its rim, comes near 2 E* a δ at least as 1/N."""
-    true = flat_punch(1.0, 1.0, depth=0.01).force
     points, errors, punch = np.array([16, 32, 64, 128]), [], {"type": "flat_punch", "radius": 1.0}
     for n in points:
         # Several offsets of the rim against the grid, as a circle of cells is never quite round.
         steps = [_step(solver, n, size, punch, depth=0.01) for size in np.linspace(2.2, 2.5, 7)]
-        errors.append(np.sqrt(np.mean([(float(step["force"]) / true - 1) ** 2 for step in steps])))
+        errors.append(np.sqrt(np.mean([(float(step["force"]) / 0.02 - 1) ** 2 for step in steps])))
     assert -np.polyfit(np.log(points), np.log(errors), 1)[0] > 0.8
     assert errors[-1] < 1e-2
 

@@ -51,7 +51,7 @@ def _pressed() -> Iterator[Case]:
 
     radius = 0.1 * _RADIUS
     end = {"type": "flat_punch", "radius": radius}
-    force = sneddon.flat_punch(radius, _MODULUS, depth=_DEPTH).force
+    force = 2 * _MODULUS * radius * _DEPTH
     yield from _cases("flat punch", "Sneddon 1965", end, 2.2 * radius, force, tolerance=1e-2)
 
     tensed = indent(Paraboloid(radius=_RADIUS), _MODULUS, _TENSION, depth=_DEPTH)
