@@ -110,12 +110,13 @@ class Topography(FromHeights):
         reasons = []
         if max(scan.size) > _LARGE:
             reasons.append(f"measures {scan.size[0]:g} × {scan.size[1]:g} m")
-        slope = max(
-            _rms(np.diff(scan.heights, axis=axis)) / (edge / n)
-            for axis, (edge, n) in enumerate(zip(scan.size, scan.heights.shape, strict=True))
-        )
-        if slope > _STEEP:
-            reasons.append(f"has an rms slope of {slope:.3g}")
+        slopes = [0.0]
+        for axis, (edge, n) in enumerate(zip(scan.size, scan.heights.shape, strict=True)):
+            steps = np.diff(scan.heights, axis=axis)
+            steps = steps[np.isfinite(steps)]
+            slopes.append(float(np.linalg.norm(steps)) / np.sqrt(max(1, steps.size)) / (edge / n))
+        if max(slopes) > _STEEP:
+            reasons.append(f"has an rms slope of {max(slopes):.3g}")
         remedy = "export it again with the units of its sides and of its heights"
         if self.unit is not None or self.size is not None:
             remedy = "correct unit or size"
@@ -200,13 +201,6 @@ class Topography(FromHeights):
             heights = np.asarray(np.ma.getdata(filled.heights()), dtype=np.float64)
         heights = _levelled(heights, _LEVELS.index(self.level) - 1)
         return -heights if self.invert else heights
-
-
-def _rms(values: Array) -> float:
-    """Return the root mean square of the finite values; 0 without any."""
-    finite = np.abs(values[np.isfinite(values)])
-    largest = float(finite.max(initial=0.0))
-    return largest * float(np.sqrt(np.mean((finite / largest) ** 2))) if largest else 0.0
 
 
 def _levelled(heights: Array, degree: int) -> Array:
