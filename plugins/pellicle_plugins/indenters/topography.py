@@ -106,7 +106,6 @@ class Topography(FromHeights):
         return self
 
     def _warn_of_unit(self, scan: Scan) -> None:
-        """Warn of a size or slopes that suggest a wrong unit."""
         reasons = []
         if max(scan.size) > _LARGE:
             reasons.append(f"measures {scan.size[0]:g} × {scan.size[1]:g} m")

@@ -122,7 +122,6 @@ class Html(Output):
     def _sections_of_run(
         self, result: Result, configuration: dict[str, Any], runs: Runs
     ) -> list[Section]:
-        """Return what the page of a run shows before methods and provenance."""
         data = result.dataset
         maps, chosen = self._maps_of_steps(result)
         step_shown = default_step(data) % data.sizes["step"]
@@ -147,7 +146,6 @@ class Html(Output):
         ]
 
     def _sections_of_study(self, runs: Runs, first_run: dict[str, Any]) -> list[Section]:
-        """Return what the page of a study shows before methods and provenance."""
         table = runs.table
         rows = list(runs_of(table))
         frames, setups = dict[int, Frame](), list[Picture]()
@@ -221,7 +219,6 @@ class Html(Output):
 
 
 def _mapped(data: xr.Dataset) -> dict[str, MapField]:
-    """Return the fields that are mapped, by variable."""
     return _STICKING if has_interaction(data) else FIELDS
 
 
@@ -244,7 +241,6 @@ def _inputs(fields: Iterable[FieldRow]) -> Table:
 
 
 def _outputs(configuration: dict[str, Any]) -> list[Output]:
-    """Return the outputs that a configuration names."""
     return [registry().make(Output, output) for output in configuration.get("outputs") or ()]
 
 

@@ -77,7 +77,6 @@ def _file(stem: Path, number: int) -> Path:
 
 
 def _write_step(step: xr.Dataset, path: Path) -> None:
-    """Write the structured grid of one step."""
     data = step.isel(step=0)
     x, y = data["x"].values, data["y"].values
     extent = f"0 {x.size - 1} 0 {y.size - 1} 0 0"
