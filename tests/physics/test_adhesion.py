@@ -62,11 +62,7 @@ def test_errors_beside_the_cases_of_the_benchmark(
 
 
 @pytest.mark.parametrize(
-    ("interaction", "length", "most"),
-    [
-        (JKR, 1.0, 0.002),
-        (DUGDALE, 0.1, 0.005),
-    ],
+    ("interaction", "length", "most"), [(JKR, 1.0, 0.002), (DUGDALE, 0.1, 0.005)]
 )
 def test_approach_and_retraction_are_one_curve(
     interaction: dict[str, Any], length: float, most: float
@@ -157,8 +153,7 @@ def test_a_step_across_the_lowest_force_does_not_jump() -> None:
 
 @pytest.mark.parametrize("law", ["jkr", "dugdale"])
 @pytest.mark.parametrize(
-    ("prescribed", "values"),
-    [("depth", [1e-6, 2e-6]), ("force", [1e-7, 2e-7])],
+    ("prescribed", "values"), [("depth", [1e-6, 2e-6]), ("force", [1e-7, 2e-7])]
 )
 def test_a_step_that_is_held_does_not_jump(law: str, prescribed: str, values: list[float]) -> None:
     """The error that the tolerance leaves in the energy does not count as lost in a jump."""

@@ -26,7 +26,7 @@ class Dask(Executor):
         Field(
             description='address of the scheduler, such as "tcp://node1:8786"; start one with '
             "`dask scheduler`, its workers with `dask worker ADDRESS`, or use the executor "
-            '"processes" on one machine',
+            '"processes" on one machine'
         ),
     ]
     threads: Annotated[

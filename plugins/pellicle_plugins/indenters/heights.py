@@ -43,14 +43,10 @@ class Heights(FromHeights):
         ),
     ] = None
     unit: Annotated[
-        HeightUnit,
-        Field(
-            description="length that a height of 1 in the data stands for [m]: 'um'",
-        ),
+        HeightUnit, Field(description="length that a height of 1 in the data stands for [m]: 'um'")
     ]
     dataset: Annotated[
-        str | None,
-        Field(description="name of the array in a file that holds several"),
+        str | None, Field(description="name of the array in a file that holds several")
     ] = None
     # An array is replaced by its checked copy, which the caller cannot change.
     values: Annotated[

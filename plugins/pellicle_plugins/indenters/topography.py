@@ -44,10 +44,7 @@ class Topography(FromHeights):
     examples = ({"path": "patch.x3p", "fill": 0.01},)
     path: Annotated[
         InputPath,
-        Field(
-            title="file",
-            description="text, or a file that SurfaceTopography can read",
-        ),
+        Field(title="file", description="text, or a file that SurfaceTopography can read"),
     ]
     channel: Annotated[
         str | None, Field(description="name of the data set in a file that holds several")

@@ -72,10 +72,7 @@ def test_levels(tmp_path: Path) -> None:
 def test_what_is_left_by_a_level_has_none_of_it(path: Path) -> None:
     """Least squares: what is left has no product with any polynomial of the level's degree."""
     x, y = (np.broadcast_to(axis / 1e-3, GRID.shape) for axis in GRID.coordinates())
-    for level, polynomials in (
-        ("tilt", [x, y]),
-        ("curvature", [x, y, x**2, x * y, y**2]),
-    ):
+    for level, polynomials in (("tilt", [x, y]), ("curvature", [x, y, x**2, x * y, y**2])):
         left = _profile(path=path, level=level, fill=0.01)
         left -= left.mean()
         for polynomial in polynomials:
@@ -324,11 +321,7 @@ def test_missing_points_are_refused_or_filled() -> None:
 @pytest.mark.parametrize(
     ("size", "centre", "message"),
     [
-        (
-            "1.2 mm",
-            None,
-            r"^path: the domain reaches along y .* grid\.size at most 1\.1 mm",
-        ),
+        ("1.2 mm", None, r"^path: the domain reaches along y .* grid\.size at most 1\.1 mm"),
         (["1.4 mm", "0.6 mm"], None, r"along x .* at most 1.3 mm along x"),
         ("0.3 mm", ["0.1 mm", "0.3 mm"], r"^centre: .* at most 200 µm along x, or move centre"),
     ],
