@@ -118,11 +118,6 @@ def test_segments(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         assert storage.read(path)["step"].values.tolist() == list(range(index + 1))
         assert storage.read(path, without=["x", "y"]).sizes == {"step": index + 1}
     assert joins == [0, 1, 3, 7]
-    attributes, (pressure,) = storage.fields(path, ["pressure"], 18)
-    assert (pressure == steps(18)["pressure"].values[0]).all()
-    assert ATTRIBUTES.items() <= attributes.items()
-    with pytest.raises(StorageError, match="not have that many steps"):
-        storage.fields(path, ["pressure"], 99)
     whole = xr.concat([steps(index) for index in range(20)], "step", data_vars="all")
     xr.testing.assert_identical(storage.read(path), whole)
     storage.close(path)

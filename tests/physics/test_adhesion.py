@@ -10,7 +10,6 @@ import pytest
 import xarray as xr
 
 import pellicle as pl
-from pellicle_plugins.closed_forms.maugis import dugdale_contact
 from tests.adhesive_paths import (
     FORCE,
     JKR,
@@ -63,11 +62,7 @@ def test_errors_beside_the_cases_of_the_benchmark(
 
 
 @pytest.mark.parametrize(
-    ("interaction", "length", "most"),
-    [
-        (JKR, 1.0, 0.002),
-        (DUGDALE, 0.1, 0.005),
-    ],
+    ("interaction", "length", "most"), [(JKR, 1.0, 0.002), (DUGDALE, 0.1, 0.005)]
 )
 def test_approach_and_retraction_are_one_curve(
     interaction: dict[str, Any], length: float, most: float
@@ -158,8 +153,7 @@ def test_a_step_across_the_lowest_force_does_not_jump() -> None:
 
 @pytest.mark.parametrize("law", ["jkr", "dugdale"])
 @pytest.mark.parametrize(
-    ("prescribed", "values"),
-    [("depth", [1e-6, 2e-6]), ("force", [1e-7, 2e-7])],
+    ("prescribed", "values"), [("depth", [1e-6, 2e-6]), ("force", [1e-7, 2e-7])]
 )
 def test_a_step_that_is_held_does_not_jump(law: str, prescribed: str, values: list[float]) -> None:
     """The error that the tolerance leaves in the energy does not count as lost in a jump."""
@@ -268,16 +262,26 @@ def test_a_cantilever_jumps_off_where_the_theory_says(stiffness: float) -> None:
 
 
 def test_a_dugdale_zone_is_that_of_maugis() -> None:
-    """At λ = 1 force and radius along the path are right to 1 % (Maugis 1992)."""
+    """At λ = 1 force and radius along the path are right to 1 % (Maugis 1992).
+
+    With λ = 2σ₀ (R/πwK²)^⅓, K = 4E*/3, and c the radius of the zone, m = c/a and θ = arccos(1/m)
+    give ½λa² (√(m² − 1) + (m² − 2)θ) + 4/3 λ²a (θ√(m² − 1) − m + 1) = 1 in units of (πwR²/K)^⅓.
+    """
     strength = 0.5 * np.cbrt(pi * (4 / 3) ** 2)
-    radii = np.linspace(1.0, 2.4, 300)
-    closed = dugdale_contact(1.0, 1.0, 1.0, strength, radii)
+    ratio = np.geomspace(3.0, 1.1, 3000)
+    tangent, angle = np.sqrt(ratio**2 - 1), np.arccos(1 / ratio)
+    quarter = (tangent + (ratio**2 - 2) * angle) / 4
+    linear = (tangent * angle - ratio + 1) * 2 / 3
+    scaled = (np.sqrt(linear**2 + 2 * quarter) - linear) / (2 * quarter)
+    unit = np.cbrt(3 * pi / 4)
+    closed_depth = unit**2 * (scaled**2 - 4 / 3 * scaled * tangent)
+    closed_force = pi * (scaled**3 - scaled**2 * (tangent + ratio**2 * angle))
     depths = [1.0, 0.2, -0.6]
     law = {"type": "dugdale", "work_of_adhesion": 1.0, "strength": float(strength)}
     path = solved(128, 0.0, depths, interaction=law, size=6.0)
-    force = np.interp(depths, closed.depth, closed.force)
+    force = np.interp(depths, closed_depth, closed_force)
     np.testing.assert_allclose(path["force"].values, force, atol=0.01 * FORCE)
-    radius = np.interp(depths, closed.depth, radii)
+    radius = np.interp(depths, closed_depth, unit * scaled)
     np.testing.assert_allclose(path["contact_radius"].values, radius, rtol=0.01)
 
 

@@ -119,10 +119,7 @@ def _tensed(depth: float) -> float:
 
 @pytest.mark.parametrize(
     ("kernel", "true_force", "spring", "error"),
-    [
-        (BARE, _hertz, 0.5, 2e-3),
-        pytest.param(SKIN, _tensed, 2.0, 5e-3, marks=pytest.mark.slow),
-    ],
+    [(BARE, _hertz, 0.5, 2e-3), pytest.param(SKIN, _tensed, 2.0, 5e-3, marks=pytest.mark.slow)],
     ids=["Hertz", "tension"],
 )
 def test_cantilever_on_a_paraboloid(

@@ -12,14 +12,7 @@ import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.runs.relaxation import Relaxation
 from pellicle.surface.outside import PlaneOperator
-from tests.physics.tables import (
-    coated,
-    half_space,
-    paraboloid,
-    reference_rows,
-    relaxing,
-    tensed,
-)
+from tests.physics.tables import coated, half_space, paraboloid, reference_rows, relaxing, tensed
 
 MODULUS, TENSION = 5.0, 0.5
 
@@ -147,10 +140,7 @@ def test_limits_are_elastic(fraction: float, time: float, times: list[float], sh
             tolerance=1e-11,
             substrate=substrate,
         )
-        for substrate in (
-            kernel(0.1, fraction, time),
-            tensed(share * MODULUS, 0.1),
-        )
+        for substrate in (kernel(0.1, fraction, time), tensed(share * MODULUS, 0.1))
     )
     after = slice(1, None) if share < 1 else slice(None)
     for name in ("force", "contact_area"):

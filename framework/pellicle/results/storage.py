@@ -107,22 +107,6 @@ def attributes(path: Path) -> dict[str, Any]:
         return _attributes_of(file)
 
 
-def fields(path: Path, names: Sequence[str], step: int) -> tuple[dict[str, Any], list[Any]]:
-    """Return attributes and the named fields of a result file at the step of index ``step``."""
-    for part in _parts(path):
-        with opened(part) as file:
-            count = file["step"].size
-            if step < count:
-                # NetCDF has no truth values, and a mask of integers would be an index.
-                arrays = [
-                    file[name][step].astype(bool) if name == "contact" else file[name][step]
-                    for name in names
-                ]
-                return _attributes_of(file), arrays
-            step -= count
-    raise StorageError(f"{path} does not have that many steps; run it again")
-
-
 def joined(steps: list[xr.Dataset]) -> xr.Dataset:
     """Return datasets of consecutive steps as one.
 

@@ -7,16 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pellicle.components import (
-    AnyTask,
-    Executor,
-    Outcome,
-    Outcomes,
-    Report,
-    Threads,
-    Work,
-    Workers,
-)
+from pellicle.components import AnyTask, Executor, Outcome, Outcomes, Report, Threads, Work, Workers
 
 
 class Processes(Executor):

@@ -18,11 +18,7 @@ class Transformed(Indenter):
     """Base class of the indenters that change one other, their ``part``."""
 
     part: Annotated[
-        Indenter,
-        FromRegistry(),
-        Field(
-            description="the indenter to change: a table with type",
-        ),
+        Indenter, FromRegistry(), Field(description="the indenter to change: a table with type")
     ]
 
     moves: ClassVar[bool] = True
@@ -69,9 +65,7 @@ class Rotated(Transformed):
         {"part": {"type": "quadric", "radius_x": "1 mm", "radius_y": "2 mm"}, "angle": "30 degree"},
     )
     angle: Annotated[
-        float,
-        Quantity("rad"),
-        Field(description="angle [rad] from x towards y, or as '30 degree'"),
+        float, Quantity("rad"), Field(description="angle [rad] from x towards y, or as '30 degree'")
     ]
 
     def profile(self, x: Array, y: Array) -> Array:
@@ -125,10 +119,7 @@ class Sum(Indenter):
     )
     parts: Annotated[
         tuple[Annotated[Indenter, FromRegistry()], ...],
-        Field(
-            min_length=1,
-            description="the indenters to add: tables with type",
-        ),
+        Field(min_length=1, description="the indenters to add: tables with type"),
     ]
 
     @property

@@ -33,8 +33,7 @@ class FromHeights(Indenter):
     footprint: ClassVar[Footprint] = "domain"
 
     sha256: Annotated[
-        str | None,
-        Field(title="hash", description="hash of the file or array; verified if given"),
+        str | None, Field(title="hash", description="hash of the file or array; verified if given")
     ] = None
     _heights: Array = PrivateAttr()
     _digest: str = PrivateAttr()

@@ -17,14 +17,12 @@ from pellicle.errors import ConfigError
 from pellicle.files import read_text
 from pellicle.schema import InputPath, read_mat
 
-from .file_checks import require_content, require_file, require_memory
+from .file_checks import require_file
 from .from_heights import FromHeights, HeightUnit
 from .text_table import FORMAT_MARKS, read_tables
 
 _KINDS = {".npy": "npy", ".h5": "hdf5", ".hdf5": "hdf5", ".nc": "hdf5", ".mat": "mat"}
 """What a file is by its ending; text otherwise."""
-_BYTES = 10
-"""Peak memory while an array is read and checked, per value beside the value itself [bytes]."""
 
 
 class Heights(FromHeights):
@@ -45,14 +43,10 @@ class Heights(FromHeights):
         ),
     ] = None
     unit: Annotated[
-        HeightUnit,
-        Field(
-            description="length that a height of 1 in the data stands for [m]: 'um'",
-        ),
+        HeightUnit, Field(description="length that a height of 1 in the data stands for [m]: 'um'")
     ]
     dataset: Annotated[
-        str | None,
-        Field(description="name of the array in a file that holds several"),
+        str | None, Field(description="name of the array in a file that holds several")
     ] = None
     # An array is replaced by its checked copy, which the caller cannot change.
     values: Annotated[
@@ -106,10 +100,6 @@ def _load(path: Path, dataset: str | None) -> Any:
                 _require_kind(array, str(path), "path")
                 if (expected := shape_of_run()) is not None:
                     _require_shape(array.shape, expected, str(path), "path")
-                require_content(array.size, path)
-                needed = float(array.size) * (array.dtype.itemsize + _BYTES)
-                subject = f"{path} with its {array.shape[0]} × {array.shape[1]} values"
-                require_memory(needed, subject, "resample it", "path")
             return array[...]
     except ConfigError:
         raise

@@ -64,8 +64,7 @@ class Axisymmetric(Indenter):
     def _master_curve(self, depth: Array, length: float) -> ForceCurve: ...
 
     @abstractmethod
-    def _make_layer_curves(self) -> Profile | Punch:
-        """Return the curves of the indenter on bonded layers."""
+    def _make_layer_curves(self) -> Profile | Punch: ...
 
 
 # A fit with adhesion asks for the force curve and the contact radius at the same depths.

@@ -19,7 +19,6 @@ _TEXT_FACTOR = 10
 """Peak memory while a text is parsed, over its length; 9 were measured at 1000² zeros."""
 _FEWEST = 4
 """Least number of entries of a row with a word above all others; a header may be ``Size 10 um``."""
-_MOST_CHANNELS = 100
 _NUMBERS = re.compile(
     r"(?:[\d.,;\s]|[-+](?=[\d.,iI])|[eE](?=[-+\d])|(?i:nan|bad|inf(?:init[ey])?))+"
 )
@@ -50,7 +49,7 @@ def read_tables(text: str, path: Path) -> dict[str, TextTable]:
     of a line is ignored unless the row lacks an entry.
     """
     subject = f"{path}, a file of {len(text) / 1e9:.3g} GB,"
-    require_memory(_TEXT_FACTOR * len(text), subject, "export a part of it", "path")
+    require_memory(_TEXT_FACTOR * len(text), subject)
     lines = text.splitlines()
     bodies = [_COMMENT.split(line, maxsplit=1)[0] for line in lines]
     rows, mark = _rows(bodies)
@@ -68,11 +67,6 @@ def read_tables(text: str, path: Path) -> dict[str, TextTable]:
         elif body.strip() and not _ENTRY.search(body):
             texts.append(number)
     _require_no_words(bodies, texts, widths, mark, path)
-    # Each channel has the header of those above it.
-    if len(channels) > _MOST_CHANNELS:
-        raise ConfigError(
-            f"{path} has {len(channels)} channels; export at most {_MOST_CHANNELS}", "path"
-        )
     last = max(rows)
     tables = {}
     for name, numbers in channels.items():

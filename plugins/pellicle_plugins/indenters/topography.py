@@ -17,7 +17,6 @@ from pellicle.errors import ConfigError
 from pellicle.schema import InputPath
 from pellicle.units import Length, Quantity, readable
 
-from .file_checks import require_memory
 from .from_heights import FromHeights, HeightUnit
 from .sampling import UniformAxis
 from .scan import Scan
@@ -27,8 +26,6 @@ _Position = Annotated[float, Quantity("m", at_least=0)]
 _Level = Literal["none", "mean", "tilt", "curvature"]
 _LEVELS: tuple[_Level, ...] = get_args(_Level)
 """In the order of the degree of the subtracted polynomial, which is −1 for none."""
-_PER_FILLED = 900
-"""Peak memory per missing point that is filled in [bytes], for 10 to 30 % of 2000² points."""
 _LARGE, _STEEP = 0.1, 1.0
 """Size [m] and rms slope above which a wrong unit is more likely than such a surface."""
 
@@ -47,10 +44,7 @@ class Topography(FromHeights):
     examples = ({"path": "patch.x3p", "fill": 0.01},)
     path: Annotated[
         InputPath,
-        Field(
-            title="file",
-            description="text, or a file that SurfaceTopography can read",
-        ),
+        Field(title="file", description="text, or a file that SurfaceTopography can read"),
     ]
     channel: Annotated[
         str | None, Field(description="name of the data set in a file that holds several")
@@ -109,16 +103,16 @@ class Topography(FromHeights):
         return self
 
     def _warn_of_unit(self, scan: Scan) -> None:
-        """Warn of a size or slopes that suggest a wrong unit."""
         reasons = []
         if max(scan.size) > _LARGE:
             reasons.append(f"measures {scan.size[0]:g} × {scan.size[1]:g} m")
-        slope = max(
-            _rms(np.diff(scan.heights, axis=axis)) / (edge / n)
-            for axis, (edge, n) in enumerate(zip(scan.size, scan.heights.shape, strict=True))
-        )
-        if slope > _STEEP:
-            reasons.append(f"has an rms slope of {slope:.3g}")
+        slopes = [0.0]
+        for axis, (edge, n) in enumerate(zip(scan.size, scan.heights.shape, strict=True)):
+            steps = np.diff(scan.heights, axis=axis)
+            steps = steps[np.isfinite(steps)]
+            slopes.append(float(np.linalg.norm(steps)) / np.sqrt(max(1, steps.size)) / (edge / n))
+        if max(slopes) > _STEEP:
+            reasons.append(f"has an rms slope of {max(slopes):.3g}")
         remedy = "export it again with the units of its sides and of its heights"
         if self.unit is not None or self.size is not None:
             remedy = "correct unit or size"
@@ -196,12 +190,6 @@ class Topography(FromHeights):
                     f"fill allows {self.fill:.2%}; raise it, or move or shrink the domain",
                     "fill",
                 )
-            require_memory(
-                _PER_FILLED * float(missing.sum()),
-                f"filling in {share:.2%} of {heights.shape[0]} × {heights.shape[1]} points",
-                "move or shrink the domain",
-                "fill",
-            )
             masked = np.ma.masked_array(np.where(missing, 0.0, heights), mask=missing)
             scan = library().Topography(masked, heights.shape)
             # The missing heights solve Laplace's equation.
@@ -209,13 +197,6 @@ class Topography(FromHeights):
             heights = np.asarray(np.ma.getdata(filled.heights()), dtype=np.float64)
         heights = _levelled(heights, _LEVELS.index(self.level) - 1)
         return -heights if self.invert else heights
-
-
-def _rms(values: Array) -> float:
-    """Return the root mean square of the finite values; 0 without any."""
-    finite = np.abs(values[np.isfinite(values)])
-    largest = float(finite.max(initial=0.0))
-    return largest * float(np.sqrt(np.mean((finite / largest) ** 2))) if largest else 0.0
 
 
 def _levelled(heights: Array, degree: int) -> Array:

@@ -17,7 +17,7 @@ from pellicle.arrays import Array
 from pellicle.errors import ConfigError
 from pellicle.files import read_text
 
-from .file_checks import require_content, require_file, require_memory
+from .file_checks import require_file, require_memory
 from .scan import Channel, Scan, chosen, edge_lengths, height_scale, known
 from .text_scan import text_channels
 from .text_table import FORMAT_MARKS, read_tables
@@ -33,23 +33,21 @@ def read_scan(
 
     ``unit`` [m] and ``size`` [m] are given where the file does not state them.
     """
-    length = require_file(path)
-    return _read(path.absolute(), path.stat().st_mtime_ns, length, channel, unit, size)
+    require_file(path)
+    stat = path.stat()
+    return _read(path.absolute(), (stat.st_mtime_ns, stat.st_size), channel, unit, size)
 
 
 # The runs of a study may use many parts of one large scan.
 @lru_cache(maxsize=1)
 def _read(
     path: Path,
-    changed: int,
-    length: int,
+    _version: tuple[int, int],
     name: str | None,
     unit: float | None,
     size: tuple[float, float] | None,
 ) -> Scan:
     """Return the scan as `read_scan` does; a file that has changed is read again."""
-    subject = f"{path}, a file of {length / 1e9:.3g} GB,"
-    require_memory(length, subject, "export a part of it", "path")
     try:
         # Readers give warnings that the user cannot act on, and raise anything for damaged files.
         with path.open("rb") as file, warnings.catch_warnings(), np.errstate(all="ignore"):
@@ -64,8 +62,6 @@ def _read(
         raise
     except PermissionError as error:
         raise ConfigError(f"{path}: {error.strerror}; give the file of a scan", "path") from None
-    except np.exceptions.ComplexWarning:
-        raise ConfigError(f"{path} holds complex values; give real numbers", "path") from None
     except Exception as error:
         reason = (str(error).splitlines() or [""])[0][:200] or type(error).__name__
         raise ConfigError(
@@ -105,9 +101,7 @@ def _channels(file: BinaryIO, path: Path) -> list[Channel]:
 def _library_channel(channel: Any, path: Path) -> Channel:
     def read() -> Array:
         nx, ny = channel.nb_grid_pts
-        require_content(nx * ny, path)
-        subject = f"{path} with its {nx} × {ny} points"
-        require_memory(8.0 * _ARRAYS * nx * ny, subject, "export a part of it", "path")
+        require_memory(8.0 * _ARRAYS * nx * ny, f"{path} with its {nx} × {ny} points")
         # The heights do not depend on the size, but the reader requires one.
         dummy = None if channel.physical_sizes is not None else (1.0, 1.0)
         raw = channel.topography(physical_sizes=dummy).heights()

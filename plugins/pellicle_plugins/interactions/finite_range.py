@@ -63,8 +63,7 @@ class Adhesive(Interaction):
         WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m2]")
     ]
     range: Annotated[
-        Length | None,
-        Field(description="gap at which the traction ends [m]; or strength"),
+        Length | None, Field(description="gap at which the traction ends [m]; or strength")
     ] = None
     strength: Annotated[
         Strength | None, Field(description="traction that separates a closed gap [Pa]; or range")

@@ -74,7 +74,6 @@ class JKR(Interaction):
         return partial(self._softening, factor * _CELLS) if self.estimate_error else None
 
     def _softening(self, cells: float, kernel: Kernel, grid: Grid) -> GapLaw:
-        """Return linear softening over about a number of cells."""
         width = cells * grid.cell_size
         strength = softening_strength(self.work_of_adhesion, width, kernel)
         return Linear(work_of_adhesion=self.work_of_adhesion, strength=strength)

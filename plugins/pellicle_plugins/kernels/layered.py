@@ -63,7 +63,7 @@ class Layered(Kernel):
         BeforeValidator(_substrate, json_schema_input_type=ElasticConstants | Literal["rigid"]),
         Field(
             description='what the layers are glued to: "rigid", or a half-space as a table of '
-            "youngs_modulus or reduced_modulus, and poissons_ratio",
+            "youngs_modulus or reduced_modulus, and poissons_ratio"
         ),
     ]
 

@@ -57,10 +57,7 @@ def power_law_series(exponent: float, span: float) -> PronySeries:
     )
     active = np.flatnonzero(fit.x[:-1] > 0)
     return PronySeries(
-        float(fit.x[-1]),
-        tuple(fit.x[active].tolist()),
-        tuple(times[active].tolist()),
-        error,
+        float(fit.x[-1]), tuple(fit.x[active].tolist()), tuple(times[active].tolist()), error
     )
 
 

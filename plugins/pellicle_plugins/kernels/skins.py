@@ -18,10 +18,7 @@ class Skin(Kernel):
 
     tension: Annotated[
         Tension,
-        Field(
-            title="surface tension",
-            description="tension τ₀ of the skin [N/m], 0 for none",
-        ),
+        Field(title="surface tension", description="tension τ₀ of the skin [N/m], 0 for none"),
     ] = 0.0
     bending: Annotated[
         BendingStiffness,
@@ -117,11 +114,7 @@ class Coated(Skin, KernelOf):
         },
     )
     substrate: Annotated[
-        Kernel,
-        FromRegistry(),
-        Field(
-            description="the kernel under the skin: a table with type",
-        ),
+        Kernel, FromRegistry(), Field(description="the kernel under the skin: a table with type")
     ]
 
     def compliance(self, q: Array) -> Array:

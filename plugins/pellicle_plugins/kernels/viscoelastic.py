@@ -106,7 +106,7 @@ class Viscoelastic(KernelOf):
         FromRegistry(),
         Field(
             description="the instantaneous response, or for a power law that at its time: a kernel "
-            "without a skin, as a table with type",
+            "without a skin, as a table with type"
         ),
     ]
     relaxation: Annotated[

@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import Field
 
 from pellicle import analysis
-from pellicle.arrays import Array
+from pellicle.analysis.steepness import steepest
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
 from pellicle.errors import ConfigError
 from pellicle.results.result import Result
@@ -79,11 +79,6 @@ class AdhesiveCurve(TableFigure):
     def suffixes(self) -> tuple[str, ...]:
         """Suffixes of the figure, of the curve and of its summary."""
         return (*super().suffixes, "-summary.csv")
-
-    def check(self, runs: Runs) -> None:
-        """Refuse runs that have no adhesive curve."""
-        for *_, run in self.opened(runs):
-            _refuse(run)
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
         """Yield the curves, and the tables of their points and of their ends."""
@@ -159,33 +154,22 @@ def _status(
     curve: analysis.AdhesiveCurve, points: dict[str, analysis.AdhesiveContact], path: xr.Dataset
 ) -> str:
     """Return which points are not on the path, not resolved, or steeper than the theory allows."""
-    spacing = max(Result(path).grid.spacing)
-    steps = np.argsort(path["contact_radius"].values)
-    slopes = path["contact_radius"].values[steps], _steepest_slopes(path)[steps]
+    grid, last = Result(path).grid, path.isel(step=-1)
+    profile = last["displacement"].values - last["depth"].item() - last["gap"].values
+    path = path.isel(step=np.argsort(path["contact_radius"].values))
+    slopes = [steepest(profile, contact, grid) for contact in path["contact"].values]
     missing, coarse, steep = list[str](), dict[str, float](), dict[str, float]()
     for mark, contact in points.items():
         radius = float(contact.contact_radius)
-        slope = float(np.interp(radius, *slopes))
+        slope = float(np.interp(radius, path["contact_radius"].values, slopes))
         if np.isnan(radius):
             missing.append(mark)
             continue
-        if radius < FEW_CELLS * spacing:
-            coarse[mark] = radius / spacing
+        if radius < FEW_CELLS * max(grid.spacing):
+            coarse[mark] = radius / max(grid.spacing)
         if slope > STEEP_RIM:
             steep[mark] = slope
     return limits_of_curve(missing, coarse, steep, *curve.contact_radius[[0, -1]])
-
-
-def _steepest_slopes(path: xr.Dataset) -> Array:
-    """Return the largest slope of the indenter in the contact of each load step, shape (step,)."""
-    last = path.isel(step=-1)
-    profile = last["displacement"].values - last["depth"].item() - last["gap"].values
-    spacing = Result(path).grid.spacing
-    # Where the indenter ends the profile is −inf, and in the cells beside that the slope is inf.
-    with np.errstate(invalid="ignore"):
-        slope = np.hypot(*np.gradient(profile, *spacing))
-    contacts = path["contact"].values
-    return np.array([np.nanmax(slope[contact], initial=0.0) for contact in contacts])
 
 
 def _refuse(run: xr.Dataset) -> None:

@@ -27,7 +27,6 @@ from pellicle.show.saving import write_charts
 from pellicle.show.style import FigureStyle, is_ordered
 from pellicle.units import DIGITS, Quantity, readable
 from pellicle.variables import words_of_name
-from pellicle_plugins.validation.reference import require_solution
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -109,17 +108,8 @@ class TableFigure(Output):
         return tuple(f".{kind}" for kind in (*self.formats, *["csv"] * self.numbers))
 
     def check(self, runs: Runs) -> None:
-        """Refuse what cannot be shown; a reference is not solved for that."""
-        figure = self
-        if getattr(self, "reference", None):
-            for run in self.compared(runs):
-                require_solution(Run.from_json(run.attrs["configuration"]))
-            figure = self.model_copy(update={"reference": None})
-        list(figure.charts(runs))
-
-    def compared(self, runs: Runs) -> Iterator[xr.Dataset]:
-        """Yield the runs that a reference is drawn beside."""
-        yield from (run for _, run in self.steps(runs))
+        """Refuse what cannot be shown."""
+        list(self.charts(runs))
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure in each format, and its numbers; nothing if no step has numbers."""

@@ -13,9 +13,8 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown
-from pellicle.errors import ConfigError, StorageError
+from pellicle.errors import ConfigError
 from pellicle.results.path import has_path
-from pellicle.results.runs import StoredRuns
 from pellicle.schema.expression import names_in
 from pellicle.schema.model import Model
 from pellicle.show.style import is_log_spaced, is_ordered
@@ -166,27 +165,6 @@ class Curves(TableFigure):
         rest = [dim for dim in long if dim not in goes_along[:1]]
         return (self.by, rest) if self.by else (rest[:1], rest[1:])
 
-    def check(self, runs: Runs) -> None:
-        """Refuse what cannot be shown, and expressions that the reference has no value for."""
-        super().check(runs)
-        if not self.reference:
-            return
-
-        def unsolved(name: str) -> xr.Dataset:
-            raise StorageError(name)
-
-        reference = exact(StoredRuns(runs.table, unsolved))
-        for field, text in [("x", self.x), *(("y", text) for text in self.y)]:
-            try:
-                reference.column(text)
-            except ConfigError as error:
-                message = f"{text!r} has no value in the semi-analytic solution: {error}"
-                raise ConfigError(message, field) from None
-
-    def compared(self, runs: Runs) -> Iterator[xr.Dataset]:
-        """Yield all runs."""
-        yield from (run for _, run in runs.datasets() if run is not None)
-
     def _over_steps(self, table: xr.Dataset) -> bool:
         """Return whether the expressions have a value for each step, not just one for each run."""
         if not has_path(table):
@@ -271,7 +249,13 @@ class Curves(TableFigure):
         over_time = "time" in names_in(self.x)
         points_at = partial(points_of, over=self.over, spread=self.spread, over_time=over_time)
         reference = exact(runs) if self.reference else None
-        of_reference = [reference.column(text) for text in (self.x, *self.y)] if reference else []
+        of_reference = []
+        for field, text in [("x", self.x), *(("y", text) for text in self.y)]:
+            try:
+                of_reference += [reference.column(text)] if reference else []
+            except ConfigError as error:
+                message = f"{text!r} has no value in the semi-analytic solution: {error}"
+                raise ConfigError(message, field) from None
         for (number, y), (panel, cell), place in product(
             enumerate(ys), enumerate(along(table, panels)), along(table, by)
         ):

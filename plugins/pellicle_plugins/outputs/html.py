@@ -18,7 +18,6 @@ from pellicle.components import Output, Runs, Table
 from pellicle.config.describe import FieldRow, inputs
 from pellicle.errors import StorageError
 from pellicle.files import atomic_write
-from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction, label_of_step
 from pellicle.results.result import Result
@@ -42,7 +41,6 @@ from pellicle.show.sentences import (
     status_of_run,
     status_of_study,
 )
-from pellicle.variables import FIELDS as RESULT_FIELDS
 from pellicle.variables import WALL_PRESSURE
 
 from .html_curves import curves_of_outputs, curves_of_run, curves_of_study, picture
@@ -108,7 +106,7 @@ class Html(Output):
         else:
             run = json.loads(table.attrs[FIRST_RUN])
             varied = tuple(axes_of(table))
-            sections = self._sections_of_study(runs, run, varied, stem.parent / "runs")
+            sections = self._sections_of_study(runs, run)
         sections += [
             Section("Methods", [Text(methods(run, table.attrs, varied))]),
             Section("Provenance", tables.origin(table.attrs, inputs(run, Run))),
@@ -124,7 +122,6 @@ class Html(Output):
     def _sections_of_run(
         self, result: Result, configuration: dict[str, Any], runs: Runs
     ) -> list[Section]:
-        """Return what the page of a run shows before methods and provenance."""
         data = result.dataset
         maps, chosen = self._maps_of_steps(result)
         step_shown = default_step(data) % data.sizes["step"]
@@ -148,18 +145,12 @@ class Html(Output):
             Section("Set-up", [setup, _inputs(inputs(configuration, Run))]),
         ]
 
-    def _sections_of_study(
-        self, runs: Runs, first_run: dict[str, Any], varied: tuple[str, ...], folder: Path
-    ) -> list[Section]:
-        """Return what the page of a study shows before methods and provenance.
-
-        ``folder`` holds the files of its runs.
-        """
+    def _sections_of_study(self, runs: Runs, first_run: dict[str, Any]) -> list[Section]:
         table = runs.table
         rows = list(runs_of(table))
         frames, setups = dict[int, Frame](), list[Picture]()
         mapped = _mapped(table)
-        for index, step, label, points in self._steps_of_runs(table, rows, folder):
+        for index, step, label, points in self._steps_of_runs(runs, rows):
             frames[index] = _frame(
                 label, Result(step).grid, without_round_off(step), mapped, points
             )
@@ -204,35 +195,21 @@ class Html(Output):
         return Maps(caption, "load step", tuple(mapped.values()), frames, max(begin, 0)), chosen
 
     def _steps_of_runs(
-        self, table: xr.Dataset, rows: list[xr.Dataset], folder: Path
+        self, runs: Runs, rows: list[xr.Dataset]
     ) -> Iterator[tuple[int, xr.Dataset, str, int]]:
-        """Yield the mapped step of each run: index among all, fields, name, and pixels a side."""
-        import xarray as xr
-
-        mapped, names_of_runs = _mapped(table), run_names(table)
+        """Yield the mapped step of each run: index among all, step, name, and pixels a side."""
+        mapped, names_of_runs = _mapped(runs.table), run_names(runs.table)
         solved = [index for index, row in enumerate(rows) if progress_of(row)[0]]
         chosen = self._chosen(len(solved))
         points = side(self.points, len(chosen) * len(mapped))
         for index in (solved[number] for number in chosen):
-            row = rows[index].isel(step=slice(progress_of(rows[index])[0]))
-            step_shown = default_step(row) % row.sizes["step"]
-            sticks = has_interaction(row) and bool(np.isfinite(row["zone_area"].values[step_shown]))
-            names = (*RESULT_FIELDS, *[WALL_PRESSURE] * sticks)
             try:
-                # Read only the step that is drawn.
-                attributes, fields = storage.fields(
-                    folder / f"{row['run'].item()}.h5", names, step_shown
-                )
+                run = runs.open(rows[index]["run"].item())
             except StorageError:
                 continue
-            step = xr.Dataset(
-                {name: (("x", "y"), field) for name, field in zip(names, fields, strict=True)},
-                attrs=attributes,
-            ).assign(depth=row["depth"][step_shown])
-            if not sticks:
+            step = run.isel(step=default_step(run))
+            if WALL_PRESSURE not in step:
                 step = step.assign({WALL_PRESSURE: step["pressure"]})
-            x, y = Result(step).grid.coordinates()
-            step = step.assign_coords(x=x[:, 0], y=y[0])
             yield index, step, names_of_runs[index], points
 
     def _chosen(self, count: int) -> list[int]:
@@ -242,7 +219,6 @@ class Html(Output):
 
 
 def _mapped(data: xr.Dataset) -> dict[str, MapField]:
-    """Return the fields that are mapped, by variable."""
     return _STICKING if has_interaction(data) else FIELDS
 
 
@@ -265,7 +241,6 @@ def _inputs(fields: Iterable[FieldRow]) -> Table:
 
 
 def _outputs(configuration: dict[str, Any]) -> list[Output]:
-    """Return the outputs that a configuration names."""
     return [registry().make(Output, output) for output in configuration.get("outputs") or ()]
 
 

@@ -3,23 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from pydantic import Field
 
 from pellicle import analysis
-from pellicle.components import (
-    Axis,
-    Chart,
-    Fields,
-    Look,
-    Panel,
-    Runs,
-    Series,
-    Shown,
-    Table,
-)
+from pellicle.components import Axis, Chart, Fields, Look, Panel, Runs, Series, Shown, Table
 from pellicle.results.result import Result
 
 from .base import Label, TableFigure
@@ -41,18 +30,7 @@ class Patches(TableFigure):
     """
 
     type: Literal["patches"] = "patches"
-    examples = ({"connectivity": 8, "by": "step"},)
-    connectivity: Annotated[
-        Literal[4, 8],
-        Field(
-            description="8: cells that share a corner belong to one patch too; the number of "
-            "patches in the table is that for 4"
-        ),
-    ] = 4
-
-    def check(self, runs: Runs) -> None:
-        """Refuse an axis or a label that the table does not have; four cells are no grid."""
-        list(self.picked(runs))
+    examples = ({"by": "step"},)
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
         """Yield all patches, and the map of the last curve beside the numbers of patches."""
@@ -74,7 +52,7 @@ class Patches(TableFigure):
         """
         rows, series, panels = list[tuple[object, ...]](), list[Series](), list[Panel]()
         for number, (name, step) in enumerate(self.steps(runs)):
-            patches = analysis.patches(step["contact"], Result(step).grid, self.connectivity)
+            patches = analysis.patches(step["contact"], Result(step).grid)
             rows += _rows(name, step, patches)
             rank, look = np.arange(1.0, patches.count + 1), Look(number, marker=number)
             series.append(Series(patches.area, rank, legend=name.words, look=look, stepped="post"))

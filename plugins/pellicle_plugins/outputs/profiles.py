@@ -86,7 +86,6 @@ class Profiles(TableFigure):
         yield "", Chart(x_axis, [y_axis], series, self.title, hues=hues, ordered=ordered)
 
     def _fields(self) -> set[str]:
-        """Return the fields that are shown."""
         return (names_in(self.x or self.along) | names_in(self.y)) & {*FIELDS, WALL_PRESSURE}
 
     def _columns(self, line: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:

@@ -103,7 +103,6 @@ def cross_section(step: xr.Dataset) -> Chart:
 
 
 def _caption(result: Result, step: int) -> str:
-    """Return the title of a figure of one load step."""
     caption = label_of_step(result.dataset, step)
     title = result.dataset.attrs.get("title", "")
     if not bool(result.dataset["converged"][step]):

@@ -2,25 +2,32 @@
 
 from __future__ import annotations
 
+import base64
 import glob
-import math
 import re
-from collections.abc import Iterable, Iterator
+import struct
+import sys
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Literal
+from xml.sax.saxutils import XMLGenerator
+from xml.sax.xmlreader import AttributesImpl
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from pellicle.arrays import Array
 from pellicle.components import Output, Runs
-from pellicle.files import storage_errors
-from pellicle.results.path import has_times
+from pellicle.files import atomic_write, storage_errors
 from pellicle.variables import FIELDS, WALL_PRESSURE
-
-from .vtk_file import array, element, rows_of, writer
 
 if TYPE_CHECKING:
     import xarray as xr
+
+_TYPES = {"f8": "Float64", "i8": "Int64", "b1": "UInt8"}
+_LETTERS = 3 << 20
+"""Bytes that are written in base64 at once; three are four letters."""
 
 
 class Vtk(Output):
@@ -29,8 +36,7 @@ class Vtk(Output):
     The .vts files are structured grids of the cell centres. The surface lies at z = −displacement,
     so the solid is below it, and all fields are point data, with the wall pressure where there is
     an interaction; the numbers of the step are field data.
-    The .pvd file, which lists the steps in order, opens them all; where steps have times, these are
-    the time of ParaView.
+    The .pvd file, which lists the steps in order, opens them all.
     """
 
     type: Literal["vtk"] = "vtk"
@@ -57,12 +63,11 @@ class Vtk(Output):
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the list of the steps; return all files."""
-        table, path = runs.table, Path(f"{stem}.pvd")
-        files = [_file(stem, number) for number in table["step"].values.tolist()]
-        times = table["time"].values if has_times(table) else table["step"].values
-        with writer(path, "Collection") as xml:
-            for time, file in zip(_growing(times.tolist()), files, strict=True):
-                with element(xml, "DataSet", timestep=repr(time), file=file.name):
+        path, numbers = Path(f"{stem}.pvd"), runs.table["step"].values.tolist()
+        files = [_file(stem, number) for number in numbers]
+        with _writer(path, "Collection") as xml:
+            for number, file in zip(numbers, files, strict=True):
+                with _element(xml, "DataSet", timestep=str(number), file=file.name):
                     pass
         return (*files, path)
 
@@ -72,43 +77,62 @@ def _file(stem: Path, number: int) -> Path:
 
 
 def _write_step(step: xr.Dataset, path: Path) -> None:
-    """Write the structured grid of one step, a block of rows at a time."""
     data = step.isel(step=0)
     x, y = data["x"].values, data["y"].values
-    names = [name for name in (*FIELDS, WALL_PRESSURE) if name in data]
-    fields = {name: data[name].transpose("y", "x").values for name in names}
-    numbers = {
-        str(name): np.atleast_1d(variable.values)
-        for name, variable in data.data_vars.items()
-        if variable.ndim == 0 and variable.dtype.kind in "fib"
-    }
-
-    def points(rows: slice) -> Array:
-        return np.stack(
-            np.broadcast_arrays(x, y[rows, None], -fields["displacement"][rows]), axis=-1
-        )
-
     extent = f"0 {x.size - 1} 0 {y.size - 1} 0 0"
-    with writer(path, "StructuredGrid", WholeExtent=extent) as xml:
-        with element(xml, "FieldData"):
-            for name, number in numbers.items():
-                array(xml, name, number.dtype, [number.tobytes()], NumberOfTuples="1")
-        with element(xml, "Piece", Extent=extent):
-            with element(xml, "PointData", Scalars="pressure"):
-                for name, field in fields.items():
-                    blocks = (field[rows].tobytes() for rows in rows_of(y.size, 8 * x.size))
-                    array(xml, name, field.dtype, blocks)
-            with element(xml, "Points"):
-                blocks = (points(rows).tobytes() for rows in rows_of(y.size, 24 * x.size))
-                array(xml, "Points", np.dtype(float), blocks, NumberOfComponents="3")
+    with _writer(path, "StructuredGrid", WholeExtent=extent) as xml:
+        with _element(xml, "FieldData"):
+            for name, variable in data.data_vars.items():
+                if variable.ndim == 0 and variable.dtype.kind in "fib":
+                    _array(xml, str(name), np.atleast_1d(variable.values), NumberOfTuples="1")
+        with _element(xml, "Piece", Extent=extent):
+            with _element(xml, "PointData", Scalars="pressure"):
+                for name in (*FIELDS, WALL_PRESSURE):
+                    if name in data:
+                        _array(xml, name, data[name].transpose("y", "x").values)
+            with _element(xml, "Points"):
+                surface = -data["displacement"].transpose("y", "x").values
+                points = np.stack(np.broadcast_arrays(x, y[:, None], surface), axis=-1)
+                _array(xml, "Points", points, NumberOfComponents="3")
 
 
-def _growing(times: Iterable[float]) -> Iterator[float]:
-    """Yield the times, those that do not grow raised to the next number.
+@contextmanager
+def _writer(path: Path, kind: str, **attributes: str) -> Iterator[XMLGenerator]:
+    """Yield a writer of the elements inside those of a VTK file of a ``kind``."""
+    outer = {
+        "type": kind,
+        "version": "1.0",
+        "byte_order": "LittleEndian" if sys.byteorder == "little" else "BigEndian",
+        "header_type": "UInt64",
+        "compressor": "vtkZLibDataCompressor",
+    }
+    with atomic_write(path) as part, part.open("wb") as file:
+        xml = XMLGenerator(file, "utf-8", short_empty_elements=True)
+        xml.startDocument()
+        with _element(xml, "VTKFile", **outer), _element(xml, kind, **attributes):
+            yield xml
+        xml.endDocument()
 
-    ParaView shows the files of one time together, so of a jump it would show both ends at once.
+
+@contextmanager
+def _element(xml: XMLGenerator, name: str, **attributes: str) -> Iterator[None]:
+    """Write an element; its content is written inside the context."""
+    xml.startElement(name, AttributesImpl(attributes))
+    yield
+    xml.endElement(name)
+
+
+def _array(xml: XMLGenerator, name: str, values: ArrayLike, **attributes: str) -> None:
+    """Write numbers in base64, compressed.
+
+    The head is the number of blocks, 1, its size, that of a smaller last one, 0, and its compressed
+    size.
     """
-    last = -math.inf
-    for time in times:
-        last = time if time > last else math.nextafter(last, math.inf)
-        yield last
+    data = np.ascontiguousarray(values)
+    packed = zlib.compress(data.data, 1)
+    head = base64.b64encode(struct.pack("=4Q", 1, data.nbytes, 0, len(packed)))
+    kind = _TYPES[data.dtype.str[1:]]
+    with _element(xml, "DataArray", **attributes, type=kind, Name=name, format="binary"):
+        xml.characters(head.decode("ascii"))
+        for start in range(0, len(packed), _LETTERS):
+            xml.characters(base64.b64encode(packed[start : start + _LETTERS]).decode("ascii"))

@@ -309,5 +309,4 @@ def _blocks(shape: Sequence[int]) -> list[slice]:
 
 
 def _fine(rows: slice) -> slice:
-    """Return the rows of fine cells in rows of coarse ones."""
     return slice(2 * rows.start, 2 * rows.stop)

@@ -14,7 +14,6 @@ from pellicle.results.result import Result
 from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
 from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.closed_forms import hertz, sneddon
-from pellicle_plugins.closed_forms.westergaard import pressure_amplitude
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 from .adhesive_path import curve_of
@@ -52,7 +51,7 @@ def _pressed() -> Iterator[Case]:
 
     radius = 0.1 * _RADIUS
     end = {"type": "flat_punch", "radius": radius}
-    force = sneddon.flat_punch(radius, _MODULUS, depth=_DEPTH).force
+    force = 2 * _MODULUS * radius * _DEPTH
     yield from _cases("flat punch", "Sneddon 1965", end, 2.2 * radius, force, tolerance=1e-2)
 
     tensed = indent(Paraboloid(radius=_RADIUS), _MODULUS, _TENSION, depth=_DEPTH)
@@ -91,7 +90,8 @@ def _adhesion() -> Iterator[Case]:
 def _sine() -> Iterator[Case]:
     wavelength, amplitude, points = 1e-3, 1e-6, 64
     wave = np.cos(2 * pi * (np.arange(points) + 0.5) / points)
-    true = pressure_amplitude(amplitude, wavelength, _MODULUS, _TENSION)
+    q = 2 * pi / wavelength
+    true = (_MODULUS * q / 2 + _TENSION * q**2) * amplitude
     heights = np.repeat(amplitude * wave[:, None], points, axis=1).tolist()
     yield Case(
         name="full contact of a sine, tension: pressure amplitude",

@@ -33,9 +33,10 @@ def contact(run: xr.Dataset, step: int) -> AxisymmetricContact | None:
     return _contact(run.attrs["configuration"], step)
 
 
-def require_solution(run: Run) -> None:
-    """Refuse a run that the axisymmetric equation does not describe, by a ConfigError."""
-    kernel, indenter = run.kernel, run.indenter
+@cache
+def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
+    run = Run.from_json(configuration)
+    kernel, indenter, prescribed = run.kernel, run.indenter, run.loading.prescribed
     if run.interaction is not None:
         raise ConfigError(
             "the axisymmetric solution is that of contact without adhesion, and this run has an "
@@ -54,28 +55,18 @@ def require_solution(run: Run) -> None:
             "paraboloid, sphere or cone, and a free boundary",
             "reference",
         )
-    if (prescribed := run.loading.prescribed) not in _PRESCRIBED:
+    if prescribed not in _PRESCRIBED:
         raise ConfigError(
             f"loading.{prescribed} has no reference solution; prescribe {', '.join(_PRESCRIBED)}",
             "reference",
         )
-
-
-@cache
-def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
-    run = Run.from_json(configuration)
-    require_solution(run)
-    kernel, indenter = run.kernel, run.indenter
-    assert isinstance(kernel, (HalfSpace, TensedMembrane))
-    assert isinstance(indenter, HasAbelTransform)
     value = run.loading.values[step - 1]
     if value == 0:
         return None
-    modulus, tension = kernel.contact_modulus, getattr(kernel, "tension", 0.0)
-    prescribed = run.loading.prescribed
     if prescribed == "contact_area":
         prescribed, value = "contact_radius", float(np.sqrt(value / np.pi))
-    return indent(indenter, modulus, tension, **{prescribed: value})
+    tension = getattr(kernel, "tension", 0.0)
+    return indent(indenter, kernel.contact_modulus, tension, **{prescribed: value})
 
 
 def exact(runs: Runs) -> Runs:

@@ -15,6 +15,7 @@ from pellicle.results import storage
 
 START = """
 title = "bad input"
+outputs = []
 [grid]
 points = 16
 size = "0.4472 mm"
@@ -33,8 +34,6 @@ type = "conjugate_gradient"
 tolerance = 1e-6
 [[corrections]]
 type = "yastrebov"
-[[outputs]]
-type = "hdf5"
 """
 STICKY = """
 grid = { points = 32, size = "0.6 mm", boundary = "free" }

@@ -88,8 +88,7 @@ def test_cones_apart_have_a_ridge() -> None:
     """A lowest point with a kink is found too: equal cones apart are lowest all between them."""
     cone = {"type": "cone", "half_angle": pi / 4}
     apart = pl.indenter(
-        "sum",
-        parts=[{"type": "shifted", "part": cone, "x": x} for x in (-1e-4, 1e-4)],
+        "sum", parts=[{"type": "shifted", "part": cone, "x": x} for x in (-1e-4, 1e-4)]
     )
     x, y = grid().coordinates()
     exact = 2e-4 - np.hypot(x - 1e-4, y) - np.hypot(x + 1e-4, y)

@@ -15,7 +15,6 @@ import pytest
 from scipy.io import savemat
 
 import pellicle as pl
-from pellicle import memory
 from tests.plugins.outputs.shared import bead
 
 ROUGH = np.random.default_rng(5).normal(size=(8, 6))
@@ -204,23 +203,6 @@ def test_shapes_are_compared_before_memory_is_taken(
         assert tracemalloc.get_traced_memory()[1] < 10e6
     finally:
         tracemalloc.stop()
-
-
-def test_header_that_claims_more_than_the_file_holds(tmp_path: Path) -> None:
-    """Outside of a run, where no grid is known, a file is judged by its length."""
-    _huge_hdf5(tmp_path / "a.h5")
-    with pytest.raises(pl.ConfigError, match=r"^path: .*claims 625000000 points, more than its"):
-        pl.indenter("heights", path=tmp_path / "a.h5", unit=1)
-
-
-def test_array_that_does_not_fit_the_memory(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """An array that is there, but larger than the memory, is refused before it is read."""
-    _wide_npy(tmp_path / "a.npy")
-    monkeypatch.setattr(memory, "available", lambda: 50e6)
-    with pytest.raises(pl.ConfigError, match=r"2000 × 2000 values needs about 0\.072 GB, and"):
-        pl.indenter("heights", path=tmp_path / "a.npy", unit=1)
 
 
 def test_ends_with_the_domain() -> None:

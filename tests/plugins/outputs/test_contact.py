@@ -15,7 +15,6 @@ import pytest
 import pellicle as pl
 from pellicle.components import Chart, Table
 from pellicle.results import StoredRuns
-from pellicle_plugins.outputs import vtk_file
 from pellicle_plugins.outputs.spectrum import Spectrum
 from tests.plugins.outputs.shared import bead, rows
 
@@ -111,20 +110,15 @@ def test_round_off_does_not_set_the_scale_of_a_spectrum(left: Left) -> None:
 
 
 def decoded(array: Xml.Element) -> np.ndarray:
-    """Return the values of a DataArray: base64 of a head of sizes, then of compressed blocks."""
+    """Return the values of a DataArray: base64 of a head of sizes, then of a compressed block."""
     text = (array.text or "").encode()
-    (count,) = struct.unpack("<Q", base64.b64decode(text[:12])[:8])
-    length = 4 * -(-8 * (3 + count) // 3)
-    _, size, last, *packed = struct.unpack(f"<{3 + count}Q", base64.b64decode(text[:length]))
-    data, blocks, at = base64.b64decode(text[length:]), [], 0
-    for entry in packed:
-        blocks.append(zlib.decompress(data[at : at + entry]))
-        at += entry
-    assert at == len(data)
-    assert all(len(block) == size for block in blocks[:-1])
-    assert len(blocks[-1]) == (last or size)
+    one, size, last, packed = struct.unpack("<4Q", base64.b64decode(text[:44]))
+    data = base64.b64decode(text[44:])
+    assert (one, last, packed) == (1, 0, len(data))
+    block = zlib.decompress(data)
+    assert len(block) == size
     kinds = {"Float64": "<f8", "Int64": "<i8", "UInt8": "u1"}
-    return np.frombuffer(b"".join(blocks), kinds[array.attrib["type"]])
+    return np.frombuffer(block, kinds[array.attrib["type"]])
 
 
 def test_vtk_holds_surface_and_fields(left: Left) -> None:
@@ -147,16 +141,6 @@ def test_vtk_holds_surface_and_fields(left: Left) -> None:
         for field in ("pressure", "displacement", "gap", "contact"):
             assert np.array_equal(arrays[field].reshape(24, 32).T, data[field])
         assert arrays["force"] == data["force"].item()
-
-
-def test_vtk_of_more_than_a_block() -> None:
-    """What is larger than a block of the file is cut, whether or not it comes out even."""
-    for cells in (vtk_file.BLOCK // 8, vtk_file.BLOCK // 8 + 5, vtk_file.BLOCK // 4):
-        values = np.arange(cells, dtype=float)
-        array = Xml.Element("DataArray", type="Float64")
-        blocks = (values[rows].tobytes() for rows in vtk_file.rows_of(cells, 8))
-        array.text = "".join(vtk_file.base64_of(blocks))
-        assert np.array_equal(decoded(array), values)
 
 
 def grids(*points: int) -> dict[str, Any]:

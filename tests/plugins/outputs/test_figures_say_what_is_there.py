@@ -38,10 +38,7 @@ CONTROL = "a\x00b\x1b[1mc\x07\x9f\ufffe --> d"
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the folder of a run whose second step is full contact."""
     folder = tmp_path_factory.mktemp("full")
-    outputs = [
-        {"type": "html"},
-        {"type": "profiles", "y": "gap", "by": "step"},
-    ]
+    outputs = [{"type": "html"}, {"type": "profiles", "y": "gap", "by": "step"}]
     pl.run({**RUN, "outputs": outputs}, directory=folder, progress=False, threads=1)
     return folder
 

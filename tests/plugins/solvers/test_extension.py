@@ -10,9 +10,7 @@ from numpy.typing import NDArray
 
 from pellicle import Kernel
 from pellicle_plugins.kernels.skins import BendingSkin
-from pellicle_plugins.solvers.multilevel_extension import (
-    Extension,
-)
+from pellicle_plugins.solvers.multilevel_extension import Extension
 from pellicle_plugins.solvers.preconditioner import OnContact, Preconditioner
 from tests.plugins.solvers.problems import BOUNDARIES, Boundary, make, skin
 

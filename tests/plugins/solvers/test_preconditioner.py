@@ -9,9 +9,7 @@ from numpy.typing import NDArray
 from pellicle import Problem
 from pellicle_plugins.kernels.skins import BendingSkin
 from pellicle_plugins.solvers.contact_cg import _Directions
-from pellicle_plugins.solvers.preconditioner import (
-    Preconditioner,
-)
+from pellicle_plugins.solvers.preconditioner import Preconditioner
 from tests.plugins.solvers.problems import BOUNDARIES, Boundary, make, skin
 
 Array = NDArray[np.float64]

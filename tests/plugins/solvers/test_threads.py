@@ -8,14 +8,7 @@ import scipy.fft
 
 from pellicle_plugins.solvers.active_set import ActiveSet
 from pellicle_plugins.solvers.multilevel_extension import Extension
-from tests.plugins.solvers.problems import (
-    Boundary,
-    Prescribed,
-    make,
-    rough,
-    skin,
-    solve,
-)
+from tests.plugins.solvers.problems import Boundary, Prescribed, make, rough, skin, solve
 
 
 @pytest.mark.parametrize("boundary", ["periodic", pytest.param("free", marks=pytest.mark.slow)])
