@@ -106,9 +106,6 @@ def test_outputs_absent_or_empty() -> None:
     assert pl.Run(**BASE).outputs is None
     assert pl.Run(**BASE, outputs=[]).outputs == ()
     assert pl.Run.from_json(pl.Run(**BASE, outputs=[]).to_json()).outputs == ()
-    result_file = pl.Run(**BASE, outputs=[{"type": "hdf5"}])
-    assert [output.suffixes for output in result_file.outputs or ()] == [()]
-    assert pl.Run.from_json(result_file.to_json()) == result_file
 
 
 def test_components_or_tables() -> None:

@@ -108,22 +108,6 @@ class Output(Component):
         """
 
 
-class ResultFile(Output):
-    """The result file: a word in ``outputs`` for no other file, since it is written in any case."""
-
-    type: Literal["hdf5"] = "hdf5"
-    scope: ClassVar[Literal["run"]] = "run"
-
-    @property
-    def suffixes(self) -> tuple[str, ...]:
-        """No files: the framework writes the result."""
-        return ()
-
-    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
-        """Write nothing."""
-        return ()
-
-
 def stem_of(output: Output, stem: Path) -> Path:
     """Return the stem of an output in a run or study with the given stem."""
     return stem.with_name(f"{stem.name}{_own_suffix(output)}")

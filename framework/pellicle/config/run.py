@@ -36,7 +36,7 @@ from pellicle.components import (
 )
 from pellicle.components.base import words_of_type
 from pellicle.components.kernel import branches_of
-from pellicle.components.output import ResultFile, refuse_shared_files
+from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError
 from pellicle.files import is_file
 from pellicle.grid import Grid, grid_of_run
@@ -83,13 +83,6 @@ class Run(FromFile):
             "nothing if []"
         ),
     ] = None
-
-    @field_validator("outputs", mode="before")
-    @classmethod
-    def _knows_the_result_file(cls, value: object) -> object:
-        if not isinstance(value, (list, tuple)):
-            return value
-        return [ResultFile() if output == {"type": "hdf5"} else output for output in value]
 
     @field_validator("indenter", mode="wrap")
     @classmethod

@@ -34,7 +34,7 @@ tolerance = 1e-6
 [[corrections]]
 type = "yastrebov"
 [[outputs]]
-type = "hdf5"
+type = "csv"
 """
 STICKY = """
 grid = { points = 32, size = "0.6 mm", boundary = "free" }
