@@ -78,11 +78,11 @@ def call(*words: str, code: int = 0) -> Result:
 
 
 def test_a_function_is_a_command(install: Install) -> None:
-    """Its parameters are options, and its errors tell typer's in one line."""
+    """Its parameters are options, and what is wrong with them is told by typer."""
     install()
     assert call("hello", "--name", "Ada").stdout == "hello Ada\n"
     assert "--name NAME" in " ".join(call("hello", "--help").stdout.split())
-    assert call("hello", "--nome", code=2).stderr.startswith("error: No such option: --nome ")
+    assert "No such option: --nome" in call("hello", "--nome", code=2).stderr
 
 
 @pytest.mark.parametrize("case", BROKEN)
