@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import importlib
-import inspect
 import json
 import pickle
 import tomllib
 from collections.abc import Callable, Iterable
-from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from typing import Any
 
@@ -26,7 +24,6 @@ from pellicle.units import parts_of, quantity_of
 
 Rule = Callable[..., str | None]
 """A function of a component that raises, or returns what is wrong, if the component breaks it."""
-_LONGEST_SUMMARY = 100
 
 
 def keep(rules: Iterable[Rule], component: Any, *arguments: Any) -> None:
@@ -100,14 +97,6 @@ def class_can_be_registered(component: Component) -> None:
         raise AssertionError(str(error)) from None
 
 
-def docstring_starts_with_a_sentence(component: Component) -> None:
-    """The first line of the docstring has at most 100 characters and ends with a period."""
-    line = (inspect.getdoc(type(component)) or "").partition("\n")[0]
-    require(
-        len(line) <= _LONGEST_SUMMARY and line.endswith("."), f"{line!r} of {len(line)} characters"
-    )
-
-
 def numbers_have_units(component: Component) -> None:
     """A float field is a Quantity, of unit "1" for a pure number; its description has the unit."""
     for name, info in type(component).model_fields.items():
@@ -153,17 +142,6 @@ def _table(component: Component) -> dict[str, Any]:
     return table
 
 
-def libraries_are_installed(component: Component) -> None:
-    """Each of the class's `libraries`, whose versions results record, is installed."""
-    for name in component.libraries:
-        try:
-            version(name)
-        except PackageNotFoundError:
-            raise AssertionError(
-                f"{name!r} is not installed; give the name under which pip installs it"
-            ) from None
-
-
 def is_registered(component: Component) -> None:
     """An installed plugin registers the class under its type."""
     family, type_ = component.family, _table(component)["type"]
@@ -194,12 +172,10 @@ def goes_through_the_registry(component: Component) -> None:
 
 RULES: list[Rule] = [
     class_can_be_registered,
-    docstring_starts_with_a_sentence,
     numbers_have_units,
     is_frozen_and_closed,
     pickles,
     goes_through_files,
-    libraries_are_installed,
 ]
 
 
