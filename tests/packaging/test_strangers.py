@@ -350,7 +350,7 @@ def test_an_effect_is_weighed_when_it_is_named(
     ("file", "change", "words"),
     [
         (GRADED, "kernel.exponent=3", "error: kernel.exponent: 3 is not allowed"),
-        (RETRACT, "interaction.range='50 mJ'", "interaction.range: '50 mJ' is an energy; give"),
+        (RETRACT, "interaction.range='50 mJ'", "interaction.range: '50 mJ' is in mJ"),
         (RETRACT, "interaction.rang=1", "interaction.rang: is not a field here; did you mean"),
         (
             SQUEEZE,
