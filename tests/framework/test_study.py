@@ -21,7 +21,7 @@ from pellicle.cli.app import app
 from pellicle.components import Monitor
 from pellicle.results import StoredRuns, storage
 from pellicle.results.dimensions import with_paths
-from pellicle.show.sentences import failures, reasons
+from pellicle.show.sentences import reasons
 from pellicle.studies import runner as study_module
 from pellicle.studies.table import StudyTable, write
 from pellicle_plugins.executors.execution import Serial
@@ -268,26 +268,6 @@ def test_interrupted(
     table = carry_out(study(), tmp_path)
     assert len(Counting.solved) == kept["force"].size
     same_numbers(table, undisturbed)
-
-
-def test_table_that_a_kill_left_behind(tmp_path: Path) -> None:
-    """Steps that are in the files of the runs only are read, and no other row is lost."""
-    vary = {TENSION: [0.0, 0.5], RADIUS: [1e-3, 2e-3]}
-    plan = pl.Study(run=RUN, vary=vary, derived={"twice": "2 * force"})
-    whole = pl.run_study(plan, tmp_path, progress=False)
-    *finished, last = study_module.planned(plan, tmp_path / "study")
-    last.journal.path.unlink()
-    rows = StudyTable(plan)
-    for task in finished[:2]:
-        rows.fail(last.index, "no memory")
-        write(rows.dataset(), tmp_path)
-        table, _ = study_module.read(tmp_path)
-        assert failures(table) == "of 4 runs 1 failed"
-        assert (table["status"][last.index] == "failed: no memory").all()
-        for name in (*NUMBERS, "twice", "status", "run"):
-            for index in (other.index for other in finished):
-                xr.testing.assert_equal(table[name][index].variable, whole[name][index].variable)
-        rows.put(task.index, pl.load(task.journal.path).dataset.drop_dims(["x", "y"]))
 
 
 def test_a_study_is_not_loaded_as_a_result(tmp_path: Path) -> None:

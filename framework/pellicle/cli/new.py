@@ -150,7 +150,6 @@ def _template(family: str) -> Path:
 
 
 def _names(family: str, name: str) -> dict[str, str]:
-    """Return the names that derive from that of the component."""
     from pellicle.plugins import registry
 
     type_ = name.replace("-", "_")

@@ -126,7 +126,6 @@ def _of_component(entry: Registered) -> Explanation:
 
 
 def _documentation(model: type[BaseModel]) -> str:
-    """Return the documentation of a class without the marks of its markup."""
     return (inspect.getdoc(model) or "").replace("``", "").replace("`", "")
 
 

@@ -46,7 +46,6 @@ def model_schema(model: type[BaseModel]) -> dict[str, Any]:
 
 
 def _referred_to(schema: Any) -> Iterator[type[BaseModel]]:
-    """Yield the components that a schema refers to."""
     if isinstance(schema, dict):
         for entry in registry().components.get(schema.get(FAMILY, ""), {}).values():
             yield entry.component

@@ -129,7 +129,6 @@ class Study(FromFile):
 
     @property
     def _parameters(self) -> list[str]:
-        """The dotted paths that vary, combined or zipped."""
         return [*self.vary, *itertools.chain.from_iterable(self.zip)]
 
     @property

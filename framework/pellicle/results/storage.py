@@ -157,7 +157,6 @@ def table(path: Path) -> xr.Dataset:
 
 
 def _step_numbers(path: Path) -> list[int]:
-    """Return the numbers of the steps stored in one file."""
     with opened(path) as file:
         numbers: list[int] = file["step"][:].tolist()
         return numbers

@@ -59,7 +59,6 @@ def _path(location: Iterable[int | str], data: object) -> str:
 
 
 def _translated(model: type[BaseModel], detail: ErrorDetails, field: str) -> Iterator[Problem]:
-    """Yield the problems that one pydantic error represents."""
     cause = detail.get("ctx", {}).get("error")
     if isinstance(cause, ConfigError):
         yield from (cause.within(field) if field else cause).problems

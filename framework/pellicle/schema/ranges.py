@@ -95,7 +95,6 @@ def ranged(
 
 
 def _end(table: Mapping[str, Any], end: str) -> tuple[float, str]:
-    """Return number and unit of one end of a range."""
     value = table[end]
     if hasattr(value, "magnitude") and hasattr(value, "units"):
         value = f"{float(value.magnitude)!r} {value.units}"

@@ -153,7 +153,6 @@ def _draw_series(axes: Axes, series: Series, chart: Chart, scale_x: Scale, scale
 
 
 def _style(series: Series, chart: Chart) -> dict[str, Any]:
-    """Return keywords of ``Axes.plot`` for a series."""
     look = series.look
     if series.role == "published":
         marker = "" if look.line is not None else "*x+"[(look.marker or 0) % 3]
@@ -235,7 +234,6 @@ def _set_scale(panels: Sequence[Axes], direction: str, axis: Axis, factor: float
 
 
 def _arrangement(count: int) -> tuple[int, int]:
-    """Return the number of panels across and down."""
     count = max(count, 1)
     across = 3 if count > _ACROSS and count % 3 == 0 and count % _ACROSS else min(count, _ACROSS)
     return across, ceil(count / across)
@@ -297,7 +295,6 @@ def _draw_panel(
 
 
 def _colours(fields: Fields, factor: float) -> dict[str, Any]:
-    """Return the colours of all panels, as keywords of ``Axes.imshow``."""
     from matplotlib.colors import ListedColormap
 
     if fields.panels[0].values.dtype == bool:

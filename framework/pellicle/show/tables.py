@@ -83,7 +83,6 @@ def _is_shown(data: xr.Dataset, name: str) -> bool:
 
 
 def _names_of_numbers(data: xr.Dataset) -> list[str]:
-    """Return the variables that have one number for each step."""
     return [
         str(name)
         for name, variable in data.data_vars.items()
@@ -226,7 +225,6 @@ def main_paths(table: xr.Dataset) -> list[Table]:
 
 
 def _of_runs(table: xr.Dataset, names: Iterable[str]) -> Iterator[Column]:
-    """Yield parameters and numbers that have one value for each run."""
     for name in names:
         values = table[name].broadcast_like(table["run"]).transpose(*table["run"].dims)
         yield replace(column_of(table[name]), values=column_of(values).values)

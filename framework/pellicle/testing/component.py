@@ -137,7 +137,6 @@ def goes_through_files(component: Component) -> None:
 
 
 def _table(component: Component) -> dict[str, Any]:
-    """Return the component as a table of a file."""
     table: dict[str, Any] = json.loads(component.model_dump_json(exclude_none=True))
     return table
 

@@ -50,7 +50,6 @@ def _area(
 
 
 def _require_area(area: float, expected: float, which: str) -> None:
-    """Require an area [m²], up to rounding."""
     require_close(area, expected, f"the area [m²] {which}", relative=1e-12)
 
 
