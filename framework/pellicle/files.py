@@ -15,11 +15,8 @@ from pathlib import Path
 
 from .errors import StorageError
 
-# UTF-32 comes first: its byte order mark begins with that of UTF-16.
 _MARKS = {
     codecs.BOM_UTF8: "utf-8-sig",
-    codecs.BOM_UTF32_LE: "utf-32",
-    codecs.BOM_UTF32_BE: "utf-32",
     codecs.BOM_UTF16_LE: "utf-16",
     codecs.BOM_UTF16_BE: "utf-16",
 }
@@ -37,7 +34,7 @@ def for_document(text: str) -> str:
 
 
 def read_text(path: Path) -> str:
-    """Read a text in UTF-8, in UTF-16 or UTF-32 with a byte order mark, or in code page 1252."""
+    """Read a text in UTF-8, in UTF-16 with a byte order mark, or in code page 1252."""
     content = path.read_bytes()
     encoding = next((_MARKS[mark] for mark in _MARKS if content.startswith(mark)), None)
     try:

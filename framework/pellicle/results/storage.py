@@ -290,8 +290,6 @@ def _readable(path: Path) -> Iterator[None]:
         reason = str(error).partition("\n")[0] or "it does not fit in memory"
         if "file signature not found" in reason:
             reason = "it is not an HDF5 file"
-        beside = path.with_suffix(".h5")
-        remedy = str(beside) if is_file(beside) and beside != path else "an .h5 file"
         raise StorageError(
-            f"{path}: not a readable result file ({reason}); give {remedy} that pellicle wrote"
+            f"{path}: not a readable result file ({reason}); give an .h5 file that pellicle wrote"
         ) from None
