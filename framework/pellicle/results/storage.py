@@ -266,7 +266,6 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
 
 
 def _content(file: h5py.File, without: Collection[str] = ()) -> xr.Dataset:
-    """Return the dataset in a file, except variables with a dimension in ``without``."""
     dataset = netcdf.dataset(file, without=without)
     dataset.attrs = _attributes_of(file)
     return dataset

@@ -96,8 +96,6 @@ def ranged(
 
 def _end(table: Mapping[str, Any], end: str) -> tuple[float, str]:
     value = table[end]
-    if hasattr(value, "magnitude") and hasattr(value, "units"):
-        value = f"{float(value.magnitude)!r} {value.units}"
     try:
         number, unit = (split(value) or ("", "")) if isinstance(value, str) else (value, "")
         return Quantity("1")(number), unit

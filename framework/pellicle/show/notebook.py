@@ -5,15 +5,12 @@ from __future__ import annotations
 from base64 import b64encode
 from collections.abc import Sequence
 from html import escape
-from typing import TYPE_CHECKING
 
 from pellicle.components.charts import Table
+from pellicle.results.result import Result
 
 from . import tables
 from .sentences import status_of_run
-
-if TYPE_CHECKING:
-    from pellicle.results.result import Result
 
 _MOST = 12
 """Rows of the steps of a result."""

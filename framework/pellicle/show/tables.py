@@ -43,10 +43,8 @@ _POWERS = str.maketrans("²³", "23")
 def numbers(data: xr.Dataset) -> Table:
     """Return all numbers and texts of each step, as files have them."""
     names = [str(n) for n, variable in data.data_vars.items() if variable.dims == ("step",)]
-    units = {name: data[name].attrs.get("units", "") for name in names}
-    return Table(
-        [Column(name, data[name].values.tolist(), units.get(name, "")) for name in ("step", *names)]
-    )
+    columns = [(name, data[name]) for name in ("step", *names)]
+    return Table([Column(n, v.values.tolist(), v.attrs.get("units", "")) for n, v in columns])
 
 
 def steps(data: xr.Dataset, names: Iterable[str], caption: str = "") -> Table:

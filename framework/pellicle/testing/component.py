@@ -98,7 +98,7 @@ def class_can_be_registered(component: Component) -> None:
 
 
 def numbers_have_units(component: Component) -> None:
-    """A float field is a Quantity, of unit "1" for a pure number; its description has the unit."""
+    """A float field is a Quantity, of unit "1" for a pure number."""
     for name, info in type(component).model_fields.items():
         quantity = quantity_of(info)
         require(
@@ -106,11 +106,6 @@ def numbers_have_units(component: Component) -> None:
             f'the field {name} is a bare float; annotate it with Quantity("SI unit") or one of '
             "pellicle.units, such as Length",
         )
-        if quantity and quantity.unit != "1":
-            require(
-                f"[{quantity.unit}]" in (info.description or ""),
-                f"the description of {name}, {info.description!r}, lacks [{quantity.unit}]",
-            )
 
 
 def is_frozen_and_closed(component: Component) -> None:

@@ -42,7 +42,6 @@ def _area(
     spacing: tuple[float, float] = _SPACING,
     boundary: Boundary = "free",
 ) -> float:
-    """Return the area [m²] as a run asks for it, with its guards."""
     size = (contact.shape[0] * spacing[0], contact.shape[1] * spacing[1])
     return corrected_area(
         correction, contact, Grid(points=contact.shape, size=size, boundary=boundary)
