@@ -37,7 +37,6 @@ BROKEN = {
     "no function": ("hello = 3", "3 is neither a function nor a module with hooks"),
     "none": ("@pl.hookimpl\ndef register_commands(register): ...", "registers 0 commands"),
     "no such function": ("del hello", "AttributeError: module"),
-    "file of another form": (registers("hello, file='x'"), "file is 'x'; give one like"),
     "[brackets] in the error": ("raise ValueError('[/x]')", "ValueError: [/x]"),
 }
 """What follows `HELLO`, and what is said."""

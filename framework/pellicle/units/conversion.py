@@ -86,7 +86,7 @@ def si_unit(value: Any) -> str:
 @lru_cache(maxsize=1000)
 def factor_to_si(unit: str, si: str) -> float:
     """Return the factor from ``unit`` to the unit ``si``; refuse a unit that does not fit."""
-    # Per cent and angles have no dimension, which tells them from pure numbers nor from each other.
+    # Per cent and angles have no dimension, but root units of their own.
     if one(unit).to_root_units().units != one(si).to_root_units().units:
         raise ValueError(f"is in {unit}, which is no unit of {si}")
     to = _quantity(1.0, si).units
