@@ -7,7 +7,6 @@ more about it; those of pellicle itself are found in the same way. Nothing heavy
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -36,8 +35,6 @@ class Command:
     def __post_init__(self) -> None:
         if not callable(self.function):
             raise PluginError(f"{self.function!r} is neither a function nor a module with hooks")
-        if self.file and not re.fullmatch(r"[\w.]+:\w+", self.file):
-            raise PluginError(f"file is {self.file!r}; give one like 'package.module:Model'")
 
 
 @cache

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import codecs
+import glob
 import json
 import os
 import re
 import socket
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 from .errors import StorageError
 
-# UTF-32 comes first: its byte order mark begins with that of UTF-16.
 _MARKS = {
     codecs.BOM_UTF8: "utf-8-sig",
-    codecs.BOM_UTF32_LE: "utf-32",
-    codecs.BOM_UTF32_BE: "utf-32",
     codecs.BOM_UTF16_LE: "utf-16",
     codecs.BOM_UTF16_BE: "utf-16",
 }
@@ -36,7 +34,7 @@ def for_document(text: str) -> str:
 
 
 def read_text(path: Path) -> str:
-    """Read a text in UTF-8, in UTF-16 or UTF-32 with a byte order mark, or in code page 1252."""
+    """Read a text in UTF-8, in UTF-16 with a byte order mark, or in code page 1252."""
     content = path.read_bytes()
     encoding = next((_MARKS[mark] for mark in _MARKS if content.startswith(mark)), None)
     try:
@@ -54,18 +52,14 @@ def read_text(path: Path) -> str:
 def check_writable(path: Path) -> None:
     """Check before computing that a file can be written at ``path``, and make its folder.
 
-    Partial files of dead processes in this folder are removed.
+    The caller has locked the file: parts that a process left that was killed are removed.
     """
     with storage_errors(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=path.parent):
             pass
-        for part in path.parent.glob(".*.part"):
-            owner = re.search(r"\.([^.]+)\.(\d+)\.part$", part.name)
-            if owner and owner[1] == _host() and not _alive(int(owner[2])):
-                # In a shared folder the file of another user stays.
-                with suppress(OSError):
-                    part.unlink()
+        for part in path.parent.glob(f".{glob.escape(path.name)}.*.part"):
+            part.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -82,7 +76,8 @@ def storage_errors(path: Path) -> Iterator[None]:
 @contextmanager
 def atomic_write(path: Path) -> Iterator[Path]:
     """Yield a temporary path, which is renamed to ``path`` on success and removed on failure."""
-    part = path.with_name(f".{path.name}.{_host()}.{os.getpid()}.part")
+    host = socket.gethostname().replace(".", "-")
+    part = path.with_name(f".{path.name}.{host}.{os.getpid()}.part")
     with storage_errors(path):
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -92,27 +87,6 @@ def atomic_write(path: Path) -> Iterator[Path]:
             part.replace(path)
         finally:
             part.unlink(missing_ok=True)
-
-
-def _host() -> str:
-    return socket.gethostname().replace(".", "-")
-
-
-def _alive(pid: int) -> bool:
-    """Return whether a process is alive; always true on Windows, where os.kill ends it."""
-    if os.name == "nt":
-        return True
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except PermissionError:
-        pass
-    # A zombie, such as a worker of a killed process, keeps its number until its exit code is
-    # asked for; the first process of a container may never do so.
-    with suppress(OSError):
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    return True
 
 
 def json_text(value: object) -> str:

@@ -12,16 +12,12 @@ from .grid import Grid
 PROCESS = 150_000_000
 """Memory of a process that has loaded pellicle and its libraries, without a run [bytes]."""
 
-# Files of a control group: its limit, its usage, and the line of memory.stat with its file cache.
-_VERSION_2 = "memory.max", "memory.current", "inactive_file"
-_VERSION_1 = "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"
-
 
 def available(root: Path = Path("/")) -> float | None:
     """Return the available memory [bytes], or None if the system does not state it.
 
     This is the memory available on the machine or, if less, in the control groups of this process
-    (containers, batch systems). ``root`` is the root of the file system.
+    (version 2; containers, batch systems). ``root`` is the root of the file system.
     """
     limits = [
         float(line.split()[1]) * 1024
@@ -31,22 +27,16 @@ def available(root: Path = Path("/")) -> float | None:
     if not limits:
         with suppress(AttributeError, ValueError, OSError):
             limits.append(float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE"))
-    for line in _lines(root / "proc/self/cgroup"):
-        _, controllers, group = line.split(":", 2)
-        if controllers == "":
-            mount, (limit, usage, cache) = root / "sys/fs/cgroup", _VERSION_2
-        elif "memory" in controllers.split(","):
-            mount, (limit, usage, cache) = root / "sys/fs/cgroup/memory", _VERSION_1
-        else:
-            continue
+    for group in _lines(root / "proc/self/cgroup"):
         # A container may see its own group as the root, although the file gives its outer name.
-        inner = PurePosixPath(group.strip("/"))
-        for folder in (mount / path for path in (inner, *inner.parents)):
+        inner = PurePosixPath(group.removeprefix("0::").strip("/"))
+        for folder in (root / "sys/fs/cgroup" / path for path in (inner, *inner.parents)):
             # A limit may be missing, not readable, or "max". The cache can be reclaimed.
             with suppress(OSError, ValueError):
-                most, used = (float((folder / name).read_text()) for name in (limit, usage))
+                names = "memory.max", "memory.current"
+                most, used = (float((folder / name).read_text()) for name in names)
                 for line in _lines(folder / "memory.stat"):
-                    used -= float(line.split()[1]) if line.startswith(f"{cache} ") else 0.0
+                    used -= float(line.split()[1]) if line.startswith("inactive_file ") else 0.0
                 limits.append(max(0.0, most - used))
     return min(limits, default=None)
 

@@ -142,11 +142,6 @@ class Registry:
             return component(**table)
         except (PellicleError, MemoryError):
             raise
-        except SystemExit as error:
-            raise PluginError(
-                f"{base.family} {table['type']!r} calls sys.exit({error.code!r}); it has to raise "
-                "an error that says what is wrong"
-            ) from None
         except Exception as error:
             error.add_note(f"{base.family} {table['type']!r} failed")
             raise

@@ -37,7 +37,6 @@ BROKEN = {
     "no function": ("hello = 3", "3 is neither a function nor a module with hooks"),
     "none": ("@pl.hookimpl\ndef register_commands(register): ...", "registers 0 commands"),
     "no such function": ("del hello", "AttributeError: module"),
-    "file of another form": (registers("hello, file='x'"), "file is 'x'; give one like"),
     "[brackets] in the error": ("raise ValueError('[/x]')", "ValueError: [/x]"),
 }
 """What follows `HELLO`, and what is said."""
@@ -78,11 +77,11 @@ def call(*words: str, code: int = 0) -> Result:
 
 
 def test_a_function_is_a_command(install: Install) -> None:
-    """Its parameters are options, and its errors tell typer's in one line."""
+    """Its parameters are options, and what is wrong with them is told by typer."""
     install()
     assert call("hello", "--name", "Ada").stdout == "hello Ada\n"
     assert "--name NAME" in " ".join(call("hello", "--help").stdout.split())
-    assert call("hello", "--nome", code=2).stderr.startswith("error: No such option: --nome ")
+    assert "No such option: --nome" in call("hello", "--nome", code=2).stderr
 
 
 @pytest.mark.parametrize("case", BROKEN)

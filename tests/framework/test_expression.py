@@ -78,7 +78,6 @@ def test_undefined_values_are_not_a_number() -> None:
         ("τ * 2", "'τ' in"),
         ("(" * 249 + "1" + ")" * 249, "not arithmetic"),
         ("~" * 499 + "1", "is not allowed"),
-        ("-" * 500 + "1", "has 501 characters"),
         ("1" * 400, "cannot be evaluated|not arithmetic"),
     ],
 )

@@ -45,7 +45,7 @@ def another_process(folder: Path, name: str) -> Iterator[subprocess.Popen[bytes]
 
 @pytest.mark.parametrize(("text", "name"), [(run_file(), "work"), (STUDY, "study")])
 def test_second_process_is_refused(text: str, name: str, tmp_path: Path) -> None:
-    """A second run or study at the same files ends at once, and names the holder.
+    """A second run or study at the same files ends at once.
 
     The lock of a process that was killed is no hindrance, and no lock is left behind.
     """
@@ -55,11 +55,8 @@ def test_second_process_is_refused(text: str, name: str, tmp_path: Path) -> None
     with another_process(out, name) as holder:
         refused = CliRunner().invoke(app, command)
         assert refused.exit_code == 2
-        assert f"{out / name} is locked by process {holder.pid} on " in refused.stderr.replace(
-            "\n", ""
-        )
-        assert "choose another folder (-o DIR)" in refused.stderr.replace("\n", " ")
-        assert sorted(path.name for path in out.iterdir()) == [f".{name}.lock", f"{name}.lock"]
+        assert f"{out / name} is locked by another process" in refused.stderr.replace("\n", " ")
+        assert [path.name for path in out.iterdir()] == [f".{name}.lock"]
         holder.send_signal(signal.SIGKILL)
         holder.wait()
         assert CliRunner().invoke(app, command).exit_code == 0
@@ -89,7 +86,7 @@ def test_lock_is_released(tmp_path: Path) -> None:
     for _ in range(2):
         with (
             locked(tmp_path, "work"),
-            pytest.raises(pl.StorageError, match="is locked by process"),
+            pytest.raises(pl.StorageError, match="is locked by another process"),
             locked(tmp_path, "work"),
         ):
             raise AssertionError("locked twice")

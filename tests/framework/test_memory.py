@@ -164,7 +164,7 @@ def test_require(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 MACHINE = 8e9
-V2, V1 = "sys/fs/cgroup", "sys/fs/cgroup/memory"
+V2 = "sys/fs/cgroup"
 
 
 def _system(root: Path, group: str, folders: dict[str, dict[str, str]]) -> Path:
@@ -185,14 +185,6 @@ def _system(root: Path, group: str, folders: dict[str, dict[str, str]]) -> Path:
 def _v2(limit: object, used: object, cached: int = 0) -> dict[str, str]:
     stat = f"anon 5\ninactive_file {cached}\nactive_file 7\n"
     return {"memory.max": f"{limit}\n", "memory.current": f"{used}\n", "memory.stat": stat}
-
-
-def _v1(limit: int, used: int, cached: int = 0) -> dict[str, str]:
-    return {
-        "memory.limit_in_bytes": f"{limit}\n",
-        "memory.usage_in_bytes": f"{used}\n",
-        "memory.stat": f"inactive_file 5\ntotal_inactive_file {cached}\n",
-    }
 
 
 GIGABYTE = 10**9
@@ -219,12 +211,6 @@ GROUPS: dict[str, tuple[str, dict[str, dict[str, str]], float]] = {
         MACHINE,
     ),
     "v2, nothing left": ("0::/job\n", {f"{V2}/job": _v2(GIGABYTE, GIGABYTE + 5)}, 0.0),
-    "v1": (
-        "4:cpu,cpuacct:/elsewhere\n3:memory:/job\n1:name=systemd:/\n0::/\n",
-        {f"{V1}/job": _v1(4 * GIGABYTE, 3 * GIGABYTE, GIGABYTE)},
-        2e9,
-    ),
-    "v1, no limit": ("3:memory:/\n", {V1: _v1(9223372036854771712, GIGABYTE)}, MACHINE),
 }
 
 

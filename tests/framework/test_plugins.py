@@ -313,23 +313,12 @@ outputs = []
 """
 
 
-@pytest.mark.parametrize(
-    ("fault", "error", "told"),
-    [
-        ("raise SystemExit", PluginError, "kernel 'soft' calls sys.exit(None)"),
-        ("{}[0]", KeyError, "kernel 'soft' failed"),
-    ],
-)
-def test_a_component_that_cannot_be_made_is_named(
-    plugin: Plugin, fault: str, error: type[Exception], told: str
-) -> None:
-    """What a validator of a plugin raises, sys.exit() included, comes with the component's name."""
-    failing = SOFT.replace(
-        "    def comp", f"    def model_post_init(self, _): {fault}\n    def comp"
-    )
-    with pytest.raises(error) as raised:
+def test_a_component_that_cannot_be_made_is_named(plugin: Plugin) -> None:
+    """What a validator of a plugin raises comes with the component's name."""
+    failing = SOFT.replace("    def comp", "    def model_post_init(self, _): {}[0]\n    def comp")
+    with pytest.raises(KeyError) as raised:
         load([plugin(failing)]).make(Kernel, {"type": "soft"})
-    assert told in " ".join([str(raised.value), *getattr(raised.value, "__notes__", ())])
+    assert "kernel 'soft' failed" in raised.value.__notes__[0]
 
 
 def test_what_a_component_prints_is_not_in_the_json(

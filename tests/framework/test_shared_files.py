@@ -66,30 +66,29 @@ def make_output(type_: str, **fields: Any) -> Output:
     [
         (
             [make_output("maps", name="pressure"), make_output("figures")],
-            r"^outputs\.0\.name: 'maps' would write NAME-pressure\.png, as outputs\.1 \('figures'\)"
-            r" does; give it another name$",
+            r"^outputs\.1\.type: 'figures' would write NAME-pressure\.png, a file of outputs\.0 "
+            r"\('maps'\); give it another name if it can have one, or leave it out$",
         ),
         (
             [make_output("figures"), make_output("curves", name="force")],
-            r"^outputs\.1\.name: 'curves' would write NAME-force\.png, as outputs\.0 \('figures'\)",
+            r"^outputs\.1\.type: 'curves' would write NAME-force\.png, a file of outputs\.0",
         ),
         (
             [make_output("csv"), make_output("maps"), Plain(ends=("-more.txt", ".csv"))],
-            r"^outputs\.2\.type: 'silent' would write NAME\.csv, as outputs\.0 \('csv'\) does; "
-            "leave one out$",
+            r"^outputs\.2\.type: 'silent' would write NAME\.csv, a file of outputs\.0 \('csv'\)",
         ),
         (
             [make_output("curves", name="a", formats=["svg"]), make_output("profiles", name="A")],
-            r"^outputs\.1\.name: 'profiles' would write NAME-A\.csv, as outputs\.0",
+            r"^outputs\.1\.type: 'profiles' would write NAME-a\.csv, a file of outputs\.0",
         ),
         (
             [Named(name="a"), Named(), Named(name="a")],
-            r"^outputs\.2\.name: .* NAME-a\*, as outputs\.0",
+            r"^outputs\.2\.type: .* NAME-a\*, a file of outputs\.0",
         ),
     ],
 )
 def test_outputs_of_one_file_are_refused(outputs: list[Output], message: str) -> None:
-    """The message has both outputs, the file, and the field to change: a name if there is one."""
+    """The message has both outputs and the file."""
     with pytest.raises(pl.ConfigError, match=message):
         pl.Run(**RUN, outputs=outputs)
 
@@ -109,7 +108,7 @@ def test_the_table_of_a_study_is_not_replaced() -> None:
     """An output that may stand in a run is refused in a study whose own table it would replace."""
     run = RUN | {"outputs": [make_output("figures"), OfStudies(ends=(".csv",))]}
     pl.Run(**run)
-    message = r"outputs\.1\.type: 'silent' would write study\.csv, the table of the study; leave it"
+    message = r"outputs\.1\.type: 'silent' would write NAME\.csv, a file of the table of the study"
     with pytest.raises(pl.ConfigError, match=message):
         pl.Study(run=run, vary={"indenter.radius": [1e-3, 2e-3]})
 
@@ -117,9 +116,7 @@ def test_the_table_of_a_study_is_not_replaced() -> None:
 @pytest.mark.parametrize("end", [".h5", "*"])
 def test_the_result_of_a_run_is_not_replaced(end: str) -> None:
     """Every run has a result file, so no output may write one of its name."""
-    message = (
-        r"outputs\.1\.type: 'silent' would write NAME\.h5, the result of the run; leave it out"
-    )
+    message = r"outputs\.1\.type: 'silent' would write NAME\.h5, a file of the result; give it"
     with pytest.raises(pl.ConfigError, match=message):
         pl.Run(**RUN, outputs=[make_output("figures"), Plain(ends=(end,))])
 
@@ -137,5 +134,5 @@ def test_the_result_of_a_run_is_not_replaced(end: str) -> None:
 def test_suffixes_are_compared(one: str, other: str, same: bool) -> None:
     """By the whole suffix, with * for anything and whatever the case."""
     outputs = [Plain(ends=(end,)) for end in (one, other)]
-    with pytest.raises(pl.ConfigError, match="leave one out") if same else nullcontext():
+    with pytest.raises(pl.ConfigError, match="leave it out") if same else nullcontext():
         refuse_shared_files(outputs)

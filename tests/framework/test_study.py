@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
-import sys
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -18,12 +16,12 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle import files, memory
+from pellicle import memory
 from pellicle.cli.app import app
 from pellicle.components import Monitor
 from pellicle.results import StoredRuns, storage
 from pellicle.results.dimensions import with_paths
-from pellicle.show.sentences import failures, reasons
+from pellicle.show.sentences import reasons
 from pellicle.studies import runner as study_module
 from pellicle.studies.table import StudyTable, write
 from pellicle_plugins.executors.execution import Serial
@@ -272,26 +270,6 @@ def test_interrupted(
     same_numbers(table, undisturbed)
 
 
-def test_table_that_a_kill_left_behind(tmp_path: Path) -> None:
-    """Steps that are in the files of the runs only are read, and no other row is lost."""
-    vary = {TENSION: [0.0, 0.5], RADIUS: [1e-3, 2e-3]}
-    plan = pl.Study(run=RUN, vary=vary, derived={"twice": "2 * force"})
-    whole = pl.run_study(plan, tmp_path, progress=False)
-    *finished, last = study_module.planned(plan, tmp_path / "study")
-    last.journal.path.unlink()
-    rows = StudyTable(plan)
-    for task in finished[:2]:
-        rows.fail(last.index, "no memory")
-        write(rows.dataset(), tmp_path)
-        table, _ = study_module.read(tmp_path)
-        assert failures(table) == "of 4 runs 1 failed"
-        assert (table["status"][last.index] == "failed: no memory").all()
-        for name in (*NUMBERS, "twice", "status", "run"):
-            for index in (other.index for other in finished):
-                xr.testing.assert_equal(table[name][index].variable, whole[name][index].variable)
-        rows.put(task.index, pl.load(task.journal.path).dataset.drop_dims(["x", "y"]))
-
-
 def test_a_study_is_not_loaded_as_a_result(tmp_path: Path) -> None:
     """What `load` is given is called a study, finished or not, with what reads it."""
     plan = study()
@@ -389,25 +367,11 @@ def test_foreign_table(tmp_path: Path) -> None:
 
 
 def test_left_overs_of_the_dead_are_swept(tmp_path: Path) -> None:
-    """Half-written files of processes that are no more go; those of the living stay."""
-    # Nobody has asked for its exit code yet, as with the worker of a process that was killed.
-    dead = subprocess.Popen([sys.executable, "-c", ""])
-    os.waitid(os.P_PID, dead.pid, os.WEXITED | os.WNOWAIT)
-    host = files._host()
-    runs = tmp_path / "runs"
-    runs.mkdir()
-    gone = runs / f".a.h5.{host}.{dead.pid}.part"
-    kept = [
-        runs / f".a.h5.{host}.{os.getppid()}.part",
-        runs / f".a.h5.elsewhere.{dead.pid}.part",
-        runs / ".mine.part",
-    ]
-    for path in (gone, *kept):
-        path.touch()
+    """Half-written files of a process that was killed go when their file is written anew."""
+    part = tmp_path / ".study.h5.elsewhere.1.part"
+    part.touch()
     carry_out(study(), tmp_path)
-    dead.wait()
-    assert not gone.exists()
-    assert all(path.exists() for path in kept)
+    assert not part.exists()
 
 
 class Listing(pl.Output):

@@ -91,7 +91,11 @@ REFUSED: list[tuple[Quantity, str, object]] = [
     *((TENSION, UNKNOWN, f"1 {unit}") for unit in ("foo", "N/", "N/m)", "2 N/m", "N + m")),
     *((TENSION, UNKNOWN, f"1 {unit}") for unit in ("N/0", "__import__('os')", "N/m\0")),
     *((TENSION, UNKNOWN, f"1 {unit}") for unit in ("{N/m}", "N/m#x", "N/m\x1b[2J", "[N/m]")),
-    (Quantity("Pa*m"), "'1 N' is a force; give a value with its unit", "1 N"),
+    (
+        Quantity("Pa*m"),
+        "'1 N' is in N, which is no unit of Pa*m; give a value with its unit",
+        "1 N",
+    ),
     # No area or energy is made of a number whose square over- or underflows.
     *((TENSION, "too large or too near 0", given) for given in (1e101, "1e200 mN/m", 5e-324)),
     # No factor converts another zero, a logarithm and what vanishes.
@@ -108,27 +112,17 @@ def test_refused(quantity: Quantity, message: str, given: object) -> None:
         quantity(given)
 
 
-@pytest.mark.parametrize(
-    ("unit", "noun"),
-    [
-        ("degC", "a temperature"),
-        ("N*m", "an energy"),
-        ("%", "a pure number"),
-        ("degree", "an angle"),
-        ("count", "a value in count"),
-        ("m**7", r"a value in m\*\*7"),
-    ],
-)
-def test_other_dimension(unit: str, noun: str) -> None:
+@pytest.mark.parametrize("unit", ["degC", "N*m", "%", "degree", "count", "m**7"])
+def test_other_dimension(unit: str) -> None:
     """A unit of another dimension is refused in words."""
-    with pytest.raises(ValueError, match=rf"'1 {re.escape(unit)}' is {noun}; give"):
+    with pytest.raises(ValueError, match=rf"'1 {re.escape(unit)}' is in .* no unit of N/m; give"):
         TENSION(f"1 {unit}")
 
 
 @pytest.mark.parametrize("unit", ["%", "dB", "count", "sr", "m/m"])
 def test_no_angle(unit: str) -> None:
     """What has no dimension is not for that an angle: a slope of 5 % is not 0.05 rad."""
-    with pytest.raises(ValueError, match=r"is an? .*; give .*'70 degree'"):
+    with pytest.raises(ValueError, match=r"is in .*; give .*'70 degree'"):
         Quantity("rad")(f"5 {unit}")
 
 

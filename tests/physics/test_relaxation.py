@@ -228,18 +228,6 @@ def test_refuses(changes: dict[str, Any], message: str) -> None:
     assert message in str(caught.value)
 
 
-@pytest.mark.parametrize("tension", [0.0, 0.05])
-def test_relaxation_far_faster_than_the_steps_is_said(tension: float) -> None:
-    """A run would not show how the fast share relaxes; jumps and slow steps alone are no matter."""
-    branches = [{"fraction": 0.5, "time": 1e-3}, {"fraction": 0.3, "time": 1.0}]
-    kernel = coated(SLS | {"relaxation": branches}, tension)
-    grid = {"points": 16, "size": "1 mm", "boundary": "periodic"}
-    loading = {"force": [1e-6] * 3, "time": [0.0, 0.0, 0.2]}
-    with pytest.warns(UserWarning, match="takes 0.2 s, far longer than .* 0.001 s"):
-        solved(grid=grid, kernel=kernel, loading=loading)
-    solved(grid=grid, kernel=kernel, loading=loading | {"time": [0.0, 0.0, 0.05]})
-
-
 def test_elastic_solid_takes_no_notice_of_time() -> None:
     """Times with an elastic kernel are listed, and change nothing."""
     timed = solved(kernel=ELASTIC, loading={"depth": [1e-6, 2e-6], "time": [0, 9]})

@@ -77,7 +77,6 @@ def test_springs_that_relax_open_as_the_law_softens() -> None:
     ids=lambda law: law["type"],
 )
 @pytest.mark.parametrize(("time", "share"), [(1e12, 1.0), (1e-12, 0.2)])
-@pytest.mark.filterwarnings("ignore:.*far longer than the relaxation time")
 def test_limits_are_elastic(law: dict[str, Any], time: float, share: float) -> None:
     """Slow relaxation leaves the instantaneous solid, fast relaxation the relaxed one, to 1e-7."""
     run = configuration(interaction=law, solver={"type": "active_set", "tolerance": 1e-10})

@@ -7,7 +7,7 @@ import sys
 import traceback
 import warnings
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, nullcontext
+from contextlib import nullcontext
 from io import TextIOWrapper
 from typing import Annotated, Any
 
@@ -76,34 +76,6 @@ class _Listed(TyperCommand):
         return command.make_context(*args, **kwargs)
 
 
-@contextmanager
-def _misuse_in_one_line() -> Iterator[None]:
-    """Print in one line what is wrong with the words on a command line, as typer found it."""
-    try:
-        yield
-    except Exception as raised:
-        # The exceptions of click, which typer includes or imports; one of them is the help.
-        if not hasattr(raised, "format_message") or type(raised).__name__ == "NoArgsIsHelpError":
-            raise
-        error: Any = raised
-        message = str(error.format_message())
-        if getattr(error, "param", None) is not None and error.message:
-            # typer checks values with pydantic.
-            details: list[Any] = getattr(error.__cause__, "errors", list)()
-            reason = error.message.rstrip(".")
-            if details and (cause := details[0].get("ctx", {}).get("error")):
-                reason = str(cause)
-            elif details:
-                from pellicle.schema.messages import refusal
-
-                reason = refusal(details[0])
-            message = f"{error.param.opts[0]}: {reason}"
-        command = error.ctx.command_path if error.ctx else "pellicle"
-        end = "" if message.endswith("?") else ";"
-        echo(f"error: {message.rstrip('.')}{end} see `{command} --help`", err=True)
-        raise typer.Exit(BAD_INPUT) from None
-
-
 class _Group(TyperGroup):
     """Turns errors into one message and an exit code: bad input causes no traceback."""
 
@@ -112,10 +84,6 @@ class _Group(TyperGroup):
 
     def get_params(self, ctx: Any) -> list[Any]:
         return _named_by_use(super().get_params(ctx))
-
-    def make_context(self, *args: Any, **kwargs: Any) -> Any:
-        with _misuse_in_one_line():
-            return super().make_context(*args, **kwargs)
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
         for stream in (sys.stdout, sys.stderr):
@@ -132,7 +100,7 @@ class _Group(TyperGroup):
 
     def invoke(self, ctx: Any) -> Any:
         try:
-            with _misuse_in_one_line(), warnings.catch_warnings():
+            with warnings.catch_warnings():
                 warnings.showwarning = print_warning
                 return super().invoke(ctx)
         except PellicleError as error:

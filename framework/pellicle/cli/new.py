@@ -150,7 +150,6 @@ def _template(family: str) -> Path:
 
 
 def _names(family: str, name: str) -> dict[str, str]:
-    """Return the names that derive from that of the component."""
     from pellicle.plugins import registry
 
     type_ = name.replace("-", "_")
@@ -162,13 +161,10 @@ def _names(family: str, name: str) -> dict[str, str]:
             "NAME",
         )
     if owner := registry().components[family].get(type_):
-        noun = f"{'an' if family[0] in 'aeiou' else 'a'} {family}"
         raise ConfigError(
-            f"{type_!r} is already the type of {noun} from {owner.origin}; give another", "NAME"
+            f"{family} {type_!r} is there already, from {owner.origin}; give another", "NAME"
         )
     module = f"pellicle_{type_}"
-    if find_spec(module):
-        raise ConfigError(f"a module {module} is installed already; give another name", "NAME")
     package = registry().families[family].__module__.partition(".")[0]
     takes_file = {c.file.partition(".")[0]: name for name, c in usable_commands().items() if c.file}
     return {

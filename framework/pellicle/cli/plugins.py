@@ -40,17 +40,14 @@ def plugins(
     contents = registry()
     owners = {name: [*map(Origin.of, entries)] for name, entries in commands().items()}
     made = {name: typer_command(name) for name in owners}
-    installed = [
-        (family, type_, registered.origin, registered.summary)
-        for family, members in contents.components.items()
-        for type_, registered in members.items()
-    ] + [
-        ("command", name, owners[name][0], (command.help or "").partition("\n")[0])
-        for name, command in made.items()
-        if not isinstance(command, Broken)
-    ]
     rows = [
-        (family, type_, of.distribution, of.version, text) for family, type_, of, text in installed
+        (family, type_, one.origin.distribution, one.origin.version, one.summary)
+        for family, members in contents.components.items()
+        for type_, one in members.items()
+    ] + [
+        ("command", name, of.distribution, of.version, (command.help or "").partition("\n")[0])
+        for (name, (of, *_)), command in zip(owners.items(), made.values(), strict=True)
+        if not isinstance(command, Broken)
     ]
     clashes: dict[tuple[str, str], Sequence[Origin]] = {
         **contents.clashes,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import sys
-import textwrap
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, redirect_stdout
 from contextvars import ContextVar
@@ -15,8 +14,6 @@ from typing import TYPE_CHECKING, Any
 from pellicle.errors import StorageError
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from pellicle.components import Table
 
 NOT_CONVERGED, BAD_INPUT, CRASHED, INTERRUPTED = 1, 2, 70, 130
@@ -27,16 +24,7 @@ _texts: ContextVar[list[str] | None] = ContextVar("JSON of a command", default=N
 
 
 def echo(text: str = "", err: bool = False) -> None:
-    """Print a text; on a terminal, lines that are too long for it are broken between words.
-
-    Lines of options to copy, after two spaces, are not broken.
-    """
-    console = _console(err)
-    if console.is_terminal:
-        # Unlike rich, this leaves words that are longer, such as paths, in one piece.
-        wrap = textwrap.TextWrapper(console.width, break_long_words=False, break_on_hyphens=False)
-        lines = text.split("\n")
-        text = "\n".join(line if line.startswith("  -") else wrap.fill(line) for line in lines)
+    """Print a text and the end of a line."""
     _write(f"{text}\n", err)
 
 
@@ -45,29 +33,22 @@ def print_table(table: Table, title: str = "", *, si: bool = False) -> None:
 
     On a terminal long heads and cells are folded; elsewhere a row is a line.
     """
+    from rich.console import Console
+
     from pellicle.show.numbers import text_of
 
+    console = Console(color_system=None, markup=False, emoji=False, highlight=False)
+    if not console.is_terminal:
+        console.width = _UNBOUNDED
     if table.columns:
         if title:
             echo(f"{title}:")
-        _write(text_of(table, _console(), si=si))
-
-
-def _console(err: bool = False) -> Console:
-    from rich.console import Console
-
-    console = Console(stderr=err, color_system=None, markup=False, emoji=False, highlight=False)
-    if not console.is_terminal:
-        console.width = _UNBOUNDED
-    return console
+        _write(text_of(table, console, si=si))
 
 
 def _write(text: str, err: bool = False) -> None:
     """Write a text to a standard stream; BrokenPipeError if nobody reads it, as behind ``head``."""
     stream = sys.stderr if err else sys.stdout
-    # None if it was closed at the start.
-    if stream is None:
-        return
     try:
         stream.write(text)
         stream.flush()

@@ -70,7 +70,6 @@ def print_outcome_json(outcome: Result | xr.Dataset, files: Sequence[Path] = ())
 
 
 def _run(run: xr.Dataset) -> dict[str, Any]:
-    """Return a run of the table of a study."""
     done, planned, verdict = progress_of(run)
     per_run = {
         str(name): variable.item()
@@ -88,7 +87,6 @@ def _run(run: xr.Dataset) -> dict[str, Any]:
 
 
 def _steps(data: xr.Dataset) -> list[dict[str, Any]]:
-    """Return the numbers and texts of each step by name."""
     rows = tables.numbers(data).records
     return [row | {CAVEATS: json.loads(str(row[CAVEATS]) or "[]")} for row in rows]
 

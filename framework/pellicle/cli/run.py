@@ -4,18 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Any
 
 import typer
 
 from pellicle.hookspecs import RegisterCommand, hookimpl
 
 from .printing import INTERRUPTED, echo, print_json, print_table, print_warning
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from pellicle.results import Result
 
 
 def run(
@@ -88,7 +83,7 @@ def run(
             print_table(table)
             echo(sentence)
         return
-    outcome: Result | xr.Dataset
+    outcome: Any
     try:
         if isinstance(configuration, Study):
             whole = f"{len(configuration.points)} runs"

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Final
+from typing import Annotated, Any, ClassVar, Final
 
-from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic import GetCoreSchemaHandler, PlainSerializer, PlainValidator, WithJsonSchema
 from pydantic.fields import FieldInfo
-from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import core_schema
 
 from pellicle.schema.model import Model
@@ -64,24 +63,13 @@ class FromRegistry:
 
             return registry().make(source, value)
 
-        return core_schema.no_info_plain_validator_function(
-            made,
-            serialization=core_schema.plain_serializer_function_ser_schema(
-                lambda component, info: component.model_dump(
-                    mode=info.mode, exclude_none=info.exclude_none, context=info.context
-                ),
-                info_arg=True,
-            ),
-            metadata={"family": source.family},
-        )
-
-    def __get_pydantic_json_schema__(
-        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
-    ) -> JsonSchemaValue:
         # `json_schema` replaces this keyword later: not all components are known while plugins
         # load, and a component may hold another one of its own family.
-        inner: Any = schema
-        # Validators of the model wrap the schema of the field.
-        while "family" not in inner.get("metadata", {}):
-            inner = inner["schema"]
-        return {FAMILY: inner["metadata"]["family"]}
+        choice = Annotated[Any, WithJsonSchema({FAMILY: source.family})]
+        dump = PlainSerializer(
+            lambda component, info: component.model_dump(
+                mode=info.mode, exclude_none=info.exclude_none, context=info.context
+            )
+        )
+        validate = PlainValidator(made, json_schema_input_type=choice)
+        return handler.generate_schema(Annotated[source, validate, dump])

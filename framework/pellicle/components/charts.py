@@ -121,7 +121,6 @@ class Series:
 
 
 def _drawn(shown: Chart | Fields) -> bytes:
-    """Return the drawing as PNG, which a notebook shows."""
     from pellicle.show import png
 
     return png(shown)

@@ -11,7 +11,7 @@ from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to, read_only, real_array
 from pellicle.errors import ConfigError, PluginError, problems_within, shown
 from pellicle.grid import Grid
-from pellicle.units import DIGITS, LARGEST, readable
+from pellicle.units import DIGITS, readable
 
 from .base import Component
 
@@ -175,13 +175,6 @@ def profile_of(indenter: Indenter, grid: Grid) -> Array:
         raise ConfigError(
             f"the profile of {name} has values that are positive or NaN; it must be ≤ 0 "
             "everywhere and 0 at the lowest point",
-            "indenter",
-        )
-    height = -float(profile.min(where=np.isfinite(profile), initial=0.0))
-    if height and not 1 / LARGEST < height < LARGEST:
-        raise ConfigError(
-            f"its heights on this grid reach {height:g} m, and squares of them are beyond the "
-            "numbers that a computer has; check the units of its lengths",
             "indenter",
         )
     highest = float(profile.max())

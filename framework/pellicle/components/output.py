@@ -117,28 +117,16 @@ def refuse_shared_files(outputs: Sequence[Output], *, of_study: bool = False) ->
     """Refuse outputs that would write the same file, or one that the framework writes itself."""
     for index, output in enumerate(outputs):
         whole = of_study and output.scope != "run"
-        if shared := _shared([".h5", ".csv"] if whole else [".h5"], _suffixes(output)):
-            owner = (
-                f"study{shared}, the table of the study"
-                if whole
-                else f"NAME{shared}, the result of the run"
-            )
-            raise ConfigError(
-                f"{output.type_name!r} would write {owner}; leave it out", f"outputs.{index}.type"
-            )
-        for earlier, other in enumerate(outputs[:index]):
-            if not (shared := _shared(_suffixes(output), _suffixes(other))):
-                continue
-            # The field to change is the name of either, or else the type of the later one.
-            named = [i for i in (index, earlier) if "name" in type(outputs[i]).model_fields]
-            place = named[0] if named else index
-            beside = index + earlier - place
-            field, remedy = ("name", "give it another name") if named else ("type", "leave one out")
-            raise ConfigError(
-                f"{outputs[place].type_name!r} would write NAME{shared}, as outputs.{beside} "
-                f"({outputs[beside].type_name!r}) does; {remedy}",
-                f"outputs.{place}.{field}",
-            )
+        others = {"the table of the study": [".h5", ".csv"]} if whole else {"the result": [".h5"]}
+        for number, earlier in enumerate(outputs[:index]):
+            others[f"outputs.{number} ({earlier.type_name!r})"] = _suffixes(earlier)
+        for owner, suffixes in others.items():
+            if shared := _shared(suffixes, _suffixes(output)):
+                raise ConfigError(
+                    f"{output.type_name!r} would write NAME{shared}, a file of {owner}; give it "
+                    "another name if it can have one, or leave it out",
+                    f"outputs.{index}.type",
+                )
 
 
 def _own_suffix(output: Output) -> str:

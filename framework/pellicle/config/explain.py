@@ -29,7 +29,6 @@ _TABLES: Mapping[str, type[BaseModel]] = {
     "study": Study,
 }
 _EXAMPLES: Mapping[str, str] = {
-    "run": "",
     "grid": '[grid]\npoints = 256\nsize = "0.4 mm"\nboundary = "free"',
     "loading": '[loading]\ndepth = { start = "1 um", stop = "5 um", num = 5 }',
     "study": '[study.vary]\n"kernel.tension" = ["0 mN/m", "10 mN/m", "50 mN/m"]',
@@ -105,7 +104,7 @@ def _of_table(name: str, model: type[BaseModel]) -> Explanation:
                 of_types.append(row._replace(default=row.default.replace("required", required)))
         rows = [row for row in of_types if row.name not in Options.model_fields] + rows
     examples = getattr(model, "examples", ())
-    example = _EXAMPLES[name] if name in _EXAMPLES else _lines(examples[0]) if examples else ""
+    example = _EXAMPLES.get(name) or (_lines(examples[0]) if examples else "")
     return Explanation(name, "table", "", _documentation(model), rows, example)
 
 
@@ -126,7 +125,6 @@ def _of_component(entry: Registered) -> Explanation:
 
 
 def _documentation(model: type[BaseModel]) -> str:
-    """Return the documentation of a class without the marks of its markup."""
     return (inspect.getdoc(model) or "").replace("``", "").replace("`", "")
 
 

@@ -85,7 +85,6 @@ class Loading(Options):
 
     @model_serializer
     def _table(self, info: SerializationInfo) -> dict[str, Any]:
-        """Return the table of a file."""
         own = self.prescription.model_dump(mode=info.mode, exclude_none=True, context=info.context)
         table = {"stiffness": self.stiffness, "time": self.time, own.pop("type"): self.path, **own}
         return {name: value for name, value in table.items() if value is not None}

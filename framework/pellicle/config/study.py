@@ -102,12 +102,6 @@ class Study(FromFile):
         ),
     ] = None
 
-    def _repr_html_(self) -> str:
-        """Return HTML for a notebook: the varied parameters and the number of runs."""
-        from pellicle.show.notebook import of_study
-
-        return of_study(self)
-
     @model_validator(mode="after")
     def _create_runs(self) -> Self:
         self._check_axes()
@@ -135,7 +129,6 @@ class Study(FromFile):
 
     @property
     def _parameters(self) -> list[str]:
-        """The dotted paths that vary, combined or zipped."""
         return [*self.vary, *itertools.chain.from_iterable(self.zip)]
 
     @property

@@ -123,7 +123,6 @@ def attraction(
 
 
 def _interpolated(values: Array, cells: Cells, weights: Array) -> Array:
-    """Return the values at points from those of their corners."""
     at_points = np.zeros(cells.shape[1])
     for corners, weight in zip(cells, weights, strict=True):
         at_points += weight * values.ravel()[corners]

@@ -155,7 +155,7 @@ class Limit(NamedTuple):
         return _Sentence(values).format(self.template)
 
 
-FEW_CELLS = Limit(
+AT_PULL_OFF = Limit(
     "step {step:.0f}: at pull-off the radius of the contact has {cells:.1f} cells, so the "
     "pull-off force {off:variant}; use more points, or a smaller grid.size",
     "the pull-off force is that of a contact of few cells",

@@ -111,7 +111,6 @@ class Law:
         return replace(self, law=self.resolve(grid))
 
     def _values(self, name: Literal["energy", "traction", "slope"], gap: Array) -> Array:
-        """Return the values [SI units] of a function of the gap."""
         # Far from the indenter the gap is infinite, for which a formula may have no value.
         gap = np.clip(gap, 0.0, self.cutoff()) * self.length
         with errors_attributed_to(self.source):

@@ -13,7 +13,7 @@ import numpy as np
 from pellicle.analysis import Oscillation
 from pellicle.analysis.steepness import steepest
 from pellicle.contact.caveats import (
-    FEW_CELLS,
+    AT_PULL_OFF,
     SLOPES,
     THROUGH_LAYER,
     Caveat,
@@ -38,8 +38,8 @@ if TYPE_CHECKING:
 _NO_CONTACT = "0.93"
 _STEEPEST = 1.0
 """Slope above which a contact without interaction is warned of; the theory is for 0.3."""
-_CELLS = 12
-"""Cells in the radius at pull-off below which its force is warned of."""
+FEW_CELLS = 12
+"""Contact radius in cells below which force and radius may be off by more than 2 %."""
 
 
 @dataclass(frozen=True)
@@ -124,11 +124,11 @@ class Result:
         limits = dict[Limit, dict[str, float | str]]()
         summary, grid = self.path_summary, self.grid
         cells = summary.get("pull_off_radius", nan) / sqrt(grid.cell_area)
-        if "force_error" in self.dataset and 0 < cells < _CELLS and min(grid.shape) > 1:
+        if "force_error" in self.dataset and 0 < cells < FEW_CELLS and min(grid.shape) > 1:
             step, error = summary["pull_off_step"], summary["pull_off_accuracy"]
             known = "known error" if isfinite(error) else "unknown error"
             error /= -summary["pull_off"]
-            limits[FEW_CELLS] = {"step": step, "cells": cells, "error": error, "off": known}
+            limits[AT_PULL_OFF] = {"step": step, "cells": cells, "error": error, "off": known}
         last = self.dataset.isel(step=int(np.argmax(self.dataset["contact_area"].values)))
         contact, displacement = last["contact"].values, last["displacement"].values
         if contact.any() and np.isfinite(displacement).all():
@@ -145,8 +145,7 @@ class Result:
     def warnings(self) -> list[str]:
         """Return a message for each kind of caveat, with the first step that has it."""
         groups = by_phrase(self.caveats()).values()
-        messages = [first_message([(n, c.sentence) for n, c in group]) for group in groups]
-        return [*messages, *self.beyond_theory().values()]
+        return [*map(first_message, groups), *self.beyond_theory().values()]
 
     def _of(self, *statuses: Status) -> list[tuple[int, str]]:
         return [(number, c.sentence) for number, c in self.caveats() if c.status in statuses]
@@ -220,9 +219,9 @@ class Result:
         storage.write(self.dataset, Path(path))
 
 
-def first_message(steps: Sequence[tuple[int, str]]) -> str:
-    """Return the number and message of the first step, and the number of further steps."""
-    return f"{first_of([f'step {number}' for number, _ in steps])}: {steps[0][1]}"
+def first_message(steps: Sequence[tuple[int, Caveat]]) -> str:
+    """Return number and message of the first step with a caveat, and the number of further ones."""
+    return f"{first_of([f'step {number}' for number, _ in steps])}: {steps[0][1].sentence}"
 
 
 def file_of_run(path: Path) -> Path:

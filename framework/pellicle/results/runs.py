@@ -96,7 +96,7 @@ class StoredRuns:
         return xr.DataArray(values, coords, (*runs.dims, "step"))
 
 
-_LEAST_LETTERS = 8
+_LETTERS = 8
 _WORST_FIRST = "failed", "not run", "NOT CONVERGED"
 
 
@@ -111,11 +111,8 @@ def runs_of(table: xr.Dataset) -> Iterator[xr.Dataset]:
 
 
 def short_files(table: xr.Dataset) -> list[str]:
-    """Return the names of the files of runs, cut after the letters that differ, but at least 8."""
-    names = [str(run["run"].item()) for run in runs_of(table)]
-    lengths = range(_LEAST_LETTERS, max(map(len, names), default=_LEAST_LETTERS) + 1)
-    least = next((n for n in lengths if len({name[:n] for name in names}) == len({*names})), None)
-    return [f"{name[:least]}…" if least and least < len(name) else name for name in names]
+    """Return the beginnings of the names of the files of runs."""
+    return [f"{name[:_LETTERS]}…" for name in table["run"].values.ravel()]
 
 
 def progress_of(run: xr.Dataset) -> tuple[int, int, str]:

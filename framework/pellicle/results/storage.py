@@ -141,7 +141,6 @@ def table(path: Path) -> xr.Dataset:
 
 
 def _step_numbers(path: Path) -> list[int]:
-    """Return the numbers of the steps stored in one file."""
     with opened(path) as file:
         numbers: list[int] = file["step"][:].tolist()
         return numbers
@@ -251,7 +250,6 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
 
 
 def _content(file: h5py.File, without: Collection[str] = ()) -> xr.Dataset:
-    """Return the dataset in a file, except variables with a dimension in ``without``."""
     dataset = netcdf.dataset(file, without=without)
     dataset.attrs = _attributes_of(file)
     return dataset
@@ -275,8 +273,6 @@ def _readable(path: Path) -> Iterator[None]:
         reason = str(error).partition("\n")[0] or "it does not fit in memory"
         if "file signature not found" in reason:
             reason = "it is not an HDF5 file"
-        beside = path.with_suffix(".h5")
-        remedy = str(beside) if is_file(beside) and beside != path else "an .h5 file"
         raise StorageError(
-            f"{path}: not a readable result file ({reason}); give {remedy} that pellicle wrote"
+            f"{path}: not a readable result file ({reason}); give an .h5 file that pellicle wrote"
         ) from None

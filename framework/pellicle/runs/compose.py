@@ -31,8 +31,6 @@ from pellicle.units import readable
 _STEEPER: Final = 3.0
 # Largest stiffness in the end, over the instantaneous one, of a liquid; it is rounding.
 _LIQUID: Final = 1e-12
-# Relaxation times below this share of the shortest step are far below it.
-_FAST: Final = 0.01
 
 
 def compose(run: Run) -> Setting:
@@ -49,7 +47,7 @@ def compose(run: Run) -> Setting:
     profile = profile_of(run.indenter, run.grid)
     if run.indenter.footprint == "domain":
         warn_of_period(profile, run.grid)
-    _warn_of_relaxation(run)
+    _warn_of_liquid(run)
     law = law_of(run.interaction, run.kernel, run.grid) if run.interaction else None
     setting = Setting(run.grid, operator, profile, run.indenter.footprint, law=law)
     if law:
@@ -107,27 +105,15 @@ def warn_of_period(heights: Array, grid: Grid) -> None:
             )
 
 
-def _warn_of_relaxation(run: Run) -> None:
-    """Warn if a solid relaxes to a liquid, or far faster than the steps of its run.
+def _warn_of_liquid(run: Run) -> None:
+    """Warn if a solid relaxes to a liquid.
 
     A kernel that states its time span has a share of its own for all times beyond.
     """
-    kernel, branches = run.kernel, branches_of(run.kernel)
-    if not branches:
-        return
-    shortest, longest = kernel.time_span()
-    if longest == math.inf and stiffness_after(branches, math.inf) < _LIQUID:
+    _, longest = run.kernel.time_span()
+    if longest == math.inf and stiffness_after(branches_of(run.kernel), math.inf) < _LIQUID:
         warnings.warn(
-            f"kernel: the shares of {kernel.type_name!r} that relax sum to 1, which makes the "
+            f"kernel: the shares of {run.kernel.type_name!r} that relax sum to 1, which makes the "
             "solid a liquid: in the end only a skin carries; let them sum to less for a solid",
-            stacklevel=3,
-        )
-    least = min((duration for duration in run.loading.durations if duration > 0), default=0.0)
-    fastest = min(branch.time for branch in branches)
-    if shortest == 0.0 and fastest < _FAST * least:
-        warnings.warn(
-            f"loading: the shortest step takes {least:g} s, far longer than the relaxation time "
-            f"{fastest:g} s of a share of the solid, so that how this share relaxes is not seen; "
-            "use shorter steps where it matters, or a softer solid without the share",
             stacklevel=3,
         )

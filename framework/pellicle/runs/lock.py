@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import os
-import socket
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from datetime import UTC, datetime
 from pathlib import Path
 
 import filelock
@@ -17,34 +14,23 @@ from pellicle.files import storage_errors
 
 @contextmanager
 def locked(folder: Path, name: str) -> Iterator[None]:
-    """Lock the files in ``folder`` that begin with ``name``; ``name.lock`` names the process.
+    """Lock the files in ``folder`` that begin with ``name``.
 
-    The lock itself is one of the operating system, on a second file, so it ends with the process.
-    Both files are removed at the end.
+    The lock is one of the operating system, so it ends with the process; its file is removed.
     """
-    sign = folder / f"{name}.lock"
     lock = filelock.FileLock(folder / f".{name}.lock")
-    with storage_errors(sign):
+    with storage_errors(folder / name):
         folder.mkdir(parents=True, exist_ok=True)
         try:
             lock.acquire(timeout=0)
         except filelock.Timeout:
-            holder = ""
-            # The other process may be writing its name at this moment.
-            with suppress(OSError, ValueError):
-                holder = sign.read_text(encoding="utf-8")
             raise StorageError(
-                f"{folder / name} is locked by {holder or 'another process'}; wait until it has "
-                "finished, or choose another folder (-o DIR)"
+                f"{folder / name} is locked by another process; wait until it has finished, or "
+                "choose another folder (-o DIR)"
             ) from None
     try:
-        with storage_errors(sign):
-            since = datetime.now(UTC).isoformat(timespec="seconds")
-            name_of_process = f"process {os.getpid()} on {socket.gethostname()}, since {since}"
-            sign.write_text(name_of_process, encoding="utf-8")
         yield
     finally:
-        sign.unlink(missing_ok=True)
         # The file is removed before the lock is released: filelock does not acquire a lock on a
         # file without a name. Windows cannot remove an open file; there it remains.
         with suppress(PermissionError):

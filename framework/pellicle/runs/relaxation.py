@@ -75,7 +75,6 @@ class Relaxation:
         return replace(setting, operator=operator, left=left)
 
     def _advance(self, pressure: Array, displacement: Array) -> None:
-        """Bring the memory forward to the end of the next step."""
         step = self._steps[self._done]
         strain = displacement
         if self._skin:

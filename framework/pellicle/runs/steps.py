@@ -58,7 +58,6 @@ def solve_steps(
 def _next_step(
     run: Run, base: Setting, path: Sequence[FinishedStep], physics: Physics, monitor: Monitor
 ) -> xr.Dataset:
-    """Return the load step after those of a path, solved and judged, as a dataset."""
     started = time.perf_counter()
     state = path[-1].state if path else None
     setting, applications = replace(base, state=state, path=end_of(path)), 0

@@ -45,7 +45,6 @@ _TOKEN = re.compile(
 _RAISED = str.maketrans("23456789", "²³⁴⁵⁶⁷⁸⁹")
 _SIGNS = {"**": "^", "*": "·", "/": "/"}
 _GREEK = {"pi": "π"}
-_LONGEST = 500
 _ALLOWED = f"+ - * / ** ( ), {', '.join(FUNCTIONS)} and {', '.join(CONSTANTS)}"
 
 
@@ -94,9 +93,6 @@ def evaluate(
     """
     values = {**CONSTANTS, **names}
     callables = {**FUNCTIONS, **(functions or {})}
-    # A short text cannot be nested beyond the stack of the interpreter.
-    if len(text) > _LONGEST:
-        raise ConfigError(f"{shown(text)} has {len(text)} characters; write at most {_LONGEST}")
     # A dotted name may have parts that Python does not allow, such as the 0 in grid.size.0.
     dotted: list[str] = _NAME.findall(text)
     count = iter(range(len(dotted)))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -157,18 +156,10 @@ def read_toml(path: Path) -> dict[str, Any]:
             f"{path}: not a text file in UTF-8 (see line {line}); give a TOML file in UTF-8"
         ) from None
     except ValueError as error:
-        raise ConfigError(f"{path}: not valid TOML: {_reason(str(error))}") from None
-
-
-def _reason(message: str) -> str:
-    """Return what is wrong in a TOML text, and the remedy, given the message of the parser."""
-    if twice := re.match(r"Cannot declare \((.*?),?\) twice(.*)", message):
-        table = ".".join(name.strip(" '\"") for name in twice[1].split(","))
-        return f"[{table}] is there already{twice[2]}; leave one [{table}], with the keys of both"
-    if message.startswith("Cannot overwrite a value"):
-        return f"{message.replace('Cannot overwrite a value', 'A key is given twice')}; leave one"
-    quotes = ": texts, and values with a unit, stand in quotes"
-    return f"{message}; correct it there{quotes if message.startswith(_OF_A_VALUE) else ''}"
+        message = str(error)
+        quotes = ": texts, and values with a unit, stand in quotes"
+        remedy = f"correct it there{quotes if message.startswith(_OF_A_VALUE) else ''}"
+        raise ConfigError(f"{path}: not valid TOML: {message}; {remedy}") from None
 
 
 def overridden(data: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:

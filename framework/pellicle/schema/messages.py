@@ -59,7 +59,6 @@ def _path(location: Iterable[int | str], data: object) -> str:
 
 
 def _translated(model: type[BaseModel], detail: ErrorDetails, field: str) -> Iterator[Problem]:
-    """Yield the problems that one pydantic error represents."""
     cause = detail.get("ctx", {}).get("error")
     if isinstance(cause, ConfigError):
         yield from (cause.within(field) if field else cause).problems
@@ -79,17 +78,12 @@ def _translated(model: type[BaseModel], detail: ErrorDetails, field: str) -> Ite
                 f"{shown(detail['input'])} is not allowed; {nearest(detail['input'], allowed)}"
             )
         case _:
-            message = refusal(detail)
+            wanted = _WANTED.get(detail["type"], "").format(**detail.get("ctx", {}))
+            remedy = f"give {wanted}" if wanted else detail["msg"].replace("Input", "it")
+            message = f"{shown(detail['input'])} is not allowed; {remedy}"
             if description := _description(model, field):
                 message += f" ({description})"
     yield Problem(field, message)
-
-
-def refusal(detail: ErrorDetails) -> str:
-    """Return what is wrong with a value of the wrong type or size, and what to give instead."""
-    wanted = _WANTED.get(detail["type"], "").format(**detail.get("ctx", {}))
-    remedy = f"give {wanted}" if wanted else detail["msg"].replace("Input", "it")
-    return f"{shown(detail['input'])} is not allowed; {remedy}"
 
 
 _WANTED = {

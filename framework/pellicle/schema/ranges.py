@@ -95,10 +95,7 @@ def ranged(
 
 
 def _end(table: Mapping[str, Any], end: str) -> tuple[float, str]:
-    """Return number and unit of one end of a range."""
     value = table[end]
-    if hasattr(value, "magnitude") and hasattr(value, "units"):
-        value = f"{float(value.magnitude)!r} {value.units}"
     try:
         number, unit = (split(value) or ("", "")) if isinstance(value, str) else (value, "")
         return Quantity("1")(number), unit

@@ -132,8 +132,7 @@ def _draw_series(axes: Axes, series: Series, chart: Chart, scale_x: Scale, scale
     if series.low is not None and not x.size:
         axes.fill_between([], [], [], color=style["color"], alpha=0.2, linewidth=0, label=label)
     elif series.legs:
-        arrows = not (chart.x.log or chart.y[series.panel].log)
-        _draw_legs(axes, series, x, y, {"label": label, **style}, arrows=arrows)
+        _draw_legs(axes, series, x, y, {"label": label, **style})
     else:
         axes.plot(x, y, label=label, **style)
     if series.low is not None and series.high is not None and x.size:
@@ -154,7 +153,6 @@ def _draw_series(axes: Axes, series: Series, chart: Chart, scale_x: Scale, scale
 
 
 def _style(series: Series, chart: Chart) -> dict[str, Any]:
-    """Return keywords of ``Axes.plot`` for a series."""
     look = series.look
     if series.role == "published":
         marker = "" if look.line is not None else "*x+"[(look.marker or 0) % 3]
@@ -189,15 +187,8 @@ def _style(series: Series, chart: Chart) -> dict[str, Any]:
     return style
 
 
-def _draw_legs(
-    axes: Axes, series: Series, x: Array, y: Array, style: dict[str, Any], *, arrows: bool
-) -> None:
-    """Draw approach in the style, and retraction with short dashes and filled markers.
-
-    ``arrows`` point in the order of the steps, if they have markers; on logarithmic axes they might
-    begin at values that are not positive.
-    """
-    arrows = arrows and style.get("markersize", 0.0) > _DOT
+def _draw_legs(axes: Axes, series: Series, x: Array, y: Array, style: dict[str, Any]) -> None:
+    """Draw approach in the style, and retraction with short dashes and filled markers."""
     # The legend shows the plain style if there is an approach.
     for leg in sorted(series.legs, key=lambda leg: leg.direction):
         drawn = dict(style)
@@ -205,21 +196,8 @@ def _draw_legs(
             drawn["markerfacecolor"] = style["color"]
             if style["linestyle"] != "none":
                 drawn["linestyle"] = _RETRACTION
-        u, v = x[leg.steps], y[leg.steps]
-        axes.plot(u, v, **drawn)
+        axes.plot(x[leg.steps], y[leg.steps], **drawn)
         style = style | {"label": None}
-        # An arrow in the middle of the part of the line in which y changes.
-        finite = np.isfinite(u) & np.isfinite(v)
-        starts = np.flatnonzero(finite[:-1] & finite[1:] & (v[1:] != v[:-1]))
-        if arrows and starts.size:
-            start = int(starts[starts.size // 2])
-            arrow = {"arrowstyle": "-|>", "mutation_scale": 15, "shrinkA": 0, "shrinkB": 0}
-            axes.annotate(
-                "",
-                xy=((u[start] + u[start + 1]) / 2, (v[start] + v[start + 1]) / 2),
-                xytext=(u[start], v[start]),
-                arrowprops=arrow | {"color": style["color"]},
-            )
 
 
 def _name_legs(axes: Axes, chart: Chart) -> None:
@@ -256,7 +234,6 @@ def _set_scale(panels: Sequence[Axes], direction: str, axis: Axis, factor: float
 
 
 def _arrangement(count: int) -> tuple[int, int]:
-    """Return the number of panels across and down."""
     count = max(count, 1)
     across = 3 if count > _ACROSS and count % 3 == 0 and count % _ACROSS else min(count, _ACROSS)
     return across, ceil(count / across)
@@ -318,7 +295,6 @@ def _draw_panel(
 
 
 def _colours(fields: Fields, factor: float) -> dict[str, Any]:
-    """Return the colours of all panels, as keywords of ``Axes.imshow``."""
     from matplotlib.colors import ListedColormap
 
     if fields.panels[0].values.dtype == bool:

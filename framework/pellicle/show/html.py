@@ -13,16 +13,13 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from itertools import zip_longest
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from pellicle.components.charts import Column, Table
 from pellicle.files import for_document
 
 from .maps import Maps
 from .numbers import is_number
-
-if TYPE_CHECKING:
-    from jinja2 import Template
 
 _LONG = 30
 """Letters of the longest cell of a column that stays on one line."""
@@ -127,13 +124,14 @@ def page(title: str, sections: Sequence[Section], subtitle: str = "") -> str:
     sections
         In order; a section without blocks is left out.
     """
-    return _template().render(
+    html: str = _template().render(
         title=title,
         subtitle=subtitle,
         sections=[section for section in sections if section.blocks],
         style=_part("page.css"),
         script=_part("page.js"),
     )
+    return html
 
 
 def _column(column: Column) -> dict[str, Any]:
@@ -155,7 +153,7 @@ def _part(name: str) -> str:
 
 
 @cache
-def _template() -> Template:
+def _template() -> Any:
     from jinja2 import Environment, StrictUndefined
 
     environment = Environment(

@@ -64,7 +64,6 @@ def _loading(
     known: Mapping[str, FieldRow],
     varied: tuple[str, ...],
 ) -> str:
-    """Return a sentence on what the load steps prescribe."""
     name = attributes["prescribed"]
     texts = [words_of_name(name)]
     if not any(axis.startswith(f"loading.{name}") for axis in varied):

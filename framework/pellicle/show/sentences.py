@@ -16,7 +16,8 @@ from pellicle.config.run import Run
 from pellicle.contact.caveats import Status, by_phrase, from_text
 from pellicle.errors import first_of
 from pellicle.results.path import has_interaction, has_times, label_of_step, prescribed_variable
-from pellicle.results.result import Result
+from pellicle.results.result import FEW_CELLS as FEW_CELLS
+from pellicle.results.result import Result, first_message
 from pellicle.results.runs import axes_of, by_run, runs_of, short_files, statuses_of
 from pellicle.results.wording import column_of, has_one_shape, is_periodic
 from pellicle.units import decimal, readable
@@ -39,8 +40,6 @@ _COLUMNS = {"pull_off": "force", "pull_off_depth": "depth"}
 """The numbers of steps whose unit they share."""
 _SAME = 1e-9
 """Relative difference up to which numbers count as equal."""
-FEW_CELLS = 12
-"""Contact radius in cells below which force and radius may be off by more than 2 %."""
 STEEP_RIM = 0.3
 """Slope above which linear elasticity is beyond its range."""
 _FAILURES = {
@@ -105,10 +104,10 @@ def status_of_run(result: Result) -> tuple[str, bool | None, list[str]]:
     count = "The load step" if done == 1 else f"All {done} load steps"
     bad = f"{len(failed)} of {done} load steps did not converge: do not rely on them."
     sentences.append(bad if failed else f"{count} converged.")
-    for phrase, steps in by_phrase(result.caveats()).items():
-        sentences.append(f"In {len(steps)} of {done} {phrase}.")
-    sentences += [f"{subject[0].upper()}{subject[1:]}." for subject in result.beyond_theory()]
-    lines = *failed_steps(result), *result.warnings()
+    groups, beyond = by_phrase(result.caveats()), result.beyond_theory()
+    sentences += [f"In {len(steps)} of {done} {phrase}." for phrase, steps in groups.items()]
+    sentences += [f"{subject[0].upper()}{subject[1:]}." for subject in beyond]
+    lines = *failed_steps(result), *map(first_message, groups.values()), *beyond.values()
     details = [f"{line[0].upper()}{line[1:]}" for line in lines]
     is_good = None if details else True
     return " ".join(sentences), is_good if done == total and not failed else False, details

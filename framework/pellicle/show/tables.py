@@ -43,10 +43,8 @@ _POWERS = str.maketrans("²³", "23")
 def numbers(data: xr.Dataset) -> Table:
     """Return all numbers and texts of each step, as files have them."""
     names = [str(n) for n, variable in data.data_vars.items() if variable.dims == ("step",)]
-    units = {name: data[name].attrs.get("units", "") for name in names}
-    return Table(
-        [Column(name, data[name].values.tolist(), units.get(name, "")) for name in ("step", *names)]
-    )
+    columns = [(name, data[name]) for name in ("step", *names)]
+    return Table([Column(n, v.values.tolist(), v.attrs.get("units", "")) for n, v in columns])
 
 
 def steps(data: xr.Dataset, names: Iterable[str], caption: str = "") -> Table:
@@ -83,7 +81,6 @@ def _is_shown(data: xr.Dataset, name: str) -> bool:
 
 
 def _names_of_numbers(data: xr.Dataset) -> list[str]:
-    """Return the variables that have one number for each step."""
     return [
         str(name)
         for name, variable in data.data_vars.items()
@@ -226,7 +223,6 @@ def main_paths(table: xr.Dataset) -> list[Table]:
 
 
 def _of_runs(table: xr.Dataset, names: Iterable[str]) -> Iterator[Column]:
-    """Yield parameters and numbers that have one value for each run."""
     for name in names:
         values = table[name].broadcast_like(table["run"]).transpose(*table["run"].dims)
         yield replace(column_of(table[name]), values=column_of(values).values)

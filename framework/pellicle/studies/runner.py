@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
 import threading
 import time
@@ -25,8 +24,7 @@ from pellicle.components import Executor, Output, Say
 from pellicle.config.run import Run
 from pellicle.config.study import DEFAULT_EXECUTOR, Study
 from pellicle.config.study import from_toml as from_toml
-from pellicle.contact.caveats import Status
-from pellicle.errors import ConfigError, ConvergenceWarning, PluginError, StorageError
+from pellicle.errors import ConfigError, ConvergenceWarning, StorageError
 from pellicle.files import check_writable, is_file, is_folder
 from pellicle.plugins import registry
 from pellicle.results import storage
@@ -327,26 +325,10 @@ def _collect(task: RunTask, rows: table.StudyTable) -> int:
 def read(path: Path) -> tuple[xr.Dataset, Path]:
     """Return the table of a study and its folder, given the folder or its ``study.h5``.
 
-    A kill leaves the files of the runs ahead of the table; their steps are in the table returned.
+    A kill may leave finished steps out of the table, until the study is run again.
     """
     whole = path / "study.h5" if is_folder(path) else path
-    dataset = storage.table(whole)
-    rows = with_paths(dataset)
-    if Status.NOT_RUN.name not in rows["status_code"].values:
-        return rows, whole.parent
-    try:
-        study = Study.of(json.loads(rows.attrs["configuration"]))
-        tasks = planned(study, whole)
-    except (ConfigError, PluginError):
-        # A file that it reads, or a plugin, may be gone.
-        return rows, whole.parent
-    current = table.StudyTable(study)
-    current.recall(dataset)
-    of_steps = rows[[name for name in rows.data_vars if "step" in rows[name].dims]]
-    for task in tasks:
-        current.put(task.index, of_steps.isel(dict(zip(study.dimensions, task.index, strict=True))))
-        _collect(task, current)
-    return current.dataset().assign_attrs(rows.attrs), whole.parent
+    return with_paths(storage.table(whole)), whole.parent
 
 
 def is_table(path: Path) -> bool:

@@ -49,7 +49,6 @@ def _sum(field: Array, shape: tuple[int, int]) -> Array:
 
 
 def _starts(fine: int, coarse: int) -> NDArray[np.int64]:
-    """Return the first fine cell of each coarse one."""
     return np.flatnonzero(np.diff(_parents(fine, coarse), prepend=-1))
 
 

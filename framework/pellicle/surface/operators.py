@@ -206,7 +206,6 @@ class Operator:
 
 
 def _power_of_two(number: float) -> float:
-    """Return the largest power of two up to ``number`` > 0."""
     return 2.0 ** (math.frexp(number)[1] - 1)
 
 

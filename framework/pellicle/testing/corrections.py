@@ -42,7 +42,6 @@ def _area(
     spacing: tuple[float, float] = _SPACING,
     boundary: Boundary = "free",
 ) -> float:
-    """Return the area [m²] as a run asks for it, with its guards."""
     size = (contact.shape[0] * spacing[0], contact.shape[1] * spacing[1])
     return corrected_area(
         correction, contact, Grid(points=contact.shape, size=size, boundary=boundary)
@@ -50,7 +49,6 @@ def _area(
 
 
 def _require_area(area: float, expected: float, which: str) -> None:
-    """Require an area [m²], up to rounding."""
     require_close(area, expected, f"the area [m²] {which}", relative=1e-12)
 
 

@@ -75,5 +75,4 @@ def _sizes(interaction: Interaction) -> tuple[float, float]:
 
 
 def _at_rest(function: Callable[[Array], Array]) -> float:
-    """Return minus a function of a closed gap."""
     return -float(np.ravel(function(np.zeros(1)))[0])

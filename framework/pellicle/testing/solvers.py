@@ -69,7 +69,6 @@ def _from_scratch(solver: Solver, case: int) -> xr.Dataset:
 
 
 def _problems() -> list[Problem]:
-    """Return the smooth problem, at a given depth and at a given force."""
     run = Run(**_SMOOTH, loading={"depth": 0.0})
     operator = make_operator(run.kernel, run.grid)
     profile = run.indenter.profile(*run.grid.coordinates())

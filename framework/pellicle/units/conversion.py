@@ -23,31 +23,11 @@ _UNIT = re.compile(rf"(?:1 ?/)?[( ]*{_NAME}(?:[) ]*[ */·⋅×.][( ]*{_NAME})*[)
 _LONGEST_UNIT = 100
 # m2 is the spelling of datasets and of UDUNITS; no unit of pint ends in such a digit.
 _POWER_BEHIND = re.compile(r"(?<=[^\W\d_])([2-9])(?![\w.])")
-_NOUNS = {
-    "rad": "an angle",
-    "m": "a length",
-    "N": "a force",
-    "Pa": "a pressure",
-    "N/m": "a force per length",
-    "J": "an energy",
-    "Pa/m": "a pressure per length",
-    "m2": "an area",
-    "m3": "a volume",
-    "s": "a time",
-    "1/m": "an inverse length",
-    "m/s": "a speed",
-    "Hz": "a frequency",
-    "kg": "a mass",
-    "kg/m3": "a density",
-    "Pa*s": "a viscosity",
-    "K": "a temperature",
-    "V": "a voltage",
-    "A": "a current",
-    "W": "a power",
-    "m/V": "a length per voltage",
-    "m/Pa": "a compliance",
-}
-"""Nouns for values, by a unit of their dimension."""
+_NAMED = (
+    *("rad", "m", "N", "Pa", "N/m", "J", "Pa/m", "m2", "m3", "s", "1/m", "m/s", "Hz", "kg"),
+    *("kg/m3", "Pa*s", "K", "V", "A", "W", "m/V", "m/Pa"),
+)
+"""The units in which datasets have values, one for each dimension."""
 
 
 def split(text: str) -> tuple[float, str] | None:
@@ -89,7 +69,7 @@ def si_unit(value: Any) -> str:
     dimensions: Mapping[str, float] = getattr(value, "dimensionality", {})
     if not dimensions or not all(map(math.isfinite, dimensions.values())):
         return "1"
-    named_unit = next((u for u in _NOUNS if one(u).dimensionality == dimensions), "")
+    named_unit = next((u for u in _NAMED if one(u).dimensionality == dimensions), "")
     if not named_unit and not dimensions.keys() <= {"[mass]", "[length]", "[time]"}:
         return "1"
     mass, length, time = (dimensions.get(f"[{name}]", 0) for name in ("mass", "length", "time"))
@@ -106,10 +86,9 @@ def si_unit(value: Any) -> str:
 @lru_cache(maxsize=1000)
 def factor_to_si(unit: str, si: str) -> float:
     """Return the factor from ``unit`` to the unit ``si``; refuse a unit that does not fit."""
-    kind = _kind(unit)
-    if kind != _kind(si):
-        noun = "a pure number" if kind == "dimensionless" else f"a value in {unit}"
-        raise ValueError(f"is {next((n for u, n in _NOUNS.items() if _kind(u) == kind), noun)}")
+    # Per cent and angles have no dimension, but root units of their own.
+    if one(unit).to_root_units().units != one(si).to_root_units().units:
+        raise ValueError(f"is in {unit}, which is no unit of {si}")
     to = _quantity(1.0, si).units
     factor, zero = (float(_quantity(x, unit).to(to).magnitude) for x in (1.0, 0.0))
     if zero != 0:
@@ -117,8 +96,3 @@ def factor_to_si(unit: str, si: str) -> float:
     if not 0 < factor < math.inf:
         raise ValueError(f"is in a unit of {factor:g} {si}")
     return factor
-
-
-def _kind(unit: str) -> str:
-    """Return what tells units of one kind from others: per cent and angles have no dimension."""
-    return str(one(unit).to_root_units().units)

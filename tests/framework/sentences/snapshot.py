@@ -34,8 +34,6 @@ _VARYING = {
     # The words of numpy, h5py and the system.
     r"(cannot be read as [\w ]+ )\(.*?\)(;|$)": r"\1(…)\2",
     r"\(Unable to .*\); give": "(…); give",
-    # The words of typer.
-    r"^error: (No such|Missing argument|Invalid value).*? see": "error: …; see",
     r"[\d.e+-]+ GB are available": "… GB are available",
 }
 """What differs between machines, and what stands for it."""

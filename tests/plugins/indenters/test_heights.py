@@ -7,7 +7,6 @@ import pickle
 import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
-from typing import Literal
 
 import h5py
 import numpy as np
@@ -56,20 +55,6 @@ def test_text_has_a_header(tmp_path: Path, above: str, below: str) -> None:
     (tmp_path / "a.txt").write_text(f"{above}{rows}  # last\n{below}")
     profile = _profile(pl.indenter("heights", path=tmp_path / "a.txt", unit="1 um"))
     assert profile == pytest.approx((ROUGH - ROUGH.max()) * 1e-6, rel=1e-14)
-
-
-@pytest.mark.parametrize("floats", ["raise", "warn"])
-@pytest.mark.parametrize(("scale", "unit"), [(1e30, 1e90), (1e-30, 1e-90)])
-def test_heights_beyond_numbers(
-    scale: float, unit: float, floats: Literal["raise", "warn"]
-) -> None:
-    """Whatever overflows, or vanishes, names the indenter and asks for its units."""
-    grid = {"points": 8, "size": "1 mm", "boundary": "periodic"}
-    heights = {"type": "heights", "values": scale * np.eye(8), "unit": unit}
-    run = bead(grid=grid, indenter=heights, loading={"force": "1 uN"})
-    message = "^indenter: its heights .*check the units"
-    with np.errstate(over=floats), pytest.raises(pl.ConfigError, match=message):
-        pl.run(run, progress=False)
 
 
 @pytest.mark.parametrize("begin", ["Wyko ASCII Data File Format 0 0 1", "aISO-1.0"])

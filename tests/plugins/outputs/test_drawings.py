@@ -140,7 +140,7 @@ def test_an_axis_is_shown_at_one_value() -> None:
     assert [one.y.tolist() for one in chart.series if not one.panel] == [[4.0, 5.0], [16.0, 17.0]]
     for where, message in (
         ({TENSION: "15 mN/m"}, "no value of kernel.tension, which has 0, 0.01, 1 N/m"),
-        ({TENSION: "1 m"}, "kernel.tension: '1 m' is a length"),
+        ({TENSION: "1 m"}, "kernel.tension: '1 m' is in m"),
         ({"step": 1}, "'step' is not an axis"),
     ):
         with pytest.raises(pl.ConfigError, match=message):

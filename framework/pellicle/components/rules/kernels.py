@@ -33,7 +33,6 @@ def _waves(grid: Grid, number: int = 24) -> Array:
 
 
 def _shortest(grid: Grid) -> float:
-    """Return the wavenumber [rad/m] of the shortest wave of a grid."""
     return math.pi * math.hypot(*(1 / spacing for spacing in grid.spacing))
 
 

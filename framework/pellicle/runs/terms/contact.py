@@ -63,7 +63,6 @@ def _failures(run: Run, step: LoadStep, value: float) -> Iterator[Caveat]:
 
 
 def _coarse(run: Run, equilibrium: Equilibrium) -> Iterator[Caveat]:
-    """Yield the caveat of a contact on too few cells."""
     contact, problem = equilibrium.contact, equilibrium.problem
     # An interaction of a range of its own acts beyond the contact, however small that is.
     ranged = run.interaction is not None and not run.interaction.needs_contact
