@@ -38,7 +38,7 @@ from .effect import Effect, Fitted, Solid, quantities
 from .files.columns import Calibration
 from .files.measurement import Segment
 from .files.missing import OPTIONS, MissingInputError
-from .files.sources import Curves, Source, expanded, gather
+from .files.sources import CALIBRATION, PLACE, Curves, Source, expanded, gather
 from .population.judgement import group_pattern
 from .population.rules import rules
 from .simulated.simulation import GRID_POINTS
@@ -358,15 +358,18 @@ class FitConfig(FromFile, Calibration):
 
     def sources(self, curves: Curves | None = None) -> Iterator[Source]:
         """Return ``curves``, or those of the configuration if None, each read as it is taken."""
-        chosen, column = self.curves if curves is None else curves, self.group_by
-        is_field = column in {"diameter", *_fields(self.indenter), *Calibration.model_fields}
-        return gather(chosen, self.segment, self, self.per_file, column, is_field)
+        chosen = self.curves if curves is None else curves
+        return gather(chosen, self.segment, self, self.per_file)
 
     def indenter_of(self, source: Source) -> Indenter | HasForceCurve:
         """Return the indenter of one curve, with its own fields; an error names all it lacks."""
         indenter: Indenter | HasForceCurve | Mapping[str, Any] = self.indenter
+        others = {*PLACE, *CALIBRATION}
+        if self.group_by.lower() not in {"diameter", *_fields(indenter)}:
+            others.add(self.group_by.lower())
         for name, value in _with_radius(source.fields).items():
-            indenter = replaced(indenter, name, value)
+            if name not in others:
+                indenter = replaced(indenter, name, value)
         if not isinstance(indenter, Mapping):
             return indenter
         lacks = {} if "type" in indenter else {"indenter": "-i sphere"}

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from glob import glob, has_magic
-from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -22,6 +21,10 @@ from .readers import SUFFIXES, TEXT, read
 from .text_table import FILE, read_cells
 
 _ARRAYS = ("position", "force", "time")
+PLACE = ("x", "y")
+"""Columns of a table of files: where on the sample a curve was measured."""
+CALIBRATION = Calibration.model_fields.keys()
+"""Fields that a table of files may have for each."""
 
 Curves = str | Path | Sequence[str | Path] | Mapping[str, Sequence[ArrayLike]]
 """A folder, a file, a table that lists files, several of these; or arrays of curves by name:
@@ -35,11 +38,9 @@ class Source(NamedTuple):
     """File, and label in the file."""
     curve: Measurement | PellicleError
     fields: Mapping[str, Any]
-    """Fields of the indenter that this curve alone has."""
+    """What ``per_file`` or its row of a table of files says of it, by name."""
     file: str = ""
     """The file, or the name of a curve that was given by its numbers."""
-    group: str = ""
-    """Text of the column of a table of files by which curves are grouped."""
     map: str = ""
     """File of the force map that the curve belongs to: its own, or the table of files."""
 
@@ -49,22 +50,16 @@ class Source(NamedTuple):
 
 
 def gather(
-    curves: Curves,
-    segment: str,
-    calibration: Calibration,
-    per_file: Mapping[str, Sequence[Any]],
-    label: str = "",
-    is_field: bool = False,
+    curves: Curves, segment: str, calibration: Calibration, per_file: Mapping[str, Sequence[Any]]
 ) -> Iterator[Source]:
-    """Return all curves, in order, each read only as it is taken.
+    """Yield all curves, in order, each read only as it is taken.
 
     Each list in ``per_file`` has one value for each file.  In a table that lists files, the columns
-    x and y are the place on the sample, and the column ``label`` holds the group of each curve; it
-    may be a field of the indenter as well.
+    x and y are the place on the sample.
     """
-    files: list[tuple[Any, dict[str, str], Path | None]]
+    files: list[tuple[Any, dict[str, str], Any]]
     if isinstance(curves, Mapping):
-        files = [(name, {}, None) for name in curves]
+        files = [(name, {}, name) for name in curves]
     else:
         paths = [curves] if isinstance(curves, (str, Path)) else curves
         files = [file for text in paths for path in expanded(text) for file in _files(path)]
@@ -77,55 +72,36 @@ def gather(
                 "order",
                 name,
             )
-    opened = []
     for number, (file, listed, table) in enumerate(files):
-        group = listed.get(label.lower(), "")
-        fields = {name: values[number] for name, values in per_file.items()}
-        fields |= {name: v for name, v in listed.items() if is_field or name != label.lower()}
-        whole = str(table or file) if {"x", "y"} <= fields.keys() else str(file)
-        source = partial(Source, file=str(file), group=group, map=whole)
-        numbers = curves[file] if isinstance(curves, Mapping) else None
-        opened.append(_opened(file, source, fields, numbers, segment, calibration))
-    return chain.from_iterable(opened)
-
-
-def _opened(
-    path: Any,
-    source: Callable[..., Source],
-    fields: dict[str, Any],
-    numbers: Sequence[ArrayLike] | None,
-    segment: str,
-    calibration: Calibration,
-) -> Iterator[Source]:
-    """Yield the curves of a file, or the one called ``path`` that is given by ``numbers``."""
-    settings = {
-        name: fields.pop(name, getattr(calibration, name)) for name in Calibration.model_fields
-    }
-    readers: Readers
-    site = None
-    try:
-        if {"x", "y"} <= fields.keys():
-            with all_problems() as within, within("x and y"):
-                site = Site(*(Quantity("m")(fields.pop(name)) for name in "xy"))
-        calibration = Calibration(**settings)
-        if numbers is None:
-            readers = read(path, calibration, segment)
-        else:
-            # `clean` checks the arrays.
-            arrays: Any = dict(zip(_ARRAYS, numbers, strict=False))
-            arrays |= {"stiffness": calibration.spring_constant, "speed": calibration.speed}
-            readers = {"": partial(Measurement, **arrays)}
-    except PellicleError as error:
-        yield source(str(path), error, fields)
-        return
-    for label, reader in readers.items():
-        curve: Measurement | PellicleError
+        fields = {name: values[number] for name, values in per_file.items()} | listed
+        site: Site | None = None
+        readers: Readers = {}
+        source = partial(Source, fields=fields, file=str(file))
         try:
-            curve = reader()
-            curve = replace(curve, site=site or curve.site)
+            if not fields.keys().isdisjoint(PLACE):
+                with all_problems() as within, within("x and y"):
+                    site = Site(*(Quantity("m")(fields.get(name)) for name in PLACE))
+            own = Calibration(
+                **{name: fields.get(name, getattr(calibration, name)) for name in CALIBRATION}
+            )
+            if isinstance(curves, Mapping):
+                # `clean` checks the arrays.
+                arrays: Any = dict(zip(_ARRAYS, curves[file], strict=False))
+                arrays |= {"stiffness": own.spring_constant, "speed": own.speed}
+                readers = {"": partial(Measurement, **arrays)}
+            else:
+                readers = read(file, own, segment)
         except PellicleError as error:
-            curve = error
-        yield source(f"{path}:{label}" if label else str(path), curve, fields)
+            yield source(str(file), error)
+        for label, reader in readers.items():
+            curve: Measurement | PellicleError
+            try:
+                curve = reader()
+                curve = replace(curve, site=site or curve.site)
+            except PellicleError as error:
+                curve = error
+            name = f"{file}:{label}" if label else str(file)
+            yield source(name, curve, map=str(table if site else file))
 
 
 def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
@@ -139,7 +115,7 @@ def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
     return sorted(Path(folder, file) for file in files)
 
 
-def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
+def _files(path: Path) -> list[tuple[Path, dict[str, str], Path]]:
     """Return the files that a path stands for, each with its fields in a list of files, and that.
 
     A list is a table with a header such as ``file,radius [um]``; its empty cells are left out.
@@ -148,11 +124,11 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
         files = [file for file in sorted(path.glob("[!.]*")) if file.suffix.lower() in SUFFIXES]
         if not files:
             raise ConfigError(f"{path}: holds no file of a known kind ({', '.join(SUFFIXES)})")
-        return [(file, {}, None) for file in files]
+        return [(file, {}, file) for file in files]
     cells = read_cells(path) if path.suffix.lower() in TEXT and path.is_file() else None
     if cells is None or FILE not in cells.names:
-        return [(path, {}, None)]
-    listed: list[tuple[Path, dict[str, str], Path | None]] = []
+        return [(path, {}, path)]
+    listed: list[tuple[Path, dict[str, str], Path]] = []
     named = [(name, head.unit) for name, head in zip(cells.names, cells.heads, strict=True)]
     for row in cells.rows:
         pairs = zip(named, map(str.strip, row), strict=False)

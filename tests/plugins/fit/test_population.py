@@ -269,7 +269,7 @@ def test_curves_do_not_pile_up(monkeypatch: pytest.MonkeyPatch) -> None:
     config = pl.FitConfig.merged(**BEAD, rivals=(), fix={"tension": 0})
     whole = fit_sources(config, list(sources()), None, progress=False)
     assert most == 9
-    monkeypatch.setattr(many, "_BATCH", 100)
+    monkeypatch.setattr(many, "_BATCH", 2)
     curves.clear()
     most = 0
     parts = fit_sources(config, sources(), None, progress=False)
