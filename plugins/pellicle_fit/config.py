@@ -22,7 +22,7 @@ from pydantic.fields import FieldInfo
 
 from pellicle import registry
 from pellicle.components import Component, Executor, FromRegistry, HasForceCurve, Indenter
-from pellicle.errors import ConfigError, PellicleError, problems_within, shown
+from pellicle.errors import ConfigError, PellicleError, all_problems, problems_within
 from pellicle.schema import (
     FromFile,
     InputPath,
@@ -75,16 +75,13 @@ _OneEffect = Annotated[Effect, FromRegistry(), BeforeValidator(_component)]
 
 
 def _with_radius(fields: Mapping[str, Any]) -> dict[str, Any]:
-    """Return fields of an indenter with half a diameter, or half of each, as the radius."""
+    """Return fields of an indenter with half of a diameter as the radius."""
     found = dict(fields)
-    if (value := found.pop("diameter", None)) is not None:
-        if "radius" in found:
-            raise ConfigError("is given beside a radius; leave out one of them", "diameter")
-        try:
-            halves = [Quantity("m", above=0)(entry) / 2 for entry in _as_list(value)]
-        except ValueError as error:
-            raise ConfigError(str(error), "diameter") from None
-        found["radius"] = halves if len(halves) != 1 else halves[0]
+    if {"radius", "diameter"} <= found.keys():
+        raise ConfigError("is given beside a radius; leave out one of them", "diameter")
+    if not isinstance(found.get("diameter", []), (list, tuple)):
+        with all_problems() as within, within("diameter"):
+            found["radius"] = Quantity("m", above=0)(found.pop("diameter")) / 2
     return found
 
 
@@ -118,14 +115,10 @@ def described(indenter: object) -> dict[str, Any]:
     return dict(indenter) if isinstance(indenter, Mapping) else {"type": type(indenter).__name__}
 
 
-def _share(value: object) -> float:
-    """Return a share; "5 %" is one of 0.05."""
+def _share(value: object) -> object:
+    """Return "5 %" as 0.05; any other value unchanged."""
     percent = isinstance(value, str) and value.endswith("%")
-    try:
-        number = Quantity("1", above=0)(str(value)[:-1] if percent else value)
-    except ValueError as error:
-        raise ValueError(f'{error}, or a share such as "5 %"') from None
-    return number / 100 if percent else number
+    return float(str(value)[:-1]) / 100 if percent else value
 
 
 def _recorded(path: Path) -> Any:
@@ -210,7 +203,11 @@ class FitConfig(FromFile, Calibration):
     )
     uncertainty: dict[
         Literal["spring_constant", "sensitivity", "radius"],
-        Annotated[float, BeforeValidator(_share, json_schema_input_type=float | str)],
+        Annotated[
+            float,
+            Quantity("1", above=0),
+            BeforeValidator(_share, json_schema_input_type=float | str),
+        ],
     ] = Field(
         default_factory=dict,
         description="standard deviations of spring_constant, sensitivity and radius, each a share "
@@ -258,24 +255,22 @@ class FitConfig(FromFile, Calibration):
 
     @field_validator("fix", mode="before")
     @classmethod
-    def _fixed(cls, value: object, info: ValidationInfo) -> dict[str, float]:
+    def _fixed(cls, value: object, info: ValidationInfo) -> object:
         """Return values in SI of quantities of the solid, of the model and of rivals."""
-        if not isinstance(value, Mapping):
-            raise ConfigError(f"{shown(value)} is not a table; give one such as {{tension = 0}}")
         effects = [*info.data.get("model", ()), *chain(*info.data.get("rivals", ()))]
         known: dict[str, Fitted] = {}
         for component in (Solid, *map(type, effects)):
             known |= quantities(component)
+        if not isinstance(value, Mapping):
+            return value
         values: dict[str, float] = {}
-        for name, entry in value.items():
-            if name not in known:
-                raise ConfigError(
-                    f"is no quantity of the model or of a rival; {nearest(name, known)}", str(name)
-                )
-            try:
-                values[name] = known[name](entry)
-            except ValueError as error:
-                raise ConfigError(str(error), name) from None
+        with all_problems() as within:
+            for name, entry in value.items():
+                with within(str(name)):
+                    if name not in known:
+                        hint = nearest(name, known)
+                        raise ConfigError(f"is no quantity of the model or of a rival; {hint}")
+                    values[name] = known[name](entry)
         if {"reduced_modulus", "tension"} <= values.keys():
             raise ConfigError("fixes both modulus and tension; leave one of them to the fit")
         return values
@@ -320,7 +315,6 @@ class FitConfig(FromFile, Calibration):
             A value is not allowed, or the file cannot be read.
         """
         options = {name: value for name, value in options.items() if value is not None}
-        options = _with_radius(options)
         if isinstance(base, (str, Path)) and Path(base).suffix.lower() == ".json":
             base = _recorded(Path(base))
         if isinstance(base, (str, Path)):
@@ -335,17 +329,19 @@ class FitConfig(FromFile, Calibration):
         own = cls.model_fields.keys() - Calibration.model_fields.keys()
         # What the indenter lacks is told with what its curve lacks.
         data = {"indenter": {}, **(base or {})}
-        for name in ("indenter", "per_file"):
-            if isinstance(table := data.get(name), Mapping):
-                data[name] = _with_radius(table)
         data |= {name: options.pop(name) for name in own & options.keys()}
         for name in data.keys() & {"indenter", "kernel", "executor"}:
             data[name] = _component(data[name])
-        for name, value in options.items():
-            if isinstance(value, (list, tuple)) and len(value) != 1:
+        if isinstance(data["indenter"], Mapping):
+            data["indenter"] = _with_radius(data["indenter"])
+        one_each = {
+            n: v[0] if isinstance(v, (list, tuple)) and len(v) == 1 else v
+            for n, v in options.items()
+        }
+        for name, value in _with_radius(one_each).items():
+            if isinstance(value, (list, tuple)):
                 data = replaced(data, f"per_file.{name}", value)
                 continue
-            (value,) = _as_list(value)
             if isinstance(per_file := data.get("per_file"), Mapping):
                 data["per_file"] = {k: v for k, v in per_file.items() if k != name}
             key = name if name in cls.model_fields else f"indenter.{name}"

@@ -81,13 +81,16 @@ def test_a_diameter_is_two_radii(tmp_path: Path) -> None:
     config = pl.FitConfig.merged(indenter="sphere", radius="5 um")
     assert config == pl.FitConfig.merged(indenter="sphere", diameter="10 um")
     assert config == pl.FitConfig.merged({"indenter": {"type": "sphere", "diameter": 1e-5}})
-    assert pl.FitConfig.merged(config, diameter=["2 um", "4 um"]).per_file == {
-        "radius": (1e-6, 2e-6)
-    }
     (tmp_path / "list.csv").write_text("file,diameter [um]\na.csv,8\n")
     measure(tmp_path / "a.csv")
-    (source,) = config.sources(tmp_path / "list.csv")
-    assert config.indenter_of(source) == pl.indenter("sphere", radius="4 um")
+    two = {"diameter": ["8 um", "8 um"]}
+    for one in (
+        pl.FitConfig.merged(config, curves=tmp_path / "list.csv"),
+        pl.FitConfig.merged(config, curves=[tmp_path / "a.csv"] * 2, **two),
+        pl.FitConfig.merged(config, curves=[tmp_path / "a.csv"] * 2, per_file=two),
+    ):
+        for source in one.sources():
+            assert one.indenter_of(source) == pl.indenter("sphere", radius="4 um")
     with pytest.raises(pl.ConfigError, match="diameter: is given beside a radius"):
         pl.FitConfig.merged(indenter="sphere", radius="5 um", diameter="10 um")
 
