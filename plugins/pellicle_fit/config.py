@@ -115,10 +115,11 @@ def described(indenter: object) -> dict[str, Any]:
     return dict(indenter) if isinstance(indenter, Mapping) else {"type": type(indenter).__name__}
 
 
-def _share(value: object) -> object:
-    """Return "5 %" as 0.05; any other value unchanged."""
+def _share(value: object) -> float:
+    """Return a share; "5 %" is one of 0.05."""
     percent = isinstance(value, str) and value.endswith("%")
-    return float(str(value)[:-1]) / 100 if percent else value
+    number = Quantity("1", above=0)(str(value)[:-1] if percent else value)
+    return number / 100 if percent else number
 
 
 def _recorded(path: Path) -> Any:
@@ -203,11 +204,7 @@ class FitConfig(FromFile, Calibration):
     )
     uncertainty: dict[
         Literal["spring_constant", "sensitivity", "radius"],
-        Annotated[
-            float,
-            Quantity("1", above=0),
-            BeforeValidator(_share, json_schema_input_type=float | str),
-        ],
+        Annotated[float, BeforeValidator(_share, json_schema_input_type=float | str)],
     ] = Field(
         default_factory=dict,
         description="standard deviations of spring_constant, sensitivity and radius, each a share "

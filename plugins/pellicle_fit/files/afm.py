@@ -50,8 +50,12 @@ def read_instrument(path: Path, calibration: Calibration, segment: str) -> Reade
         try:
             recordings = loader(path, meta_override=overrides)
         except NotImplementedError:
-            # Formats that always hold their calibration do not take another.
-            recordings = loader(path)
+            if not overrides:
+                raise
+            raise ConfigError(
+                f"{path}: holds its calibration, and this format takes no other; leave out "
+                f"{' and '.join(overrides)}"
+            ) from None
         # HDF5 lists curve 10 before curve 2.
         recordings = sorted(recordings, key=lambda recording: recording["metadata"]["enum"])
     return {
@@ -90,36 +94,29 @@ def _curve(
     """Return one segment of one curve in SI."""
     with _errors(path):
         data, metadata = recording["data"], recording["metadata"]
-        known = {}
-        for words, name in _CALIBRATION.items():
-            given = getattr(calibration, name)
-            known[name] = metadata.get(words, given)
-            if given is not None and not np.isclose(known[name], given, rtol=1e-6):
-                raise ConfigError(
-                    f"{path}: holds a {words} of {known[name]:g} already, and this format takes no "
-                    "other; leave it out",
-                    name,
-                )
-        stiffness = known["spring_constant"]
-        force = np.asarray(data["force"], dtype=float)
+        stiffness = metadata.get("spring constant")
         source = next((name for name in (_TIP, *_HEIGHTS) if name in data), None)
         if source is None:
             raise ConfigError(f"{path}: has no height over the sample (has {', '.join(data)})")
-        position = -np.asarray(data[source], dtype=float)
+        force, position = (np.asarray(data[name], dtype=float) for name in ("force", source))
+        position = -position
         if source != _TIP:
             if stiffness is None:
                 raise _without(path, ["spring constant"])
             position -= force / stiffness
-        columns = {"position": Channel("m", position, source), "force": Channel("N", force)}
+        columns = {
+            "position": Channel("m", position, source),
+            "force": Channel("N", force, "force"),
+        }
         if "time" in data:
-            columns["time"] = Channel("s", np.asarray(data["time"], dtype=float))
+            columns["time"] = Channel("s", np.asarray(data["time"], dtype=float), "time")
         if "segment" in data and segment != "both":
             labels = np.asarray(data["segment"])
             rows = labelled(position, labels, inward=segment == "approach")
             columns = {role: c._replace(values=c.values[rows]) for role, c in columns.items()}
         own = Calibration(spring_constant=stiffness, speed=calibration.speed)
         curve, site = from_columns(columns, own), _site(metadata)
-    origin = curve.origin._replace(sensitivity=known["sensitivity"], library="afmformats")
+    origin = curve.origin._replace(sensitivity=metadata.get("sensitivity"), library="afmformats")
     return replace(curve, origin=origin, site=site)
 
 

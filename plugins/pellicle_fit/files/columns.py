@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Set
 from contextlib import suppress
 from functools import cache
@@ -16,7 +15,7 @@ from pellicle.errors import ConfigError, shown
 from pellicle.schema import Model, nearest
 from pellicle.units import Quantity
 
-from .measurement import Measurement, Note, Origin, grows
+from .measurement import Measurement, Origin
 
 EXAMPLE = "position [um],force [nN]"
 _OF_TIP, _OF_BASE = ("position", "depth"), ("height", "extension")
@@ -36,21 +35,19 @@ def column_map(value: object) -> dict[str, str] | None:
 
     The value is such a table, or a text such as ``"Z = extension nm, Defl = deflection nm"``.
     """
+    if isinstance(value, str):
+        entries = [text.rpartition("=") for text in value.split(",") if text.strip()]
+        value = {name.strip(): role for name, _, role in entries} or None
     if value is None:
         return None
-    table = value
-    if isinstance(value, str):
-        texts = [text for text in re.findall(r'(?:"[^"]*"|[^,"])+', value) if text.strip()]
-        entries = [text.rpartition("=") for text in texts]
-        table = {name.strip().strip('"'): role for name, _, role in entries} or None
-    if not isinstance(table, Mapping) or "" in table:
+    if not isinstance(value, Mapping) or "" in value:
         raise ConfigError(
             f"{shown(value)} is not of the form 'Z = extension nm, Defl = deflection nm', or a "
             "table of the same"
         )
     roles = (*NAMES, LABEL)
     found: dict[str, tuple[str, str]] = {}
-    for column, text in table.items():
+    for column, text in value.items():
         role, *unit = str(text).split() or [""]
         role = role.lower()
         if role not in roles:
@@ -88,7 +85,7 @@ class Channel(NamedTuple):
 
     unit: str
     values: Array
-    name: str = ""
+    name: str
 
 
 Columns = Mapping[str, Channel]
@@ -107,12 +104,11 @@ def lacking(columns: Columns, calibration: Calibration) -> list[str]:
     signals = signals if place in _OF_BASE else signals[:1]
     lacks = [] if place else ["a position (or depth, extension, height)"]
     lacks += [] if signals else ["a force (or deflection)"]
-    timed = ["time"] if "time" in columns and columns["time"].unit else []
-    for name in filter(None, (place, *signals, *timed)):
+    for name in (name for name in (place, *signals, "time") if name in columns):
         unit = columns[name].unit
         if si_unit(unit) not in [*UNITS.get(name, "m")]:
             hint = f" ({shown(unit)} is not one of {name})" if unit else ""
-            lacks.append(f"the unit of {columns[name].name or name}{hint}")
+            lacks.append(f"the unit of {columns[name].name}{hint}")
     bends = place in _OF_BASE and "deflection" not in signals
     if calibration.spring_constant is None and (bends or signals == ["deflection"]):
         lacks.append("spring_constant")
@@ -143,28 +139,15 @@ def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
     if name in _OF_BASE:
         deflection = si("deflection") if "deflection" in columns else force / stiffness
         position = (position if name == "extension" else -position) - deflection
-    time = None
-    messages: tuple[str, ...] = ()
-    if "time" in columns:
-        unit, values, own_name = columns["time"]
-        rows = np.isfinite(position) & np.isfinite(force)
-        if unit and values.shape == rows.shape and grows(values[rows]):
-            time = si("time")
-        else:
-            reason = "falls, stands still or has a row without a number" if unit else "has no unit"
-            text = f"column {own_name or 'time'} {reason}, so the curve is taken as one without"
-            messages = (Note(f"{text} time"),)
-            columns = {role: channel for role, channel in columns.items() if role != "time"}
     return Measurement(
         position,
         force,
         name == "depth",
-        messages,
         stiffness=calibration.spring_constant,
-        time=time,
+        time=si("time") if "time" in columns else None,
         speed=calibration.speed,
         origin=Origin(
-            columns={role: f"{c.name or role} [{c.unit}]" for role, c in columns.items()},
+            columns={role: f"{c.name} [{c.unit}]" for role, c in columns.items()},
             sensitivity=calibration.sensitivity,
         ),
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from .columns import LABEL, UNITS, si_unit
@@ -44,12 +44,10 @@ def plain(text: str) -> str:
 def guessed(
     heads: Sequence[Head],
     known: Mapping[str, tuple[str, str]],
-    rises: Callable[[str, str], bool] | None = None,
 ) -> dict[str, tuple[str, str]]:
     """Return names of columns and their units, empty if not known, by the roles they may have.
 
-    Those that are ``known`` come first.  A base is an extension if its place ``rises`` with the
-    signal, or if that is not known.
+    Those that are ``known`` come first.
     """
     columns = [(role, name, Head("", name, unit)) for role, (name, unit) in known.items()]
     for index, head in enumerate(heads):
@@ -67,12 +65,15 @@ def guessed(
         if unit and is_signal:
             # Instruments call a signal in any unit a deflection.
             role = "force" if si_unit(unit) == "N" else "deflection"
-        if kind and (unit or kind != "time"):
+        if kind and (unit or kind != "time" or role in known):
             found.setdefault(kind, (role, name, unit))
     signal, name, _ = found.setdefault("signal", ("deflection", "<column>", ""))
     role, place, unit = found.setdefault("place", ("height", "<column>", ""))
     if role == "height" and role not in known and "<" not in place + name:
-        is_tip = signal == "force" and not _OF_BASE.search(place.lower())
-        if rises is None or rises(place, name):
-            found["place"] = ("position" if is_tip else "extension", place, unit)
+        # Most heights fall as the tip goes down, and most others grow; which it is shows in a fit.
+        if signal == "force" and not _OF_BASE.search(place.lower()):
+            role = "position"
+        elif "height" not in place.lower():
+            role = "extension"
+        found["place"] = (role, place, unit)
     return {role: (name, unit) for role, name, unit in found.values()}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -41,30 +41,28 @@ class MissingInputError(ConfigError):
 def missing_in(
     where: str,
     heads: Sequence[Head],
-    mapped: Mapping[str, str],
     wrong: Sequence[str],
     columns: Columns,
     calibration: Calibration,
-    rises: Callable[[str, str], bool] | None,
 ) -> MissingInputError:
     """Return the error of a curve of which something is `lacking`, with columns as `guessed`.
 
-    Of what is ``mapped``, the ``wrong`` names are those of no column, or of several.
+    Of the names of columns, the ``wrong`` ones are those of no column, or of several.
     """
-    lacks = [f"one column {name!r}" for name in dict.fromkeys(wrong)]
+    lacks = [f"one column {name!r}" for name in wrong]
     lacks += lacking(columns, calibration)
     of_columns = [lack for lack in lacks if lack.split()[0] not in OPTIONS]
     text = ""
     if of_columns:
-        typed = {text.split()[0]: name for name, text in mapped.items()}
-        known = {role: (typed.get(role, c.name or role), c.unit) for role, c in columns.items()}
-        roles = guessed(heads, known, rises)
+        typed = {text.split()[0]: name for name, text in (calibration.columns or {}).items()}
+        known = {role: (typed.get(role, c.name), c.unit) for role, c in columns.items()}
+        roles = guessed(heads, known)
         text = ", ".join(
             f"{roles[role][0]} = {role} {roles[role][1] or '<unit>'}"
             for role in (*NAMES, LABEL)
             if role in roles
         )
-        then = {role: Channel(unit, np.empty(0)) for role, (_, unit) in roles.items()}
+        then = {role: Channel(unit, np.empty(0), name) for role, (name, unit) in roles.items()}
         others = [lack for lack in lacking(then, calibration) if lack.split()[0] in OPTIONS]
         lacks = [*of_columns, *others]
     names = [shown(head.text or head.name) for head in heads[:SHOWN]]

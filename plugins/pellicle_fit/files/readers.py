@@ -10,10 +10,10 @@ from pathlib import Path
 from pellicle.errors import ConfigError, StorageError
 
 from . import afm
-from .columns import EXAMPLE, LABEL, NAMES, Calibration, Columns, from_columns, is_curve, lacking
+from .columns import EXAMPLE, Calibration, Columns, from_columns, is_curve, lacking
 from .measurement import Measurement, Readers
 from .missing import missing_in
-from .text_table import curves_of, index_of, read_cells, rises
+from .text_table import read_table
 from .tree import read_tree
 
 TEXT = (".csv", ".tsv", ".txt")
@@ -48,13 +48,7 @@ def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
         if mapped:
             raise ConfigError(f"{path} states what its columns are; leave columns out", "columns")
         return afm.read_instrument(path, calibration, segment)
-    cells = None
-    if suffix in _TREES:
-        tables, heads = read_tree(path, mapped)
-    else:
-        cells = read_cells(path, mapped)
-        tables = curves_of(path, cells, mapped) if cells else {}
-        heads = cells.heads if cells else []
+    tables, heads, wrong = (read_tree if suffix in _TREES else read_table)(path, mapped)
     hint = ""
     if not mapped and not any(is_curve(columns.keys()) for columns in tables.values()):
         try:
@@ -67,20 +61,11 @@ def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
             f"{path}: is neither text, nor HDF5, nor a readable file of an instrument{hint}; "
             f"export it as a table (a sheet as CSV) with a header such as {EXAMPLE!r}"
         )
-    if cells is None:
-        found = {role for columns in tables.values() for role in columns}
-        wrong = [name for name, text in mapped.items() if text.split()[0] not in found]
-    else:
-        names = mapped or [name for name in cells.names if name in (*NAMES, LABEL)]
-        wrong = [name for name in names if index_of(heads, name) is None]
 
     def curve(label: str, columns: Columns) -> Measurement:
         if not wrong and not lacking(columns, calibration):
             return from_columns(columns, calibration)
         where = f"{path}: curve {label}" if label else str(path)
-        if cells is None and label and not mapped:
-            columns = {role: c._replace(name=f"*/{role}") for role, c in columns.items()}
-        way = partial(rises, path, cells) if cells else None
-        raise missing_in(f"{where}{hint}:", heads, mapped, wrong, columns, calibration, way)
+        raise missing_in(f"{where}{hint}:", heads, wrong, columns, calibration)
 
     return {label: partial(curve, label, columns) for label, columns in tables.items()}

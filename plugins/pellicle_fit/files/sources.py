@@ -126,13 +126,12 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str], Path]]:
             raise ConfigError(f"{path}: holds no file of a known kind ({', '.join(SUFFIXES)})")
         return [(file, {}, file) for file in files]
     cells = read_cells(path) if path.suffix.lower() in TEXT and path.is_file() else None
-    if cells is None or FILE not in cells.names:
+    if cells is None or all(head.name.lower() != FILE for head in cells.heads):
         return [(path, {}, path)]
     listed: list[tuple[Path, dict[str, str], Path]] = []
-    named = [(name, head.unit) for name, head in zip(cells.names, cells.heads, strict=True)]
     for row in cells.rows:
-        pairs = zip(named, map(str.strip, row), strict=False)
-        fields = {name: f"{cell} {unit}".strip() for (name, unit), cell in pairs if cell and name}
+        pairs = zip(cells.heads, map(str.strip, row), strict=False)
+        fields = {head.name.lower(): f"{c} {head.unit}".strip() for head, c in pairs if c}
         if FILE not in fields:
             raise ConfigError(f"{path}: has a row without a file; name one in each row")
         listed.append((path.parent / fields.pop(FILE), fields, path))

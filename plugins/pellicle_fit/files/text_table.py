@@ -38,11 +38,6 @@ class Cells(NamedTuple):
     rows: list[list[str]]
     separator: str
 
-    @property
-    def names(self) -> list[str]:
-        """Names of the columns in lower case."""
-        return [head.name.lower() for head in self.heads]
-
 
 def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | None:
     """Return the cells of a table; None if the file is not text.
@@ -147,11 +142,20 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, Columns]:
-    """Return the known columns of each curve of a table, or those that ``mapped`` names."""
+def read_table(
+    path: Path, mapped: Mapping[str, str]
+) -> tuple[dict[str, Columns], list[Head], list[str]]:
+    """Return the columns of each curve of a table by its label, all heads, and wrong names.
+
+    The columns are those with known names or those that are ``mapped``, whose names are wrong if no
+    column has them, or several have.  There is no curve in a file that is not text.
+    """
+    if (cells := read_cells(path, mapped)) is None:
+        return {}, [], []
     heads, rows, separator = cells
-    named = sum(bool(head.text) for head in heads)
-    if not mapped and separator == "," and is_curve(set(cells.names)):
+    names = [head.name.lower() for head in heads]
+    if not mapped and separator == "," and is_curve({*names}):
+        named = sum(bool(head.text) for head in heads)
         for row in rows:
             if len(row) > named and all(map(_is_number, row)):
                 raise ConfigError(
@@ -160,35 +164,27 @@ def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, 
                     "semicolons, tabs or decimal points, or choose columns by their numbers "
                     "(--columns on the command line)"
                 )
-    mapped = mapped or {name: name for name in cells.names if name in (*NAMES, LABEL)}
-    indices = {text: index_of(heads, name) for name, text in mapped.items()}
-    roles = {text: index for text, index in indices.items() if index is not None}
-    label, columns = roles.pop(LABEL, None), []
+    mapped = mapped or {name: name for name in names if name in (*NAMES, LABEL)}
+    indices = {name: _index(heads, name) for name in mapped}
+    roles = {mapped[name]: index for name, index in indices.items() if index is not None}
+    label, columns = roles.pop(LABEL, None), dict[str, Channel]()
     for role, index in roles.items():
         name, _, unit = role.partition(" ")
         head, texts = heads[index], [row[index].strip() for row in rows]
         values = _numbers(texts, separator, f"{path}: column {head.name}")
-        columns.append((name, unit or head.unit, values, head.name))
-    curves: dict[str, list[int]] = {} if rows else {"": []}
-    for number, row in enumerate(rows):
-        # Without other columns, a column of labels is not one of curves.
-        text = row[label].strip() if roles and label is not None else ""
-        curves.setdefault(text, []).append(number)
-    return {
-        text: {role: Channel(unit, values[own], name) for role, unit, values, name in columns}
-        for text, own in curves.items()
+        columns[name] = Channel(unit or head.unit, values, head.name)
+    labels = np.array([""] * len(rows), dtype=object)
+    # Without other columns, a column of labels is not one of curves.
+    if columns and label is not None:
+        labels[:] = [row[label].strip() for row in rows]
+    curves: dict[str, Columns] = {
+        text: {role: c._replace(values=c.values[labels == text]) for role, c in columns.items()}
+        for text in dict.fromkeys(labels.tolist() or [""])
     }
+    return curves, heads, [name for name, index in indices.items() if index is None]
 
 
-def rises(path: Path, cells: Cells, place: str, signal: str) -> bool:
-    """Return whether one column grows with another."""
-    columns = curves_of(path, cells, {place: "extension", signal: "force"})[""]
-    z, f = columns["extension"].values, columns["force"].values
-    known = np.isfinite(z) & np.isfinite(f)
-    return known.sum() < 2 or bool(np.cov(z[known], f[known])[0, 1] > 0)
-
-
-def index_of(heads: Sequence[Head], name: str) -> int | None:
+def _index(heads: Sequence[Head], name: str) -> int | None:
     """Return the index of the one column with a name or, if none has it, a number."""
     matches = [index for index, head in enumerate(heads) if head.is_called(name)]
     if not matches and name.isdecimal() and 1 <= int(name) <= len(heads):

@@ -20,8 +20,10 @@ from .heads import Head
 from .missing import SHOWN
 
 
-def read_tree(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns], list[Head]]:
-    """Return the columns of each curve of an HDF5 or a MATLAB file by its label, and all heads.
+def read_tree(
+    path: Path, mapped: Mapping[str, str]
+) -> tuple[dict[str, Columns], list[Head], list[str]]:
+    """Return the columns of each curve of an HDF5 or a MATLAB file, all heads, and wrong names.
 
     Without ``mapped`` columns, they are arrays of one axis with the names of columns, at its root
     or else in groups, one for each curve.
@@ -33,7 +35,10 @@ def read_tree(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns]
         with nullcontext(read_mat(path)) if is_matlab else h5py.File(path) as root:
             arrays = dict(_arrays(root if is_matlab else root["/"]))
             heads = [Head(name, name, _unit(arrays[name])) for name in islice(arrays, SHOWN + 1)]
-            return _curves(arrays, mapped, is_matlab=is_matlab), heads
+            curves = _curves(arrays, mapped, is_matlab=is_matlab)
+            found = {role for columns in curves.values() for role in columns}
+            wrong = [name for name, text in mapped.items() if text.split()[0] not in found]
+            return curves, heads, wrong
     except PellicleError:
         raise
     except (OSError, RuntimeError, ValueError) as error:
@@ -90,7 +95,7 @@ def _curves(
                 rows = {",".join(map(str, i)): values[i] for i in np.ndindex(values.shape[:-1])}
             for row, numbers in rows.items():
                 label = "/".join(filter(None, (*match.groups(), row)))
-                labelled[label] = Channel(unit or _unit(array), numbers, pattern if mapped else "")
+                labelled[label] = Channel(unit or _unit(array), numbers, pattern)
     labels = dict.fromkeys(label for own in channels.values() for label in own if label)
     # An array that all curves share, such as the time, has no label.
     found = {
