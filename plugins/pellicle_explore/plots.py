@@ -23,7 +23,7 @@ _BLUE, _ORANGE, _GREY = "#0072B2", "#D55E00", "#767676"
 
 def read_measured(path: Path) -> pl.Measurement:
     """Return the only force curve of a file, without the rows that lack a number."""
-    curve, *others = pl.read_curves(path, segment="approach").values()
+    curve, *others = pl.read_curves(path).values()
     if others:
         raise ConfigError(f"holds {1 + len(others)} curves; give a file with one", "--curve")
     rows = np.isfinite(curve.position) & np.isfinite(curve.force)

@@ -18,7 +18,6 @@ from pellicle.units import Quantity
 from .columns import Calibration, Channel, from_columns
 from .measurement import Measurement, Readers, Site
 from .missing import OPTIONS, MissingInputError
-from .passes import labelled
 
 _JPK = (".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series")
 SUFFIXES = (*_JPK, ".ibw", ".tab", ".zip")
@@ -35,8 +34,8 @@ def installed() -> bool:
     return find_spec("afmformats") is not None
 
 
-def read_instrument(path: Path, calibration: Calibration, segment: str) -> Readers:
-    """Return what reads the ``segment`` of each curve, by its number, one at a time."""
+def read_instrument(path: Path, calibration: Calibration) -> Readers:
+    """Return what reads each curve, by its number, one at a time."""
     if not installed():
         raise StorageError(f"{path}: is the file of an instrument; {INSTALL}")
     from afmformats.formats import get_recipe
@@ -60,7 +59,7 @@ def read_instrument(path: Path, calibration: Calibration, segment: str) -> Reade
         recordings = sorted(recordings, key=lambda recording: recording["metadata"]["enum"])
     return {
         "" if len(recordings) == 1 else str(recording["metadata"]["enum"]): partial(
-            _curve, path, recording, calibration, segment
+            _curve, path, recording, calibration.speed
         )
         for recording in recordings
     }
@@ -88,10 +87,8 @@ def _without(path: Path, words: Sequence[str]) -> MissingInputError:
     return MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in names})
 
 
-def _curve(
-    path: Path, recording: Mapping[str, Any], calibration: Calibration, segment: str
-) -> Measurement:
-    """Return one segment of one curve in SI."""
+def _curve(path: Path, recording: Mapping[str, Any], speed: float | None) -> Measurement:
+    """Return one curve in SI."""
     with _errors(path):
         data, metadata = recording["data"], recording["metadata"]
         stiffness = metadata.get("spring constant")
@@ -110,11 +107,7 @@ def _curve(
         }
         if "time" in data:
             columns["time"] = Channel("s", np.asarray(data["time"], dtype=float), "time")
-        if "segment" in data and segment != "both":
-            labels = np.asarray(data["segment"])
-            rows = labelled(position, labels, inward=segment == "approach")
-            columns = {role: c._replace(values=c.values[rows]) for role, c in columns.items()}
-        own = Calibration(spring_constant=stiffness, speed=calibration.speed)
+        own = Calibration(spring_constant=stiffness, speed=speed)
         curve, site = from_columns(columns, own), _site(metadata)
     origin = curve.origin._replace(sensitivity=metadata.get("sensitivity"), library="afmformats")
     return replace(curve, origin=origin, site=site)

@@ -39,11 +39,11 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
     if missing := int(np.sum(~finite)):
         messages.append(Note(f"{missing} of {z.size} rows hold no finite number and were left out"))
     z, f, t = z[finite], f[finite], None if t is None else t[finite]
+    _check_count(z.size, "the curve")
     if t is not None and not (np.all(np.diff(t) >= 0) and 0 < np.ptp(t) < np.inf):
         reason = "falls, stands still or has a row without a number"
         messages.append(f"the time {reason}, so the curve is taken as one without time")
         t = None
-    _check_count(z.size, "the curve")
     if not np.ptp(z):
         raise ConfigError(f"is {z[0]:g} m in every row; give a curve that moves", "position")
     base = z if curve.stiffness is None else z + f / curve.stiffness

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -23,36 +21,24 @@ SUFFIXES = (*TEXT, *_TREES, *afm.SUFFIXES)
 """Suffixes of the files of a folder that are read."""
 
 
-def read(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Readers:
+def read(path: Path, calibration: Calibration | None = None) -> Readers:
     """Return functions that read the curves of a file, and raise what this one does.
 
     The columns of the calibration name those of a table, and the arrays of an HDF5 or MATLAB file.
-    What is no such file is read by afmformats; of its labels the ``segment`` is selected.
+    What is no such file is read by afmformats.
     """
-    readers = _readers(path, calibration or Calibration(), segment)
-    with path.open("rb") as file:
-        digest = hashlib.file_digest(file, "sha256").hexdigest()
-
-    def curve(label: str) -> Measurement:
-        measured = readers[label]()
-        origin = measured.origin._replace(file=str(path), curve=label or None, sha256=digest)
-        return replace(measured, origin=origin)
-
-    return {label: partial(curve, label) for label in readers}
-
-
-def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
+    calibration = calibration or Calibration()
     suffix, mapped = path.suffix.lower(), calibration.columns or {}
     # The columns of a table can be named though it is an instrument's.
     if suffix in afm.SUFFIXES and not (mapped and suffix == ".tab"):
         if mapped:
             raise ConfigError(f"{path} states what its columns are; leave columns out", "columns")
-        return afm.read_instrument(path, calibration, segment)
+        return afm.read_instrument(path, calibration)
     tables, heads, wrong = (read_tree if suffix in _TREES else read_table)(path, mapped)
     hint = ""
     if not mapped and not any(is_curve(columns.keys()) for columns in tables.values()):
         try:
-            return afm.read_instrument(path, calibration, segment)
+            return afm.read_instrument(path, calibration)
         except StorageError:
             # Only afmformats can recognise the file of an instrument.
             hint = "" if afm.installed() else f"; if it is an instrument's: {afm.INSTALL}"

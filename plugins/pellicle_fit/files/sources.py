@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -16,7 +17,7 @@ from pellicle.errors import ConfigError, PellicleError, all_problems
 from pellicle.units import Quantity
 
 from .columns import Calibration
-from .measurement import Measurement, Readers, Segment, Site
+from .measurement import Measurement, Readers, Site
 from .readers import SUFFIXES, TEXT, read
 from .text_table import FILE, read_cells
 
@@ -50,7 +51,7 @@ class Source(NamedTuple):
 
 
 def gather(
-    curves: Curves, segment: str, calibration: Calibration, per_file: Mapping[str, Sequence[Any]]
+    curves: Curves, calibration: Calibration, per_file: Mapping[str, Sequence[Any]]
 ) -> Iterator[Source]:
     """Yield all curves, in order, each read only as it is taken.
 
@@ -76,6 +77,7 @@ def gather(
         fields = {name: values[number] for name, values in per_file.items()} | listed
         site: Site | None = None
         readers: Readers = {}
+        origin: dict[str, Any] = {}
         source = partial(Source, fields=fields, file=str(file))
         try:
             if not fields.keys().isdisjoint(PLACE):
@@ -90,14 +92,18 @@ def gather(
                 arrays |= {"stiffness": own.spring_constant, "speed": own.speed}
                 readers = {"": partial(Measurement, **arrays)}
             else:
-                readers = read(file, own, segment)
+                readers = read(file, own)
+                with file.open("rb") as opened:
+                    digest = hashlib.file_digest(opened, "sha256").hexdigest()
+                origin = {"file": str(file), "sha256": digest}
         except PellicleError as error:
             yield source(str(file), error)
         for label, reader in readers.items():
             curve: Measurement | PellicleError
             try:
                 curve = reader()
-                curve = replace(curve, site=site or curve.site)
+                of_curve = curve.origin._replace(curve=label or None, **origin)
+                curve = replace(curve, site=site or curve.site, origin=of_curve)
             except PellicleError as error:
                 curve = error
             name = f"{file}:{label}" if label else str(file)
@@ -138,9 +144,7 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str], Path]]:
     return listed
 
 
-def read_curves(
-    path: str | Path, *, segment: Segment = "both", **calibration: Any
-) -> dict[str, Measurement]:
+def read_curves(path: str | Path, **calibration: Any) -> dict[str, Measurement]:
     """Return the curves of a file, a folder, a pattern or a table of files by their names.
 
     Position, force and time are in SI; a curve draws itself with `Measurement.plot`.
@@ -149,8 +153,6 @@ def read_curves(
     ----------
     path
         As the curves of `fit_many`.
-    segment
-        Segment of the files of instruments that label segments; both are all rows.
     **calibration
         Options of `fit` that say how files are read: ``spring_constant``, ``sensitivity``,
         ``speed``, ``columns``.
@@ -169,7 +171,7 @@ def read_curves(
     """
     curves: dict[str, Measurement] = {}
     errors: list[PellicleError] = []
-    for source in gather(path, segment, Calibration(**calibration), {}):
+    for source in gather(path, Calibration(**calibration), {}):
         if isinstance(source.curve, Measurement):
             curves[source.name] = source.curve
         else:
