@@ -15,7 +15,7 @@ import numpy as np
 from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.units import Quantity
 
-from .columns import Calibration, Channel, from_columns
+from .columns import Calibration, Column, from_columns
 from .measurement import Measurement, Readers, Site
 from .missing import OPTIONS, MissingInputError
 
@@ -102,11 +102,11 @@ def _curve(path: Path, recording: Mapping[str, Any], speed: float | None) -> Mea
                 raise _without(path, ["spring constant"])
             position -= force / stiffness
         columns = {
-            "position": Channel("m", position, source),
-            "force": Channel("N", force, "force"),
+            "position": Column("", source, "m", position),
+            "force": Column("", "force", "N", force),
         }
         if "time" in data:
-            columns["time"] = Channel("s", np.asarray(data["time"], dtype=float), "time")
+            columns["time"] = Column("", "time", "s", np.asarray(data["time"], dtype=float))
         own = Calibration(spring_constant=stiffness, speed=speed)
         curve, site = from_columns(columns, own), _site(metadata)
     origin = curve.origin._replace(sensitivity=metadata.get("sensitivity"), library="afmformats")

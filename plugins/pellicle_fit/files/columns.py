@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Mapping, Set
 from contextlib import suppress
 from functools import cache
@@ -80,15 +81,21 @@ class Calibration(Model):
     )
 
 
-class Channel(NamedTuple):
-    """Values of a column, of shape (n,), their unit as text, and its name in the file."""
+class Column(NamedTuple):
+    """A column of a file: its head, such as ``position [um]``, and the name and unit in it."""
 
-    unit: str
-    values: Array
+    text: str
     name: str
+    unit: str
+    values: Array = np.empty(0)
+    """Of shape (n,), in that unit."""
+
+    def is_called(self, name: str) -> bool:
+        """Return whether a user who writes ``name`` may mean this column."""
+        return plain(name).lower() in (self.text.lower(), self.name.lower())
 
 
-Columns = Mapping[str, Channel]
+Columns = Mapping[str, Column]
 """The columns of one curve by their names in `NAMES`."""
 
 
@@ -127,10 +134,11 @@ def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
     """
 
     def si(name: str) -> Array:
-        unit, values, _ = columns[name]
-        found = si_unit(unit)
-        factor = Quantity(found)(f"1 {unit}")
-        return values * (factor * (calibration.sensitivity or 1.0) if found == "V" else factor)
+        column = columns[name]
+        unit = si_unit(column.unit)
+        factor = Quantity(unit)(f"1 {column.unit}")
+        factor *= (calibration.sensitivity or 1.0) if unit == "V" else 1.0
+        return column.values * factor
 
     stiffness = calibration.spring_constant or np.nan
     name = next(name for name in (*_OF_TIP, *_OF_BASE) if name in columns)
@@ -161,3 +169,8 @@ def si_unit(unit: str) -> str:
             Quantity(si)(f"1 {unit}")
             return si
     return ""
+
+
+def plain(text: str) -> str:
+    """Return a text with one kind of µ and of space."""
+    return " ".join(unicodedata.normalize("NFKC", text).replace("μ", "µ").split())

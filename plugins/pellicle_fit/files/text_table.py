@@ -15,8 +15,8 @@ from pellicle.arrays import Array
 from pellicle.errors import ConfigError, StorageError
 from pellicle.files import read_text
 
-from .columns import EXAMPLE, LABEL, NAMES, Channel, Columns, is_curve, si_unit
-from .heads import Head, guessed, plain
+from .columns import EXAMPLE, LABEL, NAMES, Column, Columns, is_curve, plain, si_unit
+from .missing import UNKNOWN, guessed
 
 FILE = "file"
 """Name of the column of a table that lists files."""
@@ -34,7 +34,7 @@ _PREAMBLE = 200
 class Cells(NamedTuple):
     """The cells of a table as texts, each row as long as the heads or longer."""
 
-    heads: list[Head]
+    heads: list[Column]
     rows: list[list[str]]
     separator: str
 
@@ -71,14 +71,14 @@ def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | N
                 for head, unit in zip(heads, units, strict=False)
             ]
         width = max(map(len, rows[:1]), default=0)
-        heads += [Head("", str(index + 1), "") for index in range(len(heads), width)]
+        heads += [Column("", str(index + 1), "") for index in range(len(heads), width)]
         return Cells(heads, [row + [""] * (len(heads) - len(row)) for row in rows], separator)
     return None
 
 
 def _header(
     lines: Sequence[str], data: Sequence[int], mapped: Mapping[str, str]
-) -> tuple[int, list[Head]]:
+) -> tuple[int, list[Column]]:
     """Return the number of the line above the rows, and its heads.
 
     It is the first line that has the ``mapped`` columns or, without them, those of a curve or of a
@@ -92,14 +92,14 @@ def _header(
     width = len(_heads(lines[data[-1]]))
     for number in () if mapped else likely:
         roles = guessed(heads[number], {}) if len(heads[number]) == width else {}
-        if roles and "<column>" not in dict(roles.values()):
+        if roles and all(column.name != UNKNOWN for column in roles.values()):
             return number, heads[number]
     first = heads[data[0]]
     are_numbers = all(_is_number(head.text) for head in first if head.text)
     return (data[0] - 1, []) if are_numbers else (data[0], first)
 
 
-def _fits(heads: Sequence[Head], mapped: Mapping[str, str]) -> bool:
+def _fits(heads: Sequence[Column], mapped: Mapping[str, str]) -> bool:
     """Return whether heads are those of the table that is sought."""
     if not mapped:
         names = {head.name.lower() for head in heads}
@@ -108,7 +108,7 @@ def _fits(heads: Sequence[Head], mapped: Mapping[str, str]) -> bool:
     return bool(named) and all(any(head.is_called(name) for head in heads) for name in named)
 
 
-def _heads(line: str) -> list[Head]:
+def _heads(line: str) -> list[Column]:
     # JPK writes "columns:" before the names.
     line = re.sub(r"^\s*columns:", "", line.lstrip("".join(_COMMENT)))
     separator = _separator(line)
@@ -117,7 +117,7 @@ def _heads(line: str) -> list[Head]:
     for text in map(plain, cells):
         match = _HEAD.fullmatch(text)
         name, unit = match.groups(default="") if match else (text, "")
-        heads.append(Head(text, name.strip(), unit.strip()))
+        heads.append(Column(text, name.strip(), unit.strip()))
     return heads
 
 
@@ -144,7 +144,7 @@ def _is_number(cell: str) -> bool:
 
 def read_table(
     path: Path, mapped: Mapping[str, str]
-) -> tuple[dict[str, Columns], list[Head], list[str]]:
+) -> tuple[dict[str, Columns], list[Column], list[str]]:
     """Return the columns of each curve of a table by its label, all heads, and wrong names.
 
     The columns are those with known names or those that are ``mapped``, whose names are wrong if no
@@ -167,12 +167,12 @@ def read_table(
     mapped = mapped or {name: name for name in names if name in (*NAMES, LABEL)}
     indices = {name: _index(heads, name) for name in mapped}
     roles = {mapped[name]: index for name, index in indices.items() if index is not None}
-    label, columns = roles.pop(LABEL, None), dict[str, Channel]()
+    label, columns = roles.pop(LABEL, None), dict[str, Column]()
     for role, index in roles.items():
         name, _, unit = role.partition(" ")
         head, texts = heads[index], [row[index].strip() for row in rows]
         values = _numbers(texts, separator, f"{path}: column {head.name}")
-        columns[name] = Channel(unit or head.unit, values, head.name)
+        columns[name] = head._replace(unit=unit or head.unit, values=values)
     labels = np.array([""] * len(rows), dtype=object)
     # Without other columns, a column of labels is not one of curves.
     if columns and label is not None:
@@ -184,7 +184,7 @@ def read_table(
     return curves, heads, [name for name, index in indices.items() if index is None]
 
 
-def _index(heads: Sequence[Head], name: str) -> int | None:
+def _index(heads: Sequence[Column], name: str) -> int | None:
     """Return the index of the one column with a name or, if none has it, a number."""
     matches = [index for index, head in enumerate(heads) if head.is_called(name)]
     if not matches and name.isdecimal() and 1 <= int(name) <= len(heads):

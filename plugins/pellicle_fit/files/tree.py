@@ -15,14 +15,13 @@ from pellicle.arrays import Array
 from pellicle.errors import PellicleError, StorageError
 from pellicle.schema import read_mat
 
-from .columns import NAMES, Channel, Columns
-from .heads import Head
+from .columns import NAMES, Column, Columns
 from .missing import SHOWN
 
 
 def read_tree(
     path: Path, mapped: Mapping[str, str]
-) -> tuple[dict[str, Columns], list[Head], list[str]]:
+) -> tuple[dict[str, Columns], list[Column], list[str]]:
     """Return the columns of each curve of an HDF5 or a MATLAB file, all heads, and wrong names.
 
     Without ``mapped`` columns, they are arrays of one axis with the names of columns, at its root
@@ -34,7 +33,7 @@ def read_tree(
     try:
         with nullcontext(read_mat(path)) if is_matlab else h5py.File(path) as root:
             arrays = dict(_arrays(root if is_matlab else root["/"]))
-            heads = [Head(name, name, _unit(arrays[name])) for name in islice(arrays, SHOWN + 1)]
+            heads = [Column(name, name, _unit(arrays[name])) for name in islice(arrays, SHOWN + 1)]
             curves = _curves(arrays, mapped, is_matlab=is_matlab)
             found = {role for columns in curves.values() for role in columns}
             wrong = [name for name, text in mapped.items() if text.split()[0] not in found]
@@ -76,7 +75,7 @@ def _curves(
     The points of a curve are along the first axis of a matrix of MATLAB, or along the last.
     """
     own = {name: name for name in NAMES if name in arrays and arrays[name].ndim == 1}
-    channels: dict[str, dict[str, Channel]] = {}
+    channels: dict[str, dict[str, Column]] = {}
     for pattern, text in (mapped or own or {f"*/{name}": name for name in NAMES}).items():
         role, _, unit = text.partition(" ")
         labelled = channels.setdefault(role, {})
@@ -95,7 +94,7 @@ def _curves(
                 rows = {",".join(map(str, i)): values[i] for i in np.ndindex(values.shape[:-1])}
             for row, numbers in rows.items():
                 label = "/".join(filter(None, (*match.groups(), row)))
-                labelled[label] = Channel(unit or _unit(array), numbers, pattern)
+                labelled[label] = Column(pattern, pattern, unit or _unit(array), numbers)
     labels = dict.fromkeys(label for own in channels.values() for label in own if label)
     # An array that all curves share, such as the time, has no label.
     found = {
