@@ -27,7 +27,7 @@ from .files.measurement import Measurement
 from .files.sources import Curves, Source
 from .population.fits import ManyFits, table
 from .population.images import force_maps
-from .population.judgement import group_of, group_pattern, judge, read_names
+from .population.judgement import group_of, judge, read_names
 from .population.row import FAILED, Row, sketch
 from .population.summary import summary
 from .problem import Problem, problem
@@ -201,7 +201,7 @@ def _task(
 ) -> FitTask | None:
     """Add a row for a curve, and return the fit of it if there is none yet."""
     column = str(source.fields.get(config.group_by.lower(), ""))
-    row = Row(source.name, group_of(group_pattern(config.group_by), source.file, column))
+    row = Row(source.name, group_of(config.group_by, source.file, column))
     fits.rows.append(row)
     try:
         indenter = config.indenter_of(source)

@@ -72,10 +72,6 @@ class Row:
     estimates: dict[str, Estimate] = field(default_factory=dict, init=False)
     """Modulus and tension over all that is tied, and the quantities of the chosen explanation."""
 
-    def __post_init__(self) -> None:
-        if self.fit:
-            self.keep(self.fit)
-
     def keep(self, fit: dict[str, Any]) -> None:
         """Take the JSON data of a fit, which may hold a sketch, as workers return them."""
         self.status, self.fit = FITTED, {k: value for k, value in fit.items() if k != "sketch"}
