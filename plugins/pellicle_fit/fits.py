@@ -75,10 +75,8 @@ def fit(
     curves = None
     positions = [values for values in (position, depth) if values is not None]
     if positions or force is not None or not config.curves:
-        if len(positions) != 1:
-            raise ConfigError("give either position or depth")
-        if force is None:
-            raise ConfigError("is missing; give the force [N] at each position", "force")
+        if len(positions) != 1 or force is None:
+            raise ConfigError("give the force [N], and either position or depth")
         curves = {"": (positions[0], force) if time is None else (positions[0], force, time)}
     source, *others = config.sources(curves)
     if others:

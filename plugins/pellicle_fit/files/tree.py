@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.errors import PellicleError, StorageError
+from pellicle.errors import StorageError
 from pellicle.schema import read_mat
 
 from .columns import NAMES, Column, Columns
@@ -38,11 +38,9 @@ def read_tree(
             found = {role for columns in curves.values() for role in columns}
             wrong = [name for name, text in mapped.items() if text.split()[0] not in found]
             return curves, heads, wrong
-    except PellicleError:
-        raise
     except (OSError, RuntimeError, ValueError) as error:
-        kind = "a MATLAB" if is_matlab else "an HDF5"
         reason = getattr(error, "strerror", "") or error
+        kind = "a MATLAB" if is_matlab else "an HDF5"
         raise StorageError(f"{path}: cannot be read as {kind} file ({reason})") from None
 
 
