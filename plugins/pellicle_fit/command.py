@@ -88,7 +88,7 @@ def fit(
         Option(
             help="What columns of other names are, with their units, by name, number or path in "
             'the file: "Z = extension nm, Defl = deflection nm". Roles: position, depth, height, '
-            "extension; force, deflection; time; curve."
+            "extension; force, deflection; time."
         ),
     ] = None,
     pool: Annotated[

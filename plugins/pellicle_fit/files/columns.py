@@ -25,8 +25,6 @@ _SIGNALS = ("force", "deflection")
 """Names of columns of which one gives the force."""
 NAMES = (*_OF_TIP, *_OF_BASE, *_SIGNALS, "time")
 """Names of the columns that are read."""
-LABEL = "curve"
-"""Name of the column that tells the curves of one table apart."""
 UNITS = {"force": "N", "deflection": "mV", "time": "s"}
 """SI units, each a letter, of columns that are not lengths."""
 
@@ -46,17 +44,16 @@ def column_map(value: object) -> dict[str, str] | None:
             f"{shown(value)} is not of the form 'Z = extension nm, Defl = deflection nm', or a "
             "table of the same"
         )
-    roles = (*NAMES, LABEL)
     found: dict[str, tuple[str, str]] = {}
     for column, text in value.items():
         role, *unit = str(text).split() or [""]
         role = role.lower()
-        if role not in roles:
-            raise ConfigError(f"{shown(role)} is not a role; {nearest(role, roles)}", str(column))
+        if role not in NAMES:
+            raise ConfigError(f"{shown(role)} is not a role; {nearest(role, NAMES)}", str(column))
         if role in found:
             raise ConfigError(f"{found[role][0]!r} and {column!r} are both {role}")
-        found[role] = str(column), " ".join([role, *unit] if role != LABEL else [role])
-    return dict(found[role] for role in roles if role in found)
+        found[role] = str(column), " ".join([role, *unit])
+    return dict(found[role] for role in NAMES if role in found)
 
 
 class Calibration(Model):

@@ -8,7 +8,7 @@ from typing import Any
 
 from pellicle.errors import ConfigError, shown
 
-from .columns import LABEL, NAMES, UNITS, Calibration, Column, Columns, lacking, si_unit
+from .columns import NAMES, UNITS, Calibration, Column, Columns, lacking, si_unit
 
 OPTIONS = {
     "spring_constant": '--spring-constant "… N/m"',
@@ -70,7 +70,7 @@ def missing_in(
         roles = guessed(heads, known)
         text = ", ".join(
             f"{roles[role].name} = {role} {roles[role].unit or '<unit>'}"
-            for role in (*NAMES, LABEL)
+            for role in NAMES
             if role in roles
         )
         options = dict.fromkeys(of_columns, f'--columns "{text}"')
@@ -95,7 +95,7 @@ def guessed(heads: Sequence[Column], known: Columns) -> dict[str, Column]:
     found: dict[str, tuple[str, Column]] = {}
     for role, name, head in columns:
         is_signal = role in ("force", "deflection")
-        kind = "signal" if is_signal else role if role in ("", "time", LABEL) else "place"
+        kind = "signal" if is_signal else role if role in ("", "time") else "place"
         allowed = "mNV" if is_signal else UNITS.get(role, "m")
         units = [head.unit, *reversed(re.split(r"[\W_]+", head.name))]
         unit = next((u for u in units if si_unit(u) in [*allowed]), "")

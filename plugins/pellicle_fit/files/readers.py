@@ -8,7 +8,7 @@ from pathlib import Path
 from pellicle.errors import ConfigError, StorageError
 
 from . import afm
-from .columns import EXAMPLE, Calibration, Columns, from_columns, is_curve, lacking
+from .columns import EXAMPLE, NAMES, Calibration, Columns, from_columns, is_curve, lacking
 from .measurement import Measurement, Readers
 from .missing import missing_in
 from .text_table import read_table
@@ -34,7 +34,7 @@ def read(path: Path, calibration: Calibration | None = None) -> Readers:
         if mapped:
             raise ConfigError(f"{path} states what its columns are; leave columns out", "columns")
         return afm.read_instrument(path, calibration)
-    tables, heads, wrong = (read_tree if suffix in _TREES else read_table)(path, mapped)
+    tables, heads = (read_tree if suffix in _TREES else read_table)(path, mapped)
     hint = ""
     if not mapped and not any(is_curve(columns.keys()) for columns in tables.values()):
         try:
@@ -47,6 +47,10 @@ def read(path: Path, calibration: Calibration | None = None) -> Readers:
             f"{path}: is neither text, nor HDF5, nor a readable file of an instrument{hint}; "
             f"export it as a table (a sheet as CSV) with a header such as {EXAMPLE!r}"
         )
+    names = [name for head in heads if (name := head.name.lower()) in NAMES]
+    found = {role for columns in tables.values() for role in columns}
+    wanted = mapped or dict(zip(names, names, strict=True))
+    wrong = [name for name, text in wanted.items() if text.split()[0] not in found]
 
     def curve(label: str, columns: Columns) -> Measurement:
         if not wrong and not lacking(columns, calibration):

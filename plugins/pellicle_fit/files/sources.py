@@ -131,12 +131,13 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str], Path]]:
         if not files:
             raise ConfigError(f"{path}: holds no file of a known kind ({', '.join(SUFFIXES)})")
         return [(file, {}, file) for file in files]
-    cells = read_cells(path) if path.suffix.lower() in TEXT and path.is_file() else None
-    if cells is None or all(head.name.lower() != FILE for head in cells.heads):
+    is_table = path.suffix.lower() in TEXT and path.is_file()
+    heads, rows, _ = read_cells(path) if is_table else ([], [], "")
+    if all(head.name.lower() != FILE for head in heads):
         return [(path, {}, path)]
     listed: list[tuple[Path, dict[str, str], Path]] = []
-    for row in cells.rows:
-        pairs = zip(cells.heads, map(str.strip, row), strict=False)
+    for row in rows:
+        pairs = zip(heads, map(str.strip, row), strict=False)
         fields = {head.name.lower(): f"{c} {head.unit}".strip() for head, c in pairs if c}
         if FILE not in fields:
             raise ConfigError(f"{path}: has a row without a file; name one in each row")

@@ -7,7 +7,6 @@ import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from pellicle.arrays import Array
 from pellicle.errors import ConfigError, StorageError
 from pellicle.files import read_text
 
-from .columns import EXAMPLE, LABEL, NAMES, Column, Columns, is_curve, plain, si_unit
+from .columns import EXAMPLE, NAMES, Column, Columns, is_curve, plain, si_unit
 from .missing import UNKNOWN, guessed
 
 FILE = "file"
@@ -31,25 +30,20 @@ _PREAMBLE = 200
 """Lines in which a header is sought."""
 
 
-class Cells(NamedTuple):
-    """The cells of a table as texts, each row as long as the heads or longer."""
+def read_cells(
+    path: Path, mapped: Mapping[str, str] | None = None
+) -> tuple[list[Column], list[list[str]], str]:
+    """Return heads and rows of cells of a table, and what separates them; empty if it is no text.
 
-    heads: list[Column]
-    rows: list[list[str]]
-    separator: str
-
-
-def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | None:
-    """Return the cells of a table; None if the file is not text.
-
-    A row of units may follow the header, and the columns of a table without one have numbers.
+    A row of units may follow the header, and the columns of a table without one have numbers.  The
+    rows are as long as the heads or longer.
     """
     try:
         text = read_text(path)
     except OSError as error:
         raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
     except ValueError:
-        return None
+        return [], [], ""
     lines = [line for line in text.splitlines() if line.strip()]
     data = [number for number, line in enumerate(lines) if not line.startswith(_COMMENT)]
     if not data:
@@ -72,8 +66,8 @@ def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | N
             ]
         width = max(map(len, rows[:1]), default=0)
         heads += [Column("", str(index + 1), "") for index in range(len(heads), width)]
-        return Cells(heads, [row + [""] * (len(heads) - len(row)) for row in rows], separator)
-    return None
+        return heads, [row + [""] * (len(heads) - len(row)) for row in rows], separator
+    return [], [], ""
 
 
 def _header(
@@ -142,17 +136,12 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-def read_table(
-    path: Path, mapped: Mapping[str, str]
-) -> tuple[dict[str, Columns], list[Column], list[str]]:
-    """Return the columns of each curve of a table by its label, all heads, and wrong names.
+def read_table(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns], list[Column]]:
+    """Return the columns of the curve of a table, those with known names or ``mapped``, and all.
 
-    The columns are those with known names or those that are ``mapped``, whose names are wrong if no
-    column has them, or several have.  There is no curve in a file that is not text.
+    There is no curve in a file that is not text.
     """
-    if (cells := read_cells(path, mapped)) is None:
-        return {}, [], []
-    heads, rows, separator = cells
+    heads, rows, separator = read_cells(path, mapped)
     names = [head.name.lower() for head in heads]
     if not mapped and separator == "," and is_curve({*names}):
         named = sum(bool(head.text) for head in heads)
@@ -164,24 +153,14 @@ def read_table(
                     "semicolons, tabs or decimal points, or choose columns by their numbers "
                     "(--columns on the command line)"
                 )
-    mapped = mapped or {name: name for name in names if name in (*NAMES, LABEL)}
-    indices = {name: _index(heads, name) for name in mapped}
-    roles = {mapped[name]: index for name, index in indices.items() if index is not None}
-    label, columns = roles.pop(LABEL, None), dict[str, Column]()
-    for role, index in roles.items():
-        name, _, unit = role.partition(" ")
-        head, texts = heads[index], [row[index].strip() for row in rows]
-        values = _numbers(texts, separator, f"{path}: column {head.name}")
-        columns[name] = head._replace(unit=unit or head.unit, values=values)
-    labels = np.array([""] * len(rows), dtype=object)
-    # Without other columns, a column of labels is not one of curves.
-    if columns and label is not None:
-        labels[:] = [row[label].strip() for row in rows]
-    curves: dict[str, Columns] = {
-        text: {role: c._replace(values=c.values[labels == text]) for role, c in columns.items()}
-        for text in dict.fromkeys(labels.tolist() or [""])
-    }
-    return curves, heads, [name for name, index in indices.items() if index is None]
+    columns = {}
+    for name, text in (mapped or {name: name for name in names if name in NAMES}).items():
+        if (index := _index(heads, name)) is not None:
+            role, _, unit = text.partition(" ")
+            head, texts = heads[index], [row[index].strip() for row in rows]
+            values = _numbers(texts, separator, f"{path}: column {head.name}")
+            columns[role] = head._replace(unit=unit or head.unit, values=values)
+    return ({"": columns} if heads else {}), heads
 
 
 def _index(heads: Sequence[Column], name: str) -> int | None:

@@ -19,10 +19,8 @@ from .columns import NAMES, Column, Columns
 from .missing import SHOWN
 
 
-def read_tree(
-    path: Path, mapped: Mapping[str, str]
-) -> tuple[dict[str, Columns], list[Column], list[str]]:
-    """Return the columns of each curve of an HDF5 or a MATLAB file, all heads, and wrong names.
+def read_tree(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns], list[Column]]:
+    """Return the columns of each curve of an HDF5 or a MATLAB file by its label, and all heads.
 
     Without ``mapped`` columns, they are arrays of one axis with the names of columns, at its root
     or else in groups, one for each curve.
@@ -34,10 +32,7 @@ def read_tree(
         with nullcontext(read_mat(path)) if is_matlab else h5py.File(path) as root:
             arrays = dict(_arrays(root if is_matlab else root["/"]))
             heads = [Column(name, name, _unit(arrays[name])) for name in islice(arrays, SHOWN + 1)]
-            curves = _curves(arrays, mapped, is_matlab=is_matlab)
-            found = {role for columns in curves.values() for role in columns}
-            wrong = [name for name, text in mapped.items() if text.split()[0] not in found]
-            return curves, heads, wrong
+            return _curves(arrays, mapped, is_matlab=is_matlab), heads
     except (OSError, RuntimeError, ValueError) as error:
         reason = getattr(error, "strerror", "") or error
         kind = "a MATLAB" if is_matlab else "an HDF5"

@@ -165,19 +165,6 @@ def test_a_time_that_does_not_serve(time: Array) -> None:
     assert [text for text in curve.messages if "as one without time" in text]
 
 
-def test_labels_and_deflection(tmp_path: Path) -> None:
-    """Rows are told apart by a column of another name; a deflection gets force and position."""
-    path = tmp_path / "a.csv"
-    lines = [f"{z},{f},{n // 2}" for n, (z, f) in enumerate(zip(Z, F, strict=True))]
-    path.write_text("Zsnsr,Defl,Nr\n" + "\n".join(lines), encoding="utf-8")
-    columns = "Zsnsr = extension um, Defl = deflection V, Nr = curve"
-    both = curves(path, columns, spring_constant="0.1 N/m", sensitivity="100 nm/V")
-    assert list(both) == ["0", "1"]
-    bending = 100e-9 * F
-    assert both["1"].force == pytest.approx(0.1 * bending[2:])
-    assert both["1"].position == pytest.approx(1e-6 * Z[2:] - bending[2:])
-
-
 EXPORTS = {
     "Piezo height [um],Deflection [V]": "Piezo height = height um, Deflection = deflection V",
     "Z (nm);Defl_nm": "Z = extension nm, Defl_nm = deflection nm",
@@ -309,7 +296,7 @@ def test_matlab(tmp_path: Path, write: Callable[[Path], str], count: int) -> Non
         curves(path)
 
 
-@pytest.mark.parametrize("twice", ["force", "time", "curve"])
+@pytest.mark.parametrize("twice", ["force", "time"])
 def test_a_column_that_is_there_twice_is_asked_for(tmp_path: Path, twice: str) -> None:
     """Neither is silently taken or left out."""
     header = f"position [um],force [nN],{twice},{twice}"
