@@ -15,7 +15,7 @@ import numpy as np
 from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.units import Quantity
 
-from .columns import Calibration, Column, from_columns
+from .columns import UNITS, Calibration, Column, from_columns, lacking
 from .measurement import Measurement, Readers, Site
 from .missing import OPTIONS, MissingInputError
 
@@ -25,8 +25,8 @@ SUFFIXES = (*_JPK, ".ibw", ".tab", ".zip")
 INSTALL = "such files are read by afmformats: install it with pip install 'pellicle[afm]'"
 _CALIBRATION = {"spring constant": "spring_constant", "sensitivity": "sensitivity"}
 """What files may hold, and its name here."""
-_TIP = "tip position"
-_HEIGHTS = ("height (measured)", "height (piezo)")
+_PLACES = {"tip position": "position", "height (measured)": "height", "height (piezo)": "height"}
+"""Names of places in files, and their roles."""
 
 
 def installed() -> bool:
@@ -91,23 +91,18 @@ def _curve(path: Path, recording: Mapping[str, Any], speed: float | None) -> Mea
     """Return one curve in SI."""
     with _errors(path):
         data, metadata = recording["data"], recording["metadata"]
-        stiffness = metadata.get("spring constant")
-        source = next((name for name in (_TIP, *_HEIGHTS) if name in data), None)
-        if source is None:
-            raise ConfigError(f"{path}: has no height over the sample (has {', '.join(data)})")
-        force, position = (np.asarray(data[name], dtype=float) for name in ("force", source))
-        position = -position
-        if source != _TIP:
-            if stiffness is None:
-                raise _without(path, ["spring constant"])
-            position -= force / stiffness
+        place = next((name for name in _PLACES if name in data), "")
+        names = {_PLACES.get(place, ""): place, "force": "force", "time": "time"}
         columns = {
-            "position": Column("", source, "m", position),
-            "force": Column("", "force", "N", force),
+            role: Column("", name, UNITS.get(role, "m"), np.asarray(data[name], dtype=float))
+            for role, name in names.items()
+            if name in data
         }
-        if "time" in data:
-            columns["time"] = Column("", "time", "s", np.asarray(data["time"], dtype=float))
-        own = Calibration(spring_constant=stiffness, speed=speed)
+        if tip := columns.get("position"):
+            columns["position"] = tip._replace(values=-tip.values)
+        own = Calibration(spring_constant=metadata.get("spring constant"), speed=speed)
+        if lacks := lacking(columns, own):
+            raise _without(path, lacks)
         curve, site = from_columns(columns, own), _site(metadata)
     origin = curve.origin._replace(sensitivity=metadata.get("sensitivity"), library="afmformats")
     return replace(curve, origin=origin, site=site)
