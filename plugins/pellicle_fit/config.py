@@ -38,7 +38,7 @@ from .effect import Effect, Fitted, Solid, quantities
 from .files.columns import Calibration
 from .files.measurement import Segment
 from .files.missing import OPTIONS, MissingInputError
-from .files.sources import CALIBRATION, PLACE, Curves, Source, expanded, gather
+from .files.sources import PLACE, Curves, Source, expanded, gather
 from .population.judgement import GROUP
 from .population.rules import rules
 from .simulated.simulation import GRID_POINTS
@@ -360,7 +360,7 @@ class FitConfig(FromFile, Calibration):
     def indenter_of(self, source: Source) -> Indenter | HasForceCurve:
         """Return the indenter of one curve, with its own fields; an error names all it lacks."""
         indenter: Indenter | HasForceCurve | Mapping[str, Any] = self.indenter
-        others = {*PLACE, *CALIBRATION}
+        others = {*PLACE, *Calibration.model_fields}
         if self.group_by.lower() not in {"diameter", *_fields(indenter)}:
             others.add(self.group_by.lower())
         for name, value in _with_radius(source.fields).items():

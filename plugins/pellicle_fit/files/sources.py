@@ -24,8 +24,6 @@ from .text_table import FILE, read_cells
 _ARRAYS = ("position", "force", "time")
 PLACE = ("x", "y")
 """Columns of a table of files: where on the sample a curve was measured."""
-CALIBRATION = Calibration.model_fields.keys()
-"""Fields that a table of files may have for each."""
 
 Curves = str | Path | Sequence[str | Path] | Mapping[str, Sequence[ArrayLike]]
 """A folder, a file, a table that lists files, several of these; or arrays of curves by name:
@@ -58,23 +56,7 @@ def gather(
     Each list in ``per_file`` has one value for each file.  In a table that lists files, the columns
     x and y are the place on the sample.
     """
-    files: list[tuple[Any, dict[str, str], Any]]
-    if isinstance(curves, Mapping):
-        files = [(name, {}, name) for name in curves]
-    else:
-        paths = [curves] if isinstance(curves, (str, Path)) else curves
-        files = [file for text in paths for path in expanded(text) for file in _files(path)]
-    if not files:
-        raise ConfigError("holds no curve; give files, or a folder of them", "curves")
-    for name, values in per_file.items():
-        if len(values) != len(files):
-            raise ConfigError(
-                f"{len(values)} values for {len(files)} files; give one, or one for each file in "
-                "order",
-                name,
-            )
-    for number, (file, listed, table) in enumerate(files):
-        fields = {name: values[number] for name, values in per_file.items()} | listed
+    for file, fields, table in _listed(curves, per_file):
         site: Site | None = None
         readers: Readers = {}
         origin: dict[str, Any] = {}
@@ -83,9 +65,8 @@ def gather(
             if not fields.keys().isdisjoint(PLACE):
                 with all_problems() as within, within("x and y"):
                     site = Site(*(Quantity("m")(fields.get(name)) for name in PLACE))
-            own = Calibration(
-                **{name: fields.get(name, getattr(calibration, name)) for name in CALIBRATION}
-            )
+            known = dict(calibration) | fields
+            own = Calibration(**{name: known[name] for name in Calibration.model_fields})
             if isinstance(curves, Mapping):
                 # `clean` checks the arrays.
                 arrays: Any = dict(zip(_ARRAYS, curves[file], strict=False))
@@ -108,6 +89,29 @@ def gather(
                 curve = error
             name = f"{file}:{label}" if label else str(file)
             yield source(name, curve, map=str(table if site else file))
+
+
+def _listed(
+    curves: Curves, per_file: Mapping[str, Sequence[Any]]
+) -> Iterator[tuple[Any, dict[str, Any], Any]]:
+    """Yield files, or the names of arrays, each with its fields and the table that lists it."""
+    files: list[tuple[Any, dict[str, str], Any]]
+    if isinstance(curves, Mapping):
+        files = [(name, {}, name) for name in curves]
+    else:
+        paths = [curves] if isinstance(curves, (str, Path)) else curves
+        files = [file for text in paths for path in expanded(text) for file in _files(path)]
+    if not files:
+        raise ConfigError("holds no curve; give files, or a folder of them", "curves")
+    for name, values in per_file.items():
+        if len(values) != len(files):
+            raise ConfigError(
+                f"{len(values)} values for {len(files)} files; give one, or one for each file in "
+                "order",
+                name,
+            )
+    for number, (file, listed, table) in enumerate(files):
+        yield file, {name: values[number] for name, values in per_file.items()} | listed, table
 
 
 def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
