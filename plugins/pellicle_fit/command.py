@@ -167,24 +167,24 @@ def fit(
     )
     kinds = [str(kind) for kind in formats or [Format.PNG]]
     result, name, title = _fit(config, directory, kinds, quiet=quiet)
-    many = result if isinstance(result, ManyFits) else None
+    many = result if isinstance(result, ManyFits) else ManyFits([])
+    written = [*many.files]
     if json:
         print_json(result.to_dict())
     elif isinstance(result, ManyFits):
         print_fits(result, quiet=quiet, directory=directory, si=si)
     else:
         print_fit(result, quiet=quiet, details=details, si=si)
-    written = [*many.files] if many else []
     if directory is not None and not isinstance(result, ManyFits):
         written.append(write_json(result.to_dict(), directory / f"{name}.json"))
         written += save_figure(result, directory / name, kinds)
     if report:
         written.append(save_report(result, (directory or Path()) / f"{name}.html", title))
-    if many and many.resumed and not quiet:
+    if many.resumed and not quiet:
         echo(f"{many.resumed} of {len(many.rows)} fits were done before")
     for path in () if quiet else written:
         echo(f"wrote {path}")
-    if many and many.failed:
+    if many.failed:
         echo(f"{many.failed} of {len(many.rows)} curves could not be fitted", err=True)
         raise typer.Exit(NOT_CONVERGED)
 
@@ -203,17 +203,14 @@ def _fit(
     from pellicle_fit.problem import problem
 
     progress, stream = not quiet and sys.stderr.isatty(), config.sources()
-    sources, name, title = None, "pool", "Pooled fit"
-    if config.pool:
-        sources = [*stream]
-    else:
-        first = [*islice(stream, 2)]
-        if [source.name for source in first] == [str(config.curves[0])]:
-            sources, title = first, config.curves[0].stem
-            name = f"{title}-fit"
-        stream = chain(first, stream)
-    if sources is not None:
-        return problem(config, sources, progress=progress).fit(progress=progress), name, title
+    first, name, title = [*islice(stream, None if config.pool else 2)], "pool", "Pooled fit"
+    is_one = not config.pool and [source.name for source in first] == [str(config.curves[0])]
+    if is_one:
+        title = config.curves[0].stem
+        name = f"{title}-fit"
+    if config.pool or is_one:
+        return problem(config, first, progress=progress).fit(progress=progress), name, title
+    stream = chain(first, stream)
     try:
         fits = fit_sources(config, stream, directory, progress=not quiet, formats=formats)
     except KeyboardInterrupt:

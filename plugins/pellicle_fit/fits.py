@@ -66,11 +66,7 @@ def fit(
         A study failed, or its folder cannot be used.
     """
     if isinstance(position, (str, Path)):
-        file, position = Path(position), None
-        if file.suffix.lower() in (".toml", ".json") and config is None:
-            config = file
-        else:
-            options["curves"] = file
+        options["curves"], position = position, None
     config = FitConfig.merged(config, **options)
     curves = None
     positions = [values for values in (position, depth) if values is not None]

@@ -112,8 +112,7 @@ def fit_many(
         The folder cannot be used.
     """
     config = FitConfig.merged(config, **options)
-    folder = None if directory is None else Path(directory)
-    return table(fit_sources(config, config.sources(curves), folder, progress=progress).rows)
+    return table(fit_sources(config, config.sources(curves), directory, progress=progress).rows)
 
 
 def fit_map(
@@ -149,8 +148,7 @@ def fit_map(
         The folder cannot be used.
     """
     config = FitConfig.merged(config, **options)
-    folder = None if directory is None else Path(directory)
-    fits = fit_sources(config, config.sources(curves), folder, progress=progress)
+    fits = fit_sources(config, config.sources(curves), directory, progress=progress)
     if len(fits.maps) != 1:
         reason = "; ".join(fits.notes) or "their files do not say where curves were measured"
         raise ConfigError(
@@ -163,7 +161,7 @@ def fit_map(
 def fit_sources(
     config: FitConfig,
     sources: Iterable[Source],
-    directory: Path | None,
+    directory: str | Path | None,
     *,
     progress: bool,
     formats: Sequence[str] = ("png",),
@@ -174,6 +172,7 @@ def fit_sources(
     """
     from .report.population import save_population
 
+    directory = None if directory is None else Path(directory)
     lists = read_names(config.accepted), read_names(config.rejected)
     fits, began = ManyFits([], configuration=config.to_dict()), perf_counter()
     with nullcontext() if directory is None else locked(directory, "fits"):
