@@ -13,7 +13,6 @@ from typer import Option
 
 import pellicle as pl
 from pellicle.cli import INTERRUPTED, NOT_CONVERGED, Format, echo, print_json
-from pellicle.errors import ConfigError
 from pellicle.files import write_json
 
 Text = str | None
@@ -135,15 +134,12 @@ def fit(
     from pellicle_fit.report.figures import save_figure
     from pellicle_fit.report.page import save_report
 
-    configs = [path for path in files or () if path.suffix.lower() in (".toml", ".json")]
-    curves = tuple(path for path in files or () if path not in configs)
-    if len(configs) > 1:
-        raise ConfigError(
-            f"{', '.join(map(str, configs))}: several configurations; give one, and name curves "
-            "with the suffix .toml in it (curves = […])"
-        )
+    first, curves = None, tuple(files or ())
+    if curves and curves[0].suffix.lower() in (".toml", ".json"):
+        first, *others = curves
+        curves = tuple(others)
     config = FitConfig.merged(
-        next(iter(configs), None),
+        first,
         [
             *(f"fix.{text}" for text in fix or ()),
             *(f"uncertainty.{text}" for text in uncertainty or ()),

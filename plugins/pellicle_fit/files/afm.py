@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
@@ -75,16 +75,11 @@ def _errors(path: Path) -> Iterator[None]:
     except PellicleError:
         raise
     except errors.MissingMetaDataError as error:
-        raise _without(path, error.meta_keys) from None
+        names = [_CALIBRATION.get(word, word) for word in error.meta_keys]
+        raise MissingInputError(f"{path}: ", {n: OPTIONS.get(n, "") for n in names}) from None
     except (Exception, errors.AFMFileFormatError, meta.MetaDataMissingError) as error:
         reason = " ".join(str(error).split()) or type(error).__name__
         raise StorageError(f"{path}: afmformats cannot read it ({reason})") from None
-
-
-def _without(path: Path, words: Sequence[str]) -> MissingInputError:
-    """Return the error of a file that does not hold its calibration."""
-    names = [_CALIBRATION.get(word, word) for word in words]
-    return MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in names})
 
 
 def _curve(path: Path, recording: Mapping[str, Any], speed: float | None) -> Measurement:
@@ -102,7 +97,7 @@ def _curve(path: Path, recording: Mapping[str, Any], speed: float | None) -> Mea
             columns["position"] = tip._replace(values=-tip.values)
         own = Calibration(spring_constant=metadata.get("spring constant"), speed=speed)
         if lacks := lacking(columns, own):
-            raise _without(path, lacks)
+            raise MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in lacks})
         curve, site = from_columns(columns, own), _site(metadata)
     origin = curve.origin._replace(sensitivity=metadata.get("sensitivity"), library="afmformats")
     return replace(curve, origin=origin, site=site)

@@ -86,7 +86,7 @@ def _cells(row: Row) -> dict[str, Any]:
             for name, value in row.values().items()
             if name not in _COUNTS and name not in unknown
         },
-        "model": row.model,
+        "model": row.fit["model"]["words"] if row.fit else "",
         **{name: row.fit.get(name, "") for name in texts},
         "next": "; ".join(f"{step['do']}: {step['why']}" for step in row.fit.get("next", ())),
         **{name: getattr(row, name) for name in ("group", "accepted", "outlier", "reason")},

@@ -108,11 +108,6 @@ class Row:
         return {name: np.nan if value is None else float(value) for name, value in found.items()}
 
     @property
-    def model(self) -> str:
-        """The effects of the chosen explanation in words; empty without a fit."""
-        return str(self.fit["model"]["words"]) if self.fit else ""
-
-    @property
     def verdict(self) -> str:
         """What is said of the curve, as far as it fits a table; empty without a fit."""
         text = str(self.fit.get("comparison", "")).replace("this curve", "it")
