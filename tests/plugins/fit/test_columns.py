@@ -70,6 +70,10 @@ TABLES: dict[str, tuple[str, str | None]] = {
     "unit of the header": (f"Z [um],Defl [nN]\n{rows()}", "Z = position, Defl = force"),
     "whole heads": (f"Z (raw) (um),x,\n{rows()}", "Z (raw) (um) = position um, 2 = force nN"),
     "doubled name by number": (f"force [nN],force [nN]\n{rows()}", BY_NUMBER),
+    "a column beyond the header": (
+        f"a;b\n{rows(';').replace(';', ';0;')}",
+        "1 = position um, 3 = force nN",
+    ),
     "columns of one name, one wanted": (f"Z,F,F\n{rows()}", "Z = position um, 2 = force nN"),
 }
 
@@ -111,13 +115,6 @@ def test_list_of_files_without_numbers(tmp_path: Path) -> None:
         (tmp_path / f"{name}.csv").write_text(f"position [um],force [nN]\n{rows()}")
     (tmp_path / "list.csv").write_text("file,day\na.csv,Monday\nb.csv,Tuesday\n")
     assert [Path(name).stem for name in pl.read_curves(tmp_path / "list.csv")] == ["a", "b"]
-
-
-def test_column_without_a_name(tmp_path: Path) -> None:
-    """A column beyond those of the header has a number."""
-    path = tmp_path / "a.csv"
-    path.write_text(f"a;b\n{rows(';').replace(';', ';0;')}")
-    assert is_the_curve(curves(path, "1 = position um, 3 = force nN")[""])
 
 
 def test_a_depth_and_a_cell_without_a_number(tmp_path: Path) -> None:
@@ -303,14 +300,6 @@ def test_a_column_that_is_there_twice_is_asked_for(tmp_path: Path, twice: str) -
     (tmp_path / "a.csv").write_text(f"{header}\n0,1,2,3\n4,5,6,7\n")
     with pytest.raises(pl.ConfigError, match=f"missing: one column '{twice}'"):
         curves(tmp_path / "a.csv")
-
-
-def test_columns_have_one_order() -> None:
-    """The same roles in another order or form are the same configuration."""
-    text = "Defl=deflection nm,  Z = Extension  nm"
-    table = {"Z": "extension nm", "Defl": "deflection nm"}
-    for columns in (text, table, dict(reversed(table.items()))):
-        assert [*(Calibration(columns=columns).columns or {}).items()] == [*table.items()]
 
 
 def _ramp(pause: str, noise: float) -> tuple[Array, Array]:

@@ -110,20 +110,16 @@ def test_paths_start_from_the_folder_of_the_file(tmp_path: Path) -> None:
     assert config.cache == folder / "studies"
 
 
-@pytest.mark.slow
-@pytest.mark.usefixtures("no_rivals")
-def test_options_replace_values_of_the_file(cli: Cli) -> None:
-    """The command line wins over the file, and --set over the other options."""
-    measure(Path("a.csv"))
-    Path("bead.toml").write_text(f'curves = "nothing/*.csv"{FILE}', encoding="utf-8")
-    arguments = ("bead.toml", "a.csv", "--radius", "6 um", "--baseline", "none", "--json")
-    configuration = json.loads(cli(*arguments, "--set", "indenter.radius=7 um").stdout)[
-        "configuration"
-    ]
-    assert configuration["indenter"] == {"type": "sphere", "radius": 7e-6}
-    assert (configuration["baseline"], configuration["curves"]) == ("none", ["a.csv"])
-    Path("bead.toml").write_text(FILE, encoding="utf-8")
-    config = pl.FitConfig.from_toml("bead.toml", ['indenter.type="paraboloid"'])
+def test_options_replace_values_of_the_file(tmp_path: Path) -> None:
+    """Options win over the file, and overrides over the options."""
+    path = tmp_path / "bead.toml"
+    path.write_text(f'curves = "nothing/*.csv"{FILE}', encoding="utf-8")
+    options: dict[str, Any] = {"curves": "a.csv", "radius": ["6 um"], "baseline": "none"}
+    config = pl.FitConfig.merged(path, ["indenter.radius=7 um"], **options)
+    assert config.indenter == pl.indenter("sphere", radius="7 um")
+    assert (config.baseline, config.curves) == ("none", (Path("a.csv"),))
+    path.write_text(FILE, encoding="utf-8")
+    config = pl.FitConfig.from_toml(path, ['indenter.type="paraboloid"'])
     changed = pl.FitConfig.merged(config, radius=["1 um", "2 um"], baseline="slope")
     assert changed.indenter == pl.indenter("paraboloid", radius="5 um")
     assert changed.per_file == {"radius": ("1 um", "2 um")}
