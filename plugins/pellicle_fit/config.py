@@ -88,18 +88,15 @@ def _with_radius(fields: Mapping[str, Any]) -> dict[str, Any]:
 def _indenter(value: object) -> Any:
     """Return an indenter, or its table if it lacks fields that each file may provide."""
     table = _component(value)
-    if isinstance(table, Mapping) and _lacking(table):
-        return dict(table)
-    return table if isinstance(table, HasForceCurve) else registry().make(Indenter, table)
-
-
-def _lacking(indenter: Mapping[str, Any]) -> dict[str, str]:
-    """Return the fields that a table of an indenter lacks, and how each is typed."""
-    lacks = {} if "type" in indenter else {"indenter": "-i sphere"}
-    for name, field in _fields(indenter).items():
-        if field.is_required() and name not in indenter:
-            lacks[f"indenter.{name}"] = OPTIONS.get(name, f'--set indenter.{name}="…"')
-    return lacks
+    if isinstance(table, HasForceCurve):
+        return table
+    try:
+        return registry().make(Indenter, table)
+    except ConfigError as error:
+        given = table if isinstance(table, Mapping) else {"": None}
+        if problems := [one for one in error.problems if one.field.partition(".")[0] in given]:
+            raise ConfigError(problems) from None
+        return dict(given)
 
 
 def _fields(indenter: object) -> Mapping[str, FieldInfo]:
@@ -370,7 +367,11 @@ class FitConfig(FromFile, Calibration):
                 indenter = replaced(indenter, name, value)
         if not isinstance(indenter, Mapping):
             return indenter
-        if not (lacks := _lacking(indenter)):
+        lacks = {} if "type" in indenter else {"indenter": "-i sphere"}
+        for name, field in _fields(indenter).items():
+            if field.is_required() and name not in indenter:
+                lacks[f"indenter.{name}"] = OPTIONS.get(name, f'--set indenter.{name}="…"')
+        if not lacks:
             with problems_within("indenter"):
                 return registry().make(Indenter, indenter)
         curve, where = source.curve, f"{source.name}: " if source.name else ""

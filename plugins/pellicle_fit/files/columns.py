@@ -34,18 +34,19 @@ def column_map(value: object) -> dict[str, str] | None:
 
     The value is such a table, or a text such as ``"Z = extension nm, Defl = deflection nm"``.
     """
-    if isinstance(value, str):
-        entries = [text.rpartition("=") for text in value.split(",") if text.strip()]
-        value = {name.strip(): role for name, _, role in entries} or None
     if value is None:
         return None
-    if not isinstance(value, Mapping) or "" in value:
+    table = value
+    if isinstance(value, str):
+        entries = [text.rpartition("=") for text in value.split(",")]
+        table = {name.strip(): role for name, _, role in entries}
+    if not isinstance(table, Mapping) or "" in table:
         raise ConfigError(
             f"{shown(value)} is not of the form 'Z = extension nm, Defl = deflection nm', or a "
             "table of the same"
         )
     found: dict[str, tuple[str, str]] = {}
-    for column, text in value.items():
+    for column, text in table.items():
         role, *unit = str(text).split() or [""]
         role = role.lower()
         if role not in NAMES:
