@@ -84,9 +84,8 @@ def _header(
         if _fits(heads[number], mapped):
             return number, heads[number]
     width = len(_heads(lines[data[-1]]))
-    for number in () if mapped else likely:
-        roles = guessed(heads[number], {}) if len(heads[number]) == width else {}
-        if roles and all(column.name != UNKNOWN for column in roles.values()):
+    for number in (number for number in likely if len(heads[number]) == width and not mapped):
+        if all(column.name != UNKNOWN for column in guessed(heads[number], {}).values()):
             return number, heads[number]
     first = heads[data[0]]
     are_numbers = all(_is_number(head.text) for head in first if head.text)
