@@ -127,16 +127,16 @@ def _recorded(path: Path) -> Any:
         content = json.loads(path.read_text(encoding="utf-8"))
         data, rows = content["configuration"], content["curves"]
         origins = [one["data"] for row in rows for one in row.get("curves", [row]) if "data" in one]
+        if data["curves"] and all(origin["file"] for origin in origins):
+            return data
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read ({error.strerror or error})") from None
     except (ValueError, LookupError, TypeError, AttributeError):
-        data, origins = {}, []
-    if not data.get("curves") or not all(origin["file"] for origin in origins):
-        raise ConfigError(
-            f"{path}: is not the JSON of a fit of files; give one that pellicle fit -o leaves, "
-            "such as bead-fit.json or fits.json"
-        )
-    return data
+        pass
+    raise ConfigError(
+        f"{path}: is not the JSON of a fit of files; give one that pellicle fit -o leaves, such as "
+        "bead-fit.json or fits.json"
+    )
 
 
 class FitConfig(FromFile, Calibration):
@@ -333,11 +333,7 @@ class FitConfig(FromFile, Calibration):
             data[name] = _component(data[name])
         if isinstance(data["indenter"], Mapping):
             data["indenter"] = _with_radius(data["indenter"])
-        one_each = {
-            n: v[0] if isinstance(v, (list, tuple)) and len(v) == 1 else v
-            for n, v in options.items()
-        }
-        for name, value in _with_radius(one_each).items():
+        for name, value in _with_radius(options).items():
             if isinstance(value, (list, tuple)):
                 data = replaced(data, f"per_file.{name}", value)
                 continue

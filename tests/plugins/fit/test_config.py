@@ -114,7 +114,7 @@ def test_options_replace_values_of_the_file(tmp_path: Path) -> None:
     """Options win over the file, and overrides over the options."""
     path = tmp_path / "bead.toml"
     path.write_text(f'curves = "nothing/*.csv"{FILE}', encoding="utf-8")
-    options: dict[str, Any] = {"curves": "a.csv", "radius": ["6 um"], "baseline": "none"}
+    options: dict[str, Any] = {"curves": "a.csv", "radius": "6 um", "baseline": "none"}
     config = pl.FitConfig.merged(path, ["indenter.radius=7 um"], **options)
     assert config.indenter == pl.indenter("sphere", radius="7 um")
     assert (config.baseline, config.curves) == ("none", (Path("a.csv"),))
