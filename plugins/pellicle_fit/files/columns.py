@@ -138,6 +138,9 @@ def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
         factor *= (calibration.sensitivity or 1.0) if unit == "V" else 1.0
         return column.values * factor
 
+    sizes = {column.name: column.values.size for column in columns.values()}
+    if len({*sizes.values()}) > 1:
+        raise ConfigError(f"columns differ in length ({sizes}); give a value for each row")
     stiffness = calibration.spring_constant or np.nan
     name = next(name for name in (*_OF_TIP, *_OF_BASE) if name in columns)
     force = si("force") if "force" in columns else stiffness * si("deflection")

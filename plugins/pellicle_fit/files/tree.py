@@ -90,8 +90,7 @@ def _curves(
                 labelled[label] = Column(pattern, pattern, unit or _unit(array), numbers)
     labels = dict.fromkeys(label for own in channels.values() for label in own if label)
     # An array that all curves share, such as the time, has no label.
-    found = {
-        label: {role: own.get(label, own.get("")) for role, own in channels.items()}
+    return {
+        label: {r: c for r, own in channels.items() if (c := own.get(label) or own.get(""))}
         for label in labels or [""]
     }
-    return {label: {r: c for r, c in columns.items() if c} for label, columns in found.items()}
