@@ -12,7 +12,7 @@ import typer
 from typer import Option
 
 import pellicle as pl
-from pellicle.cli import INTERRUPTED, NOT_CONVERGED, Format, echo, print_json
+from pellicle.cli import NOT_CONVERGED, Format, echo, print_json
 from pellicle.files import write_json
 
 Text = str | None
@@ -206,11 +206,6 @@ def _fit(
         name = f"{title}-fit"
     if config.pool or is_one:
         return problem(config, first, progress=progress).fit(progress=progress), name, title
-    stream = chain(first, stream)
-    try:
-        fits = fit_sources(config, stream, directory, progress=not quiet, formats=formats)
-    except KeyboardInterrupt:
-        hint = f"; finished fits are in {directory}, and the same command continues"
-        echo(f"interrupted{hint if directory else ''}", err=True)
-        raise typer.Exit(INTERRUPTED) from None
+    sources, progress = chain(first, stream), not quiet
+    fits = fit_sources(config, sources, directory, progress=progress, formats=formats)
     return fits, "fits", f"Fits of {len(fits.rows)} curves"
