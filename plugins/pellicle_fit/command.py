@@ -12,8 +12,7 @@ import typer
 from typer import Option
 
 import pellicle as pl
-from pellicle.cli import INTERRUPTED, NOT_CONVERGED, Format, echo, print_json
-from pellicle.errors import ConfigError
+from pellicle.cli import NOT_CONVERGED, Format, echo, print_json
 from pellicle.files import write_json
 
 Text = str | None
@@ -88,7 +87,7 @@ def fit(
         Option(
             help="What columns of other names are, with their units, by name, number or path in "
             'the file: "Z = extension nm, Defl = deflection nm". Roles: position, depth, height, '
-            "extension; force, deflection; time; curve."
+            "extension; force, deflection; time."
         ),
     ] = None,
     pool: Annotated[
@@ -135,15 +134,12 @@ def fit(
     from pellicle_fit.report.figures import save_figure
     from pellicle_fit.report.page import save_report
 
-    configs = [path for path in files or () if path.suffix.lower() in (".toml", ".json")]
-    curves = tuple(path for path in files or () if path not in configs)
-    if len(configs) > 1:
-        raise ConfigError(
-            f"{', '.join(map(str, configs))}: several configurations; give one, and name curves "
-            "with the suffix .toml in it (curves = […])"
-        )
+    first, curves = None, tuple(files or ())
+    if curves and curves[0].suffix.lower() in (".toml", ".json"):
+        first, *others = curves
+        curves = tuple(others)
     config = FitConfig.merged(
-        next(iter(configs), None),
+        first,
         [
             *(f"fix.{text}" for text in fix or ()),
             *(f"uncertainty.{text}" for text in uncertainty or ()),
@@ -151,8 +147,8 @@ def fit(
         ],
         curves=curves or None,
         indenter=indenter,
-        radius=radius or None,
-        diameter=diameter or None,
+        radius=radius[0] if radius and len(radius) == 1 else radius or None,
+        diameter=diameter[0] if diameter and len(diameter) == 1 else diameter or None,
         half_angle=half_angle,
         poissons_ratio=poissons_ratio,
         thickness=thickness,
@@ -167,24 +163,24 @@ def fit(
     )
     kinds = [str(kind) for kind in formats or [Format.PNG]]
     result, name, title = _fit(config, directory, kinds, quiet=quiet)
-    many = result if isinstance(result, ManyFits) else None
+    many = result if isinstance(result, ManyFits) else ManyFits([])
+    written = [*many.files]
     if json:
         print_json(result.to_dict())
     elif isinstance(result, ManyFits):
         print_fits(result, quiet=quiet, directory=directory, si=si)
     else:
         print_fit(result, quiet=quiet, details=details, si=si)
-    written = [*many.files] if many else []
     if directory is not None and not isinstance(result, ManyFits):
         written.append(write_json(result.to_dict(), directory / f"{name}.json"))
         written += save_figure(result, directory / name, kinds)
     if report:
         written.append(save_report(result, (directory or Path()) / f"{name}.html", title))
-    if many and many.resumed and not quiet:
+    if many.resumed and not quiet:
         echo(f"{many.resumed} of {len(many.rows)} fits were done before")
     for path in () if quiet else written:
         echo(f"wrote {path}")
-    if many and many.failed:
+    if many.failed:
         echo(f"{many.failed} of {len(many.rows)} curves could not be fitted", err=True)
         raise typer.Exit(NOT_CONVERGED)
 
@@ -203,21 +199,13 @@ def _fit(
     from pellicle_fit.problem import problem
 
     progress, stream = not quiet and sys.stderr.isatty(), config.sources()
-    sources, name, title = None, "pool", "Pooled fit"
-    if config.pool:
-        sources = [*stream]
-    else:
-        first = [*islice(stream, 2)]
-        if [source.name for source in first] == [str(config.curves[0])]:
-            sources, title = first, config.curves[0].stem
-            name = f"{title}-fit"
-        stream = chain(first, stream)
-    if sources is not None:
-        return problem(config, sources, progress=progress).fit(progress=progress), name, title
-    try:
-        fits = fit_sources(config, stream, directory, progress=not quiet, formats=formats)
-    except KeyboardInterrupt:
-        hint = f"; finished fits are in {directory}, and the same command continues"
-        echo(f"interrupted{hint if directory else ''}", err=True)
-        raise typer.Exit(INTERRUPTED) from None
+    first, name, title = [*islice(stream, None if config.pool else 2)], "pool", "Pooled fit"
+    is_one = not config.pool and [source.name for source in first] == [str(config.curves[0])]
+    if is_one:
+        title = config.curves[0].stem
+        name = f"{title}-fit"
+    if config.pool or is_one:
+        return problem(config, first, progress=progress).fit(progress=progress), name, title
+    sources, progress = chain(first, stream), not quiet
+    fits = fit_sources(config, sources, directory, progress=progress, formats=formats)
     return fits, "fits", f"Fits of {len(fits.rows)} curves"

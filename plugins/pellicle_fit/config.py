@@ -22,7 +22,7 @@ from pydantic.fields import FieldInfo
 
 from pellicle import registry
 from pellicle.components import Component, Executor, FromRegistry, HasForceCurve, Indenter
-from pellicle.errors import ConfigError, PellicleError, problems_within, shown
+from pellicle.errors import ConfigError, PellicleError, all_problems, problems_within, shown
 from pellicle.schema import (
     FromFile,
     InputPath,
@@ -38,8 +38,8 @@ from .effect import Effect, Fitted, Solid, quantities
 from .files.columns import Calibration
 from .files.measurement import Segment
 from .files.missing import OPTIONS, MissingInputError
-from .files.sources import Curves, Source, expanded, gather
-from .population.judgement import group_pattern
+from .files.sources import PLACE, Curves, Source, expanded, gather
+from .population.judgement import GROUP
 from .population.rules import rules
 from .simulated.simulation import GRID_POINTS
 from .simulated.solid import solid
@@ -75,16 +75,13 @@ _OneEffect = Annotated[Effect, FromRegistry(), BeforeValidator(_component)]
 
 
 def _with_radius(fields: Mapping[str, Any]) -> dict[str, Any]:
-    """Return fields of an indenter with half a diameter, or half of each, as the radius."""
+    """Return fields of an indenter with half of a diameter as the radius."""
     found = dict(fields)
-    if (value := found.pop("diameter", None)) is not None:
-        if "radius" in found:
-            raise ConfigError("is given beside a radius; leave out one of them", "diameter")
-        try:
-            halves = [Quantity("m", above=0)(entry) / 2 for entry in _as_list(value)]
-        except ValueError as error:
-            raise ConfigError(str(error), "diameter") from None
-        found["radius"] = halves if len(halves) != 1 else halves[0]
+    if {"radius", "diameter"} <= found.keys():
+        raise ConfigError("is given beside a radius; leave out one of them", "diameter")
+    if not isinstance(found.get("diameter", []), (list, tuple)):
+        with all_problems() as within, within("diameter"):
+            found["radius"] = Quantity("m", above=0)(found.pop("diameter")) / 2
     return found
 
 
@@ -97,8 +94,7 @@ def _indenter(value: object) -> Any:
         return registry().make(Indenter, table)
     except ConfigError as error:
         given = table if isinstance(table, Mapping) else {"": None}
-        problems = [one for one in error.problems if one.field.partition(".")[0] in given]
-        if problems:
+        if problems := [one for one in error.problems if one.field.partition(".")[0] in given]:
             raise ConfigError(problems) from None
         return dict(given)
 
@@ -121,10 +117,7 @@ def described(indenter: object) -> dict[str, Any]:
 def _share(value: object) -> float:
     """Return a share; "5 %" is one of 0.05."""
     percent = isinstance(value, str) and value.endswith("%")
-    try:
-        number = Quantity("1", above=0)(str(value)[:-1] if percent else value)
-    except ValueError as error:
-        raise ValueError(f'{error}, or a share such as "5 %"') from None
+    number = Quantity("1", above=0)(str(value)[:-1] if percent else value)
     return number / 100 if percent else number
 
 
@@ -134,16 +127,16 @@ def _recorded(path: Path) -> Any:
         content = json.loads(path.read_text(encoding="utf-8"))
         data, rows = content["configuration"], content["curves"]
         origins = [one["data"] for row in rows for one in row.get("curves", [row]) if "data" in one]
+        if data["curves"] and all(origin["file"] for origin in origins):
+            return data
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read ({error.strerror or error})") from None
     except (ValueError, LookupError, TypeError, AttributeError):
-        data, origins = {}, []
-    if not data.get("curves") or not all(origin["file"] for origin in origins):
-        raise ConfigError(
-            f"{path}: is not the JSON of a fit of files; give one that pellicle fit -o leaves, "
-            "such as bead-fit.json or fits.json"
-        )
-    return data
+        pass
+    raise ConfigError(
+        f"{path}: is not the JSON of a fit of files; give one that pellicle fit -o leaves, such as "
+        "bead-fit.json or fits.json"
+    )
 
 
 class FitConfig(FromFile, Calibration):
@@ -258,31 +251,32 @@ class FitConfig(FromFile, Calibration):
 
     @field_validator("fix", mode="before")
     @classmethod
-    def _fixed(cls, value: object, info: ValidationInfo) -> dict[str, float]:
+    def _fixed(cls, value: object, info: ValidationInfo) -> object:
         """Return values in SI of quantities of the solid, of the model and of rivals."""
-        if not isinstance(value, Mapping):
-            raise ConfigError(f"{shown(value)} is not a table; give one such as {{tension = 0}}")
         effects = [*info.data.get("model", ()), *chain(*info.data.get("rivals", ()))]
         known: dict[str, Fitted] = {}
         for component in (Solid, *map(type, effects)):
             known |= quantities(component)
+        if not isinstance(value, Mapping):
+            return value
         values: dict[str, float] = {}
-        for name, entry in value.items():
-            if name not in known:
-                raise ConfigError(
-                    f"is no quantity of the model or of a rival; {nearest(name, known)}", str(name)
-                )
-            try:
-                values[name] = known[name](entry)
-            except ValueError as error:
-                raise ConfigError(str(error), name) from None
+        with all_problems() as within:
+            for name, entry in value.items():
+                with within(str(name)):
+                    if name not in known:
+                        hint = nearest(name, known)
+                        raise ConfigError(f"is no quantity of the model or of a rival; {hint}")
+                    values[name] = known[name](entry)
         if {"reduced_modulus", "tension"} <= values.keys():
             raise ConfigError("fixes both modulus and tension; leave one of them to the fit")
         return values
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        group_pattern(self.group_by)
+        if self.group_by.count(GROUP) > 1:
+            raise ConfigError(
+                f"{shown(self.group_by)} has {GROUP} twice; write it once", "group_by"
+            )
         if self.thickness is not None and self.kernel is not None:
             raise ConfigError("cannot be given with a kernel; leave out one of them", "thickness")
         if self.thickness is not None and self.poissons_ratio is None:
@@ -320,7 +314,6 @@ class FitConfig(FromFile, Calibration):
             A value is not allowed, or the file cannot be read.
         """
         options = {name: value for name, value in options.items() if value is not None}
-        options = _with_radius(options)
         if isinstance(base, (str, Path)) and Path(base).suffix.lower() == ".json":
             base = _recorded(Path(base))
         if isinstance(base, (str, Path)):
@@ -335,17 +328,15 @@ class FitConfig(FromFile, Calibration):
         own = cls.model_fields.keys() - Calibration.model_fields.keys()
         # What the indenter lacks is told with what its curve lacks.
         data = {"indenter": {}, **(base or {})}
-        for name in ("indenter", "per_file"):
-            if isinstance(table := data.get(name), Mapping):
-                data[name] = _with_radius(table)
         data |= {name: options.pop(name) for name in own & options.keys()}
         for name in data.keys() & {"indenter", "kernel", "executor"}:
             data[name] = _component(data[name])
-        for name, value in options.items():
-            if isinstance(value, (list, tuple)) and len(value) != 1:
+        if isinstance(data["indenter"], Mapping):
+            data["indenter"] = _with_radius(data["indenter"])
+        for name, value in _with_radius(options).items():
+            if isinstance(value, (list, tuple)):
                 data = replaced(data, f"per_file.{name}", value)
                 continue
-            (value,) = _as_list(value)
             if isinstance(per_file := data.get("per_file"), Mapping):
                 data["per_file"] = {k: v for k, v in per_file.items() if k != name}
             key = name if name in cls.model_fields else f"indenter.{name}"
@@ -358,15 +349,18 @@ class FitConfig(FromFile, Calibration):
 
     def sources(self, curves: Curves | None = None) -> Iterator[Source]:
         """Return ``curves``, or those of the configuration if None, each read as it is taken."""
-        chosen, column = self.curves if curves is None else curves, self.group_by
-        is_field = column in {"diameter", *_fields(self.indenter), *Calibration.model_fields}
-        return gather(chosen, self.segment, self, self.per_file, column, is_field)
+        chosen = self.curves if curves is None else curves
+        return gather(chosen, self, self.per_file)
 
     def indenter_of(self, source: Source) -> Indenter | HasForceCurve:
         """Return the indenter of one curve, with its own fields; an error names all it lacks."""
         indenter: Indenter | HasForceCurve | Mapping[str, Any] = self.indenter
+        others = {*PLACE, *Calibration.model_fields}
+        if self.group_by.lower() not in {"diameter", *_fields(indenter)}:
+            others.add(self.group_by.lower())
         for name, value in _with_radius(source.fields).items():
-            indenter = replaced(indenter, name, value)
+            if name not in others:
+                indenter = replaced(indenter, name, value)
         if not isinstance(indenter, Mapping):
             return indenter
         lacks = {} if "type" in indenter else {"indenter": "-i sphere"}

@@ -22,38 +22,22 @@ _NEIGHBOURS = 4
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Forces on an indenter along its path, rows in order of time, in SI.
-
-    Parameters
-    ----------
-    position
-        Position of the indenter [m], growing into the solid, of shape (n,).
-    force
-        Force [N], positive where the solid pushes.
-    indenter
-        An indenter with a force curve on a half-space under tension.
-    time
-        Time of each row [s]; None if it is not known.
-    unloading
-        Whether a row is taken while the indenter moves out; by default, after the deepest row.
-    stiffness
-        Spring constant of the cantilever [N/m]; None if it is stiff or not known.
-    counts
-        How many measured rows each row is the mean of; None if one.
-    """
+    """Forces on an indenter along its path, rows in order of time, in SI."""
 
     position: Array
+    """Position of the indenter [m], growing into the solid, of shape (n,)."""
     force: Array
+    """Force [N], positive where the solid pushes."""
     indenter: HasForceCurve
+    """An indenter with a force curve on a half-space under tension."""
     time: Array | None = None
+    """Time of each row [s]; None if it is not known."""
     unloading: Mask | None = None
+    """Whether a row is taken while the indenter moves out; by default, after the deepest row."""
     stiffness: float | None = None
+    """Spring constant of the cantilever [N/m]; None if it is stiff or not known."""
     counts: Array | None = None
-
-    def __post_init__(self) -> None:
-        rows = np.stack([self.position, self.force])
-        if not (np.isfinite(rows).all() and np.ptp(rows, axis=1).all()):
-            raise ConfigError("needs finite positions and forces that change", "curve")
+    """How many measured rows each row is the mean of; None if one."""
 
     @cached_property
     def base(self) -> Array:

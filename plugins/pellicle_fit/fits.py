@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,6 @@ from numpy.typing import ArrayLike
 from pellicle.errors import ConfigError
 
 from .config import FitConfig
-from .files.measurement import Measurement
 from .files.sources import Curves
 from .problem import problem
 from .result import Fit
@@ -21,7 +19,6 @@ def fit(
     position: ArrayLike | str | Path | None = None,
     force: ArrayLike | None = None,
     *,
-    depth: ArrayLike | None = None,
     time: ArrayLike | None = None,
     config: FitConfig | str | Path | None = None,
     progress: bool = False,
@@ -43,10 +40,9 @@ def fit(
     position, force
         Position of the indenter [m], growing into the solid, and force [N], both of shape (n,).
         With the option ``spring_constant`` [N/m], position is that of the cantilever's base less
-        its deflection, so that the noise of the deflection is in both.  Instead of both, a file:
+        its deflection, so that the noise of the deflection is in both.  Of a depth, fix the
+        contact point: ``fix={"contact_point": 0}``.  Instead of both, a file:
         ``pl.fit("bead.csv", …)``.
-    depth
-        Depth [m] instead of position: the contact point is then fixed at 0.
     time
         Time [s] of each row, in order; without it the option ``speed`` [m/s] gives a constant one.
     config
@@ -66,26 +62,17 @@ def fit(
         A study failed, or its folder cannot be used.
     """
     if isinstance(position, (str, Path)):
-        file, position = Path(position), None
-        if file.suffix.lower() in (".toml", ".json") and config is None:
-            config = file
-        else:
-            options["curves"] = file
+        options["curves"], position = position, None
     config = FitConfig.merged(config, **options)
     curves = None
-    positions = [values for values in (position, depth) if values is not None]
-    if positions or force is not None or not config.curves:
-        if len(positions) != 1:
-            raise ConfigError("give either position or depth")
-        if force is None:
-            raise ConfigError("is missing; give the force [N] at each position", "force")
-        curves = {"": (positions[0], force) if time is None else (positions[0], force, time)}
+    if position is not None or force is not None or not config.curves:
+        if position is None or force is None:
+            raise ConfigError("give positions [m] and the force [N] at each, or a file")
+        curves = {"": (position, force) if time is None else (position, force, time)}
     source, *others = config.sources(curves)
     if others:
         count = 1 + len(others)
         raise ConfigError(f"names {count} curves; use fit_many or fit_pooled", "curves")
-    if depth is not None and isinstance(source.curve, Measurement):
-        source = source._replace(curve=replace(source.curve, is_depth=True))
     return problem(config, [source], progress=progress).fit(progress=progress)
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import hashlib
 import json
 import pickle
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
 from importlib.metadata import version
+from itertools import islice
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -17,15 +18,16 @@ import numpy as np
 
 from pellicle import registry, results
 from pellicle.batch import BatchProgress, locked, mapped
-from pellicle.components import Component, Executor, Say
+from pellicle.components import Component, Executor, HasForceCurve, Indenter, Say
 from pellicle.errors import ConfigError, PellicleError
 from pellicle.files import atomic_write, check_writable, write_json
 
-from .config import FitConfig
+from .config import FitConfig, described
+from .files.measurement import Measurement
 from .files.sources import Curves, Source
 from .population.fits import ManyFits, table
 from .population.images import force_maps
-from .population.judgement import group_of, group_pattern, judge, read_names
+from .population.judgement import group_of, judge, read_names
 from .population.row import FAILED, Row, sketch
 from .population.summary import summary
 from .problem import Problem, problem
@@ -36,7 +38,7 @@ if TYPE_CHECKING:
 
 _JOURNAL = "curves"
 _WITHOUT_EFFECT = {
-    *("curves", "per_file", "pool", "executor", "cache"),
+    *("curves", "indenter", "per_file", "pool", "executor", "cache"),
     *("accept", "accepted", "rejected", "group_by"),
 }
 """Fields of a configuration that do not change the fit of a curve."""
@@ -44,8 +46,8 @@ _OF_ALL = {"configuration", "versions", "date", "wall_time"}
 """What the JSON of a population has once."""
 _BYTES_PER_POINT = 2000
 """Memory of a fit, approximately."""
-_BATCH = 4_000_000
-"""Points of the curves that are in memory at once."""
+_BATCH = 500
+"""Curves that are in memory at once."""
 
 
 @dataclass(frozen=True)
@@ -110,8 +112,7 @@ def fit_many(
         The folder cannot be used.
     """
     config = FitConfig.merged(config, **options)
-    folder = None if directory is None else Path(directory)
-    return table(fit_sources(config, config.sources(curves), folder, progress=progress).rows)
+    return table(fit_sources(config, config.sources(curves), directory, progress=progress).rows)
 
 
 def fit_map(
@@ -147,8 +148,7 @@ def fit_map(
         The folder cannot be used.
     """
     config = FitConfig.merged(config, **options)
-    folder = None if directory is None else Path(directory)
-    fits = fit_sources(config, config.sources(curves), folder, progress=progress)
+    fits = fit_sources(config, config.sources(curves), directory, progress=progress)
     if len(fits.maps) != 1:
         reason = "; ".join(fits.notes) or "their files do not say where curves were measured"
         raise ConfigError(
@@ -161,7 +161,7 @@ def fit_map(
 def fit_sources(
     config: FitConfig,
     sources: Iterable[Source],
-    directory: Path | None,
+    directory: str | Path | None,
     *,
     progress: bool,
     formats: Sequence[str] = ("png",),
@@ -172,6 +172,7 @@ def fit_sources(
     """
     from .report.population import save_population
 
+    directory = None if directory is None else Path(directory)
     lists = read_names(config.accepted), read_names(config.rejected)
     fits, began = ManyFits([], configuration=config.to_dict()), perf_counter()
     with nullcontext() if directory is None else locked(directory, "fits"):
@@ -179,7 +180,8 @@ def fit_sources(
             check_writable(directory / "fits.h5")
             check_writable(directory / _JOURNAL / "fit.json")
         with BatchProgress(0, 0, progress) as bar:
-            for batch in _batches(sources):
+            curves = iter(sources)
+            while batch := [*islice(curves, _BATCH)]:
                 made = [_task(config, source, directory, fits, progress) for source in batch]
                 tasks = [task for task in made if task is not None]
                 bar.expect(len(fits.rows), len(batch) - len(tasks))
@@ -193,27 +195,15 @@ def fit_sources(
     return fits
 
 
-def _batches(sources: Iterable[Source]) -> Iterator[list[Source]]:
-    """Yield the curves in batches that fit in memory."""
-    batch, points = list[Source](), 0
-    for source in sources:
-        batch.append(source)
-        if not isinstance(source.curve, PellicleError):
-            points += int(np.size(source.curve.force))
-        if points > _BATCH:
-            yield batch
-            batch, points = [], 0
-    yield batch
-
-
 def _task(
     config: FitConfig, source: Source, directory: Path | None, fits: ManyFits, progress: bool
 ) -> FitTask | None:
     """Add a row for a curve, and return the fit of it if there is none yet."""
-    row = Row(source.name, group_of(group_pattern(config.group_by), source.file, source.group))
+    column = str(source.fields.get(config.group_by.lower(), ""))
+    row = Row(source.name, group_of(config.group_by, source.file, column))
     fits.rows.append(row)
     try:
-        config.indenter_of(source)
+        indenter = config.indenter_of(source)
     except ConfigError as error:
         raise source.named(error) from None
     try:
@@ -222,13 +212,17 @@ def _task(
         row.map, row.site = source.map, source.curve.site
         with suppress(TypeError, ValueError):
             row.sketch = sketch(position=source.curve.position, force=source.curve.force)
-        path = directory and directory / _JOURNAL / f"{_identity(config, source)[:16]}.json"
-        if earlier := _stored(path):
-            # The file may have another name now.
-            own_data = {"name": source.name, "data": data_of(source.curve, config)}
-            row.keep(earlier | {"curves": [earlier["curves"][0] | own_data]})
-            fits.resumed += 1
-            return None
+        path = None
+        if directory is not None:
+            identity = _identity(config, indenter, source.curve)
+            path = directory / _JOURNAL / f"{identity[:16]}.json"
+            with suppress(OSError, ValueError):
+                earlier = json.loads(path.read_text(encoding="utf-8"))
+                # The file may have another name now.
+                earlier["curves"][0] |= {"name": source.name, "data": data_of(source.curve, config)}
+                row.keep(earlier)
+                fits.resumed += 1
+                return None
         ready = problem(config, [source], progress=progress)
     except PellicleError as error:
         row.status = _failure(error, row.name)
@@ -266,29 +260,18 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
     }
 
 
-def _identity(config: FitConfig, source: Source) -> str:
+def _identity(config: FitConfig, indenter: Indenter | HasForceCurve, curve: Measurement) -> str:
     """Return a hash that is equal for fits with equal results."""
     options = config.model_dump(mode="json", exclude=_WITHOUT_EFFECT, fallback=str)
-    curve = source.curve
-    assert not isinstance(curve, PellicleError)
-    of_curve = dict(source.fields), curve.is_depth, curve.stiffness, curve.speed, curve.messages
+    of_curve = described(indenter), curve.is_depth, curve.stiffness, curve.speed, curve.messages
     plugins = registry().versions(components_of(config) - {type(config.executor)})
     versions = version("pellicle"), sorted(plugins.items())
     digest = hashlib.sha256(repr((versions, options, of_curve)).encode())
-    if not isinstance(config.indenter, (Component, Mapping)):
-        digest.update(pickle.dumps(config.indenter))
+    if not isinstance(indenter, Component):
+        digest.update(pickle.dumps(indenter))
     for values in (curve.position, curve.force, *([] if curve.time is None else [curve.time])):
         digest.update(np.asarray(values).tobytes())
     return digest.hexdigest()
-
-
-def _stored(path: Path | None) -> dict[str, Any] | None:
-    """Return the fit that a file stores; None if it stores none."""
-    if path is not None:
-        with suppress(OSError, ValueError):
-            content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-            return content
-    return None
 
 
 def _failure(error: Exception, name: str) -> str:

@@ -41,11 +41,7 @@ def components_of(config: FitConfig) -> set[type[Component]]:
     """Return the components that a fit uses; of some only the tables are known."""
     fields = walk({"indenter": config.indenter, "kernel": config.kernel})
     types = {value for path, value, _ in fields if path.endswith(".type")}
-    named = {
-        registered.component
-        for family in registry().components.values()
-        for name, registered in family.items()
-        if name in types
-    }
+    families = registry().components.values()
+    named = {family[name].component for family in families for name in types & family.keys()}
     objects = config.indenter, config.executor, *config.model, *chain(*config.rivals)
     return named | {type(entry) for entry in objects if isinstance(entry, Component)}

@@ -144,7 +144,7 @@ def outcome(curve: Measurement | PellicleError) -> Outcome:
 def curves_of(path: Path) -> dict[str, Measurement | PellicleError]:
     """Return the curves of a file, with a calibration if it holds none."""
     for calibration in (Calibration(), CALIBRATION):
-        sources = gather(path, "approach", calibration, {})
+        sources = gather(path, calibration, {})
         curves = {source.name: source.curve for source in sources}
         if any(isinstance(curve, Measurement) for curve in curves.values()):
             break

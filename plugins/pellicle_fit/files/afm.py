@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
@@ -15,10 +15,9 @@ import numpy as np
 from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.units import Quantity
 
-from .columns import Calibration, Channel, from_columns
+from .columns import UNITS, Calibration, Column, from_columns, lacking
 from .measurement import Measurement, Readers, Site
 from .missing import OPTIONS, MissingInputError
-from .passes import labelled
 
 _JPK = (".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series")
 SUFFIXES = (*_JPK, ".ibw", ".tab", ".zip")
@@ -26,8 +25,8 @@ SUFFIXES = (*_JPK, ".ibw", ".tab", ".zip")
 INSTALL = "such files are read by afmformats: install it with pip install 'pellicle[afm]'"
 _CALIBRATION = {"spring constant": "spring_constant", "sensitivity": "sensitivity"}
 """What files may hold, and its name here."""
-_TIP = "tip position"
-_HEIGHTS = ("height (measured)", "height (piezo)")
+_PLACES = {"tip position": "position", "height (measured)": "height", "height (piezo)": "height"}
+"""Names of places in files, and their roles."""
 
 
 def installed() -> bool:
@@ -35,8 +34,8 @@ def installed() -> bool:
     return find_spec("afmformats") is not None
 
 
-def read_instrument(path: Path, calibration: Calibration, segment: str) -> Readers:
-    """Return what reads the ``segment`` of each curve, by its number, one at a time."""
+def read_instrument(path: Path, calibration: Calibration) -> Readers:
+    """Return what reads each curve, by its number, one at a time."""
     if not installed():
         raise StorageError(f"{path}: is the file of an instrument; {INSTALL}")
     from afmformats.formats import get_recipe
@@ -50,13 +49,17 @@ def read_instrument(path: Path, calibration: Calibration, segment: str) -> Reade
         try:
             recordings = loader(path, meta_override=overrides)
         except NotImplementedError:
-            # Formats that always hold their calibration do not take another.
-            recordings = loader(path)
+            if not overrides:
+                raise
+            raise ConfigError(
+                f"{path}: holds its calibration, and this format takes no other; leave out "
+                f"{' and '.join(overrides)}"
+            ) from None
         # HDF5 lists curve 10 before curve 2.
         recordings = sorted(recordings, key=lambda recording: recording["metadata"]["enum"])
     return {
         "" if len(recordings) == 1 else str(recording["metadata"]["enum"]): partial(
-            _curve, path, recording, calibration, segment
+            _curve, path, recording, calibration.speed
         )
         for recording in recordings
     }
@@ -72,54 +75,31 @@ def _errors(path: Path) -> Iterator[None]:
     except PellicleError:
         raise
     except errors.MissingMetaDataError as error:
-        raise _without(path, error.meta_keys) from None
+        names = [_CALIBRATION.get(word, word) for word in error.meta_keys]
+        raise MissingInputError(f"{path}: ", {n: OPTIONS.get(n, "") for n in names}) from None
     except (Exception, errors.AFMFileFormatError, meta.MetaDataMissingError) as error:
         reason = " ".join(str(error).split()) or type(error).__name__
         raise StorageError(f"{path}: afmformats cannot read it ({reason})") from None
 
 
-def _without(path: Path, words: Sequence[str]) -> MissingInputError:
-    """Return the error of a file that does not hold its calibration."""
-    names = [_CALIBRATION.get(word, word) for word in words]
-    return MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in names})
-
-
-def _curve(
-    path: Path, recording: Mapping[str, Any], calibration: Calibration, segment: str
-) -> Measurement:
-    """Return one segment of one curve in SI."""
+def _curve(path: Path, recording: Mapping[str, Any], speed: float | None) -> Measurement:
+    """Return one curve in SI."""
     with _errors(path):
         data, metadata = recording["data"], recording["metadata"]
-        known = {}
-        for words, name in _CALIBRATION.items():
-            given = getattr(calibration, name)
-            known[name] = metadata.get(words, given)
-            if given is not None and not np.isclose(known[name], given, rtol=1e-6):
-                raise ConfigError(
-                    f"{path}: holds a {words} of {known[name]:g} already, and this format takes no "
-                    "other; leave it out",
-                    name,
-                )
-        stiffness = known["spring_constant"]
-        force = np.asarray(data["force"], dtype=float)
-        source = next((name for name in (_TIP, *_HEIGHTS) if name in data), None)
-        if source is None:
-            raise ConfigError(f"{path}: has no height over the sample (has {', '.join(data)})")
-        position = -np.asarray(data[source], dtype=float)
-        if source != _TIP:
-            if stiffness is None:
-                raise _without(path, ["spring constant"])
-            position -= force / stiffness
-        columns = {"position": Channel("m", position, source), "force": Channel("N", force)}
-        if "time" in data:
-            columns["time"] = Channel("s", np.asarray(data["time"], dtype=float))
-        if "segment" in data and segment != "both":
-            labels = np.asarray(data["segment"])
-            rows = labelled(position, labels, inward=segment == "approach")
-            columns = {role: c._replace(values=c.values[rows]) for role, c in columns.items()}
-        own = Calibration(spring_constant=stiffness, speed=calibration.speed)
+        place = next((name for name in _PLACES if name in data), "")
+        names = {_PLACES.get(place, ""): place, "force": "force", "time": "time"}
+        columns = {
+            role: Column("", name, UNITS.get(role, "m"), np.asarray(data[name], dtype=float))
+            for role, name in names.items()
+            if name in data
+        }
+        if tip := columns.get("position"):
+            columns["position"] = tip._replace(values=-tip.values)
+        own = Calibration(spring_constant=metadata.get("spring constant"), speed=speed)
+        if lacks := lacking(columns, own):
+            raise MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in lacks})
         curve, site = from_columns(columns, own), _site(metadata)
-    origin = curve.origin._replace(sensitivity=known["sensitivity"], library="afmformats")
+    origin = curve.origin._replace(sensitivity=metadata.get("sensitivity"), library="afmformats")
     return replace(curve, origin=origin, site=site)
 
 

@@ -13,7 +13,7 @@ from pellicle.arrays import Array
 from pellicle.errors import ConfigError, shown
 from pellicle.units import readable
 
-from .measurement import Measurement, Note, Segment, grows
+from .measurement import Measurement, Note, Segment
 from .passes import Pass, first_out, passes
 
 _FEWEST, _FEW = 8, 30
@@ -39,12 +39,11 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
     if missing := int(np.sum(~finite)):
         messages.append(Note(f"{missing} of {z.size} rows hold no finite number and were left out"))
     z, f, t = z[finite], f[finite], None if t is None else t[finite]
-    if t is not None and not grows(t):
-        raise ConfigError(
-            "falls, stands still or holds no finite number; give the time of each row [s] in order",
-            "time",
-        )
     _check_count(z.size, "the curve")
+    if t is not None and not (np.all(np.diff(t) >= 0) and 0 < np.ptp(t) < np.inf):
+        reason = "falls, stands still or has a row without a number"
+        messages.append(f"the time {reason}, so the curve is taken as one without time")
+        t = None
     if not np.ptp(z):
         raise ConfigError(f"is {z[0]:g} m in every row; give a curve that moves", "position")
     base = z if curve.stiffness is None else z + f / curve.stiffness
@@ -102,7 +101,7 @@ def _check_rise(z: Array, f: Array) -> None:
         raise ConfigError(
             f"falls by {readable(-rise, 'N', 3)} as the position grows: a negative stiffness; "
             "position must grow into the solid and force must push back, so change the sign of "
-            "one of them",
+            "one of them, or take a height for an extension",
             "force",
         )
     if rise <= least or not rise:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import re
+import unicodedata
 from collections.abc import Mapping, Set
 from contextlib import suppress
 from functools import cache
@@ -16,7 +16,7 @@ from pellicle.errors import ConfigError, shown
 from pellicle.schema import Model, nearest
 from pellicle.units import Quantity
 
-from .measurement import Measurement, Note, Origin, grows
+from .measurement import Measurement, Origin
 
 EXAMPLE = "position [um],force [nN]"
 _OF_TIP, _OF_BASE = ("position", "depth"), ("height", "extension")
@@ -25,8 +25,6 @@ _SIGNALS = ("force", "deflection")
 """Names of columns of which one gives the force."""
 NAMES = (*_OF_TIP, *_OF_BASE, *_SIGNALS, "time")
 """Names of the columns that are read."""
-LABEL = "curve"
-"""Name of the column that tells the curves of one table apart."""
 UNITS = {"force": "N", "deflection": "mV", "time": "s"}
 """SI units, each a letter, of columns that are not lengths."""
 
@@ -40,25 +38,23 @@ def column_map(value: object) -> dict[str, str] | None:
         return None
     table = value
     if isinstance(value, str):
-        texts = [text for text in re.findall(r'(?:"[^"]*"|[^,"])+', value) if text.strip()]
-        entries = [text.rpartition("=") for text in texts]
-        table = {name.strip().strip('"'): role for name, _, role in entries} or None
+        entries = [text.rpartition("=") for text in value.split(",")]
+        table = {name.strip(): role for name, _, role in entries}
     if not isinstance(table, Mapping) or "" in table:
         raise ConfigError(
             f"{shown(value)} is not of the form 'Z = extension nm, Defl = deflection nm', or a "
             "table of the same"
         )
-    roles = (*NAMES, LABEL)
     found: dict[str, tuple[str, str]] = {}
     for column, text in table.items():
         role, *unit = str(text).split() or [""]
         role = role.lower()
-        if role not in roles:
-            raise ConfigError(f"{shown(role)} is not a role; {nearest(role, roles)}", str(column))
+        if role not in NAMES:
+            raise ConfigError(f"{shown(role)} is not a role; {nearest(role, NAMES)}", str(column))
         if role in found:
             raise ConfigError(f"{found[role][0]!r} and {column!r} are both {role}")
-        found[role] = str(column), " ".join([role, *unit] if role != LABEL else [role])
-    return dict(found[role] for role in roles if role in found)
+        found[role] = str(column), " ".join([role, *unit])
+    return dict(found[role] for role in NAMES if role in found)
 
 
 class Calibration(Model):
@@ -83,15 +79,21 @@ class Calibration(Model):
     )
 
 
-class Channel(NamedTuple):
-    """Values of a column, of shape (n,), their unit as text, and its name in the file."""
+class Column(NamedTuple):
+    """A column of a file: its head, such as ``position [um]``, and the name and unit in it."""
 
+    text: str
+    name: str
     unit: str
-    values: Array
-    name: str = ""
+    values: Array = np.empty(0)
+    """Of shape (n,), in that unit."""
+
+    def is_called(self, name: str) -> bool:
+        """Return whether a user who writes ``name`` may mean this column."""
+        return plain(name).lower() in (self.text.lower(), self.name.lower())
 
 
-Columns = Mapping[str, Channel]
+Columns = Mapping[str, Column]
 """The columns of one curve by their names in `NAMES`."""
 
 
@@ -107,12 +109,11 @@ def lacking(columns: Columns, calibration: Calibration) -> list[str]:
     signals = signals if place in _OF_BASE else signals[:1]
     lacks = [] if place else ["a position (or depth, extension, height)"]
     lacks += [] if signals else ["a force (or deflection)"]
-    timed = ["time"] if "time" in columns and columns["time"].unit else []
-    for name in filter(None, (place, *signals, *timed)):
+    for name in (name for name in (place, *signals, "time") if name in columns):
         unit = columns[name].unit
         if si_unit(unit) not in [*UNITS.get(name, "m")]:
             hint = f" ({shown(unit)} is not one of {name})" if unit else ""
-            lacks.append(f"the unit of {columns[name].name or name}{hint}")
+            lacks.append(f"the unit of {columns[name].name}{hint}")
     bends = place in _OF_BASE and "deflection" not in signals
     if calibration.spring_constant is None and (bends or signals == ["deflection"]):
         lacks.append("spring_constant")
@@ -131,11 +132,15 @@ def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
     """
 
     def si(name: str) -> Array:
-        unit, values, _ = columns[name]
-        found = si_unit(unit)
-        factor = Quantity(found)(f"1 {unit}")
-        return values * (factor * (calibration.sensitivity or 1.0) if found == "V" else factor)
+        column = columns[name]
+        unit = si_unit(column.unit)
+        factor = Quantity(unit)(f"1 {column.unit}")
+        factor *= (calibration.sensitivity or 1.0) if unit == "V" else 1.0
+        return column.values * factor
 
+    sizes = {column.name: column.values.size for column in columns.values()}
+    if len({*sizes.values()}) > 1:
+        raise ConfigError(f"columns differ in length ({sizes}); give a value for each row")
     stiffness = calibration.spring_constant or np.nan
     name = next(name for name in (*_OF_TIP, *_OF_BASE) if name in columns)
     force = si("force") if "force" in columns else stiffness * si("deflection")
@@ -143,28 +148,15 @@ def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
     if name in _OF_BASE:
         deflection = si("deflection") if "deflection" in columns else force / stiffness
         position = (position if name == "extension" else -position) - deflection
-    time = None
-    messages: tuple[str, ...] = ()
-    if "time" in columns:
-        unit, values, own_name = columns["time"]
-        rows = np.isfinite(position) & np.isfinite(force)
-        if unit and values.shape == rows.shape and grows(values[rows]):
-            time = si("time")
-        else:
-            reason = "falls, stands still or has a row without a number" if unit else "has no unit"
-            text = f"column {own_name or 'time'} {reason}, so the curve is taken as one without"
-            messages = (Note(f"{text} time"),)
-            columns = {role: channel for role, channel in columns.items() if role != "time"}
     return Measurement(
         position,
         force,
         name == "depth",
-        messages,
         stiffness=calibration.spring_constant,
-        time=time,
+        time=si("time") if "time" in columns else None,
         speed=calibration.speed,
         origin=Origin(
-            columns={role: f"{c.name or role} [{c.unit}]" for role, c in columns.items()},
+            columns={role: f"{c.name} [{c.unit}]" for role, c in columns.items()},
             sensitivity=calibration.sensitivity,
         ),
     )
@@ -178,3 +170,8 @@ def si_unit(unit: str) -> str:
             Quantity(si)(f"1 {unit}")
             return si
     return ""
+
+
+def plain(text: str) -> str:
+    """Return a text with one kind of µ and of space."""
+    return " ".join(unicodedata.normalize("NFKC", text).replace("μ", "µ").split())

@@ -87,11 +87,3 @@ class Measurement:
 
 Readers = Mapping[str, Callable[[], Measurement]]
 """What reads each curve of a file, by its label, which is empty where there is one."""
-
-
-def grows(time: Array) -> bool:
-    """Return whether times are finite, never fall, and are not all the same."""
-    if not np.isfinite(time).all():
-        return False
-    steps = np.diff(time)
-    return bool((steps >= 0).all() and steps.any())

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections.abc import Mapping, Sequence
 from typing import Any
-
-import numpy as np
 
 from pellicle.errors import ConfigError, shown
 
-from .columns import LABEL, NAMES, Calibration, Channel, Columns, lacking
-from .heads import Head, guessed
+from .columns import NAMES, UNITS, Calibration, Column, Columns, lacking, si_unit
 
 OPTIONS = {
     "spring_constant": '--spring-constant "… N/m"',
@@ -19,8 +17,23 @@ OPTIONS = {
     "half_angle": '--half-angle "… degree"',
 }
 """How what only the user knows is typed."""
+UNKNOWN = "<column>"
+"""What stands for a column that none may be."""
 SHOWN = 12
 """Largest number of columns that a message names."""
+_ROLES = {
+    "time": "time",
+    "force": "force|load|^f$",
+    "deflection": "defl|bending",
+    "position": "tip|separation|indent|depth",
+    "height": r"height|piezo|ramp|sensor|snsr|exten|position|distance|displacement|(^|[\W_])z",
+}
+"""Words in names of columns, and the roles that they suggest; the first that fits counts."""
+_BY_UNIT = {"N": "force", "V": "deflection", "s": "time"}
+_OF_BASE = re.compile("height|piezo|ramp|sensor|snsr|exten")
+"""Words for the place of a cantilever's base, also beside a force."""
+_UNSAFE = re.compile(r'[,="$`\\]|^$')
+"""What would have to be quoted on a command line."""
 
 
 class MissingInputError(ConfigError):
@@ -40,36 +53,63 @@ class MissingInputError(ConfigError):
 
 def missing_in(
     where: str,
-    heads: Sequence[Head],
-    mapped: Mapping[str, str],
+    heads: Sequence[Column],
     wrong: Sequence[str],
     columns: Columns,
     calibration: Calibration,
-    rises: Callable[[str, str], bool] | None,
 ) -> MissingInputError:
     """Return the error of a curve of which something is `lacking`, with columns as `guessed`.
 
-    Of what is ``mapped``, the ``wrong`` names are those of no column, or of several.
+    Of the names of columns, the ``wrong`` ones are those of no column, or of several.
     """
-    lacks = [f"one column {name!r}" for name in dict.fromkeys(wrong)]
-    lacks += lacking(columns, calibration)
-    of_columns = [lack for lack in lacks if lack.split()[0] not in OPTIONS]
-    text = ""
-    if of_columns:
-        typed = {text.split()[0]: name for name, text in mapped.items()}
-        known = {role: (typed.get(role, c.name or role), c.unit) for role, c in columns.items()}
-        roles = guessed(heads, known, rises)
+    lacks = [*(f"one column {name!r}" for name in wrong), *lacking(columns, calibration)]
+    options: dict[str, str] = {}
+    if of_columns := [lack for lack in lacks if lack.split()[0] not in OPTIONS]:
+        typed = {text.split()[0]: name for name, text in (calibration.columns or {}).items()}
+        known = {role: c._replace(name=typed.get(role, c.name)) for role, c in columns.items()}
+        roles = guessed(heads, known)
         text = ", ".join(
-            f"{roles[role][0]} = {role} {roles[role][1] or '<unit>'}"
-            for role in (*NAMES, LABEL)
+            f"{roles[role].name} = {role} {roles[role].unit or '<unit>'}"
+            for role in NAMES
             if role in roles
         )
-        then = {role: Channel(unit, np.empty(0)) for role, (_, unit) in roles.items()}
-        others = [lack for lack in lacking(then, calibration) if lack.split()[0] in OPTIONS]
-        lacks = [*of_columns, *others]
+        options = dict.fromkeys(of_columns, f'--columns "{text}"')
+        lacks = lacking(roles, calibration)
+    options |= {lack: OPTIONS[lack.split()[0]] for lack in lacks if lack.split()[0] in OPTIONS}
     names = [shown(head.text or head.name) for head in heads[:SHOWN]]
     names += ["…"] if len(heads) > SHOWN else []
-    return MissingInputError(
-        f"{where} has {', '.join(names) or 'no columns'}; ",
-        {lack: OPTIONS.get(lack.split()[0], f'--columns "{text}"') for lack in lacks},
-    )
+    return MissingInputError(f"{where} has {', '.join(names) or 'no columns'}; ", options)
+
+
+def guessed(heads: Sequence[Column], known: Columns) -> dict[str, Column]:
+    """Return columns by the roles that they may have; a unit that is not known is empty.
+
+    Those that are ``known`` come first.
+    """
+    columns = [(role, column.name, column) for role, column in known.items()]
+    for index, head in enumerate(heads):
+        names = (t for t in (head.name, head.text) if sum(h.is_called(t) for h in heads) == 1)
+        name = next((text for text in names if not _UNSAFE.search(text)), str(index + 1))
+        words = (role for role, of in _ROLES.items() if re.search(of, head.name.lower()))
+        columns.append((next(words, _BY_UNIT.get(si_unit(head.unit), "")), name, head))
+    found: dict[str, tuple[str, Column]] = {}
+    for role, name, head in columns:
+        is_signal = role in ("force", "deflection")
+        kind = "signal" if is_signal else role if role in ("", "time") else "place"
+        allowed = "mNV" if is_signal else UNITS.get(role, "m")
+        units = [head.unit, *reversed(re.split(r"[\W_]+", head.name))]
+        unit = next((u for u in units if si_unit(u) in [*allowed]), "")
+        if unit and is_signal:
+            # Instruments call a signal in any unit a deflection.
+            role = "force" if si_unit(unit) == "N" else "deflection"
+        if kind and (unit or kind != "time" or role in known):
+            found.setdefault(kind, (role, Column("", name, unit)))
+    signal, _ = found.setdefault("signal", ("deflection", Column("", UNKNOWN, "")))
+    role, place = found.setdefault("place", ("height", Column("", UNKNOWN, "")))
+    if role == "height" and role not in known and place.name != UNKNOWN:
+        # Most heights fall as the tip goes down, and most others grow; which it is shows in a fit.
+        if signal == "force" and not _OF_BASE.search(place.name.lower()):
+            found["place"] = "position", place
+        elif "height" not in place.name.lower():
+            found["place"] = "extension", place
+    return dict(found.values())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import compress, pairwise
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -85,17 +85,3 @@ def _rest(rows: Array) -> int:
     begin, later = np.median(blocks[-count : 2 - count], axis=1)
     # The block before holds rows of the ramp and, at most one block of creep earlier, of the pause.
     return rows.size - 1 - int(np.argmax(rows >= begin - 1.5 * max(later - begin, 0.0)))
-
-
-def labelled(position: Array, labels: Array, *, inward: bool) -> slice:
-    """Return the rows of the approach or of the retract, where a file labels segments.
-
-    The approach is the first segment that moves in by half of the largest motion, the retract the
-    last that moves out by as much; without such segments they are the first and the last.
-    """
-    ends = [0, *(np.flatnonzero(np.diff(labels)) + 1), labels.size]
-    segments = [*pairwise(ends)]
-    motions = [float(position[last - 1] - position[first]) for first, last in segments]
-    least = _TURN * max(map(abs, motions))
-    moving = [abs(motion) >= least and (motion > 0) == inward for motion in motions]
-    return slice(*([*compress(segments, moving)] or segments)[0 if inward else -1])

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import hashlib
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 from pellicle.errors import ConfigError, StorageError
 
 from . import afm
-from .columns import EXAMPLE, LABEL, NAMES, Calibration, Columns, from_columns, is_curve, lacking
+from .columns import EXAMPLE, NAMES, Calibration, Columns, from_columns, is_curve, lacking
 from .measurement import Measurement, Readers
 from .missing import missing_in
-from .text_table import curves_of, index_of, read_cells, rises
+from .text_table import read_table
 from .tree import read_tree
 
 TEXT = (".csv", ".tsv", ".txt")
@@ -23,42 +21,24 @@ SUFFIXES = (*TEXT, *_TREES, *afm.SUFFIXES)
 """Suffixes of the files of a folder that are read."""
 
 
-def read(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Readers:
+def read(path: Path, calibration: Calibration | None = None) -> Readers:
     """Return functions that read the curves of a file, and raise what this one does.
 
     The columns of the calibration name those of a table, and the arrays of an HDF5 or MATLAB file.
-    What is no such file is read by afmformats; of its labels the ``segment`` is selected.
+    What is no such file is read by afmformats.
     """
-    readers = _readers(path, calibration or Calibration(), segment)
-    with path.open("rb") as file:
-        digest = hashlib.file_digest(file, "sha256").hexdigest()
-
-    def curve(label: str) -> Measurement:
-        measured = readers[label]()
-        origin = measured.origin._replace(file=str(path), curve=label or None, sha256=digest)
-        return replace(measured, origin=origin)
-
-    return {label: partial(curve, label) for label in readers}
-
-
-def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
+    calibration = calibration or Calibration()
     suffix, mapped = path.suffix.lower(), calibration.columns or {}
     # The columns of a table can be named though it is an instrument's.
     if suffix in afm.SUFFIXES and not (mapped and suffix == ".tab"):
         if mapped:
             raise ConfigError(f"{path} states what its columns are; leave columns out", "columns")
-        return afm.read_instrument(path, calibration, segment)
-    cells = None
-    if suffix in _TREES:
-        tables, heads = read_tree(path, mapped)
-    else:
-        cells = read_cells(path, mapped)
-        tables = curves_of(path, cells, mapped) if cells else {}
-        heads = cells.heads if cells else []
+        return afm.read_instrument(path, calibration)
+    tables, heads = (read_tree if suffix in _TREES else read_table)(path, mapped)
     hint = ""
     if not mapped and not any(is_curve(columns.keys()) for columns in tables.values()):
         try:
-            return afm.read_instrument(path, calibration, segment)
+            return afm.read_instrument(path, calibration)
         except StorageError:
             # Only afmformats can recognise the file of an instrument.
             hint = "" if afm.installed() else f"; if it is an instrument's: {afm.INSTALL}"
@@ -67,20 +47,15 @@ def _readers(path: Path, calibration: Calibration, segment: str) -> Readers:
             f"{path}: is neither text, nor HDF5, nor a readable file of an instrument{hint}; "
             f"export it as a table (a sheet as CSV) with a header such as {EXAMPLE!r}"
         )
-    if cells is None:
-        found = {role for columns in tables.values() for role in columns}
-        wrong = [name for name, text in mapped.items() if text.split()[0] not in found]
-    else:
-        names = mapped or [name for name in cells.names if name in (*NAMES, LABEL)]
-        wrong = [name for name in names if index_of(heads, name) is None]
+    names = [name for head in heads if (name := head.name.lower()) in NAMES]
+    found = {role for columns in tables.values() for role in columns}
+    wanted = mapped or dict(zip(names, names, strict=True))
+    wrong = [name for name, text in wanted.items() if text.split()[0] not in found]
 
     def curve(label: str, columns: Columns) -> Measurement:
         if not wrong and not lacking(columns, calibration):
             return from_columns(columns, calibration)
         where = f"{path}: curve {label}" if label else str(path)
-        if cells is None and label and not mapped:
-            columns = {role: c._replace(name=f"*/{role}") for role, c in columns.items()}
-        way = partial(rises, path, cells) if cells else None
-        raise missing_in(f"{where}{hint}:", heads, mapped, wrong, columns, calibration, way)
+        raise missing_in(f"{where}{hint}:", heads, wrong, columns, calibration)
 
     return {label: partial(curve, label, columns) for label, columns in tables.items()}

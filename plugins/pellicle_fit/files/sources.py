@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from glob import glob, has_magic
-from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,11 +17,13 @@ from pellicle.errors import ConfigError, PellicleError, all_problems
 from pellicle.units import Quantity
 
 from .columns import Calibration
-from .measurement import Measurement, Readers, Segment, Site
+from .measurement import Measurement, Readers, Site
 from .readers import SUFFIXES, TEXT, read
 from .text_table import FILE, read_cells
 
 _ARRAYS = ("position", "force", "time")
+PLACE = ("x", "y")
+"""Columns of a table of files: where on the sample a curve was measured."""
 
 Curves = str | Path | Sequence[str | Path] | Mapping[str, Sequence[ArrayLike]]
 """A folder, a file, a table that lists files, several of these; or arrays of curves by name:
@@ -35,11 +37,9 @@ class Source(NamedTuple):
     """File, and label in the file."""
     curve: Measurement | PellicleError
     fields: Mapping[str, Any]
-    """Fields of the indenter that this curve alone has."""
+    """What ``per_file`` or its row of a table of files says of it, by name."""
     file: str = ""
     """The file, or the name of a curve that was given by its numbers."""
-    group: str = ""
-    """Text of the column of a table of files by which curves are grouped."""
     map: str = ""
     """File of the force map that the curve belongs to: its own, or the table of files."""
 
@@ -49,22 +49,55 @@ class Source(NamedTuple):
 
 
 def gather(
-    curves: Curves,
-    segment: str,
-    calibration: Calibration,
-    per_file: Mapping[str, Sequence[Any]],
-    label: str = "",
-    is_field: bool = False,
+    curves: Curves, calibration: Calibration, per_file: Mapping[str, Sequence[Any]]
 ) -> Iterator[Source]:
-    """Return all curves, in order, each read only as it is taken.
+    """Yield all curves, in order, each read only as it is taken.
 
     Each list in ``per_file`` has one value for each file.  In a table that lists files, the columns
-    x and y are the place on the sample, and the column ``label`` holds the group of each curve; it
-    may be a field of the indenter as well.
+    x and y are the place on the sample.
     """
-    files: list[tuple[Any, dict[str, str], Path | None]]
+    for file, fields, table in _listed(curves, per_file):
+        site: Site | None = None
+        readers: Readers = {}
+        origin: dict[str, Any] = {}
+        source = partial(Source, fields=fields, file=str(file))
+        try:
+            if not fields.keys().isdisjoint(PLACE):
+                with all_problems() as within, within("x and y"):
+                    site = Site(*(Quantity("m")(fields.get(name)) for name in PLACE))
+            known = dict(calibration) | fields
+            own = Calibration(**{name: known[name] for name in Calibration.model_fields})
+            if isinstance(curves, Mapping):
+                # `clean` checks the arrays.
+                arrays: Any = dict(zip(_ARRAYS, curves[file], strict=False))
+                arrays |= {"stiffness": own.spring_constant, "speed": own.speed}
+                readers = {"": partial(Measurement, **arrays)}
+            else:
+                readers = read(file, own)
+                with file.open("rb") as opened:
+                    digest = hashlib.file_digest(opened, "sha256").hexdigest()
+                origin = {"file": str(file), "sha256": digest}
+        except PellicleError as error:
+            yield source(str(file), error)
+        for label, reader in readers.items():
+            curve: Measurement | PellicleError
+            try:
+                curve = reader()
+                of_curve = curve.origin._replace(curve=label or None, **origin)
+                curve = replace(curve, site=site or curve.site, origin=of_curve)
+            except PellicleError as error:
+                curve = error
+            name = f"{file}:{label}" if label else str(file)
+            yield source(name, curve, map=str(table if site else file))
+
+
+def _listed(
+    curves: Curves, per_file: Mapping[str, Sequence[Any]]
+) -> Iterator[tuple[Any, dict[str, Any], Any]]:
+    """Yield files, or the names of arrays, each with its fields and the table that lists it."""
+    files: list[tuple[Any, dict[str, str], Any]]
     if isinstance(curves, Mapping):
-        files = [(name, {}, None) for name in curves]
+        files = [(name, {}, name) for name in curves]
     else:
         paths = [curves] if isinstance(curves, (str, Path)) else curves
         files = [file for text in paths for path in expanded(text) for file in _files(path)]
@@ -77,55 +110,8 @@ def gather(
                 "order",
                 name,
             )
-    opened = []
     for number, (file, listed, table) in enumerate(files):
-        group = listed.get(label.lower(), "")
-        fields = {name: values[number] for name, values in per_file.items()}
-        fields |= {name: v for name, v in listed.items() if is_field or name != label.lower()}
-        whole = str(table or file) if {"x", "y"} <= fields.keys() else str(file)
-        source = partial(Source, file=str(file), group=group, map=whole)
-        numbers = curves[file] if isinstance(curves, Mapping) else None
-        opened.append(_opened(file, source, fields, numbers, segment, calibration))
-    return chain.from_iterable(opened)
-
-
-def _opened(
-    path: Any,
-    source: Callable[..., Source],
-    fields: dict[str, Any],
-    numbers: Sequence[ArrayLike] | None,
-    segment: str,
-    calibration: Calibration,
-) -> Iterator[Source]:
-    """Yield the curves of a file, or the one called ``path`` that is given by ``numbers``."""
-    settings = {
-        name: fields.pop(name, getattr(calibration, name)) for name in Calibration.model_fields
-    }
-    readers: Readers
-    site = None
-    try:
-        if {"x", "y"} <= fields.keys():
-            with all_problems() as within, within("x and y"):
-                site = Site(*(Quantity("m")(fields.pop(name)) for name in "xy"))
-        calibration = Calibration(**settings)
-        if numbers is None:
-            readers = read(path, calibration, segment)
-        else:
-            # `clean` checks the arrays.
-            arrays: Any = dict(zip(_ARRAYS, numbers, strict=False))
-            arrays |= {"stiffness": calibration.spring_constant, "speed": calibration.speed}
-            readers = {"": partial(Measurement, **arrays)}
-    except PellicleError as error:
-        yield source(str(path), error, fields)
-        return
-    for label, reader in readers.items():
-        curve: Measurement | PellicleError
-        try:
-            curve = reader()
-            curve = replace(curve, site=site or curve.site)
-        except PellicleError as error:
-            curve = error
-        yield source(f"{path}:{label}" if label else str(path), curve, fields)
+        yield file, {name: values[number] for name, values in per_file.items()} | listed, table
 
 
 def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
@@ -139,7 +125,7 @@ def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
     return sorted(Path(folder, file) for file in files)
 
 
-def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
+def _files(path: Path) -> list[tuple[Path, dict[str, str], Path]]:
     """Return the files that a path stands for, each with its fields in a list of files, and that.
 
     A list is a table with a header such as ``file,radius [um]``; its empty cells are left out.
@@ -148,24 +134,22 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
         files = [file for file in sorted(path.glob("[!.]*")) if file.suffix.lower() in SUFFIXES]
         if not files:
             raise ConfigError(f"{path}: holds no file of a known kind ({', '.join(SUFFIXES)})")
-        return [(file, {}, None) for file in files]
-    cells = read_cells(path) if path.suffix.lower() in TEXT and path.is_file() else None
-    if cells is None or FILE not in cells.names:
-        return [(path, {}, None)]
-    listed: list[tuple[Path, dict[str, str], Path | None]] = []
-    named = [(name, head.unit) for name, head in zip(cells.names, cells.heads, strict=True)]
-    for row in cells.rows:
-        pairs = zip(named, map(str.strip, row), strict=False)
-        fields = {name: f"{cell} {unit}".strip() for (name, unit), cell in pairs if cell and name}
+        return [(file, {}, file) for file in files]
+    is_table = path.suffix.lower() in TEXT and path.is_file()
+    heads, rows, _ = read_cells(path) if is_table else ([], [], "")
+    if all(head.name.lower() != FILE for head in heads):
+        return [(path, {}, path)]
+    listed: list[tuple[Path, dict[str, str], Path]] = []
+    for row in rows:
+        pairs = zip(heads, map(str.strip, row), strict=False)
+        fields = {head.name.lower(): f"{c} {head.unit}".strip() for head, c in pairs if c}
         if FILE not in fields:
             raise ConfigError(f"{path}: has a row without a file; name one in each row")
         listed.append((path.parent / fields.pop(FILE), fields, path))
     return listed
 
 
-def read_curves(
-    path: str | Path, *, segment: Segment = "both", **calibration: Any
-) -> dict[str, Measurement]:
+def read_curves(path: str | Path, **calibration: Any) -> dict[str, Measurement]:
     """Return the curves of a file, a folder, a pattern or a table of files by their names.
 
     Position, force and time are in SI; a curve draws itself with `Measurement.plot`.
@@ -174,8 +158,6 @@ def read_curves(
     ----------
     path
         As the curves of `fit_many`.
-    segment
-        Segment of the files of instruments that label segments; both are all rows.
     **calibration
         Options of `fit` that say how files are read: ``spring_constant``, ``sensitivity``,
         ``speed``, ``columns``.
@@ -194,7 +176,7 @@ def read_curves(
     """
     curves: dict[str, Measurement] = {}
     errors: list[PellicleError] = []
-    for source in gather(path, segment, Calibration(**calibration), {}):
+    for source in gather(path, Calibration(**calibration), {}):
         if isinstance(source.curve, Measurement):
             curves[source.name] = source.curve
         else:

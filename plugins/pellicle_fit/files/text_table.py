@@ -7,7 +7,6 @@ import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -15,8 +14,8 @@ from pellicle.arrays import Array
 from pellicle.errors import ConfigError, StorageError
 from pellicle.files import read_text
 
-from .columns import EXAMPLE, LABEL, NAMES, Channel, Columns, is_curve, si_unit
-from .heads import Head, guessed, plain
+from .columns import EXAMPLE, NAMES, Column, Columns, is_curve, plain, si_unit
+from .missing import UNKNOWN, guessed
 
 FILE = "file"
 """Name of the column of a table that lists files."""
@@ -31,30 +30,20 @@ _PREAMBLE = 200
 """Lines in which a header is sought."""
 
 
-class Cells(NamedTuple):
-    """The cells of a table as texts, each row as long as the heads or longer."""
+def read_cells(
+    path: Path, mapped: Mapping[str, str] | None = None
+) -> tuple[list[Column], list[list[str]], str]:
+    """Return heads and rows of cells of a table, and what separates them; empty if it is no text.
 
-    heads: list[Head]
-    rows: list[list[str]]
-    separator: str
-
-    @property
-    def names(self) -> list[str]:
-        """Names of the columns in lower case."""
-        return [head.name.lower() for head in self.heads]
-
-
-def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | None:
-    """Return the cells of a table; None if the file is not text.
-
-    A row of units may follow the header, and the columns of a table without one have numbers.
+    A row of units may follow the header, and the columns of a table without one have numbers.  The
+    rows are as long as the heads or longer.
     """
     try:
         text = read_text(path)
     except OSError as error:
         raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
     except ValueError:
-        return None
+        return [], [], ""
     lines = [line for line in text.splitlines() if line.strip()]
     data = [number for number, line in enumerate(lines) if not line.startswith(_COMMENT)]
     if not data:
@@ -76,14 +65,14 @@ def read_cells(path: Path, mapped: Mapping[str, str] | None = None) -> Cells | N
                 for head, unit in zip(heads, units, strict=False)
             ]
         width = max(map(len, rows[:1]), default=0)
-        heads += [Head("", str(index + 1), "") for index in range(len(heads), width)]
-        return Cells(heads, [row + [""] * (len(heads) - len(row)) for row in rows], separator)
-    return None
+        heads += [Column("", str(index + 1), "") for index in range(len(heads), width)]
+        return heads, [row + [""] * (len(heads) - len(row)) for row in rows], separator
+    return [], [], ""
 
 
 def _header(
     lines: Sequence[str], data: Sequence[int], mapped: Mapping[str, str]
-) -> tuple[int, list[Head]]:
+) -> tuple[int, list[Column]]:
     """Return the number of the line above the rows, and its heads.
 
     It is the first line that has the ``mapped`` columns or, without them, those of a curve or of a
@@ -95,16 +84,15 @@ def _header(
         if _fits(heads[number], mapped):
             return number, heads[number]
     width = len(_heads(lines[data[-1]]))
-    for number in () if mapped else likely:
-        roles = guessed(heads[number], {}) if len(heads[number]) == width else {}
-        if roles and "<column>" not in dict(roles.values()):
+    for number in (number for number in likely if len(heads[number]) == width and not mapped):
+        if all(column.name != UNKNOWN for column in guessed(heads[number], {}).values()):
             return number, heads[number]
     first = heads[data[0]]
     are_numbers = all(_is_number(head.text) for head in first if head.text)
     return (data[0] - 1, []) if are_numbers else (data[0], first)
 
 
-def _fits(heads: Sequence[Head], mapped: Mapping[str, str]) -> bool:
+def _fits(heads: Sequence[Column], mapped: Mapping[str, str]) -> bool:
     """Return whether heads are those of the table that is sought."""
     if not mapped:
         names = {head.name.lower() for head in heads}
@@ -113,7 +101,7 @@ def _fits(heads: Sequence[Head], mapped: Mapping[str, str]) -> bool:
     return bool(named) and all(any(head.is_called(name) for head in heads) for name in named)
 
 
-def _heads(line: str) -> list[Head]:
+def _heads(line: str) -> list[Column]:
     # JPK writes "columns:" before the names.
     line = re.sub(r"^\s*columns:", "", line.lstrip("".join(_COMMENT)))
     separator = _separator(line)
@@ -122,7 +110,7 @@ def _heads(line: str) -> list[Head]:
     for text in map(plain, cells):
         match = _HEAD.fullmatch(text)
         name, unit = match.groups(default="") if match else (text, "")
-        heads.append(Head(text, name.strip(), unit.strip()))
+        heads.append(Column(text, name.strip(), unit.strip()))
     return heads
 
 
@@ -147,11 +135,15 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, Columns]:
-    """Return the known columns of each curve of a table, or those that ``mapped`` names."""
-    heads, rows, separator = cells
-    named = sum(bool(head.text) for head in heads)
-    if not mapped and separator == "," and is_curve(set(cells.names)):
+def read_table(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns], list[Column]]:
+    """Return the columns of the curve of a table, those with known names or ``mapped``, and all.
+
+    There is no curve in a file that is not text.
+    """
+    heads, rows, separator = read_cells(path, mapped)
+    names = [head.name.lower() for head in heads]
+    if not mapped and separator == "," and is_curve({*names}):
+        named = sum(bool(head.text) for head in heads)
         for row in rows:
             if len(row) > named and all(map(_is_number, row)):
                 raise ConfigError(
@@ -160,35 +152,17 @@ def curves_of(path: Path, cells: Cells, mapped: Mapping[str, str]) -> dict[str, 
                     "semicolons, tabs or decimal points, or choose columns by their numbers "
                     "(--columns on the command line)"
                 )
-    mapped = mapped or {name: name for name in cells.names if name in (*NAMES, LABEL)}
-    indices = {text: index_of(heads, name) for name, text in mapped.items()}
-    roles = {text: index for text, index in indices.items() if index is not None}
-    label, columns = roles.pop(LABEL, None), []
-    for role, index in roles.items():
-        name, _, unit = role.partition(" ")
-        head, texts = heads[index], [row[index].strip() for row in rows]
-        values = _numbers(texts, separator, f"{path}: column {head.name}")
-        columns.append((name, unit or head.unit, values, head.name))
-    curves: dict[str, list[int]] = {} if rows else {"": []}
-    for number, row in enumerate(rows):
-        # Without other columns, a column of labels is not one of curves.
-        text = row[label].strip() if roles and label is not None else ""
-        curves.setdefault(text, []).append(number)
-    return {
-        text: {role: Channel(unit, values[own], name) for role, unit, values, name in columns}
-        for text, own in curves.items()
-    }
+    columns = {}
+    for name, text in (mapped or {name: name for name in names if name in NAMES}).items():
+        if (index := _index(heads, name)) is not None:
+            role, _, unit = text.partition(" ")
+            head, texts = heads[index], [row[index].strip() for row in rows]
+            values = _numbers(texts, separator, f"{path}: column {head.name}")
+            columns[role] = head._replace(unit=unit or head.unit, values=values)
+    return ({"": columns} if heads else {}), heads
 
 
-def rises(path: Path, cells: Cells, place: str, signal: str) -> bool:
-    """Return whether one column grows with another."""
-    columns = curves_of(path, cells, {place: "extension", signal: "force"})[""]
-    z, f = columns["extension"].values, columns["force"].values
-    known = np.isfinite(z) & np.isfinite(f)
-    return known.sum() < 2 or bool(np.cov(z[known], f[known])[0, 1] > 0)
-
-
-def index_of(heads: Sequence[Head], name: str) -> int | None:
+def _index(heads: Sequence[Column], name: str) -> int | None:
     """Return the index of the one column with a name or, if none has it, a number."""
     matches = [index for index, head in enumerate(heads) if head.is_called(name)]
     if not matches and name.isdecimal() and 1 <= int(name) <= len(heads):

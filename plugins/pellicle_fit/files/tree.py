@@ -12,15 +12,14 @@ from typing import Any
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.errors import PellicleError, StorageError
+from pellicle.errors import StorageError
 from pellicle.schema import read_mat
 
-from .columns import NAMES, Channel, Columns
-from .heads import Head
+from .columns import NAMES, Column, Columns
 from .missing import SHOWN
 
 
-def read_tree(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns], list[Head]]:
+def read_tree(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns], list[Column]]:
     """Return the columns of each curve of an HDF5 or a MATLAB file by its label, and all heads.
 
     Without ``mapped`` columns, they are arrays of one axis with the names of columns, at its root
@@ -32,13 +31,11 @@ def read_tree(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns]
     try:
         with nullcontext(read_mat(path)) if is_matlab else h5py.File(path) as root:
             arrays = dict(_arrays(root if is_matlab else root["/"]))
-            heads = [Head(name, name, _unit(arrays[name])) for name in islice(arrays, SHOWN + 1)]
+            heads = [Column(name, name, _unit(arrays[name])) for name in islice(arrays, SHOWN + 1)]
             return _curves(arrays, mapped, is_matlab=is_matlab), heads
-    except PellicleError:
-        raise
     except (OSError, RuntimeError, ValueError) as error:
-        kind = "a MATLAB" if is_matlab else "an HDF5"
         reason = getattr(error, "strerror", "") or error
+        kind = "a MATLAB" if is_matlab else "an HDF5"
         raise StorageError(f"{path}: cannot be read as {kind} file ({reason})") from None
 
 
@@ -71,7 +68,7 @@ def _curves(
     The points of a curve are along the first axis of a matrix of MATLAB, or along the last.
     """
     own = {name: name for name in NAMES if name in arrays and arrays[name].ndim == 1}
-    channels: dict[str, dict[str, Channel]] = {}
+    channels: dict[str, dict[str, Column]] = {}
     for pattern, text in (mapped or own or {f"*/{name}": name for name in NAMES}).items():
         role, _, unit = text.partition(" ")
         labelled = channels.setdefault(role, {})
@@ -90,11 +87,10 @@ def _curves(
                 rows = {",".join(map(str, i)): values[i] for i in np.ndindex(values.shape[:-1])}
             for row, numbers in rows.items():
                 label = "/".join(filter(None, (*match.groups(), row)))
-                labelled[label] = Channel(unit or _unit(array), numbers, pattern if mapped else "")
+                labelled[label] = Column(pattern, pattern, unit or _unit(array), numbers)
     labels = dict.fromkeys(label for own in channels.values() for label in own if label)
     # An array that all curves share, such as the time, has no label.
-    found = {
-        label: {role: own.get(label, own.get("")) for role, own in channels.items()}
+    return {
+        label: {r: c for r, own in channels.items() if (c := own.get(label) or own.get(""))}
         for label in labels or [""]
     }
-    return {label: {r: c for r, c in columns.items() if c} for label, columns in found.items()}

@@ -78,15 +78,11 @@ def _cells(row: Row) -> dict[str, Any]:
         for name, e in row.estimates.items()
         if (e.held and not e.value) or (not e.held and e.low is None is e.high)
     ]
-    unknown += [f"{name}{end}" for name in unknown for end in ENDS]
+    hidden = [*_COUNTS, *(f"{name}{end}" for name in unknown for end in ENDS)]
     return {
         "status": row.status,
-        **{
-            name: value
-            for name, value in row.values().items()
-            if name not in _COUNTS and name not in unknown
-        },
-        "model": row.model,
+        **{name: value for name, value in row.values().items() if name not in hidden},
+        "model": row.fit["model"]["words"] if row.fit else "",
         **{name: row.fit.get(name, "") for name in texts},
         "next": "; ".join(f"{step['do']}: {step['why']}" for step in row.fit.get("next", ())),
         **{name: getattr(row, name) for name in ("group", "accepted", "outlier", "reason")},

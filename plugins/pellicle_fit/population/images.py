@@ -38,17 +38,12 @@ def force_maps(rows: Sequence[Row]) -> tuple[dict[str, xr.Dataset], list[str]]:
         if x is None or y is None or x.size * y.size > _EMPTIEST * len(part):
             notes.append(f"{name}: its places are not on a grid, so there is no image")
             continue
-        maps[name], repeated = _images(part, places, x, y)
-        if repeated:
-            notes.append(
-                f"{name}: {len(repeated)} curves are at places that have another, such as "
-                f"{repeated[0]}; the image shows the last accepted one"
-            )
+        maps[name] = _images(part, places, x, y)
     return maps, notes
 
 
-def _images(rows: Sequence[Row], places: Array, x: Array, y: Array) -> tuple[xr.Dataset, list[str]]:
-    """Return the images of a map, and the names of curves at places that have another."""
+def _images(rows: Sequence[Row], places: Array, x: Array, y: Array) -> xr.Dataset:
+    """Return the images of a map; of curves at one place the last accepted one is shown."""
     import pandas as pd
 
     pixels = pd.MultiIndex.from_arrays([_nearest(y, places[1]), _nearest(x, places[0])])
@@ -59,9 +54,9 @@ def _images(rows: Sequence[Row], places: Array, x: Array, y: Array) -> tuple[xr.
     units = units_of(rows) | {f"{CONTACT_HEIGHT}{end}": "m" for end in ENDS}
     for name, image in images.items():
         image.attrs["units"] = units[str(name)]
-    repeated = [row.name for row, again in zip(rows, pixels.duplicated(), strict=True) if again]
     sides = {name: (name, side, {"units": "m"}) for name, side in (("x", x), ("y", y))}
-    return images.assign_coords(sides), repeated
+    placed: xr.Dataset = images.assign_coords(sides)
+    return placed
 
 
 def _numbers(row: Row) -> dict[str, float]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Mapping, Sequence
 from itertools import compress
@@ -11,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pellicle.errors import ConfigError, StorageError, shown
+from pellicle.errors import StorageError, shown
 from pellicle.files import read_text
 from pellicle_fit.objective import MODULUS
 from pellicle_fit.verdict import Verdict
@@ -49,32 +48,23 @@ def read_names(path: Path | None) -> Names | None:
         return None
     try:
         lines = [line for line in read_text(path).splitlines() if not line.startswith("#")]
-        rows = [[*map(str.strip, row)] for row in csv.reader(lines)]
-    except (OSError, ValueError, csv.Error) as error:
+    except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise StorageError(f"{path}: cannot be read as a list of curves ({reason})") from None
-    reasons = {row[0].replace("\\", "/"): ", ".join(row[1:]) for row in rows if any(row)}
-    return Names(path, reasons)
+    pairs = [line.replace("\\", "/").partition(",") for line in lines if line.strip()]
+    return Names(path, {name.strip(): reason.strip() for name, _, reason in pairs})
 
 
-def group_pattern(group_by: str) -> re.Pattern[str] | None:
-    """Return the regular expression of a pattern of file names; None if it names a column.
+def group_of(group_by: str, file: str, column: str) -> str:
+    """Return the group of a curve: a part of its file name or, without a pattern, ``column``.
 
-    ``{group}`` and ``*`` stand for any characters but slashes.
+    In a pattern ``{group}`` and ``*`` stand for any characters but slashes.
     """
     if GROUP not in group_by:
-        return None
-    if group_by.count(GROUP) > 1:
-        raise ConfigError(f"{shown(group_by)} has {GROUP} twice; write it once", "group_by")
-    text = re.escape(group_by.replace("\\", "/")).replace(r"\*", "[^/]*")
-    return re.compile("(?:.*/)?" + text.replace(re.escape(GROUP), "(?P<group>[^/]+?)"))
-
-
-def group_of(pattern: re.Pattern[str] | None, file: str, column: str) -> str:
-    """Return the group of a curve: that of its file name or, without a pattern, of its column."""
-    if pattern is None:
         return column
-    match = pattern.fullmatch(file.replace("\\", "/"))
+    text = re.escape(group_by.replace("\\", "/")).replace(r"\*", "[^/]*")
+    pattern = "(?:.*/)?" + text.replace(re.escape(GROUP), "(?P<group>[^/]+?)")
+    match = re.fullmatch(pattern, file.replace("\\", "/"))
     return match["group"] if match else ""
 
 

@@ -72,10 +72,6 @@ class Row:
     estimates: dict[str, Estimate] = field(default_factory=dict, init=False)
     """Modulus and tension over all that is tied, and the quantities of the chosen explanation."""
 
-    def __post_init__(self) -> None:
-        if self.fit:
-            self.keep(self.fit)
-
     def keep(self, fit: dict[str, Any]) -> None:
         """Take the JSON data of a fit, which may hold a sketch, as workers return them."""
         self.status, self.fit = FITTED, {k: value for k, value in fit.items() if k != "sketch"}
@@ -110,11 +106,6 @@ class Row:
             for end, number in zip(ENDS, (e.value, e.low, e.high), strict=True)
         } | {name: known.get(name) for name in NUMBERS}
         return {name: np.nan if value is None else float(value) for name, value in found.items()}
-
-    @property
-    def model(self) -> str:
-        """The effects of the chosen explanation in words; empty without a fit."""
-        return str(self.fit["model"]["words"]) if self.fit else ""
 
     @property
     def verdict(self) -> str:

@@ -49,24 +49,17 @@ class Rule:
         self._units: dict[str, str] = {}
         dimensions = {}
         for side in sides if len(sides) in (2, 3) and all(sides) else ():
-            number, names = split(side), names_in(side)
-            if number and number[1][:1].isalpha():
-                names = set()
-            else:
-                number = None
+            number, unit = split(side) or (0.0, "")
+            is_quantity = unit[:1].isalpha()
+            names = set[str]() if is_quantity else names_in(side)
             for name in sorted(names - unit_of.keys()):
                 raise ConfigError(f"{shown(name)} in {rule}: {nearest(name, unit_of)}")
             ones = {name: 1.0 if unit_of[name] == "1" else one(unit_of[name]) for name in names}
-            try:
-                value = number[0] * one(number[1]) if number else evaluate(side, ones)
-            except ConfigError:
-                raise
-            except ValueError as error:
-                raise ConfigError(f"{shown(side)} in {rule} {error}") from None
+            value = number * one(unit) if is_quantity else evaluate(side, ones)
             # A bare number is in SI.
-            if number or names:
+            if is_quantity or names:
                 dimensions[str(getattr(value, "dimensionality", "dimensionless"))] = side
-            self._sides.append(float(value.magnitude) if number else side)
+            self._sides.append(float(value.magnitude) if is_quantity else side)
             self._units |= {name: unit_of[name] for name in names}
         if not self._units:
             raise ConfigError(f"{rule} does not compare a number of the fit; {_EXAMPLE}")

@@ -12,8 +12,6 @@ from .row import OVER_TIED, SHOWN, Row
 
 ALL = "all"
 """Name of the line of all accepted curves."""
-
-
 QUARTILES = "minimum", "lower_quartile", "median", "upper_quartile", "maximum"
 
 

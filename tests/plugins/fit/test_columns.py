@@ -69,8 +69,11 @@ TABLES: dict[str, tuple[str, str | None]] = {
     "names of the user": (f"Z,Defl\n{rows()}", "z = position um, Defl = force nN"),
     "unit of the header": (f"Z [um],Defl [nN]\n{rows()}", "Z = position, Defl = force"),
     "whole heads": (f"Z (raw) (um),x,\n{rows()}", "Z (raw) (um) = position um, 2 = force nN"),
-    "quoted name": (f'"Z, raw";F\n{rows(";")}', '"Z, raw" = position um, F = force nN'),
     "doubled name by number": (f"force [nN],force [nN]\n{rows()}", BY_NUMBER),
+    "a column beyond the header": (
+        f"a;b\n{rows(';').replace(';', ';0;')}",
+        "1 = position um, 3 = force nN",
+    ),
     "columns of one name, one wanted": (f"Z,F,F\n{rows()}", "Z = position um, 2 = force nN"),
 }
 
@@ -114,13 +117,6 @@ def test_list_of_files_without_numbers(tmp_path: Path) -> None:
     assert [Path(name).stem for name in pl.read_curves(tmp_path / "list.csv")] == ["a", "b"]
 
 
-def test_column_without_a_name(tmp_path: Path) -> None:
-    """A column beyond those of the header has a number."""
-    path = tmp_path / "a.csv"
-    path.write_text(f"a;b\n{rows(';').replace(';', ';0;')}")
-    assert is_the_curve(curves(path, "1 = position um, 3 = force nN")[""])
-
-
 def test_a_depth_and_a_cell_without_a_number(tmp_path: Path) -> None:
     """Between semicolons a comma is decimal, and what is empty is no number."""
     (tmp_path / "a.csv").write_text("depth [nm];force [nN]\n1,5;2,25\n2,5;\n")
@@ -147,41 +143,28 @@ def test_thousands_that_may_be_decimals_are_refused(tmp_path: Path) -> None:
         ("time [ms]", "1 2 3 4", [1e-3, 2e-3, 3e-3, 4e-3]),
         ("time [s]", "1 2 3 4", [1, 2, 3, 4]),
         ("t [m]", "1 2 3 4", None),
-        ("time", "1 2 3 4", "has no unit"),
-        ("time [s]", "1 1 1 1", "stands still"),
     ],
 )
-def test_time(tmp_path: Path, header: str, times: str, seen: list[float] | str | None) -> None:
-    """A time that grows is kept; one that does not serve is not silently left out."""
+def test_time(tmp_path: Path, header: str, times: str, seen: list[float] | None) -> None:
+    """A time that grows is kept; one of no known name is not read."""
     path = tmp_path / "a.csv"
     lines = [f"{line},{time}" for line, time in zip(rows().split(), times.split(), strict=True)]
     path.write_text(f"position [um],force [nN],{header}\n" + "\n".join(lines), encoding="utf-8")
-    curve = curves(path)[""]
-    if isinstance(seen, list):
-        assert curve.time == pytest.approx(seen)
-        return
+    time = curves(path)[""].time
+    assert time is None if seen is None else time == pytest.approx(seen)
+
+
+@pytest.mark.parametrize("time", [np.ones(9), -np.arange(9.0), np.append(np.arange(8), np.inf)])
+def test_a_time_that_does_not_serve(time: Array) -> None:
+    """It is left out with a warning; of one without a unit the unit is asked for."""
+    curve = clean(Measurement(np.arange(9.0), np.arange(9.0), time=time))
     assert curve.time is None
-    assert "time" not in curve.origin.columns
-    assert len(curve.messages) == bool(seen)
-    assert all(str(seen) in text for text in curve.messages)
-
-
-def test_labels_and_deflection(tmp_path: Path) -> None:
-    """Rows are told apart by a column of another name; a deflection gets force and position."""
-    path = tmp_path / "a.csv"
-    lines = [f"{z},{f},{n // 2}" for n, (z, f) in enumerate(zip(Z, F, strict=True))]
-    path.write_text("Zsnsr,Defl,Nr\n" + "\n".join(lines), encoding="utf-8")
-    columns = "Zsnsr = extension um, Defl = deflection V, Nr = curve"
-    both = curves(path, columns, spring_constant="0.1 N/m", sensitivity="100 nm/V")
-    assert list(both) == ["0", "1"]
-    bending = 100e-9 * F
-    assert both["1"].force == pytest.approx(0.1 * bending[2:])
-    assert both["1"].position == pytest.approx(1e-6 * Z[2:] - bending[2:])
+    assert [text for text in curve.messages if "as one without time" in text]
 
 
 EXPORTS = {
     "Piezo height [um],Deflection [V]": "Piezo height = height um, Deflection = deflection V",
-    "Z (nm);Defl_nm": "Z = height nm, Defl_nm = deflection nm",
+    "Z (nm);Defl_nm": "Z = extension nm, Defl_nm = deflection nm",
     "ZSnsr (nm)\tDefl (nm)\tTime (s)": "ZSnsr = extension nm, Defl = deflection nm, Time = time s",
     "Ramp_nm\tDefl_pN_Ex\tDefl_V_Ex": "Ramp_nm = extension nm, Defl_pN_Ex = force pN",
     "k: 7\n\nZ (um);Load (nN);Load (nN)": "Z = position um, 2 = force nN",
@@ -310,21 +293,13 @@ def test_matlab(tmp_path: Path, write: Callable[[Path], str], count: int) -> Non
         curves(path)
 
 
-@pytest.mark.parametrize("twice", ["force", "time", "curve"])
+@pytest.mark.parametrize("twice", ["force", "time"])
 def test_a_column_that_is_there_twice_is_asked_for(tmp_path: Path, twice: str) -> None:
     """Neither is silently taken or left out."""
     header = f"position [um],force [nN],{twice},{twice}"
     (tmp_path / "a.csv").write_text(f"{header}\n0,1,2,3\n4,5,6,7\n")
     with pytest.raises(pl.ConfigError, match=f"missing: one column '{twice}'"):
         curves(tmp_path / "a.csv")
-
-
-def test_columns_have_one_order() -> None:
-    """The same roles in another order or form are the same configuration."""
-    text = 'Defl=deflection nm,  "Z" = Extension  nm'
-    table = {"Z": "extension nm", "Defl": "deflection nm"}
-    for columns in (text, table, dict(reversed(table.items()))):
-        assert [*(Calibration(columns=columns).columns or {}).items()] == [*table.items()]
 
 
 def _ramp(pause: str, noise: float) -> tuple[Array, Array]:

@@ -81,13 +81,16 @@ def test_a_diameter_is_two_radii(tmp_path: Path) -> None:
     config = pl.FitConfig.merged(indenter="sphere", radius="5 um")
     assert config == pl.FitConfig.merged(indenter="sphere", diameter="10 um")
     assert config == pl.FitConfig.merged({"indenter": {"type": "sphere", "diameter": 1e-5}})
-    assert pl.FitConfig.merged(config, diameter=["2 um", "4 um"]).per_file == {
-        "radius": (1e-6, 2e-6)
-    }
     (tmp_path / "list.csv").write_text("file,diameter [um]\na.csv,8\n")
     measure(tmp_path / "a.csv")
-    (source,) = config.sources(tmp_path / "list.csv")
-    assert config.indenter_of(source) == pl.indenter("sphere", radius="4 um")
+    two = {"diameter": ["8 um", "8 um"]}
+    for one in (
+        pl.FitConfig.merged(config, curves=tmp_path / "list.csv"),
+        pl.FitConfig.merged(config, curves=[tmp_path / "a.csv"] * 2, **two),
+        pl.FitConfig.merged(config, curves=[tmp_path / "a.csv"] * 2, per_file=two),
+    ):
+        for source in one.sources():
+            assert one.indenter_of(source) == pl.indenter("sphere", radius="4 um")
     with pytest.raises(pl.ConfigError, match="diameter: is given beside a radius"):
         pl.FitConfig.merged(indenter="sphere", radius="5 um", diameter="10 um")
 
@@ -107,20 +110,16 @@ def test_paths_start_from_the_folder_of_the_file(tmp_path: Path) -> None:
     assert config.cache == folder / "studies"
 
 
-@pytest.mark.slow
-@pytest.mark.usefixtures("no_rivals")
-def test_options_replace_values_of_the_file(cli: Cli) -> None:
-    """The command line wins over the file, and --set over the other options."""
-    measure(Path("a.csv"))
-    Path("bead.toml").write_text(f'curves = "nothing/*.csv"{FILE}', encoding="utf-8")
-    arguments = ("bead.toml", "a.csv", "--radius", "6 um", "--baseline", "none", "--json")
-    configuration = json.loads(cli(*arguments, "--set", "indenter.radius=7 um").stdout)[
-        "configuration"
-    ]
-    assert configuration["indenter"] == {"type": "sphere", "radius": 7e-6}
-    assert (configuration["baseline"], configuration["curves"]) == ("none", ["a.csv"])
-    Path("bead.toml").write_text(FILE, encoding="utf-8")
-    config = pl.FitConfig.from_toml("bead.toml", ['indenter.type="paraboloid"'])
+def test_options_replace_values_of_the_file(tmp_path: Path) -> None:
+    """Options win over the file, and overrides over the options."""
+    path = tmp_path / "bead.toml"
+    path.write_text(f'curves = "nothing/*.csv"{FILE}', encoding="utf-8")
+    options: dict[str, Any] = {"curves": "a.csv", "radius": "6 um", "baseline": "none"}
+    config = pl.FitConfig.merged(path, ["indenter.radius=7 um"], **options)
+    assert config.indenter == pl.indenter("sphere", radius="7 um")
+    assert (config.baseline, config.curves) == ("none", (Path("a.csv"),))
+    path.write_text(FILE, encoding="utf-8")
+    config = pl.FitConfig.from_toml(path, ['indenter.type="paraboloid"'])
     changed = pl.FitConfig.merged(config, radius=["1 um", "2 um"], baseline="slope")
     assert changed.indenter == pl.indenter("paraboloid", radius="5 um")
     assert changed.per_file == {"radius": ("1 um", "2 um")}
@@ -181,10 +180,9 @@ def test_schema() -> None:
 
 
 def test_bad_commands(cli: Cli) -> None:
-    """Two configurations, one in another encoding, and one that is not there are refused."""
+    """A configuration in another encoding, and one that is not there are refused."""
     Path("a.toml").write_text(FILE, encoding="utf-16")
     assert "not a text file in UTF-8" in cli("a.toml", code=2).stderr
-    assert "several configurations" in cli("a.toml", "b.toml", code=2).stderr
     assert "No such file" in cli("b.toml", code=2).stderr
     Path("b.toml").write_text(FILE, encoding="utf-8")
     assert "curves: holds no curve" in cli("b.toml", code=2).stderr

@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 import pellicle as pl
 from pellicle.components import AnyTask, Executor, Outcome, Report, Say
 from pellicle.plugins import Registry
-from pellicle_fit.many import fit_sources
 from pellicle_fit.simulated.simulation import Simulation
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 
@@ -175,35 +174,6 @@ def test_each_change_is_another_fit(tmp_path: Path) -> None:
         table = pl.fit_many({"a": curve(1)}, **common | options)
         moduli.add(table["reduced_modulus"].item())
     assert len(moduli) == len(list((tmp_path / "curves").iterdir())) == 6
-
-
-class Stops(Executor):
-    """Is interrupted after the first task."""
-
-    type: Literal["stops"] = "stops"
-
-    def map(
-        self,
-        work: Callable[[AnyTask, Say], Outcome],
-        tasks: Sequence[AnyTask],
-        report: Report[AnyTask],
-    ) -> Iterator[tuple[AnyTask, Outcome | Exception]]:
-        """Yield one task."""
-        yield tasks[0], work(tasks[0], lambda _: None)
-        raise KeyboardInterrupt
-
-
-@pytest.mark.slow
-def test_interrupted(tmp_path: Path) -> None:
-    """What was finished is kept."""
-    curves = {str(seed): curve(seed) for seed in range(3)}
-    config = pl.FitConfig.merged(**BEAD, rivals=(), fix={"tension": 0})
-    sources = [*config.sources(curves)]
-    stops = pl.FitConfig.merged(config, executor=Stops())
-    with pytest.raises(KeyboardInterrupt):
-        fit_sources(stops, sources, tmp_path, progress=False)
-    fits = fit_sources(config, sources, tmp_path, progress=False)
-    assert (fits.resumed, fits.failed) == (1, 0)
 
 
 class Keeps(Executor):
