@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 
 from pellicle.components import Output, Runs
 from pellicle.files import atomic_write, storage_errors
+from pellicle.results.path import has_times
 from pellicle.variables import FIELDS, WALL_PRESSURE
 
 if TYPE_CHECKING:
@@ -36,7 +37,8 @@ class Vtk(Output):
     The .vts files are structured grids of the cell centres. The surface lies at z = −displacement,
     so the solid is below it, and all fields are point data, with the wall pressure where there is
     an interaction; the numbers of the step are field data.
-    The .pvd file, which lists the steps in order, opens them all.
+    The .pvd file, which lists the steps in order, opens them all; where steps have times, these are
+    the time of ParaView.
     """
 
     type: Literal["vtk"] = "vtk"
@@ -63,11 +65,14 @@ class Vtk(Output):
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the list of the steps; return all files."""
-        path, numbers = Path(f"{stem}.pvd"), runs.table["step"].values.tolist()
-        files = [_file(stem, number) for number in numbers]
+        path, table, last = Path(f"{stem}.pvd"), runs.table, -np.inf
+        files = [_file(stem, number) for number in table["step"].values.tolist()]
+        times = table["time" if has_times(table) else "step"].values.tolist()
         with _writer(path, "Collection") as xml:
-            for number, file in zip(numbers, files, strict=True):
-                with _element(xml, "DataSet", timestep=str(number), file=file.name):
+            for time, file in zip(times, files, strict=True):
+                # ParaView shows the files of one time, such as both ends of a jump, together.
+                last = max(time, float(np.nextafter(last, np.inf)))
+                with _element(xml, "DataSet", timestep=repr(last), file=file.name):
                     pass
         return (*files, path)
 

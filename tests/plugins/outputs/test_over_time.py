@@ -1,8 +1,9 @@
-"""Outputs of runs whose steps have times: curves over time, loops, the page."""
+"""Outputs of runs whose steps have times: curves over time, loops, the page, ParaView's time."""
 
 from __future__ import annotations
 
 import re
+import xml.etree.ElementTree as Xml
 from pathlib import Path
 
 import numpy as np
@@ -32,7 +33,7 @@ RUN = bead(
         "relaxation": [{"fraction": 0.8, "time": "0.5 s"}],
     },
     loading={"depth": LEGS},
-    outputs=[{"type": "html"}],
+    outputs=[{"type": "html"}, {"type": "vtk"}],
 )
 
 
@@ -108,6 +109,15 @@ def test_page_has_a_line_of_time(folder: Path) -> None:
     assert labels[:2] == ["1: 250 ms, depth 5 µm", "2: 500 ms, depth 10 µm"]
     assert '<input type="range" min="0" max="8"' in text
     assert "Force, depth and contact area over time." in text
+
+
+def test_paraview_has_the_time(folder: Path, result: pl.Result) -> None:
+    """Timesteps are times; that after a jump is the next number, not the same."""
+    listed = Xml.parse(folder / "bead.pvd").iter("DataSet")
+    times = [float(entry.attrib["timestep"]) for entry in listed]
+    np.testing.assert_allclose(times, result.dataset["time"], rtol=1e-15)
+    assert (np.diff(times) > 0).all()
+    assert times[3] == 1.0 == result.dataset["time"].values[4]
 
 
 def test_study_is_drawn_over_time(tmp_path: Path) -> None:
