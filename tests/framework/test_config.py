@@ -210,6 +210,7 @@ def test_schema_allows_components_within_components() -> None:
         {"kernel": {"type": "half_space", "reduced_modulus": -1}},
         {"kernel": {"type": "coated", "substrate": {"type": "nope"}}},
         {"kernel": {"type": "coated", "substrate": {"type": "half_space", "reduced_modulus": -1}}},
+        {"indenter": {"type": "paraboloid"}},
         {"indenter": {"type": "paraboloid", "radius": "1"}},
         {"grid": {"points": 16, "size": 1, "boundary": "open"}},
         {"loading": {"depth": []}},

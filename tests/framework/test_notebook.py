@@ -1,4 +1,4 @@
-"""What a notebook shows of results."""
+"""What a notebook shows of runs, studies and results."""
 
 from __future__ import annotations
 
@@ -61,3 +61,13 @@ def test_a_plot_is_upright(result: pl.Result) -> None:
             pl.ConfigError, match=rf"step: {missing} is not the number of a load step"
         ):
             result.plot("gap", step=missing)
+
+
+def test_a_run_and_a_study_show_their_values() -> None:
+    """Values stand with their unit and meaning; a study names what varies and counts its runs."""
+    study = pl.Study(run=RUN, vary={"kernel.tension": ["1 mN/m", "2 mN/m", "3 mN/m"]})
+    for shown, texts in (
+        (pl.Run(**RUN), ("paraboloid on tensed membrane", "surface tension", "1 N/m")),
+        (study, ("3 runs", "surface tension", "kernel.tension")),
+    ):
+        assert all(text in words(shown._repr_html_()) for text in texts)

@@ -60,15 +60,18 @@ def test_what_varies_may_be_left_out(
     data = without(path) | {"study": {"vary": {path: values}}}
     assert pl.Study.from_mapping(data).points
     schema.validate(data)
+    alone = without(path)
+    assert not schema.is_valid(alone)
 
 
 def test_what_varies_in_a_component_of_a_component(schema: Draft202012Validator) -> None:
-    """A field of a kernel in a kernel may be left out too."""
+    """A field of a kernel in a kernel may be left out too, in a study only."""
     data = RUN | {"kernel": COATED}
     axis = {"kernel.substrate.poissons_ratio": [0.3, 0.4]}
     study = data | {"study": {"vary": axis}}
     assert pl.Study.from_mapping(study).points
     schema.validate(study)
+    assert not schema.is_valid(data)
 
 
 @pytest.mark.parametrize(

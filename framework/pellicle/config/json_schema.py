@@ -17,6 +17,7 @@ from .run import Run
 from .study import Study
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
+_IN_PART = "InPart"
 
 
 def model_schema(model: type[BaseModel]) -> dict[str, Any]:
@@ -46,6 +47,7 @@ def model_schema(model: type[BaseModel]) -> dict[str, Any]:
 
 
 def _referred_to(schema: Any) -> Iterator[type[BaseModel]]:
+    """Yield the components that a schema refers to."""
     if isinstance(schema, dict):
         for entry in registry().components.get(schema.get(FAMILY, ""), {}).values():
             yield entry.component
@@ -75,15 +77,24 @@ def json_schema(model: type[BaseModel] = Run) -> dict[str, Any]:
     """Return the JSON schema of a run or study file, or of the file of another model.
 
     It has all installed components. A study file may leave out varied fields, so only the type of a
-    component is required in a run or study file.
+    component is required there.
     """
     if model is not Run:
         return {"$schema": _DIALECT, **model_schema(model)}
     run, study = model_schema(Run), model_schema(Study)
+    definitions = run.pop("$defs") | study.pop("$defs")
     study["properties"].pop("run")
-    run["$defs"] |= study.pop("$defs")
-    run["properties"]["study"] = study
-    return {"$schema": _DIALECT, **_in_part(run)}
+    study["required"] = []
+    file = _in_part(run)
+    file["properties"]["study"] = study
+    return {
+        "$schema": _DIALECT,
+        **file,
+        "if": {"required": ["study"]},
+        "else": run,
+        "$defs": definitions
+        | {f"{name}{_IN_PART}": _in_part(inner) for name, inner in definitions.items()},
+    }
 
 
 def _in_part(schema: Any) -> Any:
@@ -95,6 +106,8 @@ def _in_part(schema: Any) -> Any:
     part = {n: _in_part(inner) for n, inner in schema.items() if not _requires_any(inner)}
     if isinstance(required := schema.get("required"), list):
         part["required"] = [name for name in required if name == "type"]
+    if isinstance(ref := schema.get("$ref"), str):
+        part["$ref"] = f"{ref}{_IN_PART}"
     return part
 
 

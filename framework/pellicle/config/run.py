@@ -199,6 +199,12 @@ class Run(FromFile):
             )
         return cls(**data)
 
+    def _repr_html_(self) -> str:
+        """Return HTML for a notebook: every value with its unit and meaning."""
+        from pellicle.show.notebook import of_run
+
+        return of_run(self)
+
     @property
     def variables(self) -> list[Variable]:
         """The variables that its steps and its path will have, without fields and texts."""

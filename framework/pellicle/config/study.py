@@ -102,6 +102,12 @@ class Study(FromFile):
         ),
     ] = None
 
+    def _repr_html_(self) -> str:
+        """Return HTML for a notebook: the varied parameters and the number of runs."""
+        from pellicle.show.notebook import of_study
+
+        return of_study(self)
+
     @model_validator(mode="after")
     def _create_runs(self) -> Self:
         self._check_axes()

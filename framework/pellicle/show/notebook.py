@@ -1,16 +1,23 @@
-"""What a notebook shows of results: short HTML."""
+"""What a notebook shows of runs, studies and results: short HTML."""
 
 from __future__ import annotations
 
+import json
 from base64 import b64encode
 from collections.abc import Sequence
 from html import escape
+from typing import TYPE_CHECKING
 
 from pellicle.components.charts import Table
-from pellicle.results.result import Result
+from pellicle.config.describe import inputs, words_at
+from pellicle.config.run import Run
 
 from . import tables
 from .sentences import status_of_run
+
+if TYPE_CHECKING:
+    from pellicle.config.study import Study
+    from pellicle.results.result import Result
 
 _MOST = 12
 """Rows of the steps of a result."""
@@ -42,6 +49,27 @@ def summary(
 def _row(tag: str, cells: Sequence[str]) -> str:
     inner = "".join(f"<{tag} style='text-align:left'>{escape(cell)}</{tag}>" for cell in cells)
     return f"<tr>{inner}</tr>"
+
+
+def of_run(run: Run) -> str:
+    """Return every value of a run with its unit and meaning."""
+    values = list(inputs(json.loads(run.to_json()), Run))
+    types = {i.name: i.value for i in values}
+    sentence = f"{types['indenter']} on {types['kernel']}"
+    return summary(run.title or "Run", sentence, tables.inputs(values))
+
+
+def of_study(study: Study) -> str:
+    """Return the varied parameters of a study and the number of its runs."""
+    run = study.points[0].run
+    configuration = json.loads(run.to_json())
+    rows = [
+        (words_at(configuration, Run, name), ", ".join(map(str, values)), name)
+        for axes in study.dimensions.values()
+        for name, values in axes.items()
+    ]
+    table = Table.of_rows(("varied", "values", "field"), rows)
+    return summary(run.title or "Study", f"{len(study.points)} runs", table)
 
 
 def of_result(result: Result) -> str:

@@ -51,7 +51,7 @@ def words_of_types(question: Question, types: Types) -> str:
 def in_words(effects: Sequence[Effect]) -> str:
     """Return effects that act together in words."""
     names = [words_of_type(type(effect), effect.type_name) for effect in effects]
-    return listed(names, "with") or "an elastic half-space"
+    return " with ".join(names) or "an elastic half-space"
 
 
 def listed(names: Sequence[str], last: str = "and", most: int = 20) -> str:

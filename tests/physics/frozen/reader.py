@@ -224,7 +224,7 @@ def noise(case: Case, effects: Collection[str], values: Mapping[str, float]) -> 
     return {
         "deviation": judged.noise.deviation,
         "freedom": judged.noise.freedom,
-        "failed": sorted(flaw.value for flaw in judged.flaws),
+        "failed": sorted(flaw.name.lower() for flaw in judged.flaws),
     }
 
 
@@ -244,7 +244,7 @@ def fit(case: Case) -> dict[str, Any]:
     none = next(fit.aic for fit in found.explanations if not fit.types)
     return {
         "noise": [judged.noise.deviation for judged in found.judgements],
-        "failed": sorted({f.value for judged in found.judgements for f in judged.flaws}),
+        "failed": sorted({f.name.lower() for judged in found.judgements for f in judged.flaws}),
         "threshold": found.threshold,
         "verdict": found.verdict.value,
         "chosen": _key(found.chosen.types),
