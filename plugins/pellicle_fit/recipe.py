@@ -146,7 +146,9 @@ def agreement_of(fit: Candidate) -> Agreement:
     for i in range(count):
         names = ("curves", "noise", "memory")
         one = replace(objective, **{name: getattr(objective, name)[i : i + 1] for name in names})
-        own = {(n, None if c is None else 0): v for (n, c), v in values.items() if c in (None, i)}
+        # A bead's own is that of the first curve that has the bead.
+        of = (None, objective.beads[i], i)
+        own = {(n, None if c is None else 0): v for (n, c), v in values.items() if c in of}
         start = one.at_values(own)
         rises.append(one.chi_squared(start) - one.minimise(start).chi_squared)
     return Agreement(max(sum(rises), 0.0), shared * (count - 1), int(np.argmax(rises)))

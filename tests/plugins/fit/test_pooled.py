@@ -94,6 +94,15 @@ def test_hertz_and_baseline(measured: dict[str, tuple[Array, Array]]) -> None:
     assert fixed.reduced_modulus.value == pytest.approx(TRUE_MODULUS, rel=0.02)
 
 
+def test_one_bead_has_one_size(measured: dict[str, tuple[Array, Array]]) -> None:
+    """Two curves of a bead share its size, whether they agree or not."""
+    size = {"type": "size", "size_error": {"value": 0, "deviation": 0.05}}
+    curves = {"a": measured["5 um"], "b": measured["5 um"]}
+    fit = pooled(curves, radius=RADII[0], model=["tension", size], fix={"tension": TRUE_TENSION})
+    assert fit.agreement.startswith("the curves agree")
+    assert abs(fit.estimates()["size_error"].value) < 0.05
+
+
 @pytest.mark.slow
 def test_weighed_radii(measured: dict[str, tuple[Array, Array]]) -> None:
     """Radii that are off are held by their uncertainty, each bead's its own."""
