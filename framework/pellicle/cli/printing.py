@@ -49,6 +49,9 @@ def print_table(table: Table, title: str = "", *, si: bool = False) -> None:
 def _write(text: str, err: bool = False) -> None:
     """Write a text to a standard stream; BrokenPipeError if nobody reads it, as behind ``head``."""
     stream = sys.stderr if err else sys.stdout
+    # None if it was closed at the start.
+    if stream is None:
+        return
     try:
         stream.write(text)
         stream.flush()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import threading
 import time
+from collections import Counter
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
@@ -26,8 +27,8 @@ _DURATION = 0.1
 def check_executor(executor: Executor) -> None:
     """Check that an executor keeps its contract.
 
-    Besides the rules of all components: ``map`` yields each task once, with the value or exception
-    of its work; a failure or the death of a worker process stops no other task;
+    Besides the rules of all components: ``map`` executes each task once and yields it with the
+    value or exception of its work; a failure or the death of a worker process stops no other task;
     ``report`` receives the messages of the work with their task, in the calling thread; and if the
     iterator is closed early, no task continues.
     """
@@ -96,6 +97,7 @@ class Observations(NamedTuple):
     messages: list[tuple[Chore, Any]]
     callers: set[tuple[int, int]]
     """Threads and processes in which `report` was called."""
+    traces: list[str]
 
 
 @lru_cache(maxsize=1)
@@ -108,9 +110,10 @@ def _observed(executor: Executor) -> Observations:
         callers.add((threading.get_ident(), os.getpid()))
         messages.append((task, message))
 
-    tasks = [*_chores(), Chore(8), Chore(8)]
-    pairs = list(executor.map(_work, tasks, report))
-    return Observations(tasks, pairs, messages, callers)
+    with TemporaryDirectory() as folder:
+        tasks = [*_chores(folder=folder), Chore(8), Chore(8)]
+        pairs = list(executor.map(_work, tasks, report))
+        return Observations(tasks, pairs, messages, callers, os.listdir(folder))
 
 
 def each_task_comes_once_with_its_outcome(executor: Executor) -> None:
@@ -120,6 +123,15 @@ def each_task_comes_once_with_its_outcome(executor: Executor) -> None:
     """
     observed = _observed(executor)
     _require_squares(observed.tasks, observed.pairs)
+
+
+def each_task_is_executed_once(executor: Executor) -> None:
+    """Each task is executed exactly once, and all have ended when map() ends."""
+    counts = Counter(trace.rpartition(" ")[0] for trace in _observed(executor).traces)
+    for number in range(1, _TASKS + 1):
+        for event in ("began", "ended"):
+            times = counts[f"{number} {event}"]
+            require(times == 1, f"when map() has ended, task {number} {event} {times} times")
 
 
 def no_tasks_yield_nothing(executor: Executor) -> None:

@@ -43,8 +43,8 @@ def check_output(output: Output) -> None:
     """Check that an output keeps its contract.
 
     Besides the rules of all components: it leaves exactly the files that it returns, with
-    its `suffixes`, also if a run is interrupted and repeated; and it works in the runs and studies
-    of its scope.
+    its `suffixes`, also if a run is interrupted and repeated; an output of scope ``"run"`` shows
+    every step; and it works in the runs and studies of its scope.
     """
     check(output, Output, rules_of(__name__))
 
@@ -72,6 +72,23 @@ def _write(output: Output, stem: Path, steps: xr.Dataset) -> tuple[Path, ...]:
     return output.write(runs, own)
 
 
+def _contents(folder: Path) -> dict[str, bytes]:
+    """Return the content of each file in a folder."""
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
+
+
+def _written(output: Output, steps: xr.Dataset) -> dict[str, bytes]:
+    """Return the content of each file that the output writes for some steps."""
+    with TemporaryDirectory() as folder:
+        stem = Path(folder) / "indent"
+        _write(output, stem, steps)
+        return _contents(stem.parent)
+
+
 def leaves_the_files_it_returns(output: Output) -> None:
     """A run, also if interrupted and repeated, has the files of write(), with its `suffixes`."""
     with TemporaryDirectory() as folder:
@@ -82,22 +99,38 @@ def leaves_the_files_it_returns(output: Output) -> None:
             files = _write(output, stem, _dataset().isel(step=slice(steps)))
             require_files(output, files, stem)
             names = {path.relative_to(stem.parent).as_posix() for path in files}
-            contents = {
-                path.relative_to(stem.parent).as_posix(): path.stat().st_size
-                for path in stem.parent.rglob("*")
-                if path.is_file()
-            }
+            contents = _contents(stem.parent)
             require(
                 contents.keys() == names,
                 f"after {steps} of {_STEPS} steps write() returns {sorted(names)}, but the folder "
                 f"has {sorted(contents)}",
             )
-            for name, size in contents.items():
-                require(size > 0, f"{name} is empty")
+            for name, content in contents.items():
+                require(bool(content), f"{name} is empty")
                 require(
                     any(fnmatch(name, f"{own}{suffix}") for suffix in output.suffixes),
                     f"{name} is written, but the suffixes are {output.suffixes}",
                 )
+
+
+def loses_no_step(output: Output) -> None:
+    """The files differ if any step does, unless the output can also show a study."""
+    if output.scope != "run":
+        return
+    whole = _dataset()
+    contents, again = _written(output, whole), _written(output, whole)
+    # A file with a date or a random name differs between two equal runs, and proves nothing.
+    steady = {name for name, content in again.items() if content == contents.get(name)}
+    if not steady:
+        return
+    for lost in range(_STEPS):
+        # The numbers of another step stand in its place.
+        indices = [index if index != lost else (lost + 1) % _STEPS for index in range(_STEPS)]
+        changed = _written(output, whole.isel(step=indices).assign_coords(step=whole["step"]))
+        require(
+            any(changed.get(name) != contents[name] for name in steady),
+            f"step {lost + 1} of {_STEPS} leaves no trace in {sorted(contents)}",
+        )
 
 
 def works_in_a_run(output: Output) -> None:

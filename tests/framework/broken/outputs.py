@@ -20,8 +20,11 @@ class Output(pl.Output):
 
     def write(self, runs: Any, stem: Any) -> Any:
         path = Path(f"{stem}.json")
-        path.write_text(json.dumps(runs.table["depth"].values.tolist()))
+        path.write_text(json.dumps(self.shown(runs.table["depth"].values.tolist())))
         return (path,)
+
+    def shown(self, depths: list[float]) -> list[float]:
+        return depths
 
 
 def _run(output: Any, folder: Path) -> str:
@@ -68,6 +71,10 @@ PATHS = Refused("write(runs, stem) returned", "a tuple of pathlib.Path")
 ASTRAY = Refused("write(runs, stem) returned", "its files have to begin with the stem")
 SUFFIXES = Refused("suffixes is", "it has to be a tuple of texts")
 BROKEN: dict[str, Any] = {
+    "loses_no_step": [
+        Broken("forgets the first step", UNSEEN, shown=lambda f, depths: depths[1:] or [0]),
+        Broken("forgets the last step", UNSEEN, shown=lambda f, depths: depths[:-1] or [0]),
+    ],
     "leaves_the_files_it_returns": [
         Broken("changes steps", CHANGES, step=lambda f, record, stem: zero(record)),
         Broken("changes the result", CHANGES, write=before(lambda runs, _: zero(runs.open()))),
