@@ -11,6 +11,7 @@ import numpy as np
 from pellicle.arrays import Array
 
 from .curve import Curve
+from .effect import quantities
 from .intervals import Estimate
 from .noise import Flaw, Judged, judged
 from .objective import MODULUS, Minimum, Objective
@@ -37,10 +38,24 @@ class Candidate:
     estimates: Mapping[str, Estimate] = field(default_factory=dict)
     """Of the chosen explanation all, of those tied with it modulus and tension."""
 
-    @property
+    @cached_property
     def aic(self) -> float:
         """Akaike's criterion, less a constant of the curves."""
-        return criterion(self.objective, self.chi_squared)
+        return self.objective.criterion(self.chi_squared)
+
+    @property
+    def parameters(self) -> dict[str, Estimate]:
+        """All quantities of the explanation by name; some intervals were not sought."""
+        found = {}
+        for slot, at in zip(self.objective.slots, self.minimum.at, strict=True):
+            bare = Estimate(slot.value(at), None, None, slot.quantity.unit)
+            found[slot.full_name] = self.estimates.get(slot.full_name, bare)
+        for part in self.objective.explanation.parts:
+            for name, quantity in quantities(type(part)).items():
+                if name not in part.open:
+                    value = float(getattr(part, name))
+                    found[name] = Estimate(value, value, value, quantity.unit, held=True)
+        return found
 
     @property
     def modulus(self) -> float | None:
@@ -131,8 +146,3 @@ class Candidate:
 def best_of(candidates: Iterable[Candidate]) -> Candidate:
     """Return the candidate of least AIC."""
     return min(candidates, key=lambda candidate: candidate.aic)
-
-
-def criterion(objective: Objective, chi_squared: float) -> float:
-    """Return Akaike's criterion, less a constant of the curves."""
-    return chi_squared + 2 * (len(objective.slots) + objective.searched)

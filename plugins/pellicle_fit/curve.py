@@ -75,11 +75,6 @@ class Curve:
         return ~self.moves_out if not np.all(self.moves_out) else self.moves_out
 
     @property
-    def has_both_passes(self) -> bool:
-        """Whether there are rows of the approach and of the retraction."""
-        return bool(self.moves_out.any() and not self.moves_out.all())
-
-    @property
     def passes(self) -> list[NDArray[np.intp]]:
         """The rows of each pass, that of the approach first."""
         return [np.flatnonzero(rows) for rows in (~self.moves_out, self.moves_out) if rows.any()]

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 import numpy as np
 
-from pellicle.arrays import Array, Mask
+from pellicle.arrays import Array
 from pellicle.errors import PellicleError
 from pellicle.units import readable
 
@@ -32,18 +32,6 @@ _GAIN = 1.3
 """Least factor by which a measurement that is proposed has a smaller bound."""
 
 
-class Measurement(NamedTuple):
-    """A curve that could be measured."""
-
-    words: str
-    base: Array
-    """Position of the base over the contact point [m], in order of time."""
-    time: Array
-    out: Mask
-    """Rows while the indenter moves out."""
-    indenter: Any
-
-
 def telling(asked: Candidate, others: Sequence[Candidate]) -> tuple[str, int]:
     """Return the measurement that tells an explanation from others that are as good now.
 
@@ -53,7 +41,7 @@ def telling(asked: Candidate, others: Sequence[Candidate]) -> tuple[str, int]:
     """
     words, most = "", 0.0
     pairs = [(a, b) for other in others for a, b in ((asked, other), (other, asked))]
-    for measurement in measurements(asked):
+    for kind, measurement in measurements(asked):
         worth = np.inf
         for truth, guess in pairs:
             # What cannot be predicted, as by a cantilever that jumps, is worth nothing.
@@ -65,7 +53,7 @@ def telling(asked: Candidate, others: Sequence[Candidate]) -> tuple[str, int]:
             if worth < _USELESS:
                 break
         if worth > most:
-            words, most = measurement.words, worth
+            words, most = kind, worth
         if worth >= _NEEDED:
             break
     count = int(np.ceil(_NEEDED / most)) if words else 1
@@ -78,61 +66,64 @@ def tightening(fit: Candidate, names: Sequence[str]) -> str:
     What counts is the greatest of their Cramér–Rao bounds, each over that of the curve alone.
     """
 
-    def bounds(*further: Measurement) -> Array:
+    def bounds(*further: Curve) -> Array:
         objective, start = _foretold(fit, fit, *further)
         found = zip(objective.slots, objective.deviations(start), strict=True)
         return np.array([bound for slot, bound in found if slot.name in names])
 
     # Two curves of one kind would bring √2.
     now, words, most = bounds(), "", _GAIN * np.sqrt(2)
-    for measurement in measurements(fit):
+    for kind, measurement in measurements(fit):
         with suppress(PellicleError):
             gain = float(np.min(now / bounds(measurement)))
             if gain > most:
-                words, most = measurement.words, gain
+                words, most = kind, gain
     return words
 
 
-def measurements(fit: Candidate) -> Iterator[Measurement]:
-    """Yield measurements, the easiest first, that go beyond the first curve."""
+def measurements(fit: Candidate) -> Iterator[tuple[str, Curve]]:
+    """Yield measurements, the easiest first, that go beyond the first curve: words, and a curve.
+
+    It has no forces yet, and positions of the base over the contact point [m].
+    """
     curve, point, body = fit.whole[0], fit.contact_points[0], cast("Any", fit.whole[0].indenter)
     low, high = float(curve.base.min()) - point, float(curve.base.max()) - point
     down = np.linspace(low, high, _ROWS)
     duration = curve.loading_time
     speed, forth = (high - low) / duration, np.linspace(0, duration, _ROWS)
     inward, out = np.zeros(_ROWS, dtype=bool), np.repeat([False, True], _ROWS)
-    twice = np.append(forth, duration + forth)
+    twice, unknown = np.append(forth, duration + forth), np.empty(0)
     if not curve.moves_out.any():
-        yield Measurement("the retraction", np.append(down, down[::-1]), twice, out, body)
+        yield "the retraction", Curve(np.append(down, down[::-1]), unknown, body, twice, out)
     dwell = np.append(down, np.full(_ROWS, high))
     words = f"a dwell of {readable(duration, 's', 2)} at the largest depth"
-    yield Measurement(words, dwell, twice, np.zeros_like(out), body)
+    yield words, Curve(dwell, unknown, body, twice, np.zeros_like(out))
     for factor in (0.1, 10.0):
         words = f"a second speed of {readable(factor * speed, 'm/s', 2)}"
-        yield Measurement(words, down, forth / factor, inward, body)
+        yield words, Curve(down, unknown, body, forth / factor, inward)
     radius: float | None = getattr(body, "radius", None)
     for factor in (1 / 3, 3.0):
         if high > 0 and (radius is None or factor * high <= _DEEPEST * radius):
             kind = "shallower" if factor < 1 else "deeper"
             words = f"a {kind} curve, to a depth of {readable(factor * high, 'm', 2)}"
-            yield Measurement(words, factor * down, factor * forth, inward, body)
+            yield words, Curve(factor * down, unknown, body, factor * forth, inward)
     for factor in (1 / 3, 3.0):
         if radius is not None and high <= _DEEPEST * factor * radius:
             words = f"a second radius, {readable(factor * radius, 'm', 2)}"
             other = body.model_copy(update={"radius": factor * radius})
-            yield Measurement(words, down, forth, inward, other)
+            yield words, Curve(down, unknown, other, forth, inward)
 
 
-def _foretold(truth: Candidate, guess: Candidate, *further: Measurement) -> tuple[Objective, Array]:
+def _foretold(truth: Candidate, guess: Candidate, *further: Curve) -> tuple[Objective, Array]:
     """Return χ² of an explanation on what another predicts, and coordinates to start from.
 
     It predicts the first curve again and further ones, which have no noise and touch at 0.
     """
     curve, known = truth.whole[0], truth.objective.known(truth.minimum.at, 0)
     means, point = curve.binned(_ROWS), known.solid.contact_point
-    again = Measurement("", means.base - point, means.clock, means.moves_out, curve.indenter)
+    again = Curve(means.base - point, means.force, curve.indenter, means.time, means.moves_out)
     known = replace(known, solid=known.solid.model_copy(update={CONTACT_POINT: 0.0}))
-    curves = tuple(_predicted(known, curve, one) for one in (again, *further))
+    curves = tuple(_predicted(known, one, curve) for one in (again, *further))
     # That of a mean of rows.
     noise = float(truth.objective.noise[0] * np.sqrt(_ROWS / curve.passes[0].size))
     objective = replace(guess.objective, curves=curves, noise=(noise,) * len(curves), memory=())
@@ -142,14 +133,13 @@ def _foretold(truth: Candidate, guess: Candidate, *further: Measurement) -> tupl
     return objective, np.array(start)
 
 
-def _predicted(known: Explanation, curve: Curve, measurement: Measurement) -> Curve:
+def _predicted(known: Explanation, measurement: Curve, curve: Curve) -> Curve:
     """Return a measurement with the cantilever of a curve."""
-    _, base, time, out, indenter = measurement
-    stiffness = curve.stiffness
+    base, stiffness = measurement.position, curve.stiffness
 
     def planned(force: Array) -> Curve:
         tip = base - (force / stiffness if stiffness else 0.0)
-        return Curve(tip, force, indenter, time, out, stiffness)
+        return replace(measurement, position=tip, force=force, stiffness=stiffness)
 
     roughly = planned(curve.largest * np.maximum(base / np.max(base), 0.0))
     # A memory sees the path that its own force leaves.

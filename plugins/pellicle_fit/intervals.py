@@ -74,8 +74,8 @@ def estimates(
         try:
             for k, slot in enumerate(objective.slots):
                 if not names or slot.name in names:
-                    name = slot.name if not slot.curve else f"{slot.name}_{slot.curve}"
-                    found[name] = _estimate(objective, minimum, k, threshold, improvement)
+                    estimate = _estimate(objective, minimum, k, threshold, improvement)
+                    found[slot.full_name] = estimate
             return minimum, found
         except Better as better:
             minimum, left = objective.minimise(better.args[0].at), left - 1

@@ -45,11 +45,14 @@ class Slot(NamedTuple):
     scale: float
     """What a coordinate of 1 stands for, or a logarithm of 0, in SI."""
 
+    @property
+    def full_name(self) -> str:
+        """The name, of further curves with their number."""
+        return f"{self.name}_{self.curve}" if self.curve else self.name
+
     def value(self, coordinate: float) -> float:
         """Return the value in SI."""
-        if self.quantity.log:
-            return float(np.exp(coordinate)) * self.scale
-        return float(coordinate) * self.scale
+        return float(np.exp(coordinate) if self.quantity.log else coordinate) * self.scale
 
     def coordinate(self, value: float) -> float:
         """Return the coordinate of a value in SI."""
@@ -88,12 +91,6 @@ class Objective:
     """
     loading_time: float = 1.0
     """Time from first touch to the end of the loading [s]."""
-
-    @cached_property
-    def searched(self) -> int:
-        """As how many quantities criteria count discrete choices in the curves."""
-        effects = self.explanation.effects
-        return sum(effect.searched(curve) for effect in effects for curve in self.curves)
 
     @cached_property
     def slots(self) -> tuple[Slot, ...]:
@@ -180,6 +177,12 @@ class Objective:
     def chi_squared(self, at: Array) -> float:
         """Return χ²."""
         return float(np.sum(np.concatenate(self.terms(at)) ** 2))
+
+    def criterion(self, chi_squared: float) -> float:
+        """Return Akaike's criterion, less a constant of the curves."""
+        effects = self.explanation.effects
+        searched = sum(effect.searched(curve) for effect in effects for curve in self.curves)
+        return chi_squared + 2 * (len(self.slots) + searched)
 
     def jacobian(self, at: Array, free: Sequence[int], here: list[Array] | None = None) -> Array:
         """Return the derivatives of the residuals by some coordinates, from differences.

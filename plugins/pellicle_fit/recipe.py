@@ -14,7 +14,7 @@ from pellicle.errors import ConfigError
 
 from .candidate import Candidate, Types, best_of
 from .curve import Curve
-from .effect import Effect, Records, Solid, quantities
+from .effect import Effect, Records, Responds, Solid
 from .intervals import Estimate, estimates, threshold_of
 from .noise import CHANCE, Judged
 from .objective import MODULUS
@@ -69,27 +69,12 @@ class Answer:
         return self.question.word == {TENSION} and self.verdict is Verdict.NEEDED
 
     @property
-    def tied_types(self) -> set[Types]:
-        """The sets of effects that are tied."""
-        return {fit.types for fit in self.tied}
-
-    @property
-    def estimates(self) -> Mapping[str, Estimate]:
-        """All quantities of the chosen explanation."""
-        return self.chosen.estimates
-
-    @property
     def not_held(self) -> tuple[Candidate, ...]:
         """Tied explanations of so small a modulus that the curves do not hold it."""
-        moduli = {
-            fit: fit.estimates[MODULUS].value for fit in self.tied if MODULUS in fit.estimates
-        }
-        return tuple(
-            fit
-            for fit, modulus in moduli.items()
-            if fit is not self.chosen
-            and modulus < SMALL * min((m for f, m in moduli.items() if f is not fit), default=0.0)
-        )
+        moduli = {fit: e.value for fit in self.tied if (e := fit.estimates.get(MODULUS))}
+        # Only the least may be so beside all others.
+        limit = SMALL * max(sorted(moduli.values())[1:2], default=0.0)
+        return tuple(fit for fit, e in moduli.items() if fit is not self.chosen and e < limit)
 
     @property
     def asked(self) -> Candidate:
@@ -110,7 +95,8 @@ class Answer:
         """Return the least interval that contains those of all that is tied."""
         tied = [fit for fit in self.tied if fit not in self.not_held]
         found = [fit.estimates[name] for fit in tied if name in fit.estimates]
-        own = self.chosen.estimates.get(name) or _held(self.chosen, name)
+        none = Estimate(0.0, 0.0, 0.0, "N/m", held=True)
+        own = self.chosen.parameters.get(name, none)
         if not found:
             return own
         lows = [e.low for e in found if e.low is not None]
@@ -167,15 +153,6 @@ def timed(curves: Sequence[Curve]) -> tuple[Curve, ...]:
     )
 
 
-def _held(fit: Candidate, name: str) -> Estimate:
-    """Return a quantity that an explanation does not fit: as given, or 0 if it has no tension."""
-    for part in fit.objective.explanation.parts:
-        if (quantity := quantities(type(part)).get(name)) is not None:
-            value = float(getattr(part, name))
-            return Estimate(value, value, value, quantity.unit, held=True)
-    return Estimate(0.0, 0.0, 0.0, "N/m", held=True)
-
-
 @strangers_named()
 def answer(
     curves: Sequence[Curve],
@@ -211,7 +188,7 @@ def answer(
     if word in excused:
         raise ConfigError(f"cannot be fitted to this curve: {excused[word]}", "model")
     candidates = {types: one for types, one in candidates.items() if types not in excused}
-    fits = dict(comparison(question, candidates, curves))
+    fits = dict(comparison(word, candidates, curves))
     best = best_of(fits.values())
     threshold = threshold_of(min(judged.noise.freedom for judged in best.judgements))
     margin, doubted = max(MARGIN, threshold), doubtful(best.judgements)
@@ -219,8 +196,9 @@ def answer(
     chosen = choice(fits, word, decided)
     agreement = agreement_of(fits[chosen])
     threshold *= agreement.factor
-    pairs = [types for types in excused if word < types and types - word in fits]
-    untried = tuple(types for types in pairs if question.responds(types - word))
+    alone = {types: candidates.get(types - word) for types in excused if word < types}
+    responses = {types: known.of(Responds) for types, known in alone.items() if known}
+    untried = [types for types, own in responses.items() if any(e.type_name in types for e in own)]
     # What may be right and has no model leaves nothing to bound.
     ends = not (untried and decided.verdict is Verdict.UNDESCRIBED)
     tied = ties(fits, word, decided, chosen)
@@ -237,7 +215,7 @@ def answer(
         tuple(best.judgements),
         threshold,
         agreement,
-        untried,
+        tuple(untried),
     )
 
 

@@ -12,7 +12,6 @@ from pellicle.files import json_text
 from .candidate import Candidate
 from .config import FitConfig, described
 from .curve import Curve
-from .effect import quantities
 from .files.measurement import Note
 from .intervals import CONFIDENCE, Estimate
 from .recipe import Answer
@@ -78,7 +77,7 @@ class Fit:
     @property
     def contact_point(self) -> Estimate:
         """Position of first touch [m], of the first curve."""
-        return parameters_of(self.answer.chosen)["contact_point"]
+        return self.answer.chosen.parameters["contact_point"]
 
     def estimates(self) -> dict[str, Estimate]:
         """Return modulus and tension, and the other quantities of the chosen explanation by name.
@@ -88,7 +87,7 @@ class Fit:
         found = {"reduced_modulus": self.reduced_modulus, "tension": self.tension}
         if youngs := self.youngs_modulus:
             found["youngs_modulus"] = youngs
-        return {**found, **parameters_of(self.answer.chosen), **found}
+        return {**found, **self.answer.chosen.parameters, **found}
 
     @property
     def verdict(self) -> Verdict:
@@ -146,7 +145,7 @@ class Fit:
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as JSON data."""
         answer, chosen = self.answer, self.answer.chosen
-        own, asked = parameters_of(chosen), ("reduced_modulus", "tension", "youngs_modulus")
+        own, asked = chosen.parameters, ("reduced_modulus", "tension", "youngs_modulus")
         return {
             **{name: vars(e) for name, e in self.estimates().items() if name in asked},
             "parameters": {name: vars(estimate) for name, estimate in own.items()},
@@ -182,13 +181,13 @@ class Fit:
             "words": words_of(fit),
             "chi_squared": fit.chi_squared,
             "delta_aic": fit.aic - answer.explanations[0].aic,
-            "tied": fit.types in answer.tied_types,
-            "holds_modulus": all(fit.types != other.types for other in answer.not_held),
+            "tied": fit in answer.tied,
+            "holds_modulus": fit not in answer.not_held,
             "parameters": {
                 name: vars(value)
                 if name in fit.estimates or value.held
                 else {"value": value.value, "unit": value.unit}
-                for name, value in parameters_of(fit).items()
+                for name, value in fit.parameters.items()
             },
         }
 
@@ -205,7 +204,7 @@ class Fit:
                 {"code": code, "message": text} for code, text in judged.failed_checks.items()
             ],
             "messages": list(member.messages),
-            **{slot.name: vars(parameters[name_of(slot.name, i)]) for slot in slots},
+            **{slot.name: vars(parameters[slot.full_name]) for slot in slots},
             "data": member.data,
         }
 
@@ -228,23 +227,3 @@ class Fit:
     def to_json(self) -> str:
         """Return what `to_dict` returns as JSON."""
         return json_text(self.to_dict())
-
-
-def name_of(name: str, curve: int | None) -> str:
-    """Return the name of a quantity of one of several curves: that of the first has no number."""
-    return f"{name}_{curve}" if curve else name
-
-
-def parameters_of(fit: Candidate) -> dict[str, Estimate]:
-    """Return all quantities of an explanation by name; some intervals were not sought."""
-    found, objective = {}, fit.objective
-    for slot, at in zip(objective.slots, fit.minimum.at, strict=True):
-        name = name_of(slot.name, slot.curve)
-        bare = Estimate(slot.value(at), None, None, slot.quantity.unit)
-        found[name] = fit.estimates.get(name, bare)
-    for part in objective.explanation.parts:
-        for name, quantity in quantities(type(part)).items():
-            if name not in part.open:
-                value = float(getattr(part, name))
-                found[name] = Estimate(value, value, value, quantity.unit, held=True)
-    return found

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .candidate import NONE, ROWS, Candidate, Types, best_of, criterion
+from .candidate import NONE, ROWS, Candidate, Types, best_of
 from .curve import Curve
-from .effect import Effect, Responds, Sizes, Solid
+from .effect import Effect, Sizes, Solid
 from .explanation import Explanation
 from .noise import neighbour_noise
 from .objective import ROUGH, Objective
@@ -39,11 +39,6 @@ class Question:
         """The set of what is asked for."""
         return frozenset({self.asked.type_name}) if self.asked else NONE
 
-    def responds(self, types: Types) -> bool:
-        """Return whether effects of some types are a response of the solid."""
-        effects = (effect for rival in self.rivals for effect in rival)
-        return any(isinstance(e, Responds) and e.type_name in types for e in effects)
-
     def candidates(self) -> dict[Types, Explanation]:
         """Return the explanations that are compared, by their types."""
         found: dict[Types, Explanation] = {}
@@ -58,40 +53,29 @@ class Question:
         return found
 
 
-def comparison(question: Question, candidates: Explanations, curves: tuple[Curve, ...]) -> Fits:
+def comparison(
+    word: Types, candidates: Explanations, curves: tuple[Curve, ...], memory: tuple[float, ...] = ()
+) -> Fits:
     """Return all explanations at their least χ², at the noise of the best.
 
     Noise that is correlated counts as such, unless the best explanation then fails: a bent baseline
     is no noise, and differences of it would remove the contact.
     """
-    word, white = question.word, (0.0,) * len(curves)
-    simple = _simple(candidates, word, curves, white)
-    memory = tuple(judged.memory for judged in best_of(simple.values()).judgements)
-    if any(memory):
-        fits = _all(candidates, word, _simple(candidates, word, curves, memory))
+    noise, sizes = (
+        tuple(neighbour_noise(curve.force) for curve in curves),
+        Sizes.of_curve(curves[0]),
+    )
+    of = Objective(candidates[NONE], curves, noise, sizes, memory, sizes.time)
+    simple = _sought({types: candidates[types] for types in (NONE, word)}, word, {}, of)
+    simple = at_common_noise(simple)
+    best = best_of(simple.values())
+    if not memory and any(found := tuple(judged.memory for judged in best.judgements)):
+        fits = comparison(word, candidates, curves, found)
         if all(judged.describes for judged in best_of(fits.values()).judgements):
             return fits
-    return _all(candidates, word, simple)
-
-
-def _simple(
-    candidates: Explanations, word: Types, curves: tuple[Curve, ...], memory: tuple[float, ...]
-) -> Fits:
-    """Return the explanations with and without what is asked for, at the noise of the best."""
-    noise = tuple(neighbour_noise(curve.force) for curve in curves)
-    simple = {types: candidates[types] for types in (NONE, word)}
-    return at_common_noise(_sought(simple, word, {}, curves, noise, memory).values())
-
-
-def _all(candidates: Explanations, word: Types, simple: Fits) -> Fits:
-    """Return all explanations: first at the noise of the best of the simple ones.
-
-    That only scales χ²; at last it is that of the best.
-    """
-    best = best_of(simple.values())
-    known = best.whole, best.objective.noise, best.objective.memory
-    fits = _sought(candidates, word, simple, *known)
-    fits = at_common_noise([_restarted(fit, fits) for fit in fits.values()])
+    # Another noise only scales χ²; at last it is that of the best.
+    fits = _sought(candidates, word, simple, best.of_rows)
+    fits = at_common_noise({types: _restarted(fit, fits) for types, fit in fits.items()})
     # The modulus of the end of the loading is that after the time since the best first touch.
     best = best_of(fits.values())
     pairs = zip(best.whole, best.contact_points, strict=True)
@@ -100,43 +84,24 @@ def _all(candidates: Explanations, word: Types, simple: Fits) -> Fits:
     return {types: fit.relaxed_for(time) for types, fit in fits.items()}
 
 
-def _sought(
-    candidates: Explanations,
-    word: Types,
-    simple: Fits,
-    curves: tuple[Curve, ...],
-    noise: tuple[float, ...],
-    memory: tuple[float, ...],
-) -> Fits:
-    """Return explanations at their least χ² at a noise, beside the simple ones if there are any."""
-    fits = dict(simple)
+def _sought(candidates: Explanations, word: Types, simple: Fits, of: Objective) -> Fits:
+    """Return explanations of all rows at their least χ², beside the simple ones if there are any.
+
+    No mean stands for rows between which a force jumps, and none has their memory.
+    """
+    fits, means = dict(simple), tuple(curve.binned(ROWS) for curve in of.curves)
     for types, explanation in candidates.items():
         if types in fits:
             continue
-        objective = _objective(explanation, curves, noise, memory)
+        is_whole = any(of.memory) or any(effect.jumps for effect in explanation.effects)
+        curves = of.curves if is_whole else means
+        objective = replace(of, explanation=explanation, curves=curves)
         parts = [(fit.objective, fit.minimum) for part, fit in fits.items() if part < types]
         # A pair starts from its parts.
         at = starts(objective, parts, scan=not word < types or not word)
         idle = [_idle(types, word, objective, fits)] if simple else []
-        fits[types] = Candidate(types, objective, objective.best(at, *idle), curves)
+        fits[types] = Candidate(types, objective, objective.best(at, *idle), of.curves)
     return fits
-
-
-def _objective(
-    explanation: Explanation,
-    curves: tuple[Curve, ...],
-    noise: tuple[float, ...],
-    memory: tuple[float, ...],
-) -> Objective:
-    """Return χ² of means, unless it has to be of all rows.
-
-    No mean stands for rows between which a force jumps, and none has their memory.
-    """
-    sizes = Sizes.of_curve(curves[0])
-    objective = Objective(explanation, curves, noise, sizes, memory, sizes.time)
-    if any(memory) or any(effect.jumps for effect in explanation.effects):
-        return objective
-    return replace(objective, curves=tuple(curve.binned(ROWS) for curve in curves))
 
 
 def _idle(types: Types, word: Types, objective: Objective, fits: Fits) -> tuple[float, float]:
@@ -154,18 +119,18 @@ def _idle(types: Types, word: Types, objective: Objective, fits: Fits) -> tuple[
     is_whole = objective.curves is simple.whole
     # Of means, χ² lacks the scatter of the rows about them.
     scatter = 0.0 if is_whole else simple.chi_squared - simple.minimum.chi_squared
-    return low - criterion(objective, 0.0) - scatter, high - scatter + _SAME
+    return low - objective.criterion(0.0) - scatter, high - scatter + _SAME
 
 
-def at_common_noise(fits: Collection[Candidate]) -> Fits:
+def at_common_noise(fits: Fits) -> Fits:
     """Return explanations at the noise of the best that passes its checks.
 
     If none does, at that of the best, which is widened where it fails.
     """
-    ranked = sorted(fits, key=lambda fit: fit.aic)
+    ranked = sorted(fits.values(), key=lambda fit: fit.aic)
     passing = (fit for fit in ranked if all(judged.describes for judged in fit.judgements))
     noise = [judged.noise.deviation for judged in next(passing, ranked[0]).judgements]
-    return {fit.types: fit.at_noise(noise) for fit in fits}
+    return {types: fit.at_noise(noise) for types, fit in fits.items()}
 
 
 def _restarted(fit: Candidate, fits: Fits) -> Candidate:

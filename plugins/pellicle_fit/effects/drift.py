@@ -17,7 +17,7 @@ class Drift(Records, title="drift in time"):
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Refuse curves of one pass, on which it is a sloping baseline."""
-        return "" if curve.has_both_passes else "on one pass it is a sloping baseline"
+        return "" if len(curve.passes) > 1 else "on one pass it is a sloping baseline"
 
     def recorded(self, force: Array, curve: Curve) -> Array:
         """Return F + rate × time since the first row [N]."""

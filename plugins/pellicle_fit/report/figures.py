@@ -115,7 +115,7 @@ def _curves(fit: Fit, rival: Candidate | None = None) -> Chart:
         measured, turn = curve.position - known.solid.contact_point, int(curve.moves_out.argmax())
         deepest, largest = (measured.max(), abs(curve.force).max()) if count > 1 else (1.0, 1.0)
         passes = Leg(slice(0, turn), "approach"), Leg(slice(turn, force.size), "retraction")
-        legs = passes if curve.has_both_passes else ()
+        legs = passes if len(curve.passes) > 1 else ()
         x, data = measured / deepest, "data" if number == 0 else ""
         dots = Look(None, None, 0, filled=False if legs else None)
         series.append(Series(x, curve.force / largest, legend=data, look=dots, legs=legs))

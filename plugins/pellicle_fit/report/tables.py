@@ -13,7 +13,7 @@ from pellicle_fit.objective import CONTACT_POINT, MODULUS
 from pellicle_fit.population.row import FITTED, OVER_TIED, SHOWN, Row
 from pellicle_fit.population.summary import QUARTILES, summary
 from pellicle_fit.recipe import TENSION
-from pellicle_fit.result import Fit, name_of, parameters_of
+from pellicle_fit.result import Fit
 from pellicle_fit.words.names import FEW, interval, quoted, unit_of, unit_of_one, words, words_of
 
 _SI_DIGITS = 6
@@ -24,7 +24,7 @@ def estimates(fit: Fit, *, si: bool = False) -> Table:
     """Return a row for each quantity of a fit, of several curves those that they share."""
     several, rows = len(fit.members) > 1, []
     slots = fit.answer.chosen.objective.slots
-    of_one = {name_of(slot.name, slot.curve) for slot in slots if slot.curve is not None}
+    of_one = {slot.full_name for slot in slots if slot.curve is not None}
     for name, estimate in fit.estimates().items():
         if not (several and name in of_one) and (estimate.value or not estimate.held):
             unit = _unit(fit, name, si)
@@ -45,10 +45,10 @@ def explanations(fit: Fit, *, si: bool = False) -> Table:
         Column("explanation", [words_of(one) for one in compared]),
         Column("χ²", [one.chi_squared for one in compared], digits=5),
         Column("ΔAIC", [one.aic - compared[0].aic for one in compared], digits=3),
-        Column("tied", ["yes" if one.types in answer.tied_types else "" for one in compared]),
+        Column("tied", ["yes" if one in answer.tied else "" for one in compared]),
     ]
     for name in (MODULUS, TENSION):
-        values = [parameters_of(one).get(name) for one in compared]
+        values = [one.parameters.get(name) for one in compared]
         # Not of all explanations intervals are sought.
         sought = [name in one.estimates for one in compared]
         columns += _quantity(name, _unit(fit, name, si), values, sought=sought)
@@ -60,7 +60,8 @@ def curves(fit: Fit, *, si: bool = False) -> Table:
     """Return a row for each curve of a fit."""
     members, judgements, own = fit.members, fit.answer.judgements, fit.estimates()
     radii = [getattr(member.curve.indenter, "radius", "") for member in members]
-    found = (own.get(name_of(CONTACT_POINT, i), own[CONTACT_POINT]) for i in range(len(members)))
+    # That of the first has no number, one that is fixed has none at all.
+    found = (own.get(f"{CONTACT_POINT}_{i}", own[CONTACT_POINT]) for i in range(len(members)))
     unit = _unit(fit, CONTACT_POINT, si)
     points = [f"{unit.number(e.value)} ({interval(e, unit)})" for e in found]
     checks = [", ".join(judged.failed_checks) for judged in judgements]
@@ -120,7 +121,7 @@ def _unit(fit: Fit, name: str, si: bool) -> Scale:
     own = fit.estimates()[name]
     if own.value or own.high:
         return unit_of_one(own, si=si)
-    others = (parameters_of(one).get(name) for one in fit.answer.explanations)
+    others = (one.parameters.get(name) for one in fit.answer.explanations)
     return unit_of([e.value for e in others if e is not None], own.unit, si=si)
 
 

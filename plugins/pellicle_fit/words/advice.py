@@ -60,7 +60,7 @@ def _of_input(answer: Answer) -> Iterator[Step]:
             yield Step("begin curves before contact", why)
             break
     for name, (least, most) in PLAUSIBLE.items():
-        if (found := answer.estimates.get(name)) is None:
+        if (found := answer.chosen.estimates.get(name)) is None:
             continue
         # The best value of an open interval is one of many.
         low, high = found.low or 0.0, np.inf if found.high is None else found.high
@@ -103,7 +103,7 @@ def _of_measurement(answer: Answer) -> Iterator[Step]:
         measure, count = telling(answer.asked, answer.tied_without)
         aim = "tell these explanations apart"
     else:
-        found = {name: answer.estimates.get(name) for name in (MODULUS, TENSION)}
+        found = {name: answer.chosen.estimates.get(name) for name in (MODULUS, TENSION)}
         names = [name for name, estimate in found.items() if estimate and estimate.high is None]
         measure, count = tightening(answer.chosen, names) if names else "", 1
         aim = f"bound {listed([*map(words, names)])}"

@@ -105,7 +105,7 @@ def verdict(answer: Answer) -> str:
             names = listed(tied, "or", _RIVALS)
             return f"{curves} cannot tell {words_of(fits[asked])} from {names}"
         case Verdict.OTHER:
-            alike = [fit for fit in answer.explanations if fit.types in answer.tied_types]
+            alike = [fit for fit in answer.explanations if fit in answer.tied]
             better = [fit for fit in alike if not (word <= fit.types if word else not fit.types)]
             by = f"described better by {listed([*map(words_of, better)], 'or', _RIVALS)}"
             if word:

@@ -90,7 +90,7 @@ def test_ends_are_where_the_profile_has_risen() -> None:
     objective, best = explained.objective, explained.minimum
     bounds = objective.deviations(best.at)
     for k, slot in enumerate(objective.slots):
-        for end in ends_of(found.answer.estimates[slot.name]):
+        for end in ends_of(explained.estimates[slot.name]):
             others = [i for i in range(best.at.size) if i != k]
 
             def chi_squared(u: Array, k: int = k, end: float = end, others: Any = others) -> float:
@@ -116,7 +116,7 @@ def test_errors_reach_the_bound_and_intervals_hold() -> None:
             assert k is not None
             error = at[k] - objective.slots[k].coordinate(value)
             errors.append(error / objective.deviations(at)[k])
-            held.append(holds(found.answer.estimates[name], value))
+            held.append(holds(found.answer.chosen.estimates[name], value))
     # Three standard deviations of the rms of 30 normal numbers around 1.
     assert 0.6 < np.sqrt(np.mean(np.square(errors))) < 1.4
     assert sum(held) >= 0.88 * len(held)
