@@ -105,7 +105,7 @@ def judged(
     rows = np.flatnonzero(before)[:: -1 if curve.moves_out[before][0] else 1]
     found, noise, far = _before_contact(residuals[rows], curve.base[rows], least)
     flaws |= found
-    if step > _COARSE * neighbour_noise(residuals[rows]):
+    if step > _COARSE * neighbour_noise(residuals[rows]).deviation:
         flaws.add(Flaw.STEPS)
     inside, free = ~before, max(int(np.sum(~before)) - jacobian.shape[1], 1)
     scatter = Noise(float(np.sqrt(np.sum(residuals[inside] ** 2) / free)), free)
@@ -117,7 +117,7 @@ def judged(
     # A second pass has bins of its own.
     bins += (len(_DEPTHS) + 1) * (curve.moves_out & curve.first_pass[0])
     sums = binned(residuals, jacobian, np.where(before, -1, bins), 2 * (len(_DEPTHS) + 1))
-    if sums and sums.exceeds(max(_neighbours(residuals[inside], least), far)):
+    if sums and sums.exceeds(max(neighbour_noise(residuals[inside], least), far)):
         flaws.add(Flaw.PATTERN)
         noise = max(noise, Noise(sums.deviation, sums.freedom))
     elif sums and Flaw.SLOW in flaws:
@@ -134,7 +134,7 @@ def _before_contact(force: Array, base: Array, least: float) -> tuple[set[Flaw],
     """
     line = np.column_stack([np.ones(force.size), (base - base.mean()) / np.ptp(base)])
     unit = line / np.linalg.norm(line, axis=0)
-    independent, flaws = _neighbours(force, least), set()
+    independent, flaws = neighbour_noise(force, least), set()
     limit = float(ndtri(CHANCE / len(_WINDOWS)))
     # A line may explain more than a dip, which then has to be significant beside it.
     depth, window = max(_dip(force, unit[:, :1]), _dip(force, unit))
@@ -195,14 +195,13 @@ def has_spikes(residuals: Array, least: float) -> bool:
     return bool(np.any(np.abs(off) > _WILD * max(spread, least)))
 
 
-def neighbour_noise(force: Array) -> float:
-    """Return the standard deviation of the force [N] from differences of neighbours."""
-    return float(np.sqrt(np.mean(np.diff(force) ** 2) / 2))
+def neighbour_noise(force: Array, least: float = 0.0) -> Noise:
+    """Return the noise from differences of neighbours, not below a least deviation [N].
 
-
-def _neighbours(force: Array, least: float) -> Noise:
-    """Return that noise, of two thirds as many degrees of freedom (von Neumann et al. 1941)."""
-    return Noise(max(neighbour_noise(force), least), 2 * force.size / 3)
+    It has two thirds as many degrees of freedom as there are rows (von Neumann et al. 1941).
+    """
+    deviation = float(np.sqrt(np.mean(np.diff(force) ** 2) / 2))
+    return Noise(max(deviation, least), 2 * force.size / 3)
 
 
 def _step(force: Array) -> float:

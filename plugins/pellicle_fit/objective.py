@@ -13,7 +13,7 @@ from scipy.optimize import least_squares
 from pellicle.arrays import Array
 
 from .curve import Curve
-from .effect import Fitted, Responds, Sizes, Weighed
+from .effect import Fitted, Sizes, Weighed
 from .explanation import Explanation
 from .long_memory import differenced
 
@@ -146,10 +146,10 @@ class Objective:
                 values[slot.part][slot.name] = slot.value(coordinate)
         pairs = zip(self.explanation.effects, values[1:], strict=True)
         effects = tuple(effect.at(known) for effect, known in pairs)
-        if MODULUS in values[0] and any(isinstance(effect, Responds) for effect in effects):
-            bare = Explanation(self.explanation.solid, effects)
-            values[0][MODULUS] /= bare.relaxed(self.loading_time)
-        return Explanation(self.explanation.solid.at(values[0]), effects)
+        known = Explanation(self.explanation.solid, effects)
+        if MODULUS in values[0]:
+            values[0][MODULUS] /= known.relaxed(self.loading_time)
+        return Explanation(known.solid.at(values[0]), effects)
 
     def forces(self, at: Array) -> list[Array]:
         """Return the force [N] of each curve that the explanation records."""

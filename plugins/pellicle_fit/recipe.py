@@ -54,16 +54,6 @@ class Answer:
         return self.decision.verdict
 
     @property
-    def reduced_modulus(self) -> Estimate:
-        """E* at the end of the loading [Pa], over all that is tied."""
-        return self._over_tied(MODULUS)
-
-    @property
-    def tension(self) -> Estimate:
-        """τ₀ [N/m], over all that is tied; without a lower end if one of that has none."""
-        return self._over_tied(TENSION)
-
-    @property
     def tension_needed(self) -> bool:
         """Whether the curves need a tension."""
         return self.question.word == {TENSION} and self.verdict is Verdict.NEEDED
@@ -91,8 +81,11 @@ class Answer:
             if not word <= fit.types and abs(fit.aic - aic) < self.decision.margin
         ]
 
-    def _over_tied(self, name: str) -> Estimate:
-        """Return the least interval that contains those of all that is tied."""
+    def over_tied(self, name: str) -> Estimate:
+        """Return modulus (at the end of the loading) or tension over all that is tied.
+
+        The interval is the least that contains theirs; without a lower end if one of them has none.
+        """
         tied = [fit for fit in self.tied if fit not in self.not_held]
         found = [fit.estimates[name] for fit in tied if name in fit.estimates]
         none = Estimate(0.0, 0.0, 0.0, "N/m", held=True)

@@ -14,7 +14,8 @@ from .config import FitConfig, described
 from .curve import Curve
 from .files.measurement import Note
 from .intervals import CONFIDENCE, Estimate
-from .recipe import Answer
+from .objective import MODULUS
+from .recipe import TENSION, Answer
 from .verdict import Verdict
 from .words.advice import Step
 from .words.names import words_of
@@ -58,7 +59,7 @@ class Fit:
     @property
     def reduced_modulus(self) -> Estimate:
         """E* [Pa], with an interval over all that the curves cannot tell apart."""
-        return self.answer.reduced_modulus
+        return self.answer.over_tied(MODULUS)
 
     @property
     def youngs_modulus(self) -> Estimate | None:
@@ -72,7 +73,7 @@ class Fit:
     @property
     def tension(self) -> Estimate:
         """τ₀ [N/m], with an interval over all that the curves cannot tell apart."""
-        return self.answer.tension
+        return self.answer.over_tied(TENSION)
 
     @property
     def contact_point(self) -> Estimate:

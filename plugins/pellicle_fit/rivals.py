@@ -62,7 +62,7 @@ def comparison(
     is no noise, and differences of it would remove the contact.
     """
     noise, sizes = (
-        tuple(neighbour_noise(curve.force) for curve in curves),
+        tuple(neighbour_noise(curve.force).deviation for curve in curves),
         Sizes.of_curve(curves[0]),
     )
     of = Objective(candidates[NONE], curves, noise, sizes, memory, sizes.time)
@@ -96,7 +96,7 @@ def _sought(candidates: Explanations, word: Types, simple: Fits, of: Objective) 
         is_whole = any(of.memory) or any(effect.jumps for effect in explanation.effects)
         curves = of.curves if is_whole else means
         objective = replace(of, explanation=explanation, curves=curves)
-        parts = [(fit.objective, fit.minimum) for part, fit in fits.items() if part < types]
+        parts = [fit for part, fit in fits.items() if part < types]
         # A pair starts from its parts.
         at = starts(objective, parts, scan=not word < types or not word)
         idle = [_idle(types, word, objective, fits)] if simple else []

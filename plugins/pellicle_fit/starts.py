@@ -10,8 +10,9 @@ import numpy as np
 
 from pellicle.arrays import Array
 
+from .candidate import Candidate
 from .effect import powers
-from .objective import CONTACT_POINT, MODULUS, ROUGH, Minimum, Objective, Slot
+from .objective import CONTACT_POINT, MODULUS, ROUGH, Objective, Slot
 
 _POINTS, _ROWS = 25, 120
 """Contact points that are scanned, and rows of each pass that a scan sees."""
@@ -23,17 +24,14 @@ _GUESS = 0.03
 """Coordinate of what neither a scan nor an effect says."""
 
 
-def starts(
-    objective: Objective, known: Sequence[tuple[Objective, Minimum]], *, scan: bool
-) -> list[Array]:
+def starts(objective: Objective, known: Sequence[Candidate], *, scan: bool) -> list[Array]:
     """Return coordinates to start from: of minima of other explanations, and of a scan."""
     found, own = pooled(objective) if scan else [], list(_own(objective))
-    types = [other.explanation.types for other, _ in known]
-    for other, minimum in known:
+    for other in known:
         # A search from a part of a part starts further off.
-        if any(other.explanation.types < larger for larger in types):
+        if any(other.types < larger.types for larger in known):
             continue
-        at = objective.at_values(other.values(minimum.at))
+        at = objective.at_values(other.objective.values(other.minimum.at))
         # Starts that differ in what is known already are one.
         found += [*np.unique([np.where(np.isnan(at), guess, at) for guess in own], axis=0)]
     return found

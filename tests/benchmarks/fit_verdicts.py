@@ -279,9 +279,9 @@ def outcome(kind: str, protocol: str, number: int, seed: int) -> dict[str, Any]:
         "lead": answer.decision.lead,
         "other": sorted(answer.decision.other),
         "behind": right[0].aic - best if right else None,
-        "modulus": _held(answer.reduced_modulus, modulus),
-        "off": _off(answer.reduced_modulus, modulus),
-        "tension": _held(answer.tension, truth.tension),
+        "modulus": _held(fit.reduced_modulus, modulus),
+        "off": _off(fit.reduced_modulus, modulus),
+        "tension": _held(fit.tension, truth.tension),
         "expected": expected(answer, truth, protocol) if truth.tension else None,
         "seconds": round(seconds, 2),
     }

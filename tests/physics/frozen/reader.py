@@ -250,8 +250,8 @@ def fit(case: Case) -> dict[str, Any]:
         "chosen": _key(found.chosen.types),
         "tied": sorted(_key(fit.types) for fit in found.tied),
         "over_tied": {
-            "reduced_modulus": _estimate(found.reduced_modulus),
-            "tension": _estimate(found.tension),
+            "reduced_modulus": _estimate(found.over_tied("reduced_modulus")),
+            "tension": _estimate(found.over_tied("tension")),
         },
         "explanations": {
             _key(fit.types): {
