@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fit_verdicts import pink
 
 import pellicle as pl
 from pellicle_fit.long_memory import differenced, exponent_of
@@ -26,13 +25,6 @@ def test_exponent_of_fractional_noise(exponent: float) -> None:
     random = np.random.default_rng(2)
     noise = differenced(random.standard_normal((10_000, 1)), -exponent)[:, 0]
     assert exponent_of(noise) == pytest.approx(exponent, abs=0.03)
-
-
-def test_exponent_of_1_over_f_noise() -> None:
-    """Noise with a power of 1/f up to its last frequency is close to that of exponent 1/2."""
-    random = np.random.default_rng(2)
-    exponents = [exponent_of(pink(random, 1000)) for _ in range(10)]
-    assert np.median(exponents) == pytest.approx(0.5, abs=0.1)
 
 
 @pytest.mark.parametrize("size", [1e-12, 1.0, 1e6])

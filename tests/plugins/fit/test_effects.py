@@ -148,13 +148,6 @@ def test_a_solid_that_softens() -> None:
     assert soft.depth_limit == WIDE[-1]
 
 
-def test_a_tension() -> None:
-    """The force is that of the indenter on a half-space under tension."""
-    curve = bead()
-    expected = E * body("paraboloid", radius=R).force_curve(DEPTH, 1e-6).force
-    np.testing.assert_array_equal(force(curve, effect("tension", tension=1e-3)), expected)
-
-
 @pytest.mark.parametrize(("exponent", "lost"), [(0.1, 1.861980), (0.2, 1.725471), (0.3, 1.591086)])
 def test_a_power_law(exponent: float, lost: float) -> None:
     """A ramp (Lee & Radok), and when contact is lost on the way back at the same speed (Ting)."""
@@ -272,33 +265,22 @@ def test_sets_are_composed_in_one_order() -> None:
     np.testing.assert_array_equal(force(curve, *parts), force(curve, *reversed(parts)))
     solid = Solid()
     assert "one place" in Explanation(solid, (effect("sphere"), effect("cone"))).excuse([])
-    clash = Explanation(solid, (effect("brush"), Shorter())).excuse([])
+    clash = Explanation(solid, (effect("stiff_surface"), Softening())).excuse([])
     assert clash == "two of them have a quantity of one name"
 
 
-class Shorter(Yields):
-    """Effect with a quantity that another has."""
-
-    type: Literal["shorter"] = "shorter"
-    brush_length: Annotated[float, Fitted("m")] = fitted("length [m]")
-
-    def give(self, force: Array) -> Array:
-        """Return nothing [m]."""
-        return 0 * force
-
-
 class Softening(Bends):
-    """Contact of a stranger, which is no longer the indenter's own."""
+    """Contact of a stranger, no longer the indenter's own, with a name that is taken."""
 
     type: Literal["softening"] = "softening"
-    rank: ClassVar[int] = 2
-    softening_depth: Annotated[float, Fitted("m", above=0, log=True)] = fitted("depth [m]")
+    rank: ClassVar[int] = 4
+    reach: Annotated[float, Fitted("m", above=0, log=True)] = fitted("depth [m]")
 
     def contact(self, contact: Contact) -> Contact:
         """Return F/(1 + δ/10d)."""
 
         def area(depth: Array, length: float) -> Array:
-            rest = 1 + np.maximum(depth, 0) / self.softening_depth / 10
+            rest = 1 + np.maximum(depth, 0) / self.reach / 10
             return contact.area(depth, length) / rest
 
         return replace(contact, area=area, half_space=False)

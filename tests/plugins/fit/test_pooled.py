@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import Result
 from numpy.typing import NDArray
 
 import pellicle as pl
@@ -113,28 +110,3 @@ def test_weighed_radii(measured: dict[str, tuple[Array, Array]]) -> None:
     assert holds(weighed.reduced_modulus, TRUE_MODULUS)
     assert holds(weighed.tension, TRUE_TENSION)
     assert weighed.chi_squared == exact.chi_squared
-
-
-def test_bad_pools(measured: dict[str, tuple[Array, Array]]) -> None:
-    """One curve is no pool, and no contact point is shared."""
-    with pytest.raises(pl.ConfigError, match="a pool needs two"):
-        pooled({"5 um": measured["5 um"]})
-    with pytest.raises(pl.ConfigError, match=r"fix.contact_point: is not shared"):
-        pooled(measured, fix={"contact_point": 0})
-
-
-@pytest.mark.slow
-def test_command(measured: dict[str, tuple[Array, Array]], cli: Callable[..., Result]) -> None:
-    """``--pool`` prints what all curves say, and leaves JSON and a figure."""
-    for number, (position, force) in enumerate(measured.values()):
-        rows = np.column_stack([position * 1e6, force * 1e9])
-        header = "position [um],force [nN]"
-        np.savetxt(f"{number}.csv", rows, delimiter=",", header=header, comments="")
-    radii = [text for radius in RADII for text in ("--radius", f"{radius * 1e6:g} um")]
-    arguments = ("0.csv", "1.csv", "-i", "paraboloid", *radii, "--pool", "-o", "out")
-    shown = cli(*arguments).stdout
-    assert "calibration taken as exact" in shown
-    content = json.loads(Path("out/pool.json").read_text(encoding="utf-8"))
-    assert content["agreement"].startswith("the curves agree")
-    assert content["reduced_modulus"]["low"] < TRUE_MODULUS < content["reduced_modulus"]["high"]
-    assert Path("out/pool.png").exists()
