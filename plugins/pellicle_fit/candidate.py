@@ -58,11 +58,6 @@ class Candidate:
         return found
 
     @property
-    def modulus(self) -> float | None:
-        """E* at the end of the loading [Pa]; None if it is given."""
-        return self.objective.values(self.minimum.at).get((MODULUS, None))
-
-    @property
     def contact_points(self) -> list[float]:
         """Position of first touch on each curve [m]."""
         at, curves = self.minimum.at, range(len(self.whole))
@@ -129,17 +124,16 @@ class Candidate:
         # A coordinate at its limit is none that the fit could use.
         low, high = objective.limits
         jacobian = jacobian[:, (at > low) & (at < high)]
-        found, row = [], 0
-        rows_of = zip(objective.curves, forces, objective.noise, strict=True)
-        for i, (curve, force, noise) in enumerate(rows_of):
-            by_coordinates = jacobian[row : row + force.size] * noise
+        # Behind the rows of all curves stand those of what is weighed.
+        by_curve = np.split(jacobian, np.cumsum([force.size for force in forces]))[:-1]
+        rows_of, found = zip(objective.curves, forces, objective.noise, by_curve, strict=True), []
+        for i, (curve, force, noise, derivatives) in enumerate(rows_of):
             known = objective.known(at, i)
             point, d = known.solid.contact_point, memory[i] if memory else 0.0
-            one = judged(curve, curve.force - force, by_coordinates, curve.base - point, d)
+            one = judged(curve, curve.force - force, derivatives * noise, curve.base - point, d)
             if np.max(curve.position) - point > known.contact(curve).depth_limit:
                 one = one._replace(flaws=one.flaws | {Flaw.TOO_DEEP})
             found.append(one)
-            row += force.size
         return found
 
 

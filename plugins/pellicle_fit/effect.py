@@ -90,13 +90,9 @@ class Fitted(Quantity):
     ) -> JsonSchemaValue:
         held = super().__get_pydantic_json_schema__(schema, handler)
         deviation = Quantity(self.unit, above=0).__get_pydantic_json_schema__(schema, handler)
-        weighed = {
-            "type": "object",
-            "properties": {"value": held, "deviation": deviation},
-            "required": ["value", "deviation"],
-            "additionalProperties": False,
-        }
-        return {"anyOf": [held, weighed], "unit": self.unit}
+        parts = {"value": held, "deviation": deviation}
+        weighed = {"properties": parts, "required": [*parts], "additionalProperties": False}
+        return {"anyOf": [held, {"type": "object"} | weighed], "unit": self.unit}
 
 
 def fitted(description: str) -> Any:

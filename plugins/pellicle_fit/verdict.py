@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from enum import Enum
 from typing import NamedTuple
 
-import numpy as np
 from scipy.special import bdtrc
 
 from .candidate import NONE, Candidate, Types, best_of
 from .noise import Judged
+from .objective import MODULUS
 
 MARGIN = 4.0
 """Difference of AIC below which explanations cannot be told apart."""
@@ -83,8 +83,8 @@ def leads(pair: Candidate, word: Types, fits: Fits) -> bool:
     if not word < pair.types:
         return False
     parts = [fits[part] for part in (word, pair.types - word) if part in fits]
-    bulk = (pair.modulus or np.inf) >= SMALL * (fits[word].modulus or 0.0)
-    return bulk and min(part.aic for part in parts) - pair.aic >= EFFECT_MARGIN
+    alone, beside = (fit.parameters[MODULUS].value for fit in (fits[word], pair))
+    return beside >= SMALL * alone and min(part.aic for part in parts) - pair.aic >= EFFECT_MARGIN
 
 
 def choice(fits: Fits, word: Types, decision: Decision) -> Types:

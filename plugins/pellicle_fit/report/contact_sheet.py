@@ -34,7 +34,6 @@ def sheets(rows: Sequence[Row]) -> list[Callable[[Figure], None]]:
 
 
 def _page(rows: Sequence[Row], caption: str, figure: Figure) -> None:
-    """Draw some curves on one page."""
     cells = figure.subplots(_DOWN, _ACROSS).ravel()
     for row, axes in zip(rows, cells, strict=False):
         _curve(row, axes)

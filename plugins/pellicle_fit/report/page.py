@@ -89,7 +89,6 @@ def _one(fit: Fit) -> list[Block]:
 
 
 def _many(fits: ManyFits) -> list[Block]:
-    """Return the results of many fits."""
     rows = fits.rows
     failed = [(row.status, row.name) for row in rows if not row.is_fitted]
     read = [(text, row) for row in rows for text in row.fit.get("messages", ())]
@@ -108,7 +107,6 @@ def _many(fits: ManyFits) -> list[Block]:
 
 
 def _told(warnings: Sequence[str], notes: Sequence[str]) -> Iterator[Block]:
-    """Yield warnings and, folded, notes."""
     if warnings:
         yield Notice("Warnings:", good=None, details=warnings)
     if notes:

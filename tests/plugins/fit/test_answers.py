@@ -195,8 +195,9 @@ def test_means_of_rows_answer_as_all_rows_do(
 )
 def test_verdicts_follow_from_criteria(aic: dict[str, float], verdict: Verdict) -> None:
     """At the margins the verdict changes, and where the best fails its checks there is none."""
+    same = {"parameters": {"reduced_modulus": SimpleNamespace(value=1.0)}}
     fits = {
-        frozenset(key): cast("Candidate", SimpleNamespace(types=frozenset(key), aic=v, modulus=1.0))
+        frozenset(key): cast("Candidate", SimpleNamespace(types=frozenset(key), aic=v, **same))
         for key, v in aic.items()
     }
     word = frozenset("a")
