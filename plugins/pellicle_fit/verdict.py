@@ -89,15 +89,10 @@ def leads(pair: Candidate, word: Types, fits: Fits) -> bool:
 
 def choice(fits: Fits, word: Types, decision: Decision) -> Types:
     """Return the explanation whose estimates count."""
-    match decision.verdict:
-        case Verdict.NEEDED:
-            return decision.asked
-        case Verdict.OTHER:
-            return decision.other
-        case Verdict.NO_SIGN:
-            return word
+    known = {Verdict.NEEDED: decision.asked, Verdict.OTHER: decision.other, Verdict.NO_SIGN: word}
     best = best_of(fits.values())
-    return word if fits[word].aic - best.aic < decision.margin else best.types
+    nearest = word if fits[word].aic - best.aic < decision.margin else best.types
+    return known.get(decision.verdict, nearest)
 
 
 def ties(fits: Fits, word: Types, decision: Decision, chosen: Types) -> list[Types]:
@@ -113,10 +108,8 @@ def ties(fits: Fits, word: Types, decision: Decision, chosen: Types) -> list[Typ
     def lends(fit: Candidate) -> bool:
         if fit.types == chosen or (none and not fit.types):
             return True
-        effects = fit.objective.explanation.effects
-        if fit.aic - least >= decision.margin or not all(
-            effect.holds_modulus for effect in effects
-        ):
+        holds = all(effect.holds_modulus for effect in fit.objective.explanation.effects)
+        if fit.aic - least >= decision.margin or not holds:
             return False
         if none:
             return fit.aic + EFFECT_MARGIN <= fits[NONE].aic
