@@ -25,7 +25,8 @@ from .objective import CONTACT_POINT
 from .recipe import answer
 from .record import data_of, record_of
 from .result import Fit, Member
-from .simulated.simulation import Simulation, body_of, layer_of, layer_table
+from .simulated.simulation import layer_of, simulated_curve
+from .simulated.solid import solid
 from .words.advice import steps
 
 _BASELINES = {"none": (), "offset": ("offset",), "slope": ("offset", "slope")}
@@ -117,23 +118,24 @@ def _on_solid(
         layers = [layer_of(indenter, ratio, thickness) for indenter in indenters]
         if layers[0] is not None and all(layers):
             return [*indenters], [layers[0]], ratio
-        kernel = layer_table(ratio, thickness)
+        layer = {"type": "bonded_layer", "thickness": thickness, "poissons_ratio": ratio}
+        kernel = {"type": "coated", "substrate": layer}
     bodies: list[Any] = []
     for indenter, curve in zip(indenters, measured, strict=True):
-        body = body_of(indenter, kernel, ratio)
-        if isinstance(body, Simulation):
-            ratio, span = body.solid.poissons_ratio, float(np.ptp(curve.position))
-            point = 0.0 if curve.is_depth else config.fix.get(CONTACT_POINT)
-            reach = _REACH * span if point is None else float(curve.position.max()) - point
-            body = body.curve(
-                # If no position reaches contact, the fit itself reports it.
-                reach if reach > 0 else span,
-                cache=config.cache,
-                executor=config.executor,
-                grid_points=config.grid_points,
-                progress=progress,
-            )
-        bodies.append(body)
+        if kernel is None and isinstance(indenter, HasForceCurve):
+            bodies.append(indenter)
+            continue
+        if not isinstance(indenter, Indenter):
+            reason = "cannot be given with a force curve, which includes its solid"
+            raise ConfigError(reason, "kernel")
+        of = solid(kernel or "tensed_membrane", config.poissons_ratio)
+        ratio, span = of.poissons_ratio, float(np.ptp(curve.position))
+        point = 0.0 if curve.is_depth else config.fix.get(CONTACT_POINT)
+        reach = _REACH * span if point is None else float(curve.position.max()) - point
+        options = {name: getattr(config, name) for name in ("cache", "executor", "grid_points")}
+        # If no position reaches contact, the fit itself reports it.
+        reach = reach if reach > 0 else span
+        bodies.append(simulated_curve(indenter, of, reach, **options, progress=progress))
     return bodies, [], ratio
 
 

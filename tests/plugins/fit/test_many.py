@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 import pellicle as pl
 from pellicle.components import AnyTask, Executor, Outcome, Report, Say
 from pellicle.plugins import Registry
-from pellicle_fit.simulated.simulation import Simulation
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 Array = NDArray[np.float64]
@@ -205,11 +204,11 @@ def test_simulated_before_the_fits(monkeypatch: pytest.MonkeyPatch) -> None:
     """What has to be simulated is so by the executor of the fits, which take it along."""
     executors = []
 
-    def simulated(simulation: Simulation, reach: float, **settings: Any) -> pl.Indenter:
+    def simulated(indenter: pl.Indenter, *_: Any, **settings: Any) -> pl.Indenter:
         executors.append(settings["executor"])
-        return simulation.indenter
+        return indenter
 
-    monkeypatch.setattr(Simulation, "curve", simulated)
+    monkeypatch.setattr("pellicle_fit.problem.simulated_curve", simulated)
     curves = {str(seed): curve(seed) for seed in range(2)}
     solid = {"kernel": "tensed_membrane", "executor": Keeps()}
     copy, here = (pl.fit_many(curves, **HERTZ | own) for own in (solid, {}))

@@ -16,7 +16,7 @@ from pellicle_fit.effects.tension import Tension
 from pellicle_fit.recipe import answer
 from pellicle_fit.simulated import simulation
 from pellicle_fit.simulated.interpolated import SimulatedCurve
-from pellicle_fit.simulated.simulation import Simulation, body_of, layer_of, layer_table, plan
+from pellicle_fit.simulated.simulation import layer_of, plan, simulated_curve
 from pellicle_fit.simulated.solid import solid
 from tests.plugins.fit.conftest import ends_of
 
@@ -85,9 +85,8 @@ def test_quadric_is_simulated_once(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     force = force + 0.003 * force.max() * np.random.default_rng(3).standard_normal(force.size)
 
     for _ in range(2):
-        body = body_of(pl.indenter("quadric", **fields))
-        assert isinstance(body, Simulation)
-        simulated = body.curve(0.8e-6, cache=tmp_path, grid_points=24)
+        body, half = pl.indenter("quadric", **fields), solid("tensed_membrane")
+        simulated = simulated_curve(body, half, 0.8e-6, cache=tmp_path, grid_points=24)
         monkeypatch.setattr(simulation, "run_study", None)
     assert simulated.half_space
     assert 0 < simulated.accuracy < 0.1
@@ -131,14 +130,12 @@ def test_poissons_ratio_is_the_kernels() -> None:
     assert solid("tensed_membrane", 0.2).poissons_ratio == 0.2
 
 
-def test_a_force_curve_is_taken_as_it_is(exact_nodes: SimulatedCurve) -> None:
-    """What has a curve on the solid is not simulated, and allows no other solid."""
-    sphere = pl.indenter("sphere", radius=RADIUS)
-    assert isinstance(body_of(sphere), type(sphere))
-    assert body_of(exact_nodes) is exact_nodes
-    assert isinstance(body_of(sphere, "tensed_membrane"), Simulation)
+def test_a_force_curve_allows_no_other_solid(exact_nodes: SimulatedCurve) -> None:
+    """It includes its own."""
+    depth = np.linspace(0, 0.3 * RADIUS, 40)
+    force = 1e3 * exact_nodes.force_curve(depth, 0.0).force
     with pytest.raises(pl.ConfigError, match="kernel: cannot be given with a force curve"):
-        body_of(exact_nodes, "tensed_membrane")
+        pl.fit(depth, force, indenter=exact_nodes, kernel="tensed_membrane")
 
 
 def test_a_bonded_layer_is_an_effect() -> None:
@@ -150,9 +147,8 @@ def test_a_bonded_layer_is_an_effect() -> None:
     quadric = pl.indenter("quadric", radius_x=RADIUS, radius_y=2 * RADIUS)
     assert layer_of(quadric, 0.3, thick) is None
     assert layer_of(sphere, -0.1, thick) is None
-    body = body_of(quadric, layer_table(0.3, thick))
-    assert isinstance(body, Simulation)
-    assert not body.solid.is_half_space
+    layer = LAYER | {"poissons_ratio": 0.3}
+    assert not solid({"type": "coated", "substrate": layer}).is_half_space
 
 
 def test_what_counts_against_the_modulus_is_refused() -> None:
@@ -178,8 +174,12 @@ def test_a_study_that_fails_is_no_force_curve(
     monkeypatch.setattr(simulation, "plan", hasty)
     for _ in range(2):
         with pytest.raises(pl.ConvergenceError, match="of 8 runs 8 did not converge") as error:
-            Simulation(pl.indenter("paraboloid", radius=1e-6), solid("tensed_membrane")).curve(
-                2e-7, cache=tmp_path, grid_points=16
+            simulated_curve(
+                pl.indenter("paraboloid", radius=1e-6),
+                solid("tensed_membrane"),
+                2e-7,
+                cache=tmp_path,
+                grid_points=16,
             )
     (folder,) = (tmp_path / "force-curves").iterdir()
     assert str(folder) in str(error.value)
@@ -189,4 +189,4 @@ def test_what_cannot_be_simulated(tmp_path: Path) -> None:
     """Rough surfaces have no size of their own."""
     body = pl.indenter("self_affine", rms_height=1e-6, hurst=0.8, cutoff_wavelength=1e-6)
     with pytest.raises(pl.ConfigError, match="no force curve of its own"):
-        Simulation(body, solid("tensed_membrane")).curve(1e-6, cache=tmp_path)
+        simulated_curve(body, solid("tensed_membrane"), 1e-6, cache=tmp_path)
