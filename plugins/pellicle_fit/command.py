@@ -37,24 +37,12 @@ def fit(
     indenter: Annotated[
         Text, Option("-i", "--indenter", help="sphere (a bead), paraboloid (Hertz), cone, …")
     ] = None,
-    radius: Annotated[
-        Texts, Option(help='Radius with its unit: "5 um"; repeat it to give one for each file.')
-    ] = None,
-    diameter: Annotated[
-        Texts, Option(help="Diameter in place of the radius, as data sheets of beads have it.")
-    ] = None,
-    half_angle: Annotated[
-        Text, Option(help='Angle between axis and side of a cone: "70 degree".')
-    ] = None,
-    poissons_ratio: Annotated[
-        float | None, Option(help="Poisson's ratio, to get Young's modulus as well.")
-    ] = None,
-    thickness: Annotated[
-        Text, Option(help="Thickness of a layer on a rigid base, or free; with --poissons-ratio.")
-    ] = None,
-    model: Annotated[
-        Texts, Option(help="Effect whose need is asked: tension (default), …, or none of them.")
-    ] = None,
+    radius: Annotated[Texts, Option(help='"5 um"; repeat it to give one for each file.')] = None,
+    diameter: Annotated[Texts, Option(help="In place of the radius.")] = None,
+    half_angle: Annotated[Text, Option(help='From axis to side of a cone: "70 degree".')] = None,
+    poissons_ratio: Annotated[float | None, Option(help="To get Young's modulus as well.")] = None,
+    thickness: Annotated[Text, Option(help="Of a layer on a rigid base, or free.")] = None,
+    model: Annotated[Texts, Option(help="Effect in question: tension (default), …, none.")] = None,
     rivals: Annotated[
         Texts,
         Option(
@@ -62,9 +50,7 @@ def fit(
             "for no comparison; by default all that bend curves as a tension does."
         ),
     ] = None,
-    fix: Annotated[
-        Texts, Option(metavar="NAME=VALUE", help="Fix a quantity: --fix tension=0.")
-    ] = None,
+    fix: Annotated[Texts, Option(metavar="NAME=VALUE", help="Fix a value: tension=0.")] = None,
     uncertainty: Annotated[
         Texts,
         Option(
@@ -72,16 +58,10 @@ def fit(
             help='Standard deviation of spring_constant, sensitivity or radius: "radius=5 %".',
         ),
     ] = None,
-    baseline: Annotated[
-        Text, Option(help="Force before contact to fit: none (default), offset, slope.")
-    ] = None,
+    baseline: Annotated[Text, Option(help="To fit: none (default), offset, slope.")] = None,
     segment: Annotated[Text, Option(help="Pass to fit: approach (default), retract, both.")] = None,
-    spring_constant: Annotated[
-        Text, Option(help='That of the cantilever, to subtract its bending: "0.05 N/m".')
-    ] = None,
-    sensitivity: Annotated[
-        Text, Option(help='Deflection over the signal in volts: "50 nm/V".')
-    ] = None,
+    spring_constant: Annotated[Text, Option(help='Of the cantilever: "0.05 N/m".')] = None,
+    sensitivity: Annotated[Text, Option(help='Deflection over volts: "50 nm/V".')] = None,
     columns: Annotated[
         Text,
         Option(
@@ -90,9 +70,7 @@ def fit(
             "extension; force, deflection; time."
         ),
     ] = None,
-    pool: Annotated[
-        bool, Option("--pool", help="Fit one modulus and one tension to all curves.")
-    ] = False,
+    pool: Annotated[bool, Option("--pool", help="Fit one solid to all curves.")] = False,
     set_: Annotated[
         Texts,
         Option(
@@ -108,18 +86,12 @@ def fit(
     ] = None,
     formats: Annotated[
         list[Format] | None,
-        typer.Option(
-            "--format",
-            metavar="FORMAT",
-            help="Of the figures in it: png (default), svg or pdf; repeat for several.",
+        Option(
+            "--format", metavar="FORMAT", help="Of figures: png (default), svg, pdf; repeat it."
         ),
     ] = None,
-    report: Annotated[
-        bool, Option("--report", help="Write a web page, to that folder or the current one.")
-    ] = False,
-    details: Annotated[
-        bool, Option("--details", help="Of one fit, print all quantities, explanations, checks.")
-    ] = False,
+    report: Annotated[bool, Option("--report", help="Write a web page, there or here.")] = False,
+    details: Annotated[bool, Option("--details", help="Of one fit, print all there is.")] = False,
     si: Annotated[bool, Option("--si", help="Print tables in SI units.")] = False,
     json: Annotated[bool, Option("--json", help="Print JSON.")] = False,
     quiet: Annotated[bool, Option("--quiet", "-q", help="Print errors and warnings only.")] = False,
@@ -138,13 +110,11 @@ def fit(
     if curves and curves[0].suffix.lower() in (".toml", ".json"):
         first, *others = curves
         curves = tuple(others)
+    pairs = {"fix": fix, "uncertainty": uncertainty}
+    sets = [f"{name}.{text}" for name, texts in pairs.items() for text in texts or ()]
     config = FitConfig.merged(
         first,
-        [
-            *(f"fix.{text}" for text in fix or ()),
-            *(f"uncertainty.{text}" for text in uncertainty or ()),
-            *(set_ or ()),
-        ],
+        [*sets, *(set_ or ())],
         curves=curves or None,
         indenter=indenter,
         radius=radius[0] if radius and len(radius) == 1 else radius or None,
