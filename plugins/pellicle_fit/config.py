@@ -22,7 +22,7 @@ from pydantic.fields import FieldInfo
 
 from pellicle import registry
 from pellicle.components import Component, Executor, FromRegistry, HasForceCurve, Indenter
-from pellicle.errors import ConfigError, PellicleError, all_problems, problems_within, shown
+from pellicle.errors import ConfigError, PellicleError, all_problems, problems_within
 from pellicle.schema import (
     FromFile,
     InputPath,
@@ -39,7 +39,6 @@ from .files.columns import Calibration
 from .files.measurement import Segment
 from .files.missing import OPTIONS, MissingInputError
 from .files.sources import PLACE, Curves, Source, expanded, gather
-from .population.judgement import GROUP
 from .population.rules import rules
 from .simulated.simulation import GRID_POINTS
 from .simulated.solid import solid
@@ -273,10 +272,6 @@ class FitConfig(FromFile, Calibration):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if self.group_by.count(GROUP) > 1:
-            raise ConfigError(
-                f"{shown(self.group_by)} has {GROUP} twice; write it once", "group_by"
-            )
         if self.thickness is not None and self.kernel is not None:
             raise ConfigError("cannot be given with a kernel; leave out one of them", "thickness")
         if self.thickness is not None and self.poissons_ratio is None:

@@ -19,12 +19,12 @@ def refuse_broken(effects: Iterable[Effect]) -> None:
     installed = registry().components[Effect.family].values()
     shipped = {entry.component for entry in installed if entry.origin.is_own}
     for effect in effects:
-        if type(effect) not in shipped and (broken := _violation(effect)):
-            raise PluginError(f"effect {effect.type_name!r}: {broken}")
+        if type(effect) not in shipped:
+            _refuse_broken(effect)
 
 
 @lru_cache(maxsize=64)
-def _violation(effect: Effect) -> str:
+def _refuse_broken(effect: Effect) -> None:
     # The kit takes a second to import.
     from pellicle.testing import keep
 
@@ -33,8 +33,8 @@ def _violation(effect: Effect) -> str:
     try:
         keep(QUICK, effect)
     except AssertionError as error:
-        return "; ".join(str(error).splitlines())
-    return ""
+        broken = "; ".join(str(error).splitlines())
+        raise PluginError(f"effect {effect.type_name!r}: {broken}") from None
 
 
 @contextmanager

@@ -18,8 +18,6 @@ from pellicle_fit.verdict import Verdict
 from .row import Row
 from .rules import Rule
 
-GROUP = "{group}"
-"""The part of a pattern of file names that is the name of the group."""
 _FEWEST = 5
 """Least number of curves among which one can stand out."""
 _NORMAL = 1.4826
@@ -60,12 +58,12 @@ def group_of(group_by: str, file: str, column: str) -> str:
 
     In a pattern ``{group}`` and ``*`` stand for any characters but slashes.
     """
-    if GROUP not in group_by:
+    if "{group}" not in group_by:
         return column
     text = re.escape(group_by.replace("\\", "/")).replace(r"\*", "[^/]*")
-    pattern = "(?:.*/)?" + text.replace(re.escape(GROUP), "(?P<group>[^/]+?)")
+    pattern = "(?:.*/)?" + text.replace(r"\{group\}", "([^/]+?)")
     match = re.fullmatch(pattern, file.replace("\\", "/"))
-    return match["group"] if match else ""
+    return match[1] if match else ""
 
 
 def judge(

@@ -24,7 +24,7 @@ from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.files.sources import Source
 from pellicle_fit.intervals import Estimate
 from pellicle_fit.many import fit_sources
-from pellicle_fit.population.fits import ManyFits
+from pellicle_fit.population.fits import ManyFits, summary
 from pellicle_fit.population.judgement import (
     group_of,
     judge,
@@ -33,7 +33,6 @@ from pellicle_fit.population.judgement import (
 )
 from pellicle_fit.population.row import Row
 from pellicle_fit.population.rules import Rule
-from pellicle_fit.population.summary import summary
 from pellicle_fit.report.contact_sheet import sheets
 from pellicle_fit.report.population import distributions
 from pellicle_fit.words.names import quoted, unit_of
@@ -119,6 +118,7 @@ def test_lists(tmp_path: Path) -> None:
         ("{group}/*", "data/day 1/a.csv", "day 1"),
         ("cell[1]{group}.csv", "cell[1]x.csv", "x"),
         ("{group}_*.csv", "day/control.csv", ""),
+        ("{group}_{group}.csv", "a_b.csv", "a"),
         ("column", "any", "a/b"),
     ],
 )
