@@ -25,13 +25,11 @@ from pellicle.files import atomic_write, check_writable, write_json
 from .config import FitConfig, described
 from .files.measurement import Measurement
 from .files.sources import Curves, Source
-from .population.fits import ManyFits, table
+from .population.fits import ManyFits, summary, table
 from .population.images import force_maps
 from .population.judgement import group_of, judge, read_names
 from .population.row import FAILED, Row, sketch
-from .population.summary import summary
-from .problem import Problem, problem
-from .record import components_of, data_of, record_of
+from .problem import Problem, components_of, data_of, problem, record_of
 
 if TYPE_CHECKING:
     import xarray as xr

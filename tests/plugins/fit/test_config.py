@@ -15,7 +15,7 @@ from click.testing import Result
 from jsonschema import Draft202012Validator
 
 import pellicle as pl
-from pellicle_fit.record import components_of
+from pellicle_fit.problem import components_of
 
 Cli = Callable[..., Result]
 OPTIONS: dict[str, Any] = {
