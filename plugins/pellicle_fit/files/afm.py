@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from pellicle.errors import ConfigError, PellicleError, StorageError
+from pellicle.errors import PellicleError, StorageError
 from pellicle.units import Quantity
 
 from .columns import UNITS, Calibration, Column, from_columns, lacking
@@ -45,16 +45,7 @@ def read_instrument(path: Path, calibration: Calibration) -> Readers:
     if not path.is_file():
         raise StorageError(f"{path}: cannot be read (no such file)")
     with _errors(path):
-        loader = get_recipe(path).loader
-        try:
-            recordings = loader(path, meta_override=overrides)
-        except NotImplementedError:
-            if not overrides:
-                raise
-            raise ConfigError(
-                f"{path}: holds its calibration, and this format takes no other; leave out "
-                f"{' and '.join(overrides)}"
-            ) from None
+        recordings = get_recipe(path).loader(path, meta_override=overrides)
         # HDF5 lists curve 10 before curve 2.
         recordings = sorted(recordings, key=lambda recording: recording["metadata"]["enum"])
     return {
@@ -83,7 +74,6 @@ def _errors(path: Path) -> Iterator[None]:
 
 
 def _curve(path: Path, recording: Mapping[str, Any], speed: float | None) -> Measurement:
-    """Return one curve in SI."""
     with _errors(path):
         data, metadata = recording["data"], recording["metadata"]
         place = next((name for name in _PLACES if name in data), "")
@@ -104,7 +94,6 @@ def _curve(path: Path, recording: Mapping[str, Any], speed: float | None) -> Mea
 
 
 def _site(metadata: Mapping[str, Any]) -> Site | None:
-    """Return where on the sample a curve was measured; None if the file does not say it."""
     try:
         # Files that were converted may hold a text with a unit.
         return Site(*(Quantity("m")(metadata.get(f"position {letter}")) for letter in "xy"))

@@ -85,7 +85,7 @@ def test_calibration_is_asked_for(tmp_path: Path, recording: instruments.Recordi
 def test_calibration_is_not_given_twice(tmp_path: Path, recording: instruments.Recording) -> None:
     """A spring constant beside the one in the file is refused where it cannot be replaced."""
     instruments.tab(tmp_path / "curve.tab", recording)
-    with pytest.raises(pl.ConfigError, match="leave out spring constant"):
+    with pytest.raises(pl.StorageError, match="Setting metadata such as 'spring constant' is not"):
         only(tmp_path / "curve.tab", Calibration(spring_constant=0.1))
     assert is_curve(only(tmp_path / "curve.tab"), *SEEN)
 
