@@ -273,7 +273,6 @@ def _identity(config: FitConfig, indenter: Indenter | HasForceCurve, curve: Meas
 
 
 def _failure(error: Exception, name: str) -> str:
-    """Return the status of a curve that could not be fitted."""
     text = str(error).removeprefix(f"{name}: ").replace(":\n  ", ": ")
     reason = "; ".join(text.splitlines()) or "no reason given"
     kind = "" if isinstance(error, PellicleError) else f"{type(error).__name__}: "

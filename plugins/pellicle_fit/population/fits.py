@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .row import ENDS, FAILED, OVER_TIED, SHOWN, Row, units_of
+from .row import ENDS, FAILED, OVER_TIED, SHOWN, Row
+from .rules import units
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -60,11 +61,11 @@ def table(rows: Sequence[Row]) -> xr.Dataset:
     cells = [_cells(row) for row in rows]
     # The curve with the most quantities gives the order of the columns.
     names = list(dict.fromkeys(name for one in sorted(cells, key=len)[::-1] for name in one))
-    units = {"x": "m", "y": "m", **_MEASURED, **units_of(rows)}
+    unit_of = {"x": "m", "y": "m", **_MEASURED, **units()}
     columns: dict[str, Any] = {}
     for name, column in pd.DataFrame(cells, columns=names).items():
-        if name in units and name not in _COUNTS:
-            columns[str(name)] = "curve", column.to_numpy(float), {"units": units[str(name)]}
+        if name in unit_of and name not in _COUNTS:
+            columns[str(name)] = "curve", column.to_numpy(float), {"units": unit_of[str(name)]}
         else:
             columns[str(name)] = "curve", column.fillna("").to_numpy()
     return xr.Dataset(columns, {"curve": np.array([row.name for row in rows], dtype=object)})

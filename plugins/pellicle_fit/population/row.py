@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -125,9 +124,3 @@ class Row:
             row["site"] = {"map": self.map, **self.site._asdict()}
         judgement = {"accepted": self.accepted, "reason": self.reason, "outlier": self.outlier}
         return row | judgement | self.fit
-
-
-def units_of(rows: Iterable[Row]) -> dict[str, str]:
-    """Return the unit of each of the values of rows by name."""
-    units = {name: e.unit for row in rows for name, e in row.estimates.items()}
-    return NUMBERS | {f"{name}{end}": unit for name, unit in units.items() for end in ENDS}

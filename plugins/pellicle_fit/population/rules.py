@@ -29,7 +29,7 @@ _EXAMPLE = "write one such as 'r_squared > 0.95' or '1 kPa < reduced_modulus < 1
 
 
 def units() -> dict[str, str]:
-    """Return the names that rules may contain, each with its unit."""
+    """Return the unit of each of the values of a row, which rules may contain, by name."""
     effects = registry().components.get(Effect.family, {}).values()
     names = {"youngs_modulus": "Pa"}
     for component in (Solid, *(effect.component for effect in effects)):
