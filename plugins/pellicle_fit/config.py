@@ -39,7 +39,7 @@ from .files.columns import Calibration
 from .files.measurement import Segment
 from .files.missing import OPTIONS, MissingInputError
 from .files.sources import PLACE, Curves, Source, expanded, gather
-from .population.rules import rules
+from .population.judgement import rules
 from .simulated.simulation import GRID_POINTS
 from .simulated.solid import solid
 

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .row import ENDS, FAILED, OVER_TIED, SHOWN, Row
-from .rules import units
+from .row import ENDS, FAILED, OVER_TIED, SHOWN, Row, units
 
 if TYPE_CHECKING:
     import xarray as xr

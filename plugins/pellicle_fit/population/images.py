@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from pellicle.arrays import Array
 from pellicle_fit.objective import CONTACT_POINT
 
-from .row import ENDS, Row
-from .rules import units
+from .row import ENDS, Row, units
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pellicle import registry
 from pellicle.arrays import Array
+from pellicle_fit.effect import Effect, Fittable, Solid, quantities
 from pellicle_fit.files.measurement import Site
 from pellicle_fit.intervals import Estimate
 
@@ -124,3 +126,13 @@ class Row:
             row["site"] = {"map": self.map, **self.site._asdict()}
         judgement = {"accepted": self.accepted, "reason": self.reason, "outlier": self.outlier}
         return row | judgement | self.fit
+
+
+def units() -> dict[str, str]:
+    """Return the unit of each of the values of a row, which rules may contain, by name."""
+    effects = registry().components.get(Effect.family, {}).values()
+    names = {"youngs_modulus": "Pa"}
+    for component in (Solid, *(effect.component for effect in effects)):
+        if isinstance(component, type) and issubclass(component, Fittable):
+            names |= {name: quantity.unit for name, quantity in quantities(component).items()}
+    return {f"{name}{end}": unit for name, unit in names.items() for end in ENDS} | NUMBERS

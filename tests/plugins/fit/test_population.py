@@ -26,13 +26,13 @@ from pellicle_fit.intervals import Estimate
 from pellicle_fit.many import fit_sources
 from pellicle_fit.population.fits import ManyFits, summary
 from pellicle_fit.population.judgement import (
+    Rule,
     group_of,
     judge,
     outliers,
     read_names,
 )
 from pellicle_fit.population.row import Row
-from pellicle_fit.population.rules import Rule
 from pellicle_fit.report.contact_sheet import sheets
 from pellicle_fit.report.population import distributions
 from pellicle_fit.words.names import quoted, unit_of
