@@ -44,19 +44,12 @@ def fit(
     thickness: Annotated[Text, Option(help="Of a layer on a rigid base, or free.")] = None,
     model: Annotated[Texts, Option(help="Effect in question: tension (default), …, none.")] = None,
     rivals: Annotated[
-        Texts,
-        Option(
-            help="Effect to compare, or several that act together (offset,slope); repeat it. none "
-            "for no comparison; by default all that bend curves as a tension does."
-        ),
+        Texts, Option(help="Effect to compare, or several (offset,slope), or none; repeat it.")
     ] = None,
     fix: Annotated[Texts, Option(metavar="NAME=VALUE", help="Fix a value: tension=0.")] = None,
     uncertainty: Annotated[
         Texts,
-        Option(
-            metavar="NAME=VALUE",
-            help='Standard deviation of spring_constant, sensitivity or radius: "radius=5 %".',
-        ),
+        Option(metavar="NAME=VALUE", help="Of spring_constant, sensitivity, radius: radius=5%."),
     ] = None,
     baseline: Annotated[Text, Option(help="To fit: none (default), offset, slope.")] = None,
     segment: Annotated[Text, Option(help="Pass to fit: approach (default), retract, both.")] = None,
@@ -73,25 +66,17 @@ def fit(
     pool: Annotated[bool, Option("--pool", help="Fit one solid to all curves.")] = False,
     set_: Annotated[
         Texts,
-        Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help='Any other value, by its key in a configuration: --set indenter.radius_x="5 um", '
-            "--set executor=processes, --set kernel=coated.",
-        ),
+        Option("--set", metavar="KEY=VALUE", help='Any other: --set indenter.radius_x="5 um".'),
     ] = None,
     directory: Annotated[
-        Path | None,
-        Option("-o", "--output", metavar="DIR", help="Folder for JSON, table and figure."),
+        Path | None, Option("-o", "--output", metavar="DIR", help="Folder for JSON and figures.")
     ] = None,
     formats: Annotated[
         list[Format] | None,
-        Option(
-            "--format", metavar="FORMAT", help="Of figures: png (default), svg, pdf; repeat it."
-        ),
+        Option("--format", metavar="FORMAT", help="Of figures: png (default), svg, pdf."),
     ] = None,
-    report: Annotated[bool, Option("--report", help="Write a web page, there or here.")] = False,
-    details: Annotated[bool, Option("--details", help="Of one fit, print all there is.")] = False,
+    report: Annotated[bool, Option("--report", help="Write a web page as well.")] = False,
+    details: Annotated[bool, Option("--details", help="Of one fit, print all numbers.")] = False,
     si: Annotated[bool, Option("--si", help="Print tables in SI units.")] = False,
     json: Annotated[bool, Option("--json", help="Print JSON.")] = False,
     quiet: Annotated[bool, Option("--quiet", "-q", help="Print errors and warnings only.")] = False,
@@ -106,10 +91,9 @@ def fit(
     from pellicle_fit.report.figures import save_figure
     from pellicle_fit.report.page import save_report
 
-    first, curves = None, tuple(files or ())
-    if curves and curves[0].suffix.lower() in (".toml", ".json"):
-        first, *others = curves
-        curves = tuple(others)
+    curves = [*(files or ())]
+    is_first = bool(curves) and curves[0].suffix.lower() in (".toml", ".json")
+    first = curves.pop(0) if is_first else None
     pairs = {"fix": fix, "uncertainty": uncertainty}
     sets = [f"{name}.{text}" for name, texts in pairs.items() for text in texts or ()]
     config = FitConfig.merged(
@@ -150,8 +134,8 @@ def fit(
         echo(f"{many.resumed} of {len(many.rows)} fits were done before")
     for path in () if quiet else written:
         echo(f"wrote {path}")
-    if many.failed:
-        echo(f"{many.failed} of {len(many.rows)} curves could not be fitted", err=True)
+    if failed := sum(not row.is_fitted for row in many.rows):
+        echo(f"{failed} of {len(many.rows)} curves could not be fitted", err=True)
         raise typer.Exit(NOT_CONVERGED)
 
 
@@ -169,13 +153,11 @@ def _fit(
     from pellicle_fit.problem import problem
 
     progress, stream = not quiet and sys.stderr.isatty(), config.sources()
-    first, name, title = [*islice(stream, None if config.pool else 2)], "pool", "Pooled fit"
-    is_one = not config.pool and [source.name for source in first] == [str(config.curves[0])]
-    if is_one:
-        title = config.curves[0].stem
-        name = f"{title}-fit"
-    if config.pool or is_one:
-        return problem(config, first, progress=progress).fit(progress=progress), name, title
-    sources, progress = chain(first, stream), not quiet
-    fits = fit_sources(config, sources, directory, progress=progress, formats=formats)
+    first = [*islice(stream, None if config.pool else 2)]
+    if config.pool or [source.name for source in first] == [str(config.curves[0])]:
+        fit = problem(config, first, progress=progress).fit(progress=progress)
+        stem = config.curves[0].stem
+        return (fit, "pool", "Pooled fit") if config.pool else (fit, f"{stem}-fit", stem)
+    sources = chain(first, stream)
+    fits = fit_sources(config, sources, directory, progress=not quiet, formats=formats)
     return fits, "fits", f"Fits of {len(fits.rows)} curves"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .row import ENDS, FAILED, OVER_TIED, SHOWN, Row, units
+from .row import ENDS, OVER_TIED, SHOWN, Row, units
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,11 +37,6 @@ class ManyFits:
     """Images of each force map, by its file."""
     configuration: dict[str, Any] = field(default_factory=dict)
     """The configuration of the fits, as JSON data."""
-
-    @property
-    def failed(self) -> int:
-        """Number of curves that could not be fitted."""
-        return sum(row.status.startswith(FAILED) for row in self.rows)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fits as JSON data."""
