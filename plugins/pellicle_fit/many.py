@@ -27,7 +27,7 @@ from .files.measurement import Measurement
 from .files.sources import Curves, Source
 from .population.fits import ManyFits, summary, table
 from .population.images import force_maps
-from .population.judgement import group_of, judge, read_names
+from .population.judgement import Names, group_of, judge
 from .population.row import FAILED, Row, sketch
 from .problem import Problem, components_of, data_of, problem, record_of
 
@@ -77,8 +77,6 @@ def fit_many(
     **options: Any,
 ) -> xr.Dataset:
     """Fit each of many curves on its own and return a table with a row for each.
-
-    A curve that cannot be fitted does not stop the others: its row has the reason.
 
     Parameters
     ----------
@@ -171,7 +169,7 @@ def fit_sources(
     from .report.population import save_population
 
     directory = None if directory is None else Path(directory)
-    lists = read_names(config.accepted), read_names(config.rejected)
+    lists = [None if path is None else Names(path) for path in (config.accepted, config.rejected)]
     fits, began = ManyFits([], configuration=config.to_dict()), perf_counter()
     with nullcontext() if directory is None else locked(directory, "fits"):
         if directory is not None:

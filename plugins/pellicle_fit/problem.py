@@ -92,15 +92,14 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
     # What is given leaves nothing to ask.
     given = [effect for effect in model if quantities(type(effect)) and not effect.open]
     baseline = [_effect(name) for name in _BASELINES[config.baseline]]
-    weighed = [(UNCERTAIN[name], share) for name, share in config.uncertainty.items()]
     question = {
         "model": [effect for effect in model if effect not in given],
         "rivals": [r for rival in config.rivals if (r := _known(rival, fix, ratio))],
         "kept": [*given, *baseline, *layers],
         "fix": {name: fix[name] for name in quantities(Solid).keys() & fix.keys()},
         "uncertainty": [
-            _effect(kind, **{f"{kind}_error": {"value": 0.0, "deviation": share}})
-            for kind, share in weighed
+            _effect(UNCERTAIN[of], **{f"{UNCERTAIN[of]}_error": {"value": 0.0, "deviation": share}})
+            for of, share in config.uncertainty.items()
         ],
     }
     return Problem(config, tuple(members), question, ratio, began)

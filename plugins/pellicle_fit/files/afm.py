@@ -41,11 +41,11 @@ def read_instrument(path: Path, calibration: Calibration) -> Readers:
     from afmformats.formats import get_recipe
 
     given = {words: getattr(calibration, name) for words, name in _CALIBRATION.items()}
-    overrides = {words: value for words, value in given.items() if value is not None}
+    override = {words: value for words, value in given.items() if value is not None}
     if not path.is_file():
         raise StorageError(f"{path}: cannot be read (no such file)")
     with _errors(path):
-        recordings = get_recipe(path).loader(path, meta_override=overrides)
+        recordings = get_recipe(path).loader(path, meta_override=override)
         # HDF5 lists curve 10 before curve 2.
         recordings = sorted(recordings, key=lambda recording: recording["metadata"]["enum"])
     return {

@@ -150,7 +150,11 @@ def _rows(base: Array, found: Sequence[Pass], segment: Segment) -> tuple[int, in
                 "in order of time, or set segment to the pass that there is",
                 "position",
             )
-        return 0, base.size - 1, first_out(base, found[1]) if len(found) > 1 else base.size
+        # At the turn the retract may rest, and hold noise.
+        noise = _NORMAL * float(np.median(np.abs(np.diff(base, 2))))
+        deepest = int(np.flatnonzero(base >= base.max() - _WILD * noise)[-1])
+        out = max(found[1].first, deepest) + 1 if len(found) > 1 else base.size
+        return 0, base.size - 1, out
     is_approach = segment == "approach"
     for first, last, inward in found:
         if inward == is_approach:
@@ -189,13 +193,6 @@ def passes(base: Array) -> list[Pass]:
         rest = _rest(base[first : last + 1] if inward else base[first : last + 1][::-1])
         found.append(Pass(first, last - rest, True) if inward else Pass(first + rest, last, False))
     return found
-
-
-def first_out(base: Array, retract: Pass) -> int:
-    """Return the first row of a retract after the turn, where it may rest and hold noise."""
-    noise = _NORMAL * float(np.median(np.abs(np.diff(base, 2))))
-    deepest = int(np.flatnonzero(base >= base.max() - _WILD * noise)[-1])
-    return max(retract.first, deepest) + 1
 
 
 def _rest(rows: Array) -> int:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import operator
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from itertools import compress
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -89,31 +88,23 @@ def rules(texts: tuple[str, ...]) -> tuple[str, ...]:
     return texts
 
 
-class Names(NamedTuple):
-    """A list of curves in a file."""
+class Names:
+    """A list of curves in a text file: a name on each line, and after a comma a reason."""
 
-    path: Path
-    reasons: Mapping[str, str]
-    """What follows each name on its line."""
+    def __init__(self, path: Path) -> None:
+        try:
+            lines = [line for line in read_text(path).splitlines() if not line.startswith("#")]
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or error
+            raise StorageError(f"{path}: cannot be read as a list of curves ({reason})") from None
+        pairs = [line.replace("\\", "/").partition(",") for line in lines if line.strip()]
+        self.path, self.reasons = path, {name.strip(): why.strip() for name, _, why in pairs}
 
     def entry(self, row: Row) -> str:
         """Return the name in the list that means a curve: ``a.csv`` means ``day/a.csv`` too."""
         parts = row.name.replace("\\", "/").split("/")
         ends = ("/".join(parts[start:]) for start in range(len(parts)))
         return next((end for end in ends if end in self.reasons), "")
-
-
-def read_names(path: Path | None) -> Names | None:
-    """Return the list of curves in a text file: a name on each line, and after a comma a reason."""
-    if path is None:
-        return None
-    try:
-        lines = [line for line in read_text(path).splitlines() if not line.startswith("#")]
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise StorageError(f"{path}: cannot be read as a list of curves ({reason})") from None
-    pairs = [line.replace("\\", "/").partition(",") for line in lines if line.strip()]
-    return Names(path, {name.strip(): reason.strip() for name, _, reason in pairs})
 
 
 def group_of(group_by: str, file: str, column: str) -> str:

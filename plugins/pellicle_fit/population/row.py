@@ -65,9 +65,7 @@ class Row:
     """Some of its rows, as `sketch` returns them."""
     accepted: bool = False
     reason: str = ""
-    """Why it is not accepted."""
     outlier: bool = False
-    """Whether its modulus stands out from that of its group."""
     curve: dict[str, Any] = field(default_factory=dict, init=False)
     """What the fit says of the curve alone."""
     estimates: dict[str, Estimate] = field(default_factory=dict, init=False)
