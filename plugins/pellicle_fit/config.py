@@ -76,9 +76,8 @@ _OneEffect = Annotated[Effect, FromRegistry(), BeforeValidator(_component)]
 def _with_radius(fields: Mapping[str, Any]) -> dict[str, Any]:
     """Return fields of an indenter with half of a diameter as the radius."""
     found = dict(fields)
-    if {"radius", "diameter"} <= found.keys():
-        raise ConfigError("is given beside a radius; leave out one of them", "diameter")
-    if not isinstance(found.get("diameter", []), (list, tuple)):
+    # A diameter beside a radius is no field.
+    if "radius" not in found and not isinstance(found.get("diameter", []), (list, tuple)):
         with all_problems() as within, within("diameter"):
             found["radius"] = Quantity("m", above=0)(found.pop("diameter")) / 2
     return found
@@ -92,10 +91,10 @@ def _indenter(value: object) -> Any:
     try:
         return registry().make(Indenter, table)
     except ConfigError as error:
-        given = table if isinstance(table, Mapping) else {"": None}
+        given = dict(table) if isinstance(table, Mapping) else {"": None}
         if problems := [one for one in error.problems if one.field.partition(".")[0] in given]:
             raise ConfigError(problems) from None
-        return dict(given)
+        return given
 
 
 def _fields(indenter: object) -> Mapping[str, FieldInfo]:

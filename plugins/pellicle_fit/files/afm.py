@@ -29,14 +29,9 @@ _PLACES = {"tip position": "position", "height (measured)": "height", "height (p
 """Names of places in files, and their roles."""
 
 
-def installed() -> bool:
-    """Return whether afmformats is installed."""
-    return find_spec("afmformats") is not None
-
-
 def read_instrument(path: Path, calibration: Calibration) -> Readers:
     """Return what reads each curve, by its number, one at a time."""
-    if not installed():
+    if find_spec("afmformats") is None:
         raise StorageError(f"{path}: is the file of an instrument; {INSTALL}")
     from afmformats.formats import get_recipe
 

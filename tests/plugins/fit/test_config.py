@@ -91,7 +91,7 @@ def test_a_diameter_is_two_radii(tmp_path: Path) -> None:
     ):
         for source in one.sources():
             assert one.indenter_of(source) == pl.indenter("sphere", radius="4 um")
-    with pytest.raises(pl.ConfigError, match="diameter: is given beside a radius"):
+    with pytest.raises(pl.ConfigError, match="diameter"):
         pl.FitConfig.merged(indenter="sphere", radius="5 um", diameter="10 um")
 
 
