@@ -58,9 +58,8 @@ def fit(
     columns: Annotated[
         Text,
         Option(
-            help="What columns of other names are, with their units, by name, number or path in "
-            'the file: "Z = extension nm, Defl = deflection nm". Roles: position, depth, height, '
-            "extension; force, deflection; time."
+            help='What columns are, by name, number or path: "Z = extension nm, Defl = deflection '
+            'nm". Roles: position, depth, height, extension; force, deflection; time.'
         ),
     ] = None,
     pool: Annotated[bool, Option("--pool", help="Fit one solid to all curves.")] = False,
@@ -76,7 +75,7 @@ def fit(
         Option("--format", metavar="FORMAT", help="Of figures: png (default), svg, pdf."),
     ] = None,
     report: Annotated[bool, Option("--report", help="Write a web page as well.")] = False,
-    details: Annotated[bool, Option("--details", help="Of one fit, print all numbers.")] = False,
+    details: Annotated[bool, Option("--details", help="Print all that was compared.")] = False,
     si: Annotated[bool, Option("--si", help="Print tables in SI units.")] = False,
     json: Annotated[bool, Option("--json", help="Print JSON.")] = False,
     quiet: Annotated[bool, Option("--quiet", "-q", help="Print errors and warnings only.")] = False,

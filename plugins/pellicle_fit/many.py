@@ -52,20 +52,14 @@ _BATCH = 500
 class FitTask:
     """The fit of one curve; it pickles to workers."""
 
+    name: str
+    """Name in a progress bar."""
+    memory: int
+    """Estimated peak memory of the fit [bytes]."""
     row: Row
     problem: Problem
     path: Path | None
     """File that keeps the fit."""
-
-    @property
-    def name(self) -> str:
-        """Name in a progress bar."""
-        return self.row.name
-
-    @property
-    def memory(self) -> int:
-        """Estimated peak memory of the fit [bytes]."""
-        return _BYTES_PER_POINT * sum(m.curve.force.size for m in self.problem.members)
 
 
 def fit_many(
@@ -225,7 +219,9 @@ def _task(
         return None
     # An executor need not pickle.
     serial = registry().make(Executor, {"type": "serial"})
-    return FitTask(row, replace(ready, config=config.model_copy(update={"executor": serial})), path)
+    ready = replace(ready, config=config.model_copy(update={"executor": serial}))
+    memory = _BYTES_PER_POINT * ready.members[0].curve.force.size
+    return FitTask(row.name, memory, row, ready, path)
 
 
 def _keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool]:

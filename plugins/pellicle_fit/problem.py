@@ -13,7 +13,7 @@ import numpy as np
 
 from pellicle import registry
 from pellicle.batch import status_line
-from pellicle.components import Component, HasForceCurve, Indenter
+from pellicle.components import Component, HasForceCurve, HasLayerForceCurve, Indenter
 from pellicle.errors import ConfigError, PellicleError
 from pellicle.schema import walk
 
@@ -27,7 +27,7 @@ from .files.sources import Source
 from .objective import CONTACT_POINT
 from .recipe import answer
 from .result import Fit, Member
-from .simulated.simulation import layer_of, simulated_curve
+from .simulated.simulation import simulated_curve
 from .simulated.solid import solid
 from .words.advice import steps
 
@@ -116,11 +116,15 @@ def _on_solid(
     if thickness == "free":
         return [*indenters], [_effect("layer", poissons_ratio=ratio)], ratio
     if isinstance(thickness, float) and ratio is not None:
-        layers = [layer_of(indenter, ratio, thickness) for indenter in indenters]
-        if layers[0] is not None and all(layers):
-            return [*indenters], [layers[0]], ratio
-        layer = {"type": "bonded_layer", "thickness": thickness, "poissons_ratio": ratio}
-        kernel = {"type": "coated", "substrate": layer}
+        # A punch is too wide for the curve at any depth, or at none.
+        if ratio >= 0 and all(
+            isinstance(one, HasLayerForceCurve) and one.layer_depth_limit(thickness, ratio) > 0
+            for one in indenters
+        ):
+            layer = _effect("layer", thickness=thickness, poissons_ratio=ratio)
+            return [*indenters], [layer], ratio
+        bonded = {"type": "bonded_layer", "thickness": thickness, "poissons_ratio": ratio}
+        kernel = {"type": "coated", "substrate": bonded}
     bodies: list[Any] = []
     for indenter, curve in zip(indenters, measured, strict=True):
         if kernel is None and isinstance(indenter, HasForceCurve):

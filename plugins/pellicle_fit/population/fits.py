@@ -36,7 +36,6 @@ class ManyFits:
     maps: dict[str, xr.Dataset] = field(default_factory=dict)
     """Images of each force map, by its file."""
     configuration: dict[str, Any] = field(default_factory=dict)
-    """The configuration of the fits, as JSON data."""
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fits as JSON data."""

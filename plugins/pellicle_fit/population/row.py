@@ -54,9 +54,7 @@ class Row:
     """File, and label in the file."""
     group: str = ""
     map: str = ""
-    """File of the force map that it belongs to."""
     site: Site | None = None
-    """Where on the map it was measured."""
     status: str = ""
     """`FITTED`, or why there is no fit."""
     fit: dict[str, Any] = field(default_factory=dict)
@@ -74,8 +72,7 @@ class Row:
     def keep(self, fit: dict[str, Any]) -> None:
         """Take the JSON data of a fit, which may hold a sketch, as workers return them."""
         self.status, self.fit = FITTED, {k: value for k, value in fit.items() if k != "sketch"}
-        if "sketch" in fit:
-            self.sketch = sketch(**fit["sketch"])
+        self.sketch = sketch(**fit["sketch"]) if "sketch" in fit else {}
         (self.curve,) = fit["curves"]
         headline = {name: fit[name] for name in OVER_TIED if name in fit}
         # Modulus and tension come first.

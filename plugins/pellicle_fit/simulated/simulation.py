@@ -13,10 +13,9 @@ import platformdirs
 
 from pellicle import Grid, Study, results, run_study
 from pellicle.arrays import Array
-from pellicle.components import Executor, HasLayerForceCurve, Indenter
+from pellicle.components import Executor, Indenter
 from pellicle.errors import ConfigError, ConvergenceError, ConvergenceWarning
 from pellicle.units import readable
-from pellicle_fit.effects.layer import Layer
 
 from .interpolated import SCALE, SimulatedCurve, stretched
 from .solid import Solid, quantities_of
@@ -85,15 +84,6 @@ def simulated_curve(
         raise ConvergenceError("some contacts of the study carry no force; give more grid points")
     accuracy = float(np.max(np.abs(forces[1] / forces[0] - 1)))
     return SimulatedCurve(depths, _RATIOS, width, np.log(forces[0]), accuracy, solid.is_half_space)
-
-
-def layer_of(indenter: object, poissons_ratio: float, thickness: float) -> Layer | None:
-    """Return the effect of a layer bonded to a rigid base; None if it has to be simulated."""
-    if not isinstance(indenter, HasLayerForceCurve) or poissons_ratio < 0:
-        return None
-    # A punch is too wide for the curve at any depth, or at none.
-    is_known = indenter.layer_depth_limit(thickness, poissons_ratio) > 0
-    return Layer(thickness=thickness, poissons_ratio=poissons_ratio) if is_known else None
 
 
 def plan(

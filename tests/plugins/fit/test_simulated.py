@@ -13,10 +13,11 @@ from pellicle_fit.contact import Contact
 from pellicle_fit.curve import Curve
 from pellicle_fit.effects.layer import Layer
 from pellicle_fit.effects.tension import Tension
+from pellicle_fit.problem import problem
 from pellicle_fit.recipe import answer
 from pellicle_fit.simulated import simulation
 from pellicle_fit.simulated.interpolated import SimulatedCurve
-from pellicle_fit.simulated.simulation import layer_of, plan, simulated_curve
+from pellicle_fit.simulated.simulation import plan, simulated_curve
 from pellicle_fit.simulated.solid import solid
 from tests.plugins.fit.conftest import ends_of
 
@@ -138,15 +139,23 @@ def test_a_force_curve_allows_no_other_solid(exact_nodes: SimulatedCurve) -> Non
         pl.fit(depth, force, indenter=exact_nodes, kernel="tensed_membrane")
 
 
-def test_a_bonded_layer_is_an_effect() -> None:
+def test_a_bonded_layer_is_an_effect(monkeypatch: pytest.MonkeyPatch) -> None:
     """Other shapes, negative ratios, and punches too wide for the table need a study."""
-    sphere, thick = pl.indenter("sphere", radius=RADIUS), 4e-6
-    assert layer_of(sphere, 0.3, thick) == Layer(thickness=thick, poissons_ratio=0.3)
-    assert layer_of(pl.indenter("flat_punch", radius=9 * thick), 0.3, thick)
-    assert layer_of(pl.indenter("flat_punch", radius=11 * thick), 0.3, thick) is None
-    quadric = pl.indenter("quadric", radius_x=RADIUS, radius_y=2 * RADIUS)
-    assert layer_of(quadric, 0.3, thick) is None
-    assert layer_of(sphere, -0.1, thick) is None
+    monkeypatch.setattr("pellicle_fit.problem.simulated_curve", lambda body, *_, **settings: body)
+    thick, depth = 4e-6, np.linspace(-1e-7, 3e-7, 40)
+
+    def kept(ratio: float, indenter: str, **fields: Any) -> list[Any]:
+        config = pl.FitConfig.merged(
+            indenter=indenter, **fields, thickness=thick, poissons_ratio=ratio
+        )
+        curves = config.sources({"a": (depth, np.maximum(depth, 0) ** 1.5)})
+        return problem(config, [*curves]).question["kept"]  # type: ignore[no-any-return]
+
+    assert kept(0.3, "sphere", radius=RADIUS) == [Layer(thickness=thick, poissons_ratio=0.3)]
+    assert kept(0.3, "flat_punch", radius=9 * thick)
+    assert not kept(0.3, "flat_punch", radius=11 * thick)
+    assert not kept(0.3, "quadric", radius_x=RADIUS, radius_y=2 * RADIUS)
+    assert not kept(-0.1, "sphere", radius=RADIUS)
     layer = LAYER | {"poissons_ratio": 0.3}
     assert not solid({"type": "coated", "substrate": layer}).is_half_space
 
