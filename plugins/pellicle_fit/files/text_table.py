@@ -131,10 +131,7 @@ def _is_number(cell: str) -> bool:
 
 
 def read_table(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns], list[Column]]:
-    """Return the columns of the curve of a table, those with known names or ``mapped``, and all.
-
-    There is no curve in a file that is not text.
-    """
+    """Return columns of the curve of a table, known or ``mapped``, if it is text; and all heads."""
     heads, rows, separator = read_cells(path, mapped)
     names = [head.name.lower() for head in heads]
     if not mapped and separator == "," and is_curve({*names}):

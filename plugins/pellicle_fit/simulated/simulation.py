@@ -89,10 +89,7 @@ def simulated_curve(
 def plan(
     indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GRID_POINTS
 ) -> tuple[Array, tuple[float, float], dict[str, Any]]:
-    """Return depths of nodes down to one [m], the width of contacts there, and the study of them.
-
-    ConfigError: the indenter ends where the grid does, or its contact nowhere.
-    """
+    """Return depths of nodes down to one [m], the width of contacts there, and the study of them."""
     if indenter.footprint != "unbounded":
         raise ConfigError(
             "ends where the grid does, so it has no force curve of its own; give one whose shape "

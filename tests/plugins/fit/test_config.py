@@ -179,15 +179,6 @@ def test_schema() -> None:
     assert not validator.is_valid(table | {"baseline": "cubic"})
 
 
-def test_bad_commands(cli: Cli) -> None:
-    """A configuration in another encoding, and one that is not there are refused."""
-    Path("a.toml").write_text(FILE, encoding="utf-16")
-    assert "not a text file in UTF-8" in cli("a.toml", code=2).stderr
-    assert "No such file" in cli("b.toml", code=2).stderr
-    Path("b.toml").write_text(FILE, encoding="utf-8")
-    assert "curves: holds no curve" in cli("b.toml", code=2).stderr
-
-
 def test_bad_arguments() -> None:
     """A configuration of several curves is not one for `fit`, nor has a force curve fields."""
     config = pl.FitConfig(indenter={"type": "sphere", "radius": "5 um"}, curves=["a", "b"])

@@ -106,14 +106,6 @@ def test_weighed_radii(measured: dict[str, tuple[Array, Array]]) -> None:
     assert weighed.chi_squared == exact.chi_squared
 
 
-def test_bad_pools(measured: dict[str, tuple[Array, Array]]) -> None:
-    """One curve is no pool, and no contact point is shared."""
-    with pytest.raises(pl.ConfigError, match="a pool needs two"):
-        pooled({"5 um": measured["5 um"]})
-    with pytest.raises(pl.ConfigError, match=r"fix.contact_point: is not shared"):
-        pooled(measured, fix={"contact_point": 0})
-
-
 @pytest.mark.slow
 def test_command(measured: dict[str, tuple[Array, Array]], cli: Callable[..., Result]) -> None:
     """``--pool`` prints what all curves say, and leaves JSON and a figure."""

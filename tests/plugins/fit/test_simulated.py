@@ -100,8 +100,6 @@ def test_quadric_is_simulated_once(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 @pytest.mark.parametrize(
     ("kernel", "words"),
     [
-        ("winkler", "has no field reduced_modulus"),
-        ("bonded_layer", "put it under a skin"),
         ({"type": "tensed_membrane", "tension": 1}, "kernel.tension: is determined by the fit"),
         ({"type": "coated", "substrate": LAYER}, "kernel.substrate.poissons_ratio: is missing"),
         ({"type": "bendy"}, "'bendy' is not a kernel"),
