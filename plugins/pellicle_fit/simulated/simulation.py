@@ -89,7 +89,7 @@ def simulated_curve(
 def plan(
     indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GRID_POINTS
 ) -> tuple[Array, tuple[float, float], dict[str, Any]]:
-    """Return depths of nodes down to one [m], the width of contacts there, and the study of them."""
+    """Return depths of nodes down to one [m], the width of contacts there, and their study."""
     if indenter.footprint != "unbounded":
         raise ConfigError(
             "ends where the grid does, so it has no force curve of its own; give one whose shape "
