@@ -285,7 +285,7 @@ def test_two_at_once(cli: Cli, tmp_path: Path) -> None:
     save(tmp_path / "day" / "a.csv", *curve(1))
     with locked(tmp_path / "out", "fits"):
         result = cli("day", *FIXED, "-o", "out", code=2)
-    assert "is locked by process" in result.stderr
+    assert "is locked by another process" in result.stderr
     assert not Path("out/fits.csv").exists()
     # One curve alone is a population too.
     cli("day", *FIXED, "-o", "out")
