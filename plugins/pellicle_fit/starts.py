@@ -86,19 +86,20 @@ def scanned(objective: Objective) -> list[Array]:
                 at[modulus] = 0.0
             if point is not None:
                 at[point] = objective.slots[point].coordinate(z)
-            trials += [trial] if (trial := _scaled(tips, at)) else []
-        found += sorted(trials, key=lambda trial: trial[0])[:1]
+            trials.append(_scaled(tips, at))
+        found.append(min(trials, key=lambda trial: trial[0]))
     return [at for _, at in sorted(found, key=lambda trial: trial[0])[:_KEPT]]
 
 
-def _scaled(objective: Objective, at: Array) -> tuple[float, Array] | None:
+def _scaled(objective: Objective, at: Array) -> tuple[float, Array]:
     """Return the misfit [N²] of the best multiple of all forces, and its coordinates."""
     (curve,), (force,) = objective.curves, objective.forces(at)
     measured, force = curve.weights * curve.force, curve.weights * force
     norm = float(force @ force)
     factor = float(force @ measured) / norm if norm else 0.0
     if factor <= 0:
-        return None
+        # Where most of the measured force is negative, as far from 0 before contact.
+        factor = curve.largest / (float(np.ptp(force)) or curve.largest)
     for k, slot in enumerate(objective.slots):
         if powers(slot.quantity.unit)[0] == 1:
             at[k] = at[k] + np.log(factor) if slot.quantity.log else at[k] * factor

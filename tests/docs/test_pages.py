@@ -15,7 +15,7 @@ CEILINGS = {
     "index": 230,
     "install": 280,
     "first-contact": 1400,
-    "first-fit": 1200,
+    "first-fit": 1240,
     "notebook": 260,
     "grid": 700,
     "kernels": 900,
@@ -81,7 +81,9 @@ def test_no_line_of_code_stands_on_two_pages() -> None:
     for page in PAGES[1:]:
         for block in blocks(page):
             for line in block.text.splitlines():
-                if len(line.strip()) >= _LONG:
+                # What a program prints is no code.
+                printed = block.language == "console" and not line.startswith("$")
+                if len(line.strip()) >= _LONG and not printed:
                     found[line.strip()].add(page.name)
     assert not {line: pages for line, pages in found.items() if len(pages) > 1}
 

@@ -166,16 +166,21 @@ def judge(
 def outliers(rows: Sequence[Row]) -> list[Row]:
     """Return the rows whose log E* is further from the median than 3.5 robust deviations.
 
-    The median is that of the group; rows that do not determine it are left out.
+    The median is that of the group; rows that do not determine it are left out, and one whose
+    interval holds it does not stand out.
     The deviation is 1.4826 times the median absolute deviation, which some of the outliers
     themselves do not change (Iglewicz and Hoaglin, 1993).
     """
     import pandas as pd
 
     rows = [row for row in rows if row.determines(MODULUS)]
-    logarithms = pd.Series(np.log([row.estimates[MODULUS].value for row in rows]))
+    found = [row.estimates[MODULUS] for row in rows]
+    known = np.array([(e.value, e.low, e.high) for e in found], dtype=float).reshape(-1, 3)
+    logarithms, low, high = (pd.Series(column) for column in np.log(known).T)
     groups = pd.Series([row.group for row in rows], dtype=object)
-    distances = (logarithms - logarithms.groupby(groups).transform("median")).abs()
+    medians = logarithms.groupby(groups).transform("median")
+    distances = (logarithms - medians).abs()
     limits = _LIMIT * _NORMAL * distances.groupby(groups).transform("median")
     sizes = logarithms.groupby(groups).transform("size")
-    return list(compress(rows, (distances > limits) & (limits > 0) & (sizes >= _FEWEST)))
+    far = (distances > limits) & ((medians < low) | (medians > high))
+    return list(compress(rows, far & (limits > 0) & (sizes >= _FEWEST)))

@@ -88,8 +88,8 @@ def _of_options(answer: Answer, members: Sequence[Member], config: FitConfig) ->
         yield Step("fit with --segment both", why)
     if config.thickness is None and any("layer" in fit.types for fit in answer.tied):
         why = "a layer on a rigid base describes the curve"
-        ratio = "" if config.poissons_ratio is not None else " and --poissons-ratio"
-        yield Step(f"give --thickness{ratio} of a thin sample, or --thickness free", why)
+        ratio = "" if config.poissons_ratio is not None else "--poissons-ratio and "
+        yield Step(f"if the sample is thin, give {ratio}--thickness (a length, or free)", why)
     if answer.untried and answer.verdict is Verdict.UNDESCRIBED:
         why = "tension with relaxation can be fitted to an approach alone"
         yield Step("fit with --segment approach", why)

@@ -56,7 +56,7 @@ def in_words(effects: Sequence[Effect]) -> str:
 
 def listed(names: Sequence[str], last: str = "and", most: int = 20) -> str:
     """Return names with commas and a word before the last; of many, how many more there are."""
-    if len(names) > most:
+    if len(names) > most + 1:
         names = [*names[:most], f"{len(names) - most} more"]
     return f" {last} ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
 

@@ -14,6 +14,7 @@ from pellicle_fit.population.row import Row
 from pellicle_fit.recipe import TENSION
 
 from .names import FEW, listed, unit_of, words
+from .story import NOT_WEIGHED
 
 _NAMES = 10
 """Curves that would be helped alike and are named."""
@@ -54,6 +55,8 @@ def sentences_of_population(fits: ManyFits) -> list[str]:
         sentences.append("; ".join(medians))
     if far := [row.name for row in rows if row.outlier]:
         sentences.append(f"far from the median modulus, and counted: {_listed(far)}")
+    if any(row.fit.get("tension_needed") for row in rows):
+        sentences.append(NOT_WEIGHED)
     calibrations = {row.fit["calibration"] for row in rows if row.is_fitted}
     return [*sentences, *(f"intervals of {_PERCENT} %; {text}" for text in calibrations)]
 

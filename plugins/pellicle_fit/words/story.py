@@ -28,6 +28,9 @@ _WIDTH = 100
 _WRAPPED: dict[str, Any] = {"subsequent_indent": "    ", "break_on_hyphens": False}
 _RIVALS = 3
 """Rivals that a verdict names."""
+NOT_WEIGHED = (
+    "not weighed beside tension: a surface more than half again as stiff as the bulk looks alike"
+)
 
 
 def told(fit: Fit, *, si: bool = False) -> list[str]:
@@ -40,9 +43,10 @@ def told(fit: Fit, *, si: bool = False) -> list[str]:
 
 
 def story(fit: Fit, *, si: bool = False) -> list[str]:
-    """Return numbers, verdict and, unless there is nothing to do, the next step; a line each."""
+    """Return numbers, verdict, what it leaves out and what to do next; a line each."""
     step = [f"next: {fit.advice}"] if fit.advice else []
-    return [numbers(fit, si=si), verdict(fit.answer), *step]
+    caveat = [NOT_WEIGHED] if fit.answer.tension_needed else []
+    return [numbers(fit, si=si), verdict(fit.answer), *caveat, *step]
 
 
 def numbers(fit: Fit, *, si: bool = False) -> str:
@@ -131,8 +135,6 @@ def remarks(answer: Answer) -> Iterator[str]:
     for fit in answer.not_held:
         modulus = readable(fit.estimates[MODULUS].value, "Pa", 3)
         yield f"the modulus is not held: with {words_of(fit)} one of {modulus} would do as well"
-    if answer.tension_needed:
-        yield Note("a surface more than half again as stiff as the bulk, not weighed, looks alike")
     reasons: dict[str, list[str]] = {}
     question = answer.question
     for types, reason in answer.excused.items():

@@ -14,9 +14,10 @@ from pellicle.components import AnyTask, Executor, Outcome, Outcomes, Report, Th
 class Dask(Executor):
     """Runs on the workers of a dask scheduler, on this machine or on a cluster.
 
-    A run whose worker dies starts again on another, and is abandoned after four deaths (dask's
-    ``allowed-failures`` and one more). This needs the extra ``cluster``, the same version of
-    pellicle on all workers, and a study folder with the same path on all of them.
+    A run whose worker dies starts again on another. After four deaths (dask's
+    ``allowed-failures`` and one more) it is tried once more, alone, and abandoned after four more.
+    This needs the extra ``cluster``, the same version of pellicle on all workers, and a study
+    folder with the same path on all of them.
     """
 
     type: Literal["dask"] = "dask"

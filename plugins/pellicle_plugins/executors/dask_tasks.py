@@ -78,8 +78,44 @@ class Submission(Generic[AnyTask]):
             time.sleep(_POLL_INTERVAL)
 
     def outcomes(self, report: Report[AnyTask]) -> Iterator[tuple[AnyTask, Any]]:
-        """Yield each task with its outcome, as they finish, and report messages meanwhile."""
+        """Yield each task with its outcome, as they finish.
+
+        dask attributes the death of a worker to all its tasks, including waiting ones. So the tasks
+        that it abandons are submitted once more after the others, one at a time.
+        """
         yield from self._refused
+        suspects: list[int] = []
+        for index, outcome in self._finished(report):
+            if isinstance(outcome, KilledWorker):
+                suspects.append(index)
+            else:
+                yield self._tasks[index], outcome
+        for suspect in suspects:
+            self._submit(suspect)
+            for index, outcome in self._finished(report):
+                if isinstance(outcome, KilledWorker):
+                    deaths = outcome.allowed_failures + 1
+                    outcome = PellicleError(
+                        f"{deaths} worker{'s' * (deaths > 1)} died of it, as when the system is "
+                        "out of memory; the other runs went on"
+                    )
+                yield self._tasks[index], outcome
+
+    def _submit(self, index: int) -> None:
+        future = self._client.submit(
+            _bootstrap(),
+            pack(self._work, self._tasks[index]),
+            version("pellicle"),
+            self._name,
+            index,
+            key=f"{self._name}-{uuid4().hex}",
+            pure=False,
+        )
+        self._futures[index] = future
+        future.add_done_callback(lambda _: self._events.put((index, None)))
+
+    def _finished(self, report: Report[AnyTask]) -> Iterator[tuple[int, Any]]:
+        """Yield the outcome of each submitted task, and report messages meanwhile."""
         warned = False
         while self._futures:
             try:
@@ -98,20 +134,7 @@ class Submission(Generic[AnyTask]):
                 report(self._tasks[index], pickle.loads(message))
             elif index in self._futures:
                 # Dropping the future keeps dask from computing the result again if its worker dies.
-                yield self._tasks[index], _outcome(self._futures.pop(index))
-
-    def _submit(self, index: int) -> None:
-        future = self._client.submit(
-            _bootstrap(),
-            pack(self._work, self._tasks[index]),
-            version("pellicle"),
-            self._name,
-            index,
-            key=f"{self._name}-{uuid4().hex}",
-            pure=False,
-        )
-        self._futures[index] = future
-        future.add_done_callback(lambda _: self._events.put((index, None)))
+                yield index, _outcome(self._futures.pop(index))
 
 
 def _bootstrap() -> Callable[..., bytes]:
@@ -156,13 +179,6 @@ def _outcome(future: Future[bytes]) -> Any:
         return pickle.loads(future.result())
     except CancelledError:
         return PellicleError("the connection to the scheduler was lost")
-    except KilledWorker as error:
-        # dask blames the death of a worker on all that it had, tasks that waited included.
-        deaths = error.allowed_failures + 1
-        return PellicleError(
-            f"{deaths} worker{'s' * (deaths > 1)} died of it, or of a run beside it, as when the "
-            "system is out of memory; the other runs went on, and the same study tries it again"
-        )
     except Exception as error:
         cause: BaseException | None = error
         while cause is not None and not isinstance(cause, ModuleNotFoundError):

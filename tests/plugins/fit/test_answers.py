@@ -62,6 +62,14 @@ def test_exact_curves_give_the_truth(body: Any) -> None:
     assert found.contact_point.value == pytest.approx(3e-6, abs=1e-10)
 
 
+def test_a_force_far_below_0_before_contact() -> None:
+    """A detector that is off by half of the force, long before contact too, costs nothing."""
+    depth = np.linspace(-10.0, 1.0, 1500) * TOP
+    force = MODULUS * BEAD.force_curve(depth, 0.0).force
+    force += force.max() * (0.005 * np.random.default_rng(6).standard_normal(1500) - 0.5)
+    assert holds(fit(depth, force, baseline="offset").reduced_modulus, MODULUS)
+
+
 def test_fits_know_no_units() -> None:
     """Lengths and forces in other measure give the same answer in that measure."""
     position, force = curve(TENSION)
