@@ -37,89 +37,45 @@ def fit(
     indenter: Annotated[
         Text, Option("-i", "--indenter", help="sphere (a bead), paraboloid (Hertz), cone, …")
     ] = None,
-    radius: Annotated[
-        Texts, Option(help='Radius with its unit: "5 um"; repeat it to give one for each file.')
-    ] = None,
-    diameter: Annotated[
-        Texts, Option(help="Diameter in place of the radius, as data sheets of beads have it.")
-    ] = None,
-    half_angle: Annotated[
-        Text, Option(help='Angle between axis and side of a cone: "70 degree".')
-    ] = None,
-    poissons_ratio: Annotated[
-        float | None, Option(help="Poisson's ratio, to get Young's modulus as well.")
-    ] = None,
-    thickness: Annotated[
-        Text, Option(help="Thickness of a layer on a rigid base, or free; with --poissons-ratio.")
-    ] = None,
-    model: Annotated[
-        Texts, Option(help="Effect whose need is asked: tension (default), …, or none of them.")
-    ] = None,
+    radius: Annotated[Texts, Option(help='"5 um"; repeat it to give one for each file.')] = None,
+    diameter: Annotated[Texts, Option(help="In place of the radius.")] = None,
+    half_angle: Annotated[Text, Option(help='From axis to side of a cone: "70 degree".')] = None,
+    poissons_ratio: Annotated[float | None, Option(help="To get Young's modulus as well.")] = None,
+    thickness: Annotated[Text, Option(help="Of a layer on a rigid base, or free.")] = None,
+    model: Annotated[Texts, Option(help="Effect in question: tension (default), …, none.")] = None,
     rivals: Annotated[
-        Texts,
-        Option(
-            help="Effect to compare, or several that act together (offset,slope); repeat it. none "
-            "for no comparison; by default all that bend curves as a tension does."
-        ),
+        Texts, Option(help="Effect to compare, or several (offset,slope), or none; repeat it.")
     ] = None,
-    fix: Annotated[
-        Texts, Option(metavar="NAME=VALUE", help="Fix a quantity: --fix tension=0.")
-    ] = None,
+    fix: Annotated[Texts, Option(metavar="NAME=VALUE", help="Fix a value: tension=0.")] = None,
     uncertainty: Annotated[
         Texts,
-        Option(
-            metavar="NAME=VALUE",
-            help='Standard deviation of spring_constant, sensitivity or radius: "radius=5 %".',
-        ),
+        Option(metavar="NAME=VALUE", help="Of spring_constant, sensitivity, radius: radius=5%."),
     ] = None,
-    baseline: Annotated[
-        Text, Option(help="Force before contact to fit: none (default), offset, slope.")
-    ] = None,
+    baseline: Annotated[Text, Option(help="To fit: none (default), offset, slope.")] = None,
     segment: Annotated[Text, Option(help="Pass to fit: approach (default), retract, both.")] = None,
-    spring_constant: Annotated[
-        Text, Option(help='That of the cantilever, to subtract its bending: "0.05 N/m".')
-    ] = None,
-    sensitivity: Annotated[
-        Text, Option(help='Deflection over the signal in volts: "50 nm/V".')
-    ] = None,
+    spring_constant: Annotated[Text, Option(help='Of the cantilever: "0.05 N/m".')] = None,
+    sensitivity: Annotated[Text, Option(help='Deflection over volts: "50 nm/V".')] = None,
     columns: Annotated[
         Text,
         Option(
-            help="What columns of other names are, with their units, by name, number or path in "
-            'the file: "Z = extension nm, Defl = deflection nm". Roles: position, depth, height, '
-            "extension; force, deflection; time."
+            help='What columns are, by name, number or path: "Z = extension nm, Defl = deflection '
+            'nm". Roles: position, depth, height, extension; force, deflection; time.'
         ),
     ] = None,
-    pool: Annotated[
-        bool, Option("--pool", help="Fit one modulus and one tension to all curves.")
-    ] = False,
+    pool: Annotated[bool, Option("--pool", help="Fit one solid to all curves.")] = False,
     set_: Annotated[
         Texts,
-        Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help='Any other value, by its key in a configuration: --set indenter.radius_x="5 um", '
-            "--set executor=processes, --set kernel=coated.",
-        ),
+        Option("--set", metavar="KEY=VALUE", help='Any other: --set indenter.radius_x="5 um".'),
     ] = None,
     directory: Annotated[
-        Path | None,
-        Option("-o", "--output", metavar="DIR", help="Folder for JSON, table and figure."),
+        Path | None, Option("-o", "--output", metavar="DIR", help="Folder for JSON and figures.")
     ] = None,
     formats: Annotated[
         list[Format] | None,
-        typer.Option(
-            "--format",
-            metavar="FORMAT",
-            help="Of the figures in it: png (default), svg or pdf; repeat for several.",
-        ),
+        Option("--format", metavar="FORMAT", help="Of figures: png (default), svg, pdf."),
     ] = None,
-    report: Annotated[
-        bool, Option("--report", help="Write a web page, to that folder or the current one.")
-    ] = False,
-    details: Annotated[
-        bool, Option("--details", help="Of one fit, print all quantities, explanations, checks.")
-    ] = False,
+    report: Annotated[bool, Option("--report", help="Write a web page as well.")] = False,
+    details: Annotated[bool, Option("--details", help="Print all that was compared.")] = False,
     si: Annotated[bool, Option("--si", help="Print tables in SI units.")] = False,
     json: Annotated[bool, Option("--json", help="Print JSON.")] = False,
     quiet: Annotated[bool, Option("--quiet", "-q", help="Print errors and warnings only.")] = False,
@@ -134,17 +90,14 @@ def fit(
     from pellicle_fit.report.figures import save_figure
     from pellicle_fit.report.page import save_report
 
-    first, curves = None, tuple(files or ())
-    if curves and curves[0].suffix.lower() in (".toml", ".json"):
-        first, *others = curves
-        curves = tuple(others)
+    curves = [*(files or ())]
+    is_first = bool(curves) and curves[0].suffix.lower() in (".toml", ".json")
+    first = curves.pop(0) if is_first else None
+    pairs = {"fix": fix, "uncertainty": uncertainty}
+    sets = [f"{name}.{text}" for name, texts in pairs.items() for text in texts or ()]
     config = FitConfig.merged(
         first,
-        [
-            *(f"fix.{text}" for text in fix or ()),
-            *(f"uncertainty.{text}" for text in uncertainty or ()),
-            *(set_ or ()),
-        ],
+        [*sets, *(set_ or ())],
         curves=curves or None,
         indenter=indenter,
         radius=radius[0] if radius and len(radius) == 1 else radius or None,
@@ -180,8 +133,8 @@ def fit(
         echo(f"{many.resumed} of {len(many.rows)} fits were done before")
     for path in () if quiet else written:
         echo(f"wrote {path}")
-    if many.failed:
-        echo(f"{many.failed} of {len(many.rows)} curves could not be fitted", err=True)
+    if failed := sum(not row.is_fitted for row in many.rows):
+        echo(f"{failed} of {len(many.rows)} curves could not be fitted", err=True)
         raise typer.Exit(NOT_CONVERGED)
 
 
@@ -199,13 +152,11 @@ def _fit(
     from pellicle_fit.problem import problem
 
     progress, stream = not quiet and sys.stderr.isatty(), config.sources()
-    first, name, title = [*islice(stream, None if config.pool else 2)], "pool", "Pooled fit"
-    is_one = not config.pool and [source.name for source in first] == [str(config.curves[0])]
-    if is_one:
-        title = config.curves[0].stem
-        name = f"{title}-fit"
-    if config.pool or is_one:
-        return problem(config, first, progress=progress).fit(progress=progress), name, title
-    sources, progress = chain(first, stream), not quiet
-    fits = fit_sources(config, sources, directory, progress=progress, formats=formats)
+    first = [*islice(stream, None if config.pool else 2)]
+    if config.pool or [source.name for source in first] == [str(config.curves[0])]:
+        fit = problem(config, first, progress=progress).fit(progress=progress)
+        stem = config.curves[0].stem
+        return (fit, "pool", "Pooled fit") if config.pool else (fit, f"{stem}-fit", stem)
+    sources = chain(first, stream)
+    fits = fit_sources(config, sources, directory, progress=not quiet, formats=formats)
     return fits, "fits", f"Fits of {len(fits.rows)} curves"

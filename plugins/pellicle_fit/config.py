@@ -22,7 +22,7 @@ from pydantic.fields import FieldInfo
 
 from pellicle import registry
 from pellicle.components import Component, Executor, FromRegistry, HasForceCurve, Indenter
-from pellicle.errors import ConfigError, PellicleError, all_problems, problems_within, shown
+from pellicle.errors import ConfigError, PellicleError, all_problems, problems_within
 from pellicle.schema import (
     FromFile,
     InputPath,
@@ -39,8 +39,7 @@ from .files.columns import Calibration
 from .files.measurement import Segment
 from .files.missing import OPTIONS, MissingInputError
 from .files.sources import PLACE, Curves, Source, expanded, gather
-from .population.judgement import GROUP
-from .population.rules import rules
+from .population.judgement import rules
 from .simulated.simulation import GRID_POINTS
 from .simulated.solid import solid
 
@@ -77,9 +76,8 @@ _OneEffect = Annotated[Effect, FromRegistry(), BeforeValidator(_component)]
 def _with_radius(fields: Mapping[str, Any]) -> dict[str, Any]:
     """Return fields of an indenter with half of a diameter as the radius."""
     found = dict(fields)
-    if {"radius", "diameter"} <= found.keys():
-        raise ConfigError("is given beside a radius; leave out one of them", "diameter")
-    if not isinstance(found.get("diameter", []), (list, tuple)):
+    # A diameter beside a radius is no field.
+    if "radius" not in found and not isinstance(found.get("diameter", []), (list, tuple)):
         with all_problems() as within, within("diameter"):
             found["radius"] = Quantity("m", above=0)(found.pop("diameter")) / 2
     return found
@@ -93,10 +91,10 @@ def _indenter(value: object) -> Any:
     try:
         return registry().make(Indenter, table)
     except ConfigError as error:
-        given = table if isinstance(table, Mapping) else {"": None}
+        given = dict(table) if isinstance(table, Mapping) else {"": None}
         if problems := [one for one in error.problems if one.field.partition(".")[0] in given]:
             raise ConfigError(problems) from None
-        return dict(given)
+        return given
 
 
 def _fields(indenter: object) -> Mapping[str, FieldInfo]:
@@ -273,10 +271,6 @@ class FitConfig(FromFile, Calibration):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if self.group_by.count(GROUP) > 1:
-            raise ConfigError(
-                f"{shown(self.group_by)} has {GROUP} twice; write it once", "group_by"
-            )
         if self.thickness is not None and self.kernel is not None:
             raise ConfigError("cannot be given with a kernel; leave out one of them", "thickness")
         if self.thickness is not None and self.poissons_ratio is None:

@@ -71,8 +71,7 @@ def fit(
         curves = {"": (position, force) if time is None else (position, force, time)}
     source, *others = config.sources(curves)
     if others:
-        count = 1 + len(others)
-        raise ConfigError(f"names {count} curves; use fit_many or fit_pooled", "curves")
+        raise ConfigError(f"names {1 + len(others)} curves; use fit_many or fit_pooled", "curves")
     return problem(config, [source], progress=progress).fit(progress=progress)
 
 
@@ -85,8 +84,7 @@ def fit_pooled(
 ) -> Fit:
     """Fit one reduced modulus and one tension to several curves together.
 
-    Each curve has its own contact point, baseline and noise. Curves of small and of large contacts
-    tell modulus and tension apart better than any of them alone.
+    Each curve has its own contact point, baseline and noise.
 
     Parameters
     ----------

@@ -25,13 +25,11 @@ from pellicle.files import atomic_write, check_writable, write_json
 from .config import FitConfig, described
 from .files.measurement import Measurement
 from .files.sources import Curves, Source
-from .population.fits import ManyFits, table
+from .population.fits import ManyFits, summary, table
 from .population.images import force_maps
-from .population.judgement import group_of, judge, read_names
+from .population.judgement import Names, group_of, judge
 from .population.row import FAILED, Row, sketch
-from .population.summary import summary
-from .problem import Problem, problem
-from .record import components_of, data_of, record_of
+from .problem import Problem, components_of, data_of, problem, record_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -54,20 +52,14 @@ _BATCH = 500
 class FitTask:
     """The fit of one curve; it pickles to workers."""
 
+    name: str
+    """Name in a progress bar."""
+    memory: int
+    """Estimated peak memory of the fit [bytes]."""
     row: Row
     problem: Problem
     path: Path | None
     """File that keeps the fit."""
-
-    @property
-    def name(self) -> str:
-        """Name in a progress bar."""
-        return self.row.name
-
-    @property
-    def memory(self) -> int:
-        """Estimated peak memory of the fit [bytes]."""
-        return _BYTES_PER_POINT * sum(m.curve.force.size for m in self.problem.members)
 
 
 def fit_many(
@@ -79,8 +71,6 @@ def fit_many(
     **options: Any,
 ) -> xr.Dataset:
     """Fit each of many curves on its own and return a table with a row for each.
-
-    A curve that cannot be fitted does not stop the others: its row has the reason.
 
     Parameters
     ----------
@@ -173,7 +163,7 @@ def fit_sources(
     from .report.population import save_population
 
     directory = None if directory is None else Path(directory)
-    lists = read_names(config.accepted), read_names(config.rejected)
+    lists = [None if path is None else Names(path) for path in (config.accepted, config.rejected)]
     fits, began = ManyFits([], configuration=config.to_dict()), perf_counter()
     with nullcontext() if directory is None else locked(directory, "fits"):
         if directory is not None:
@@ -229,7 +219,9 @@ def _task(
         return None
     # An executor need not pickle.
     serial = registry().make(Executor, {"type": "serial"})
-    return FitTask(row, replace(ready, config=config.model_copy(update={"executor": serial})), path)
+    ready = replace(ready, config=config.model_copy(update={"executor": serial}))
+    memory = _BYTES_PER_POINT * ready.members[0].curve.force.size
+    return FitTask(row.name, memory, row, ready, path)
 
 
 def _keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool]:
@@ -275,7 +267,6 @@ def _identity(config: FitConfig, indenter: Indenter | HasForceCurve, curve: Meas
 
 
 def _failure(error: Exception, name: str) -> str:
-    """Return the status of a curve that could not be fitted."""
     text = str(error).removeprefix(f"{name}: ").replace(":\n  ", ": ")
     reason = "; ".join(text.splitlines()) or "no reason given"
     kind = "" if isinstance(error, PellicleError) else f"{type(error).__name__}: "

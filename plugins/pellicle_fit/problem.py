@@ -1,9 +1,11 @@
-"""What a fit asks: curves on their solid, the model, its rivals, and what is known."""
+"""What a fit asks: curves on their solid, the model, its rivals, and the record of both."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
+from itertools import chain
 from time import perf_counter
 from typing import Any
 
@@ -11,8 +13,9 @@ import numpy as np
 
 from pellicle import registry
 from pellicle.batch import status_line
-from pellicle.components import HasForceCurve, Indenter
+from pellicle.components import Component, HasForceCurve, HasLayerForceCurve, Indenter
 from pellicle.errors import ConfigError, PellicleError
+from pellicle.schema import walk
 
 from .config import UNCERTAIN, FitConfig
 from .curve import Curve
@@ -23,9 +26,9 @@ from .files.missing import MissingInputError
 from .files.sources import Source
 from .objective import CONTACT_POINT
 from .recipe import answer
-from .record import data_of, record_of
 from .result import Fit, Member
-from .simulated.simulation import Simulation, body_of, layer_of, layer_table
+from .simulated.simulation import simulated_curve
+from .simulated.solid import solid
 from .words.advice import steps
 
 _BASELINES = {"none": (), "offset": ("offset",), "slope": ("offset", "slope")}
@@ -89,15 +92,14 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
     # What is given leaves nothing to ask.
     given = [effect for effect in model if quantities(type(effect)) and not effect.open]
     baseline = [_effect(name) for name in _BASELINES[config.baseline]]
-    weighed = [(UNCERTAIN[name], share) for name, share in config.uncertainty.items()]
     question = {
         "model": [effect for effect in model if effect not in given],
         "rivals": [r for rival in config.rivals if (r := _known(rival, fix, ratio))],
         "kept": [*given, *baseline, *layers],
         "fix": {name: fix[name] for name in quantities(Solid).keys() & fix.keys()},
         "uncertainty": [
-            _effect(kind, **{f"{kind}_error": {"value": 0.0, "deviation": share}})
-            for kind, share in weighed
+            _effect(UNCERTAIN[of], **{f"{UNCERTAIN[of]}_error": {"value": 0.0, "deviation": share}})
+            for of, share in config.uncertainty.items()
         ],
     }
     return Problem(config, tuple(members), question, ratio, began)
@@ -114,26 +116,31 @@ def _on_solid(
     if thickness == "free":
         return [*indenters], [_effect("layer", poissons_ratio=ratio)], ratio
     if isinstance(thickness, float) and ratio is not None:
-        layers = [layer_of(indenter, ratio, thickness) for indenter in indenters]
-        if layers[0] is not None and all(layers):
-            return [*indenters], [layers[0]], ratio
-        kernel = layer_table(ratio, thickness)
+        # A punch is too wide for the curve at any depth, or at none.
+        if ratio >= 0 and all(
+            isinstance(one, HasLayerForceCurve) and one.layer_depth_limit(thickness, ratio) > 0
+            for one in indenters
+        ):
+            layer = _effect("layer", thickness=thickness, poissons_ratio=ratio)
+            return [*indenters], [layer], ratio
+        bonded = {"type": "bonded_layer", "thickness": thickness, "poissons_ratio": ratio}
+        kernel = {"type": "coated", "substrate": bonded}
     bodies: list[Any] = []
     for indenter, curve in zip(indenters, measured, strict=True):
-        body = body_of(indenter, kernel, ratio)
-        if isinstance(body, Simulation):
-            ratio, span = body.solid.poissons_ratio, float(np.ptp(curve.position))
-            point = 0.0 if curve.is_depth else config.fix.get(CONTACT_POINT)
-            reach = _REACH * span if point is None else float(curve.position.max()) - point
-            body = body.curve(
-                # If no position reaches contact, the fit itself reports it.
-                reach if reach > 0 else span,
-                cache=config.cache,
-                executor=config.executor,
-                grid_points=config.grid_points,
-                progress=progress,
-            )
-        bodies.append(body)
+        if kernel is None and isinstance(indenter, HasForceCurve):
+            bodies.append(indenter)
+            continue
+        if not isinstance(indenter, Indenter):
+            reason = "cannot be given with a force curve, which includes its solid"
+            raise ConfigError(reason, "kernel")
+        of = solid(kernel or "tensed_membrane", config.poissons_ratio)
+        ratio, span = of.poissons_ratio, float(np.ptp(curve.position))
+        point = 0.0 if curve.is_depth else config.fix.get(CONTACT_POINT)
+        reach = _REACH * span if point is None else float(curve.position.max()) - point
+        options = {name: getattr(config, name) for name in ("cache", "executor", "grid_points")}
+        # If no position reaches contact, the fit itself reports it.
+        reach = reach if reach > 0 else span
+        bodies.append(simulated_curve(indenter, of, reach, **options, progress=progress))
     return bodies, [], ratio
 
 
@@ -153,3 +160,34 @@ def _known(
 
 def _effect(name: str, **fields: Any) -> Effect:
     return registry().make(Effect, {"type": name, **fields})
+
+
+def record_of(config: FitConfig, data: Iterable[dict[str, Any]], began: float) -> dict[str, Any]:
+    """Return versions, date and wall time [s] of a fit since ``began`` of ``perf_counter``."""
+    libraries = {entry["library"] for entry in data if entry["library"]}
+    return {
+        "versions": registry().all_versions(components_of(config), libraries),
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
+        "wall_time": round(perf_counter() - began, 3),
+    }
+
+
+def data_of(curve: Measurement, config: FitConfig) -> dict[str, Any]:
+    """Return the origin of a curve, and which part of it is fitted, as JSON data."""
+    return {
+        **curve.origin._asdict(),
+        "spring_constant": curve.stiffness,
+        "segment": config.segment,
+        "baseline": config.baseline,
+        "poissons_ratio": config.poissons_ratio,
+    }
+
+
+def components_of(config: FitConfig) -> set[type[Component]]:
+    """Return the components that a fit uses; of some only the tables are known."""
+    fields = walk({"indenter": config.indenter, "kernel": config.kernel})
+    types = {value for path, value, _ in fields if path.endswith(".type")}
+    families = registry().components.values()
+    named = {family[name].component for family in families for name in types & family.keys()}
+    objects = config.indenter, config.executor, *config.model, *chain(*config.rivals)
+    return named | {type(entry) for entry in objects if isinstance(entry, Component)}

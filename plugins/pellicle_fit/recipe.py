@@ -171,7 +171,8 @@ def answer(
         its contract.
     """
     sets = tuple(map(tuple, rivals))
-    refuse_broken([*model, *kept, *chain(*sets), *uncertainty])
+    for effect in (*model, *kept, *chain(*sets), *uncertainty):
+        refuse_broken(effect)
     curves = timed(curves)
     asked = next((effect for effect in model if not isinstance(effect, Records)), None)
     kept = (*kept, *(effect for effect in model if effect is not asked))

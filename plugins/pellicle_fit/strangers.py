@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import lru_cache
 from inspect import getsourcefile
@@ -14,17 +14,12 @@ from pellicle.errors import PellicleError, PluginError
 from .effect import Effect
 
 
-def refuse_broken(effects: Iterable[Effect]) -> None:
-    """Ask strangers' effects the rules of the kit that balance no forces."""
-    installed = registry().components[Effect.family].values()
-    shipped = {entry.component for entry in installed if entry.origin.is_own}
-    for effect in effects:
-        if type(effect) not in shipped and (broken := _violation(effect)):
-            raise PluginError(f"effect {effect.type_name!r}: {broken}")
-
-
 @lru_cache(maxsize=64)
-def _violation(effect: Effect) -> str:
+def refuse_broken(effect: Effect) -> None:
+    """Ask a stranger's effect the rules of the kit that balance no forces."""
+    installed = registry().components[Effect.family].values()
+    if type(effect) in {entry.component for entry in installed if entry.origin.is_own}:
+        return
     # The kit takes a second to import.
     from pellicle.testing import keep
 
@@ -33,8 +28,8 @@ def _violation(effect: Effect) -> str:
     try:
         keep(QUICK, effect)
     except AssertionError as error:
-        return "; ".join(str(error).splitlines())
-    return ""
+        broken = "; ".join(str(error).splitlines())
+        raise PluginError(f"effect {effect.type_name!r}: {broken}") from None
 
 
 @contextmanager

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from pellicle.errors import ConfigError, PellicleError, StorageError
+from pellicle.errors import PellicleError, StorageError
 from pellicle.units import Quantity
 
 from .columns import UNITS, Calibration, Column, from_columns, lacking
@@ -29,32 +29,18 @@ _PLACES = {"tip position": "position", "height (measured)": "height", "height (p
 """Names of places in files, and their roles."""
 
 
-def installed() -> bool:
-    """Return whether afmformats is installed."""
-    return find_spec("afmformats") is not None
-
-
 def read_instrument(path: Path, calibration: Calibration) -> Readers:
     """Return what reads each curve, by its number, one at a time."""
-    if not installed():
+    if find_spec("afmformats") is None:
         raise StorageError(f"{path}: is the file of an instrument; {INSTALL}")
     from afmformats.formats import get_recipe
 
     given = {words: getattr(calibration, name) for words, name in _CALIBRATION.items()}
-    overrides = {words: value for words, value in given.items() if value is not None}
+    override = {words: value for words, value in given.items() if value is not None}
     if not path.is_file():
         raise StorageError(f"{path}: cannot be read (no such file)")
     with _errors(path):
-        loader = get_recipe(path).loader
-        try:
-            recordings = loader(path, meta_override=overrides)
-        except NotImplementedError:
-            if not overrides:
-                raise
-            raise ConfigError(
-                f"{path}: holds its calibration, and this format takes no other; leave out "
-                f"{' and '.join(overrides)}"
-            ) from None
+        recordings = get_recipe(path).loader(path, meta_override=override)
         # HDF5 lists curve 10 before curve 2.
         recordings = sorted(recordings, key=lambda recording: recording["metadata"]["enum"])
     return {
@@ -83,7 +69,6 @@ def _errors(path: Path) -> Iterator[None]:
 
 
 def _curve(path: Path, recording: Mapping[str, Any], speed: float | None) -> Measurement:
-    """Return one curve in SI."""
     with _errors(path):
         data, metadata = recording["data"], recording["metadata"]
         place = next((name for name in _PLACES if name in data), "")
@@ -104,7 +89,6 @@ def _curve(path: Path, recording: Mapping[str, Any], speed: float | None) -> Mea
 
 
 def _site(metadata: Mapping[str, Any]) -> Site | None:
-    """Return where on the sample a curve was measured; None if the file does not say it."""
     try:
         # Files that were converted may hold a text with a unit.
         return Site(*(Quantity("m")(metadata.get(f"position {letter}")) for letter in "xy"))

@@ -21,8 +21,6 @@ Segment = Literal["approach", "retract", "both"]
 class Note(str):
     """A message that says what was done; any other is a warning."""
 
-    __slots__ = ()
-
 
 class Site(NamedTuple):
     """Where on the sample a curve was measured [m]."""

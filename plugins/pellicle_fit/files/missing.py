@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 from pellicle.errors import ConfigError, shown
 
@@ -46,9 +45,6 @@ class MissingInputError(ConfigError):
             f"{where}missing: {', '.join(options)}"
             + (f"; add, with your values for … and <…>:\n  {typed}" if typed else "")
         )
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self.where, self.options)
 
 
 def missing_in(

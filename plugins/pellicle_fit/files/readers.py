@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 
 from pellicle.errors import ConfigError, StorageError
@@ -41,7 +42,7 @@ def read(path: Path, calibration: Calibration | None = None) -> Readers:
             return afm.read_instrument(path, calibration)
         except StorageError:
             # Only afmformats can recognise the file of an instrument.
-            hint = "" if afm.installed() else f"; if it is an instrument's: {afm.INSTALL}"
+            hint = "" if find_spec("afmformats") else f"; if it is an instrument's: {afm.INSTALL}"
     if not tables:
         raise StorageError(
             f"{path}: is neither text, nor HDF5, nor a readable file of an instrument{hint}; "

@@ -21,7 +21,6 @@ from .measurement import Measurement, Readers, Site
 from .readers import SUFFIXES, TEXT, read
 from .text_table import FILE, read_cells
 
-_ARRAYS = ("position", "force", "time")
 PLACE = ("x", "y")
 """Columns of a table of files: where on the sample a curve was measured."""
 
@@ -69,7 +68,7 @@ def gather(
             own = Calibration(**{name: known[name] for name in Calibration.model_fields})
             if isinstance(curves, Mapping):
                 # `clean` checks the arrays.
-                arrays: Any = dict(zip(_ARRAYS, curves[file], strict=False))
+                arrays: Any = dict(zip(("position", "force", "time"), curves[file], strict=False))
                 arrays |= {"stiffness": own.spring_constant, "speed": own.speed}
                 readers = {"": partial(Measurement, **arrays)}
             else:

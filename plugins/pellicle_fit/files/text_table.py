@@ -80,25 +80,20 @@ def _header(
     """
     likely = (*data[:_PREAMBLE], *reversed(range(data[0])))
     heads = {number: _heads(lines[number]) for number in likely}
-    for number in likely:
-        if _fits(heads[number], mapped):
-            return number, heads[number]
+    wanted = [name for name in mapped if not name.isdecimal()]
+    for number, found in heads.items():
+        names = {head.name.lower() for head in found}
+        is_known = not mapped and (is_curve(names) or FILE in names)
+        if is_known or (wanted and all(any(h.is_called(name) for h in found) for name in wanted)):
+            return number, found
     width = len(_heads(lines[data[-1]]))
-    for number in (number for number in likely if len(heads[number]) == width and not mapped):
-        if all(column.name != UNKNOWN for column in guessed(heads[number], {}).values()):
-            return number, heads[number]
+    for number, found in () if mapped else heads.items():
+        known = len(found) == width and guessed(found, {}).values()
+        if known and all(column.name != UNKNOWN for column in known):
+            return number, found
     first = heads[data[0]]
     are_numbers = all(_is_number(head.text) for head in first if head.text)
     return (data[0] - 1, []) if are_numbers else (data[0], first)
-
-
-def _fits(heads: Sequence[Column], mapped: Mapping[str, str]) -> bool:
-    """Return whether heads are those of the table that is sought."""
-    if not mapped:
-        names = {head.name.lower() for head in heads}
-        return is_curve(names) or FILE in names
-    named = [name for name in mapped if not name.isdecimal()]
-    return bool(named) and all(any(head.is_called(name) for head in heads) for name in named)
 
 
 def _heads(line: str) -> list[Column]:
@@ -136,10 +131,7 @@ def _is_number(cell: str) -> bool:
 
 
 def read_table(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns], list[Column]]:
-    """Return the columns of the curve of a table, those with known names or ``mapped``, and all.
-
-    There is no curve in a file that is not text.
-    """
+    """Return columns of the curve of a table, known or ``mapped``, if it is text; and all heads."""
     heads, rows, separator = read_cells(path, mapped)
     names = [head.name.lower() for head in heads]
     if not mapped and separator == "," and is_curve({*names}):
@@ -154,20 +146,15 @@ def read_table(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns
                 )
     columns = {}
     for name, text in (mapped or {name: name for name in names if name in NAMES}).items():
-        if (index := _index(heads, name)) is not None:
+        matches = [index for index, head in enumerate(heads) if head.is_called(name)]
+        if not matches and name.isdecimal() and 1 <= int(name) <= len(heads):
+            matches = [int(name) - 1]
+        if len(matches) == 1:
             role, _, unit = text.partition(" ")
-            head, texts = heads[index], [row[index].strip() for row in rows]
+            head, texts = heads[matches[0]], [row[matches[0]].strip() for row in rows]
             values = _numbers(texts, separator, f"{path}: column {head.name}")
             columns[role] = head._replace(unit=unit or head.unit, values=values)
     return ({"": columns} if heads else {}), heads
-
-
-def _index(heads: Sequence[Column], name: str) -> int | None:
-    """Return the index of the one column with a name or, if none has it, a number."""
-    matches = [index for index, head in enumerate(heads) if head.is_called(name)]
-    if not matches and name.isdecimal() and 1 <= int(name) <= len(heads):
-        return int(name) - 1
-    return matches[0] if len(matches) == 1 else None
 
 
 def _numbers(cells: list[str], separator: str, column: str) -> Array:

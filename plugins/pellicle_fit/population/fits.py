@@ -1,7 +1,8 @@
-"""The fits of a population, and their table with a row for each curve."""
+"""The fits of a population, their table, and the quartiles of each group of curves."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,12 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .row import ENDS, FAILED, Row, units_of
-from .summary import summary
+from .row import ENDS, OVER_TIED, SHOWN, Row, units
 
 if TYPE_CHECKING:
     import xarray as xr
 
+ALL = "all"
+"""Name of the line of all accepted curves."""
+QUARTILES = "minimum", "lower_quartile", "median", "upper_quartile", "maximum"
 _MEASURED = {"spring_constant": "N/m", "sensitivity": "m/V", "poissons_ratio": "1"}
 """Numbers in the data of a row, and their units."""
 _COUNTS = "failed_checks", "messages"
@@ -33,12 +36,6 @@ class ManyFits:
     maps: dict[str, xr.Dataset] = field(default_factory=dict)
     """Images of each force map, by its file."""
     configuration: dict[str, Any] = field(default_factory=dict)
-    """The configuration of the fits, as JSON data."""
-
-    @property
-    def failed(self) -> int:
-        """Number of curves that could not be fitted."""
-        return sum(row.status.startswith(FAILED) for row in self.rows)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fits as JSON data."""
@@ -57,11 +54,11 @@ def table(rows: Sequence[Row]) -> xr.Dataset:
     cells = [_cells(row) for row in rows]
     # The curve with the most quantities gives the order of the columns.
     names = list(dict.fromkeys(name for one in sorted(cells, key=len)[::-1] for name in one))
-    units = {"x": "m", "y": "m", **_MEASURED, **units_of(rows)}
+    unit_of = {"x": "m", "y": "m", **_MEASURED, **units()}
     columns: dict[str, Any] = {}
     for name, column in pd.DataFrame(cells, columns=names).items():
-        if name in units and name not in _COUNTS:
-            columns[str(name)] = "curve", column.to_numpy(float), {"units": units[str(name)]}
+        if name in unit_of and name not in _COUNTS:
+            columns[str(name)] = "curve", column.to_numpy(float), {"units": unit_of[str(name)]}
         else:
             columns[str(name)] = "curve", column.fillna("").to_numpy()
     return xr.Dataset(columns, {"curve": np.array([row.name for row in rows], dtype=object)})
@@ -93,3 +90,38 @@ def _cells(row: Row) -> dict[str, Any]:
         "columns": "; ".join(f"{role} = {column}" for role, column in roles),
         "messages": "; ".join(row.fit.get("messages", ())),
     }
+
+
+def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
+    """Return a line for each parameter and group that has an accepted curve, then for all curves.
+
+    Of all ``curves`` of a group ``n`` are accepted. Those whose intervals are ``open``, or too wide
+    to quote a value, change no quartile; where all are, quartiles are NaN. Parameters that
+    were fixed have no line.
+    """
+    import pandas as pd
+
+    fitted = [
+        (name, row.group, e.unit, e.value if row.determines(name) else np.nan, row.outlier)
+        for name in dict.fromkeys((*OVER_TIED, *SHOWN))
+        for row in rows
+        if row.accepted and (e := row.estimates.get(name)) is not None and not e.held
+    ]
+    frame = pd.DataFrame(fitted, columns=["parameter", "group", "unit", "value", "outlier"])
+    curves, lines = Counter(row.group for row in rows), []
+    for name, whole in frame.groupby("parameter", sort=False):
+        groups = whole.groupby("group", sort=False) if len(curves) > 1 else ()
+        parts = [(label(group), curves[group], part) for group, part in groups]
+        for group, count, part in (*parts, (ALL, len(rows), whole)):
+            values = part["value"]
+            line = {"group": group, "parameter": name, "unit": part["unit"].iloc[0]}
+            line |= {"curves": count, "n": len(part), "open": int(values.isna().sum())}
+            quartiles = values.quantile([0, 0.25, 0.5, 0.75, 1]).tolist()
+            line["outliers"] = int(part["outlier"].sum())
+            lines.append(line | dict(zip(QUARTILES, quartiles, strict=True)))
+    return lines
+
+
+def label(group: str) -> str:
+    """Return the name of a group in tables and figures."""
+    return group or "no group"

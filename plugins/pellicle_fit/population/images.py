@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pellicle.arrays import Array
 from pellicle_fit.objective import CONTACT_POINT
 
-from .row import ENDS, Row, units_of
+from .row import ENDS, Row, units
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -51,9 +51,9 @@ def _images(rows: Sequence[Row], places: Array, x: Array, y: Array) -> xr.Datase
     frame = pd.DataFrame([_numbers(row) for row in rows if row.accepted], index=pixels[accepted])
     whole = pd.MultiIndex.from_product([range(y.size), range(x.size)], names=["y", "x"])
     images = frame[~frame.index.duplicated(keep="last")].reindex(whole).to_xarray()
-    units = units_of(rows) | {f"{CONTACT_HEIGHT}{end}": "m" for end in ENDS}
+    unit_of = units() | {f"{CONTACT_HEIGHT}{end}": "m" for end in ENDS}
     for name, image in images.items():
-        image.attrs["units"] = units[str(name)]
+        image.attrs["units"] = unit_of[str(name)]
     sides = {name: (name, side, {"units": "m"}) for name, side in (("x", x), ("y", y))}
     placed: xr.Dataset = images.assign_coords(sides)
     return placed

@@ -2,24 +2,33 @@
 
 from __future__ import annotations
 
+import operator
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 from itertools import compress
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
-from pellicle.errors import StorageError, shown
+from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.files import read_text
+from pellicle.schema import evaluate, names_in, nearest
+from pellicle.units import one, readable, split
 from pellicle_fit.objective import MODULUS
 from pellicle_fit.verdict import Verdict
 
-from .row import Row
-from .rules import Rule
+from .row import Row, units
 
-GROUP = "{group}"
-"""The part of a pattern of file names that is the name of the group."""
+_SIGNS: dict[str, Callable[[float, float], bool]] = {
+    "<=": operator.le,
+    ">=": operator.ge,
+    "==": operator.eq,
+    "!=": operator.ne,
+    "<": operator.lt,
+    ">": operator.gt,
+}
+_COMPARISON = re.compile(f"({'|'.join(_SIGNS)})")
+_EXAMPLE = "write one such as 'r_squared > 0.95' or '1 kPa < reduced_modulus < 1 MPa'"
 _FEWEST = 5
 """Least number of curves among which one can stand out."""
 _NORMAL = 1.4826
@@ -28,12 +37,68 @@ _LIMIT = 3.5
 """Distance from the median, in these deviations, beyond which a curve stands out."""
 
 
-class Names(NamedTuple):
-    """A list of curves in a file."""
+class Rule:
+    """One or two comparisons of expressions and quantities; names and dimensions are checked."""
 
-    path: Path
-    reasons: Mapping[str, str]
-    """What follows each name on its line."""
+    def __init__(self, text: str) -> None:
+        rule, unit_of = shown(text), units()
+        parts = [part.strip() for part in _COMPARISON.split(text)]
+        self.text, self._signs, sides = text, parts[1::2], parts[::2]
+        self._sides: list[float | str] = []
+        self._units: dict[str, str] = {}
+        dimensions = {}
+        for side in sides if len(sides) in (2, 3) and all(sides) else ():
+            number, unit = split(side) or (0.0, "")
+            is_quantity = unit[:1].isalpha()
+            names = set[str]() if is_quantity else names_in(side)
+            for name in sorted(names - unit_of.keys()):
+                raise ConfigError(f"{shown(name)} in {rule}: {nearest(name, unit_of)}")
+            ones = {name: 1.0 if unit_of[name] == "1" else one(unit_of[name]) for name in names}
+            value = number * one(unit) if is_quantity else evaluate(side, ones)
+            # A bare number is in SI.
+            if is_quantity or names:
+                dimensions[str(getattr(value, "dimensionality", "dimensionless"))] = side
+            self._sides.append(float(value.magnitude) if is_quantity else side)
+            self._units |= {name: unit_of[name] for name in names}
+        if not self._units:
+            raise ConfigError(f"{rule} does not compare a number of the fit; {_EXAMPLE}")
+        if len(dimensions) > 1:
+            texts = " with ".join(f"{side} ({name})" for name, side in dimensions.items())
+            raise ConfigError(f"{rule} compares {texts}; {_EXAMPLE}")
+
+    def objection(self, row: Row) -> str:
+        """Return why a fit breaks the rule; empty if it does not."""
+        known = row.values()
+        numbers = {name: known.get(name, np.nan) for name in sorted(self._units)}
+        sides = [float(evaluate(s, numbers) if isinstance(s, str) else s) for s in self._sides]
+        pairs = zip(sides[:-1], self._signs, sides[1:], strict=True)
+        if not any(map(np.isnan, sides)) and all(_SIGNS[sign](a, b) for a, sign, b in pairs):
+            return ""
+        texts = (
+            f"{name} is {'unknown' if np.isnan(v) else readable(v, self._units[name], 4)}"
+            for name, v in numbers.items()
+        )
+        return f"{', '.join(texts)}, against {self.text}"
+
+
+def rules(texts: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the texts of rules; it raises what `Rule` does."""
+    for text in texts:
+        Rule(text)
+    return texts
+
+
+class Names:
+    """A list of curves in a text file: a name on each line, and after a comma a reason."""
+
+    def __init__(self, path: Path) -> None:
+        try:
+            lines = [line for line in read_text(path).splitlines() if not line.startswith("#")]
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or error
+            raise StorageError(f"{path}: cannot be read as a list of curves ({reason})") from None
+        pairs = [line.replace("\\", "/").partition(",") for line in lines if line.strip()]
+        self.path, self.reasons = path, {name.strip(): why.strip() for name, _, why in pairs}
 
     def entry(self, row: Row) -> str:
         """Return the name in the list that means a curve: ``a.csv`` means ``day/a.csv`` too."""
@@ -42,30 +107,17 @@ class Names(NamedTuple):
         return next((end for end in ends if end in self.reasons), "")
 
 
-def read_names(path: Path | None) -> Names | None:
-    """Return the list of curves in a text file: a name on each line, and after a comma a reason."""
-    if path is None:
-        return None
-    try:
-        lines = [line for line in read_text(path).splitlines() if not line.startswith("#")]
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise StorageError(f"{path}: cannot be read as a list of curves ({reason})") from None
-    pairs = [line.replace("\\", "/").partition(",") for line in lines if line.strip()]
-    return Names(path, {name.strip(): reason.strip() for name, _, reason in pairs})
-
-
 def group_of(group_by: str, file: str, column: str) -> str:
     """Return the group of a curve: a part of its file name or, without a pattern, ``column``.
 
     In a pattern ``{group}`` and ``*`` stand for any characters but slashes.
     """
-    if GROUP not in group_by:
+    if "{group}" not in group_by:
         return column
     text = re.escape(group_by.replace("\\", "/")).replace(r"\*", "[^/]*")
-    pattern = "(?:.*/)?" + text.replace(re.escape(GROUP), "(?P<group>[^/]+?)")
+    pattern = "(?:.*/)?" + text.replace(r"\{group\}", "([^/]+?)")
     match = re.fullmatch(pattern, file.replace("\\", "/"))
-    return match["group"] if match else ""
+    return match[1] if match else ""
 
 
 def judge(

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pellicle import registry
 from pellicle.arrays import Array
+from pellicle_fit.effect import Effect, Fittable, Solid, quantities
 from pellicle_fit.files.measurement import Site
 from pellicle_fit.intervals import Estimate
 
@@ -53,9 +54,7 @@ class Row:
     """File, and label in the file."""
     group: str = ""
     map: str = ""
-    """File of the force map that it belongs to."""
     site: Site | None = None
-    """Where on the map it was measured."""
     status: str = ""
     """`FITTED`, or why there is no fit."""
     fit: dict[str, Any] = field(default_factory=dict)
@@ -64,9 +63,7 @@ class Row:
     """Some of its rows, as `sketch` returns them."""
     accepted: bool = False
     reason: str = ""
-    """Why it is not accepted."""
     outlier: bool = False
-    """Whether its modulus stands out from that of its group."""
     curve: dict[str, Any] = field(default_factory=dict, init=False)
     """What the fit says of the curve alone."""
     estimates: dict[str, Estimate] = field(default_factory=dict, init=False)
@@ -75,8 +72,7 @@ class Row:
     def keep(self, fit: dict[str, Any]) -> None:
         """Take the JSON data of a fit, which may hold a sketch, as workers return them."""
         self.status, self.fit = FITTED, {k: value for k, value in fit.items() if k != "sketch"}
-        if "sketch" in fit:
-            self.sketch = sketch(**fit["sketch"])
+        self.sketch = sketch(**fit["sketch"]) if "sketch" in fit else {}
         (self.curve,) = fit["curves"]
         headline = {name: fit[name] for name in OVER_TIED if name in fit}
         # Modulus and tension come first.
@@ -127,7 +123,11 @@ class Row:
         return row | judgement | self.fit
 
 
-def units_of(rows: Iterable[Row]) -> dict[str, str]:
-    """Return the unit of each of the values of rows by name."""
-    units = {name: e.unit for row in rows for name, e in row.estimates.items()}
-    return NUMBERS | {f"{name}{end}": unit for name, unit in units.items() for end in ENDS}
+def units() -> dict[str, str]:
+    """Return the unit of each of the values of a row, which rules may contain, by name."""
+    effects = registry().components.get(Effect.family, {}).values()
+    names = {"youngs_modulus": "Pa"}
+    for component in (Solid, *(effect.component for effect in effects)):
+        if isinstance(component, type) and issubclass(component, Fittable):
+            names |= {name: quantity.unit for name, quantity in quantities(component).items()}
+    return {f"{name}{end}": unit for name, unit in names.items() for end in ENDS} | NUMBERS

@@ -15,10 +15,9 @@ from pellicle.results import header
 from pellicle.show import figure_of, save_figure, save_pages
 from pellicle.units import axis_unit
 from pellicle_fit.objective import MODULUS
-from pellicle_fit.population.fits import ManyFits
+from pellicle_fit.population.fits import ManyFits, label
 from pellicle_fit.population.images import CONTACT_HEIGHT
 from pellicle_fit.population.row import SHOWN, Row
-from pellicle_fit.population.summary import label
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.words.names import words
 

@@ -10,8 +10,8 @@ from pellicle.components import Column, Table
 from pellicle.units import DIGITS, Scale
 from pellicle_fit.intervals import CONFIDENCE, Estimate
 from pellicle_fit.objective import CONTACT_POINT, MODULUS
+from pellicle_fit.population.fits import QUARTILES, summary
 from pellicle_fit.population.row import FITTED, OVER_TIED, SHOWN, Row
-from pellicle_fit.population.summary import QUARTILES, summary
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import Fit
 from pellicle_fit.words.names import FEW, interval, quoted, unit_of, unit_of_one, words, words_of

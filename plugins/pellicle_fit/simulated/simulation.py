@@ -5,22 +5,20 @@ from __future__ import annotations
 import hashlib
 import shutil
 import warnings
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import platformdirs
 
 from pellicle import Grid, Study, results, run_study
 from pellicle.arrays import Array
-from pellicle.components import Executor, HasForceCurve, HasLayerForceCurve, Indenter
+from pellicle.components import Executor, Indenter
 from pellicle.errors import ConfigError, ConvergenceError, ConvergenceWarning
 from pellicle.units import readable
-from pellicle_fit.effects.layer import Layer
 
 from .interpolated import SCALE, SimulatedCurve, stretched
-from .solid import Solid, quantities_of, solid
+from .solid import Solid, quantities_of
 
 GRID_POINTS = 64
 _OCTAVES = 6
@@ -38,103 +36,60 @@ _CLOSE = 0.95
 _WIDEST = 1e9
 
 
-class Simulation(NamedTuple):
-    """An indenter and a solid whose force curve has to be simulated before a fit."""
+def simulated_curve(
+    indenter: Indenter,
+    solid: Solid,
+    deepest: float,
+    *,
+    cache: str | Path | None = None,
+    executor: str | Executor = "serial",
+    grid_points: int = GRID_POINTS,
+    progress: bool = False,
+) -> SimulatedCurve:
+    """Return the force curve of an indenter on a solid down to a depth [m], from a study.
 
-    indenter: Indenter
-    solid: Solid
-
-    def curve(
-        self,
-        deepest: float,
-        *,
-        cache: str | Path | None = None,
-        executor: str | Mapping[str, Any] | Executor = "serial",
-        grid_points: int = GRID_POINTS,
-        progress: bool = False,
-    ) -> SimulatedCurve:
-        """Return the force curve down to a depth [m], from a study that is cached or run here.
-
-        The study has a reduced modulus of 1 Pa.  ``cache`` is the folder that keeps studies, the
-        user's own if None; ``grid_points`` are the cells of each grid along x and y.
-
-        A run that fails is a ConvergenceError, a folder that cannot be used a StorageError; errors
-        as of `plan`, too.
-        """
-        depths, width, table = plan(self.indenter, self.solid, deepest, grid_points)
-        table["study"]["executor"] = {"type": executor} if isinstance(executor, str) else executor
-        study = Study.from_mapping(table)
-        runs = "".join(point.run.identity for point in study.points)
-        folder = Path(cache) if cache else platformdirs.user_cache_path("pellicle")
-        folder = folder / "force-curves" / hashlib.sha256(runs.encode()).hexdigest()[:16]
-        # Once all runs have converged they are deleted, so a table without them is whole.
-        if (folder / "study.h5").exists() and not (folder / "runs").exists():
-            found = results.table(folder / "study.h5")
-        else:
-            try:
-                with warnings.catch_warnings():
-                    warnings.simplefilter("error", ConvergenceWarning)
-                    found = run_study(study, folder, progress=progress)
-            except ConvergenceWarning as warning:
-                raise ConvergenceError(
-                    f"the force curve needs the study in {folder}: {warning}; another number of "
-                    "grid points may help"
-                ) from None
-            shutil.rmtree(folder / "runs")
-        # Each contact on a grid of its own, and on one of half the cells.
-        forces = found["force"].values.reshape(2, depths.size, _RATIOS.size)
-        if not (forces > 0).all():
-            raise ConvergenceError(
-                "some contacts of the study carry no force; give more grid points"
-            )
-        accuracy = float(np.max(np.abs(forces[1] / forces[0] - 1)))
-        half_space = self.solid.is_half_space
-        return SimulatedCurve(depths, _RATIOS, width, np.log(forces[0]), accuracy, half_space)
-
-
-def body_of(
-    indenter: Indenter | HasForceCurve,
-    kernel: str | Mapping[str, Any] | None = None,
-    poissons_ratio: float | None = None,
-) -> HasForceCurve | Simulation:
-    """Return what has the force curve of an indenter, or the simulation that gives one.
-
-    The solid is that of a kernel without modulus and tension; a half-space under tension if None.
+    The study, of a reduced modulus of 1 Pa, is run here unless the folder ``cache`` has it, the
+    user's own if None; ``grid_points`` are the cells of each grid along x and y.
 
     Raises
     ------
-    ConfigError, PluginError
-        The kernel cannot be fitted, or is given beside a force curve that includes its solid.
+    ConfigError
+        The indenter ends where the grid does, or its contact nowhere.
+    ConvergenceError, StorageError
+        A run fails, or the folder cannot be used.
     """
-    if kernel is None and isinstance(indenter, HasForceCurve):
-        return indenter
-    if not isinstance(indenter, Indenter):
-        raise ConfigError("cannot be given with a force curve, which includes its solid", "kernel")
-    return Simulation(indenter, solid(kernel or "tensed_membrane", poissons_ratio))
-
-
-def layer_of(indenter: object, poissons_ratio: float, thickness: float) -> Layer | None:
-    """Return the effect of a layer bonded to a rigid base; None if it has to be simulated."""
-    if not isinstance(indenter, HasLayerForceCurve) or poissons_ratio < 0:
-        return None
-    # A punch is too wide for the curve at any depth, or at none.
-    is_known = indenter.layer_depth_limit(thickness, poissons_ratio) > 0
-    return Layer(thickness=thickness, poissons_ratio=poissons_ratio) if is_known else None
-
-
-def layer_table(poissons_ratio: float, thickness: float) -> dict[str, Any]:
-    """Return the table of a layer bonded to a rigid base, under tension."""
-    substrate = {"type": "bonded_layer", "thickness": thickness, "poissons_ratio": poissons_ratio}
-    return {"type": "coated", "substrate": substrate}
+    depths, width, table = plan(indenter, solid, deepest, grid_points)
+    table["study"]["executor"] = {"type": executor} if isinstance(executor, str) else executor
+    study = Study.from_mapping(table)
+    runs = "".join(point.run.identity for point in study.points)
+    folder = Path(cache) if cache else platformdirs.user_cache_path("pellicle")
+    folder = folder / "force-curves" / hashlib.sha256(runs.encode()).hexdigest()[:16]
+    # Once all runs have converged they are deleted, so a table without them is whole.
+    if (folder / "study.h5").exists() and not (folder / "runs").exists():
+        found = results.table(folder / "study.h5")
+    else:
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("error", ConvergenceWarning)
+                found = run_study(study, folder, progress=progress)
+        except ConvergenceWarning as warning:
+            raise ConvergenceError(
+                f"the force curve needs the study in {folder}: {warning}; another number of "
+                "grid points may help"
+            ) from None
+        shutil.rmtree(folder / "runs")
+    # Each contact on a grid of its own, and on one of half the cells.
+    forces = found["force"].values.reshape(2, depths.size, _RATIOS.size)
+    if not (forces > 0).all():
+        raise ConvergenceError("some contacts of the study carry no force; give more grid points")
+    accuracy = float(np.max(np.abs(forces[1] / forces[0] - 1)))
+    return SimulatedCurve(depths, _RATIOS, width, np.log(forces[0]), accuracy, solid.is_half_space)
 
 
 def plan(
     indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GRID_POINTS
 ) -> tuple[Array, tuple[float, float], dict[str, Any]]:
-    """Return depths of nodes down to one [m], the width of contacts there, and the study of them.
-
-    ConfigError: the indenter ends where the grid does, or its contact nowhere.
-    """
+    """Return depths of nodes down to one [m], the width of contacts there, and their study."""
     if indenter.footprint != "unbounded":
         raise ConfigError(
             "ends where the grid does, so it has no force curve of its own; give one whose shape "

@@ -18,11 +18,9 @@ from pellicle.units import Quantity, quantity_of
 
 @dataclass(frozen=True)
 class Solid:
-    """A kernel with E* = 1 Pa and no tension, and the paths of these two fields."""
+    """A kernel with E* = 1 Pa and no tension."""
 
     kernel: Kernel
-    modulus: str
-    """Dotted path of the reduced modulus in the kernel."""
     tension: str
     """Dotted path of the tension in the kernel."""
     poissons_ratio: float | None
@@ -72,7 +70,7 @@ def solid(spec: str | Mapping[str, Any], poissons_ratio: float | None = None) ->
                 f"is {own:g}, and poissons_ratio of the fit is {poissons_ratio:g}; give it once",
                 path,
             )
-    return Solid(kernel, modulus, tension, poissons_ratio if ratio is None else ratio)
+    return Solid(kernel, tension, poissons_ratio if ratio is None else ratio)
 
 
 def quantities_of(kernel: Kernel) -> Iterator[tuple[str, Quantity, float]]:

@@ -9,9 +9,8 @@ from pathlib import Path
 
 from pellicle.errors import first_of
 from pellicle_fit.intervals import CONFIDENCE
-from pellicle_fit.population.fits import ManyFits
+from pellicle_fit.population.fits import ALL, QUARTILES, ManyFits, summary
 from pellicle_fit.population.row import Row
-from pellicle_fit.population.summary import ALL, QUARTILES, summary
 from pellicle_fit.recipe import TENSION
 
 from .names import FEW, listed, unit_of, words

@@ -122,7 +122,7 @@ def test_killed_and_resumed(mapped: Path) -> None:
 
 @pytest.mark.slow
 def test_places_as_text(tmp_path: Path) -> None:
-    """Places may be texts with units, in a file of afmformats or in a table of files."""
+    """Places in a file of afmformats may be texts with units."""
     curves = [replace(c, place=None) for c in recordings(3, 1)]
     instruments.hdf5(tmp_path / "line.h5", *curves)
     with h5py.File(tmp_path / "line.h5", "r+") as file:
@@ -135,14 +135,6 @@ def test_places_as_text(tmp_path: Path) -> None:
     assert np.isfinite(images["reduced_modulus"]).all()
     assert "tension" not in images
     assert picture(tmp_path / "maps" / "line-contact_height.tif").shape == (1, 3)
-    lines = ["file,x [nm],y [nm]"]
-    for number in range(4):
-        save(tmp_path / f"{number}.csv", *curve(number))
-        lines.append(f"{number}.csv,{100 * (number % 2)},{300 * (number // 2)}")
-    (tmp_path / "table.csv").write_text("\n".join(lines))
-    images = pl.fit_map(tmp_path / "table.csv", fix={"tension": 0}, **OPTIONS)
-    assert images["reduced_modulus"].shape == (2, 2)
-    assert images["y"].values == pytest.approx([0, 3e-7])
 
 
 def placed(places: list[tuple[float, float]]) -> list[Row]:

@@ -52,18 +52,6 @@ def test_rows_at_the_turn_belong_to_the_pass_that_has_them(dwell: int) -> None:
     assert np.array_equal(clean(Measurement(*both), "retract").force, relaxed)
 
 
-@pytest.mark.slow
-def test_held_parameters(cli: Cli) -> None:
-    """What is fixed stays, with its unit, and is said to be held; Hertz is the fit without."""
-    _write(*_curve())
-    report = json.loads(cli("curve.csv", *OPTIONS, "--fix", "tension=7.5 mN/m", "--json").stdout)
-    assert report["tension"]["held"]
-    assert report["tension"]["value"] == TENSION
-    assert _holds(report["reduced_modulus"], MODULUS)
-    hertz = json.loads(cli("curve.csv", *OPTIONS, "--fix", "tension=0", "--json").stdout)
-    assert hertz["reduced_modulus"]["value"] > 1.2 * MODULUS
-
-
 @pytest.mark.usefixtures("no_rivals")
 def test_hdf5_and_depth(cli: Cli) -> None:
     """An HDF5 file with units is read; depth holds the contact point at 0."""

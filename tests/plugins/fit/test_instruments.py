@@ -82,14 +82,6 @@ def test_calibration_is_asked_for(tmp_path: Path, recording: instruments.Recordi
         read(tmp_path / "workshop.csv")
 
 
-def test_calibration_is_not_given_twice(tmp_path: Path, recording: instruments.Recording) -> None:
-    """A spring constant beside the one in the file is refused where it cannot be replaced."""
-    instruments.tab(tmp_path / "curve.tab", recording)
-    with pytest.raises(pl.ConfigError, match="leave out spring constant"):
-        only(tmp_path / "curve.tab", Calibration(spring_constant=0.1))
-    assert is_curve(only(tmp_path / "curve.tab"), *SEEN)
-
-
 def test_damaged_file(tmp_path: Path, recording: instruments.Recording) -> None:
     """A file that was cut off is said to be unreadable."""
     path = tmp_path / "curve.jpk-force"

@@ -8,7 +8,6 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
-import h5py
 import numpy as np
 import pytest
 import xarray as xr
@@ -18,7 +17,6 @@ from numpy.typing import NDArray
 import pellicle as pl
 from pellicle.components import AnyTask, Executor, Outcome, Report, Say
 from pellicle.plugins import Registry
-from pellicle_fit.simulated.simulation import Simulation
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 Array = NDArray[np.float64]
@@ -194,22 +192,15 @@ class Keeps(Executor):
             yield task, pickle.loads(pickle.dumps(copy(moved, lambda _: None)))
 
 
-def test_tasks_travel(tmp_path: Path) -> None:
-    """Curves, questions and answers pickle, and rows keep their order."""
-    curves = {str(seed): curve(seed) for seed in range(3)}
-    copy, here = (pl.fit_many(curves, **HERTZ | own) for own in ({"executor": Keeps()}, {}))
-    xr.testing.assert_identical(copy, here)
-
-
 def test_simulated_before_the_fits(monkeypatch: pytest.MonkeyPatch) -> None:
     """What has to be simulated is so by the executor of the fits, which take it along."""
     executors = []
 
-    def simulated(simulation: Simulation, reach: float, **settings: Any) -> pl.Indenter:
+    def simulated(indenter: pl.Indenter, *_: Any, **settings: Any) -> pl.Indenter:
         executors.append(settings["executor"])
-        return simulation.indenter
+        return indenter
 
-    monkeypatch.setattr(Simulation, "curve", simulated)
+    monkeypatch.setattr("pellicle_fit.problem.simulated_curve", simulated)
     curves = {str(seed): curve(seed) for seed in range(2)}
     solid = {"kernel": "tensed_membrane", "executor": Keeps()}
     copy, here = (pl.fit_many(curves, **HERTZ | own) for own in (solid, {}))
@@ -217,31 +208,11 @@ def test_simulated_before_the_fits(monkeypatch: pytest.MonkeyPatch) -> None:
     xr.testing.assert_identical(copy, here)
 
 
-def test_groups(tmp_path: Path) -> None:
-    """Groups of an HDF5 file are curves; one that lacks a unit does not stop the others."""
-    with h5py.File(tmp_path / "map.h5", "w") as file:
-        for seed, name in enumerate(("first", "second")):
-            for column, values in zip(("position", "force"), curve(seed), strict=True):
-                file[f"{name}/{column}"] = values
-                if (name, column) != ("second", "force"):
-                    file[f"{name}/{column}"].attrs["units"] = "m" if column == "position" else "N"
-    table = pl.fit_many(tmp_path / "map.h5", **HERTZ)
-    first, second = table["status"].values
-    assert first == "fitted"
-    assert "curve second: has" in second
-    assert '--columns "*/position = position m, */force = force <unit>"' in second
-
-
-@pytest.mark.parametrize("listed", [True, False])
-def test_radius_of_each(cli: Cli, listed: bool) -> None:
-    """Each file has its own radius: of a list of files, or of the command line."""
+def test_radius_of_each(cli: Cli) -> None:
+    """Each file has its own radius."""
     for radius in (5, 20):
         save(Path(f"{radius}.csv"), *curve(radius, radius=radius * 1e-6, points=200))
-    Path("beads.csv").write_text("file;radius [um]\n5.csv;5\n20.csv;20\n", encoding="utf-8")
-    files = (
-        ("beads.csv",) if listed else ("5.csv", "20.csv", "--radius", "5 um", "--radius", "20 um")
-    )
-    for row in json.loads(cli(*files, "-i", "paraboloid", "--rivals", "none", "--json").stdout)[
-        "curves"
-    ]:
+    files = "5.csv", "20.csv", "--radius", "5 um", "--radius", "20 um"
+    printed = cli(*files, "-i", "paraboloid", "--rivals", "none", "--json").stdout
+    for row in json.loads(printed)["curves"]:
         assert row["reduced_modulus"]["low"] < MODULUS < row["reduced_modulus"]["high"]

@@ -24,16 +24,15 @@ from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.files.sources import Source
 from pellicle_fit.intervals import Estimate
 from pellicle_fit.many import fit_sources
-from pellicle_fit.population.fits import ManyFits
+from pellicle_fit.population.fits import ManyFits, summary
 from pellicle_fit.population.judgement import (
+    Names,
+    Rule,
     group_of,
     judge,
     outliers,
-    read_names,
 )
 from pellicle_fit.population.row import Row
-from pellicle_fit.population.rules import Rule
-from pellicle_fit.population.summary import summary
 from pellicle_fit.report.contact_sheet import sheets
 from pellicle_fit.report.population import distributions
 from pellicle_fit.words.names import quoted, unit_of
@@ -100,15 +99,15 @@ def test_lists(tmp_path: Path) -> None:
     listed = tmp_path / "rejected.txt"
     listed.write_text("# a comment\na.csv, a bubble\nmap.h5:1\nold/b.csv\nzz.csv\n")
     rows = [row(n) for n in ("day/a.csv", "day/aa.csv", "map.h5:1", "map.h5:11", "x/old/b.csv")]
-    notes = judge(rows, [], None, read_names(listed))
+    notes = judge(rows, [], None, Names(listed))
     assert [r.accepted for r in rows] == [False, True, False, True, False]
     assert rows[0].reason == "in rejected.txt: a bubble"
     assert any("'zz.csv', which is none of the curves" in note for note in notes)
-    judge(rows, [], read_names(listed), None)
+    judge(rows, [], Names(listed), None)
     assert [r.accepted for r in rows] == [True, False, True, False, True]
     assert rows[1].reason == "not in rejected.txt"
     with pytest.raises(StorageError, match="cannot be read as a list"):
-        read_names(tmp_path / "none.txt")
+        Names(tmp_path / "none.txt")
 
 
 @pytest.mark.parametrize(
@@ -119,6 +118,7 @@ def test_lists(tmp_path: Path) -> None:
         ("{group}/*", "data/day 1/a.csv", "day 1"),
         ("cell[1]{group}.csv", "cell[1]x.csv", "x"),
         ("{group}_*.csv", "day/control.csv", ""),
+        ("{group}_{group}.csv", "a_b.csv", "a"),
         ("column", "any", "a/b"),
     ],
 )

@@ -156,22 +156,6 @@ def test_record_of_many(cli: Cli) -> None:
     assert [row["tension"] for row in json.loads(again)["curves"]] == [r["tension"] for r in rows]
 
 
-@pytest.mark.slow
-@pytest.mark.usefixtures("no_rivals")
-def test_again(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The same fit gives the same numbers; options replace what is recorded."""
-    measure(FILE)
-    cli(str(FILE), *OPTIONS, "-o", "out")
-    first = Path("out/Bead 1 µ-fit.json")
-    text = first.read_text(encoding="utf-8")
-    same = cli(str(first), "--json")
-    assert timeless(same.stdout) == timeless(text)
-    assert "warning" not in same.stderr
-    # Options replace what is recorded.
-    hertz = json.loads(cli(str(first), "--fix", "tension=0", "--json").stdout)
-    assert hertz["tension"]["held"]
-
-
 @pytest.mark.parametrize(
     ("content", "words"),
     [

@@ -13,10 +13,11 @@ from pellicle_fit.contact import Contact
 from pellicle_fit.curve import Curve
 from pellicle_fit.effects.layer import Layer
 from pellicle_fit.effects.tension import Tension
+from pellicle_fit.problem import problem
 from pellicle_fit.recipe import answer
 from pellicle_fit.simulated import simulation
 from pellicle_fit.simulated.interpolated import SimulatedCurve
-from pellicle_fit.simulated.simulation import Simulation, body_of, layer_of, layer_table, plan
+from pellicle_fit.simulated.simulation import plan, simulated_curve
 from pellicle_fit.simulated.solid import solid
 from tests.plugins.fit.conftest import ends_of
 
@@ -85,9 +86,8 @@ def test_quadric_is_simulated_once(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     force = force + 0.003 * force.max() * np.random.default_rng(3).standard_normal(force.size)
 
     for _ in range(2):
-        body = body_of(pl.indenter("quadric", **fields))
-        assert isinstance(body, Simulation)
-        simulated = body.curve(0.8e-6, cache=tmp_path, grid_points=24)
+        body, half = pl.indenter("quadric", **fields), solid("tensed_membrane")
+        simulated = simulated_curve(body, half, 0.8e-6, cache=tmp_path, grid_points=24)
         monkeypatch.setattr(simulation, "run_study", None)
     assert simulated.half_space
     assert 0 < simulated.accuracy < 0.1
@@ -100,8 +100,6 @@ def test_quadric_is_simulated_once(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 @pytest.mark.parametrize(
     ("kernel", "words"),
     [
-        ("winkler", "has no field reduced_modulus"),
-        ("bonded_layer", "put it under a skin"),
         ({"type": "tensed_membrane", "tension": 1}, "kernel.tension: is determined by the fit"),
         ({"type": "coated", "substrate": LAYER}, "kernel.substrate.poissons_ratio: is missing"),
         ({"type": "bendy"}, "'bendy' is not a kernel"),
@@ -131,28 +129,33 @@ def test_poissons_ratio_is_the_kernels() -> None:
     assert solid("tensed_membrane", 0.2).poissons_ratio == 0.2
 
 
-def test_a_force_curve_is_taken_as_it_is(exact_nodes: SimulatedCurve) -> None:
-    """What has a curve on the solid is not simulated, and allows no other solid."""
-    sphere = pl.indenter("sphere", radius=RADIUS)
-    assert isinstance(body_of(sphere), type(sphere))
-    assert body_of(exact_nodes) is exact_nodes
-    assert isinstance(body_of(sphere, "tensed_membrane"), Simulation)
+def test_a_force_curve_allows_no_other_solid(exact_nodes: SimulatedCurve) -> None:
+    """It includes its own."""
+    depth = np.linspace(0, 0.3 * RADIUS, 40)
+    force = 1e3 * exact_nodes.force_curve(depth, 0.0).force
     with pytest.raises(pl.ConfigError, match="kernel: cannot be given with a force curve"):
-        body_of(exact_nodes, "tensed_membrane")
+        pl.fit(depth, force, indenter=exact_nodes, kernel="tensed_membrane")
 
 
-def test_a_bonded_layer_is_an_effect() -> None:
+def test_a_bonded_layer_is_an_effect(monkeypatch: pytest.MonkeyPatch) -> None:
     """Other shapes, negative ratios, and punches too wide for the table need a study."""
-    sphere, thick = pl.indenter("sphere", radius=RADIUS), 4e-6
-    assert layer_of(sphere, 0.3, thick) == Layer(thickness=thick, poissons_ratio=0.3)
-    assert layer_of(pl.indenter("flat_punch", radius=9 * thick), 0.3, thick)
-    assert layer_of(pl.indenter("flat_punch", radius=11 * thick), 0.3, thick) is None
-    quadric = pl.indenter("quadric", radius_x=RADIUS, radius_y=2 * RADIUS)
-    assert layer_of(quadric, 0.3, thick) is None
-    assert layer_of(sphere, -0.1, thick) is None
-    body = body_of(quadric, layer_table(0.3, thick))
-    assert isinstance(body, Simulation)
-    assert not body.solid.is_half_space
+    monkeypatch.setattr("pellicle_fit.problem.simulated_curve", lambda body, *_, **settings: body)
+    thick, depth = 4e-6, np.linspace(-1e-7, 3e-7, 40)
+
+    def kept(ratio: float, indenter: str, **fields: Any) -> list[Any]:
+        config = pl.FitConfig.merged(
+            indenter=indenter, **fields, thickness=thick, poissons_ratio=ratio
+        )
+        curves = config.sources({"a": (depth, np.maximum(depth, 0) ** 1.5)})
+        return problem(config, [*curves]).question["kept"]  # type: ignore[no-any-return]
+
+    assert kept(0.3, "sphere", radius=RADIUS) == [Layer(thickness=thick, poissons_ratio=0.3)]
+    assert kept(0.3, "flat_punch", radius=9 * thick)
+    assert not kept(0.3, "flat_punch", radius=11 * thick)
+    assert not kept(0.3, "quadric", radius_x=RADIUS, radius_y=2 * RADIUS)
+    assert not kept(-0.1, "sphere", radius=RADIUS)
+    layer = LAYER | {"poissons_ratio": 0.3}
+    assert not solid({"type": "coated", "substrate": layer}).is_half_space
 
 
 def test_what_counts_against_the_modulus_is_refused() -> None:
@@ -178,8 +181,12 @@ def test_a_study_that_fails_is_no_force_curve(
     monkeypatch.setattr(simulation, "plan", hasty)
     for _ in range(2):
         with pytest.raises(pl.ConvergenceError, match="of 8 runs 8 did not converge") as error:
-            Simulation(pl.indenter("paraboloid", radius=1e-6), solid("tensed_membrane")).curve(
-                2e-7, cache=tmp_path, grid_points=16
+            simulated_curve(
+                pl.indenter("paraboloid", radius=1e-6),
+                solid("tensed_membrane"),
+                2e-7,
+                cache=tmp_path,
+                grid_points=16,
             )
     (folder,) = (tmp_path / "force-curves").iterdir()
     assert str(folder) in str(error.value)
@@ -189,4 +196,4 @@ def test_what_cannot_be_simulated(tmp_path: Path) -> None:
     """Rough surfaces have no size of their own."""
     body = pl.indenter("self_affine", rms_height=1e-6, hurst=0.8, cutoff_wavelength=1e-6)
     with pytest.raises(pl.ConfigError, match="no force curve of its own"):
-        Simulation(body, solid("tensed_membrane")).curve(1e-6, cache=tmp_path)
+        simulated_curve(body, solid("tensed_membrane"), 1e-6, cache=tmp_path)
