@@ -1,75 +1,59 @@
-"""Make the tables of force curves that the built-in indenters of revolution interpolate.
+"""Make the tables behind the force curves of indenters of revolution.
 
-``python docs/reference-data/curve_tables.py`` replaces ``master_curves.json``, which
-``axisymmetric.master_curves`` describes, and ``layer_curves.npz``, which
-``axisymmetric.layer_curves`` describes, in about ten minutes.
+``python docs/reference-data/curve_tables.py`` replaces ``punches.npz``, which
+``axisymmetric.reciprocity`` describes, in half a minute, and ``layer_curves.npz``, which
+``axisymmetric.layer_curves`` describes, in about ten.
 """
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from layer_equation import HalfSpace, Moments, half_space, moments
 from numpy.polynomial import chebyshev
-from scipy.optimize import newton
+from numpy.polynomial.legendre import legval
 
 from pellicle.arrays import Array
-from pellicle_plugins.axisymmetric import layer_curves, master_curves
-from pellicle_plugins.axisymmetric.equation import HasAbelTransform, solve
-from pellicle_plugins.axisymmetric.indentation import indent
+from pellicle_plugins.axisymmetric import layer_curves, reciprocity
+from pellicle_plugins.axisymmetric.equation import influence
 from pellicle_plugins.axisymmetric.layer_curves import Shape
-from pellicle_plugins.axisymmetric.tensed_punch import punch
-from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid, Sphere
+from pellicle_plugins.axisymmetric.panels import gauss, graded
+from pellicle_plugins.axisymmetric.product_integration import clustering, collocation
 
 SHAPES: tuple[Shape, ...] = ("smooth", "pointed", "punch")
-LENGTHS = master_curves.SCALE * np.expm1(np.arange(0.0, 23.1, 0.15))
-"""s over the contact radius."""
-SPHERE_LENGTHS = master_curves.SCALE * np.expm1(np.arange(0.0, 16.3, 0.4))
-"""s / √(δR)."""
-SPHERE_DEPTHS = (chebyshev.chebpts1(9) + 1) / 2
-"""δ / R."""
+_ORDER, _FINEST = 12, 1e-3
+"""Gauss points per panel, and size of the finest panel over that of the edge layer."""
+_MODES = 24
+"""Products of the decomposition; what is left out is below 1e-11 of the largest."""
 
 
-def scaled(indenter: HasAbelTransform, exponent: float, classical: float) -> dict[str, list[float]]:
-    """Return x = s/δ^(1/exponent) and log(P/P₀), P₀ = classical · δ^(1 + 1/exponent)."""
-    xs, logs = [0.0], [0.0]
-    for length in LENGTHS[1:]:
-        contact = indent(indenter, 1.0, length / 2, contact_radius=1.0)
-        xs.append(length / contact.depth ** (1 / exponent))
-        logs.append(np.log(contact.force / (classical * contact.depth ** (1 + 1 / exponent))))
-    return {"x": xs, "log_ratio": [float(value) for value in logs]}
+def punch(ratio: float) -> tuple[float, Array]:
+    """Return log(k/2E*a) and φ sin η / k at the nodes η of the table, at s/a = ratio > 0."""
+    panels = graded(_ORDER, _FINEST * np.sqrt(min(1.0, ratio)), 1.0)
+    matrix = collocation(panels, influence(ratio, 0), clustering(ratio), 1)
+    values = np.linalg.solve(matrix, np.ones(len(matrix))).reshape(len(panels), _ORDER)
+    _, unit, to_legendre = gauss(_ORDER)
+    angles, found, integral = reciprocity.ANGLES, np.empty(reciprocity.ANGLES.size), 0.0
+    for panel, value in zip(panels, values, strict=True):
+        low, high = float(panel.end.eta), float(panel.start.eta)
+        integral += panel.length / 2 * float(unit @ value)
+        inside = (angles >= low) & (angles <= high)
+        local = 1 - 2 * (angles[inside] - low) / (high - low)
+        found[inside] = legval(local, to_legendre @ value)
+    return float(np.log(np.pi * integral)), found / (2 * np.pi * integral)
 
 
-def flat_punch(lengths: Array) -> dict[str, list[float]]:
-    """Return x = s/a and log(P/P₀)."""
-    forces = [punch(1.0, 1.0, length / 2, depth=1.0).force for length in lengths]
-    return {"x": list(lengths), "log_ratio": [float(np.log(force / 2)) for force in forces]}
-
-
-def sphere(paraboloid: dict[str, list[float]]) -> dict[str, list[float] | list[list[float]]]:
-    """Return Chebyshev coefficients in δ/R of log(P sphere / P paraboloid) / (δ/R)."""
-    correction = master_curves.one_variable(paraboloid)
-    sphere = Sphere(radius=1.0)
-    values = np.empty((SPHERE_LENGTHS.size, SPHERE_DEPTHS.size))
-    for j, depth in enumerate(SPHERE_DEPTHS):
-        log_a = np.log(indent(sphere, 1.0, 0.0, depth=depth).contact_radius)
-        for i, x in enumerate(SPHERE_LENGTHS):
-            length = x * np.sqrt(depth)
-
-            def excess(log_a: float, length: float = length, depth: float = depth) -> float:
-                a = float(np.exp(log_a))
-                return float(np.log(solve(sphere, a, length / a, 0).moments()[1] * a / depth))
-
-            log_a = newton(excess, log_a, x1=log_a - 1e-3, tol=1e-12)
-            a = float(np.exp(log_a))
-            contact = indent(sphere, 1.0, length / 2, contact_radius=a)
-            flat = 4 / 3 * contact.depth**1.5 * np.exp(correction(np.array([x]))[0][0])
-            values[i, j] = np.log(contact.force / flat) / contact.depth
-    coefficients = chebyshev.chebfit(chebyshev.chebpts1(9), values.T, 8).T
-    return {"x": list(SPHERE_LENGTHS), "coefficients": coefficients.tolist()}
+def punches() -> dict[str, Array]:
+    """Return log(k/2E*a) beside the shares of the modes at each s/a, and the modes over η."""
+    # Without tension φ = 1/π.
+    solved = [(0.0, np.sin(reciprocity.ANGLES) / (2 * np.pi))]
+    solved += [punch(ratio) for ratio in reciprocity.LENGTHS[1:].tolist()]
+    stiffness, shapes = (np.array(part) for part in zip(*solved, strict=True))
+    left, sizes, right = np.linalg.svd(shapes, full_matrices=False)
+    shares = (left * sizes)[:, :_MODES]
+    return {"shares": np.column_stack([stiffness, shares]), "modes": right[:_MODES].T}
 
 
 def profiles(equation: HalfSpace) -> Array:
@@ -107,15 +91,7 @@ def change_by_layer(shape: Shape, length: float, confinement: float) -> Array:
 
 def main() -> None:
     """Solve all nodes and write both files."""
-    paraboloid = scaled(Paraboloid(radius=1.0), 2, 4 / 3)
-    curves = {
-        "paraboloid": paraboloid,
-        "cone": scaled(Cone(half_angle=np.pi / 4), 1, 2 / np.pi),
-        "flat_punch": flat_punch(LENGTHS),
-        "sphere": sphere(paraboloid),
-    }
-    text = json.dumps(curves, indent=1) + "\n"
-    Path(str(master_curves.FILE)).write_text(text, encoding="utf-8")
+    np.savez_compressed(Path(str(reciprocity.FILE)), **punches())
     tables: dict[str, Any] = {}
     for shape in SHAPES:
         rows = [on_half_space(shape, length) for length in layer_curves.HALF_SPACE_LENGTHS.tolist()]

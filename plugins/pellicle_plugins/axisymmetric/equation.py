@@ -50,6 +50,15 @@ class HasAbelTransform(Hashable, Protocol):
         """Whether the profile has a corner at its apex."""
         ...
 
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Radii [m], in order, at which slope or curvature of the profile jumps."""
+        ...
+
+    def abel_transform(self, x: Array) -> Array:
+        """Return h(x) [m] at positions 0 ≤ x < `contact_radius_limit` [m], of any shape."""
+        ...
+
     def abel_slope(self, x: Array) -> Array:
         """Return h'(x), dimensionless, at positions 0 ≤ x < `contact_radius_limit` [m]."""
         ...

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from functools import lru_cache
-from math import inf, pi, tan
-from typing import Annotated, ClassVar, Literal
+from math import inf, pi, sqrt, tan
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from pellicle.arrays import Array
 from pellicle.components import ContactRadius, ForceCurve, Indenter, LayerForceCurve
+from pellicle.errors import ConfigError, shown
 from pellicle.units import Length, Quantity
 from pellicle_plugins.axisymmetric import master_curves
+from pellicle_plugins.axisymmetric.depth_curves import force_curve
 from pellicle_plugins.axisymmetric.layer_curves import (
     Profile,
     Punch,
@@ -36,6 +38,11 @@ class Axisymmetric(Indenter):
         """Return P/E* and its partial derivatives at depths [m] and s = 2τ₀/E* [m]."""
         return ForceCurve(*(part.copy() for part in self._curve(depth, length)))
 
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Radii [m] at which slope or curvature of the profile jumps."""
+        return ()
+
     def contact_radius(self, depth: Array, length: float) -> ContactRadius:
         """Return the contact radius without adhesion at depths > 0 [m], and dk/da over E*.
 
@@ -45,15 +52,18 @@ class Axisymmetric(Indenter):
 
     def layer_depth_limit(self, thickness: float, poissons_ratio: float) -> float:
         """Return the depth [m] up to which the force curve holds on a bonded layer."""
-        limit = _layer_curves(self).depth_limit(thickness, poissons_ratio)
+        curves = _layer_curves(self)
+        limit = curves.depth_limit(thickness, poissons_ratio) if curves else 0.0
         return min(limit, self.depth_limit)
 
     def layer_force_curve(
         self, depth: Array, length: float, thickness: float, poissons_ratio: float
     ) -> LayerForceCurve:
         """Return P/E* and its partial derivatives on a bonded layer, 0 ≤ ν ≤ ½."""
-        layer = TensedLayer(length, thickness, poissons_ratio)
-        return _layer_curves(self).curve(depth, layer)
+        curves = _layer_curves(self)
+        if curves is None:
+            raise ConfigError(f"{self.type_name}: a tip with an edge has no curve on a layer")
+        return curves.curve(depth, TensedLayer(length, thickness, poissons_ratio))
 
     def _curve(self, depth: Array, length: float) -> ForceCurve:
         """Return the force curve at depths of shape (n,), in arrays that calls share."""
@@ -64,7 +74,8 @@ class Axisymmetric(Indenter):
     def _master_curve(self, depth: Array, length: float) -> ForceCurve: ...
 
     @abstractmethod
-    def _make_layer_curves(self) -> Profile | Punch: ...
+    def _make_layer_curves(self) -> Profile | Punch | None:
+        """Return the curves on a layer; None if there are none."""
 
 
 # A fit with adhesion asks for the force curve and the contact radius at the same depths.
@@ -76,34 +87,56 @@ def _kept_curve(
 
 
 @lru_cache(maxsize=64)
-def _layer_curves(indenter: Axisymmetric) -> Profile | Punch:
+def _layer_curves(indenter: Axisymmetric) -> Profile | Punch | None:
     # Splines are kept for each profile, which has to be the same object for equal indenters.
     return indenter._make_layer_curves()
 
 
 class Sphere(Axisymmetric):
-    """Sphere with its exact profile up to its equator."""
+    """Sphere with its exact profile up to its equator, or with a tip that is worn flat."""
 
     type: Literal["sphere"] = "sphere"
-    examples = ({"radius": "0.4 mm"},)
+    examples = ({"radius": "0.4 mm"}, {"radius": "0.4 mm", "flat_radius": "0.05 mm"})
     radius: Annotated[Length, Field(description="radius R [m]")]
+    flat_radius: Annotated[
+        float | None, Quantity("m", above=0), Field(description="radius b of a worn tip [m]")
+    ] = None
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.flat_radius is not None and not self.flat_radius < self.radius:
+            raise ConfigError(
+                f"has to be less than the radius, {shown(self.radius)} m", "flat_radius"
+            )
+        return self
 
     def profile(self, x: Array, y: Array) -> Array:
-        """Return √(R² − x² − y²) − R [m], −inf beyond the equator."""
-        square = x**2 + y**2
-        distance = np.sqrt(square)
+        """Return √(R² − x² − y²) − √(R² − b²) [m], at most 0, −inf beyond the equator."""
+        distance, flat = np.hypot(x, y), self.flat_radius or 0.0
         inside = distance <= self.radius
         # R² − r² as a product does not overflow.
         root = np.sqrt(self.radius - distance, where=inside, out=np.zeros_like(distance))
         root *= np.sqrt(self.radius + distance)
-        # root − R would cancel near the tip, −r²/(R + root) does not.
-        shape = -(square / self.radius) / (1 + root / self.radius)
+        # The difference of the roots would cancel near the tip.
+        beyond = np.maximum(distance - flat, 0.0) * ((distance + flat) / self.radius)
+        shape = -beyond / (self._height + root / self.radius)
         return np.where(inside, shape, -np.inf)
 
     @property
+    def _height(self) -> float:
+        """Distance of the flat from the centre over R."""
+        share = (self.flat_radius or 0.0) / self.radius
+        return sqrt((1 - share) * (1 + share))
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Radius of the flat [m]."""
+        return () if self.flat_radius is None else (self.flat_radius,)
+
+    @property
     def depth_limit(self) -> float:
-        """Depth R at which the equator is reached [m]."""
-        return self.radius
+        """Depth R at which the equator is reached [m]; less of a worn tip."""
+        return self.radius * self._height
 
     pointed: ClassVar[bool] = False
 
@@ -112,16 +145,27 @@ class Sphere(Axisymmetric):
         """R [m]: no contact is wider than the equator."""
         return self.radius
 
+    def abel_transform(self, x: Array) -> Array:
+        """Return h(x) = x artanh √((x² − b²)/(R² − b²)) [m]; see `HasAbelTransform`."""
+        return np.asarray(x * np.arctanh(self._share(x)))
+
     def abel_slope(self, x: Array) -> Array:
-        """Return h'(x), h = x artanh(x/R), for contact radii x [m]; see `HasAbelTransform`."""
-        u = x / self.radius
-        return np.arctanh(u) + u / ((1 - u) * (1 + u))
+        """Return h'(x) for contact radii x [m]."""
+        u, share = x / self.radius, self._share(x)
+        rate = np.divide(u**2, share, out=np.zeros_like(u), where=share > 0)
+        return np.arctanh(share) + rate / ((1 - u) * (1 + u))
+
+    def _share(self, x: Array) -> Array:
+        flat = self.flat_radius or 0.0
+        root = np.sqrt(np.maximum(x - flat, 0.0)) * np.sqrt(x + flat)
+        return np.asarray(root / self.radius / self._height)
 
     def _master_curve(self, depth: Array, length: float) -> ForceCurve:
-        return master_curves.sphere(self.radius, depth, length)
+        return force_curve(self, depth, length)
 
-    def _make_layer_curves(self) -> Profile:
-        return smooth_profile(self.radius, self.radius, self.abel_slope)
+    def _make_layer_curves(self) -> Profile | None:
+        smooth = self.flat_radius is None
+        return smooth_profile(self.radius, self.radius, self.abel_slope) if smooth else None
 
 
 class Paraboloid(Axisymmetric):
@@ -139,8 +183,12 @@ class Paraboloid(Axisymmetric):
     contact_radius_limit: ClassVar[float] = inf
     pointed: ClassVar[bool] = False
 
+    def abel_transform(self, x: Array) -> Array:
+        """Return h(x) = x²/R [m] for contact radii x [m]; see `HasAbelTransform`."""
+        return x**2 / self.radius
+
     def abel_slope(self, x: Array) -> Array:
-        """Return h'(x) = 2x/R for contact radii x [m]; see `HasAbelTransform`."""
+        """Return h'(x) = 2x/R for contact radii x [m]."""
         return 2 * x / self.radius
 
     def _master_curve(self, depth: Array, length: float) -> ForceCurve:
@@ -155,10 +203,10 @@ class Paraboloid(Axisymmetric):
 
 
 class Cone(Axisymmetric):
-    """Cone with its tip down."""
+    """Cone with its tip down, sharp or blunted by a paraboloid that goes over into it smoothly."""
 
     type: Literal["cone"] = "cone"
-    examples = ({"half_angle": "70 degree"},)
+    examples = ({"half_angle": "70 degree"}, {"half_angle": "20 degree", "tip_radius": "20 nm"})
     half_angle: Annotated[
         float,
         Quantity("rad", above=0, below=pi / 2),
@@ -166,23 +214,64 @@ class Cone(Axisymmetric):
             title="half-angle", description="angle between axis and side [rad], or as '70 degree'"
         ),
     ]
+    tip_radius: Annotated[
+        float | None,
+        Quantity("m", above=0),
+        Field(description="radius of curvature R of a blunt tip [m]"),
+    ] = None
 
     def profile(self, x: Array, y: Array) -> Array:
-        """Return −r cot α [m]."""
-        return -np.hypot(x, y) / tan(self.half_angle)
+        """Return −r cot α [m]; of a blunted cone −r²/2R up to b, and −(r − b/2) cot α beyond."""
+        distance, end = np.hypot(x, y), self._blunt
+        inside = np.minimum(distance, end)
+        shape = (distance - inside) / tan(self.half_angle)
+        return -shape if self.tip_radius is None else -shape - inside**2 / 2 / self.tip_radius
+
+    @property
+    def _blunt(self) -> float:
+        """Radius b = R cot α [m] at which the tip goes over into the cone; 0 if it is sharp."""
+        return (self.tip_radius or 0.0) / tan(self.half_angle)
 
     contact_radius_limit: ClassVar[float] = inf
-    pointed: ClassVar[bool] = True
+
+    @property
+    def pointed(self) -> bool:
+        """Whether the tip is sharp."""
+        return self.tip_radius is None
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Radius at which the tip goes over into the cone [m]."""
+        return () if self.tip_radius is None else (self._blunt,)
+
+    def abel_transform(self, x: Array) -> Array:
+        """Return h(x) [m] for contact radii x [m] (Briscoe, Sebastian & Adams 1994).
+
+        It is (π/2) x cot α of a sharp cone, x²/R up to b of a blunted one, and beyond
+        x [(x − √(x² − b²))/R + arccos(b/x) cot α].
+        """
+        return np.asarray(x * self._parts(x, 1.0))
 
     def abel_slope(self, x: Array) -> Array:
-        """Return h' = (π/2) cot α for contact radii x [m]; see `HasAbelTransform`."""
-        return np.full_like(x, pi / 2 / tan(self.half_angle))
+        """Return h'(x) for contact radii x [m]."""
+        return self._parts(x, 2.0)
+
+    def _parts(self, x: Array, times: float) -> Array:
+        """Return what the cone and, ``times`` a factor, what the tip adds to h/x."""
+        if self.tip_radius is None:
+            return np.full_like(x, pi / 2 / tan(self.half_angle))
+        beyond = np.maximum(x, self._blunt)
+        root = np.sqrt(beyond - self._blunt) * np.sqrt(beyond + self._blunt)
+        tip = (x - root) / self.tip_radius
+        return np.asarray(times * tip + np.arccos(self._blunt / beyond) / tan(self.half_angle))
 
     def _master_curve(self, depth: Array, length: float) -> ForceCurve:
-        return master_curves.cone(self.half_angle, depth, length)
+        if self.tip_radius is None:
+            return master_curves.cone(self.half_angle, depth, length)
+        return force_curve(self, depth, length)
 
-    def _make_layer_curves(self) -> Profile:
-        return cone_profile(self.half_angle)
+    def _make_layer_curves(self) -> Profile | None:
+        return cone_profile(self.half_angle) if self.tip_radius is None else None
 
 
 class FlatPunch(Axisymmetric):

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle.components import HasForceCurve
-from pellicle_plugins.axisymmetric import master_curves
+from pellicle_plugins.axisymmetric import reciprocity
 from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.axisymmetric.tensed_punch import punch
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid, Sphere
@@ -68,11 +68,13 @@ def test_sphere_solves_the_equation(contact: float, ratio: float) -> None:
 
 
 def test_the_table_is_what_its_script_makes() -> None:
-    """Nodes of the table, made anew, are those of the file."""
-    shipped = master_curves._table()["flat_punch"]
-    made = curve_tables.flat_punch(curve_tables.LENGTHS[::60])
-    assert made["x"] == shipped["x"][::60]
-    assert made["log_ratio"] == pytest.approx(shipped["log_ratio"][::60], rel=1e-9)
+    """Stiffness and pressure of punches, made anew, are those of the file."""
+    for number in range(1, reciprocity.LENGTHS.size, 60):
+        stiffness, pressure = curve_tables.punch(float(reciprocity.LENGTHS[number]))
+        log, *shares = reciprocity._table()["shares"][number]
+        assert log == pytest.approx(stiffness, abs=1e-9)
+        shipped = reciprocity._table()["modes"] @ shares
+        assert shipped == pytest.approx(pressure, abs=1e-9 * pressure.max())
 
 
 @pytest.mark.parametrize("type_", ["paraboloid", "sphere", "cone", "flat_punch"])

@@ -1,0 +1,88 @@
+"""Force over depth of any body of revolution under surface tension.
+
+Contacts of given radii (``reciprocity``) are nodes of a spline of log F over log δ, beyond which
+the force is a power of the depth: under a flat end a linear one.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pellicle.arrays import Array
+from pellicle.components import ForceCurve
+
+from .equation import HasAbelTransform
+from .reciprocity import contacts
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
+
+_STEP = 0.1
+"""Distance of nodes in ξ = log(a / (1 − a/L)), where L is the end of the profile."""
+_COUNT, _ROUND = 160, 8
+"""Nodes of a curve, and of how many the number of the last is a multiple."""
+_FIRST, _LAST = -600, 600
+"""Least and greatest number of a node."""
+_END = 1e-6
+"""Share of the profile's radius that stays free of contact."""
+_BESIDE: Array = np.geomspace(1e-6, 1.0, 60)
+"""Nodes beyond a kink, over its radius."""
+_RISE = 1e-7
+"""Least rise of the depth between nodes."""
+LEAST_DEPTH = 1e-60
+"""[m]; powers of a depth at the end of the range of floats would overflow."""
+
+
+def force_curve(body: HasAbelTransform, depth: Array, length: float) -> ForceCurve:
+    """Return P/E* and its derivatives at depths [m], of shape (n,), for s = ``length`` [m]."""
+    touching = depth > 0
+    out = np.zeros((3, depth.size))
+    if touching.any():
+        d = np.maximum(depth[touching], LEAST_DEPTH)
+        last = int(np.searchsorted(_depths(body), d.max()))
+        curve = _curve(body, length, -(-last // _ROUND) * _ROUND)
+        x = np.log(d)
+        inside = np.clip(x, curve.t[0], curve.t[-1])
+        log_force, log_stiffness, by_length = curve(inside).T
+        power = np.exp(log_stiffness + inside - log_force)
+        force = np.exp(log_force + power * (x - inside))
+        out[:, touching] = force, force * power / d, force * by_length
+    return ForceCurve(*out)
+
+
+@lru_cache(maxsize=64)
+def _depths(body: HasAbelTransform) -> Array:
+    """Return the depths without tension [m] of all nodes, which are least at a radius."""
+    return body.abel_transform(_radii(body, _FIRST, _LAST))
+
+
+def _radii(body: HasAbelTransform, first: int, last: int) -> Array:
+    """Return the radii [m] of nodes, where the profile has not ended."""
+    scale = np.exp(_STEP * np.arange(first, last))
+    radius = scale / (1 + scale / body.contact_radius_limit)
+    return np.minimum(radius, (1 - _END) * body.contact_radius_limit)
+
+
+@lru_cache(maxsize=64)
+def _nodes(body: HasAbelTransform, last: int) -> Array:
+    """Return the radii [m] of nodes up to one and, beyond kinks, of more."""
+    radius = _radii(body, last + _FIRST - _COUNT, last + _FIRST + 1)
+    near = np.concatenate([radius, *(kink * (1 + _BESIDE) for kink in body.kinks)])
+    return np.unique(near[(near >= radius[0]) & (near <= radius[-1])])
+
+
+@lru_cache(maxsize=64)
+def _curve(body: HasAbelTransform, length: float, last: int) -> BSpline:
+    """Return log(P/E*), log(k/E*) and ∂ log P/∂s over log δ up to a node and beyond."""
+    from scipy.interpolate import make_interp_spline
+
+    found = contacts(body, _nodes(body, last), length)
+    # Under a flat end there is no contact of less than its radius; errors of 1e-9 are no steps.
+    touches = (found.depth > 0) & (found.force > 0)
+    touches[1:] &= found.depth[1:] > (1 + _RISE) * np.maximum.accumulate(found.depth)[:-1]
+    depth, force, stiffness, _, by_length = (part[touches] for part in found)
+    values = np.column_stack([np.log(force), np.log(stiffness), by_length / force])
+    return make_interp_spline(np.log(depth), values, 3)
