@@ -45,7 +45,7 @@ def punch(ratio: float) -> tuple[float, Array]:
     return float(np.log(np.pi * integral)), found / (2 * np.pi * integral)
 
 
-def punches() -> dict[str, Array]:
+def punches() -> dict[str, Any]:
     """Return log(k/2E*a) beside the shares of the modes at each s/a, and the modes over η."""
     # Without tension φ = 1/π.
     solved = [(0.0, np.sin(reciprocity.ANGLES) / (2 * np.pi))]

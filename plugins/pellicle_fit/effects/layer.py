@@ -29,8 +29,12 @@ class Layer(Bends, title="a thin layer"):
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Refuse an indenter without a curve on layers, or one whose tip is another."""
-        known = contact.is_own and isinstance(contact.indenter, HasLayerForceCurve)
-        return "" if known else "needs an indenter whose curve on a layer is known"
+        body = contact.indenter
+        if contact.is_own and isinstance(body, HasLayerForceCurve):
+            # Of a free thickness the kind of tip decides.
+            limit = body.layer_depth_limit(self.thickness or 1.0, self.poissons_ratio)
+            return "" if limit > 0 else "the curve of this tip on a layer is not known"
+        return "needs an indenter whose curve on a layer is known"
 
     def contact(self, contact: Contact) -> Contact:
         """Return the contact with the layer."""

@@ -26,7 +26,7 @@ from pellicle.arrays import Array
 from pellicle.errors import ConfigError
 from pellicle_plugins.closed_forms.arguments import not_negative, positive
 
-from .equation import HasAbelTransform
+from .equation import HasAbelTransform, without_kinks
 from .radius_curves import RadiusCurves, radius_at, radius_curves, xi_at
 from .tensed_punch import punch
 
@@ -45,7 +45,7 @@ class Adhesion:
     """
 
     indenter: HasAbelTransform
-    """A paraboloid, sphere or cone component, or any other object with this transform."""
+    """A paraboloid, sphere or cone component, or any other object with this transform; no kinks."""
     reduced_modulus: float
     """E* = E / (1 − ν²) [Pa]."""
     tension: float
@@ -54,6 +54,7 @@ class Adhesion:
     """w [J/m²]."""
 
     def __post_init__(self) -> None:
+        without_kinks(self.indenter)
         positive(reduced_modulus=self.reduced_modulus, work_of_adhesion=self.work_of_adhesion)
         not_negative(tension=self.tension)
 

@@ -28,10 +28,10 @@ _FIRST, _LAST = -600, 600
 """Least and greatest number of a node."""
 _END = 1e-6
 """Share of the profile's radius that stays free of contact."""
-_BESIDE: Array = np.geomspace(1e-6, 1.0, 60)
-"""Nodes beyond a kink, over its radius."""
-_RISE = 1e-7
-"""Least rise of the depth between nodes."""
+_BESIDE: Array = np.geomspace(1e-6, 0.9, 60)
+"""Distances of nodes from a kink on both sides, over its radius."""
+_RISE = 1e-3
+"""Least rise of the depth from node to node, over it, for slopes that are free of round-off."""
 LEAST_DEPTH = 1e-60
 """[m]; powers of a depth at the end of the range of floats would overflow."""
 
@@ -63,14 +63,16 @@ def _radii(body: HasAbelTransform, first: int, last: int) -> Array:
     """Return the radii [m] of nodes, where the profile has not ended."""
     scale = np.exp(_STEP * np.arange(first, last))
     radius = scale / (1 + scale / body.contact_radius_limit)
-    return np.minimum(radius, (1 - _END) * body.contact_radius_limit)
+    radii: Array = np.minimum(radius, (1 - _END) * body.contact_radius_limit)
+    return radii
 
 
 @lru_cache(maxsize=64)
 def _nodes(body: HasAbelTransform, last: int) -> Array:
-    """Return the radii [m] of nodes up to one and, beyond kinks, of more."""
+    """Return the radii [m] of nodes up to one, denser beside kinks."""
     radius = _radii(body, last + _FIRST - _COUNT, last + _FIRST + 1)
-    near = np.concatenate([radius, *(kink * (1 + _BESIDE) for kink in body.kinks)])
+    beside = (kink * (1 + side * _BESIDE) for kink in body.kinks for side in (-1, 1))
+    near = np.concatenate([radius, *beside])
     return np.unique(near[(near >= radius[0]) & (near <= radius[-1])])
 
 
@@ -80,7 +82,7 @@ def _curve(body: HasAbelTransform, length: float, last: int) -> BSpline:
     from scipy.interpolate import make_interp_spline
 
     found = contacts(body, _nodes(body, last), length)
-    # Under a flat end there is no contact of less than its radius; errors of 1e-9 are no steps.
+    # Under a flat end there is no contact of less than its radius.
     touches = (found.depth > 0) & (found.force > 0)
     touches[1:] &= found.depth[1:] > (1 + _RISE) * np.maximum.accumulate(found.depth)[:-1]
     depth, force, stiffness, _, by_length = (part[touches] for part in found)

@@ -22,6 +22,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle.errors import ConfigError, shown
 
 from .panels import Panel, Points, graded, joined, points_at
 from .product_integration import IntegralKernel, clustering, collocation, weights
@@ -155,3 +156,13 @@ def influence(ratio: float, power: int) -> IntegralKernel:
 def without_negligible(ratio: float) -> float:
     """Return s/a, or exactly 0 if tension is negligible."""
     return ratio if ratio > _NEGLIGIBLE else 0.0
+
+
+def without_kinks(indenter: HasAbelTransform) -> None:
+    """Raise a ConfigError if a profile has kinks, which the panels do not resolve."""
+    if indenter.kinks:
+        raise ConfigError(
+            f"has a kink at {shown(indenter.kinks[0])} m; only its force over depth is known, as "
+            "force_curve",
+            "indenter",
+        )

@@ -15,7 +15,14 @@ from pellicle.arrays import Array
 from pellicle.errors import ConfigError, ConvergenceError
 from pellicle_plugins.closed_forms.arguments import not_negative, positive, single
 
-from .equation import LEVELS, HasAbelTransform, PanelSolution, solve, without_negligible
+from .equation import (
+    LEVELS,
+    HasAbelTransform,
+    PanelSolution,
+    solve,
+    without_kinks,
+    without_negligible,
+)
 
 TOLERANCE = 1e-10
 EDGE_TOLERANCE = 1e-6
@@ -87,8 +94,9 @@ def indent(
     """Return the contact of a rigid axisymmetric indenter for one of a [m], δ [m] or P [N].
 
     The indenter is a paraboloid, sphere or cone component, or any other object with
-    `HasAbelTransform`; E* = E / (1 − ν²) [Pa], and the tension τ₀ [N/m] may be zero.
+    `HasAbelTransform` and no kinks; E* = E / (1 − ν²) [Pa], and the tension τ₀ [N/m] may be zero.
     """
+    without_kinks(indenter)
     positive(reduced_modulus=reduced_modulus)
     not_negative(tension=tension)
     quantity, value = single(contact_radius=contact_radius, depth=depth, force=force)

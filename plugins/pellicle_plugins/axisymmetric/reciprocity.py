@@ -20,6 +20,7 @@ from __future__ import annotations
 
 from functools import cache, lru_cache
 from importlib.resources import as_file, files
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -115,7 +116,7 @@ def _moments(body: HasAbelTransform, radii: bytes) -> tuple[Array, Array]:
     ends.append(np.full_like(radius, np.pi / 2))
     integral, slope = 0.0, 0.0
     left, right, weight = rule()
-    for low, high in zip(ends[:-1], ends[1:], strict=True):
+    for low, high in pairwise(ends):
         span = (high - low)[:, None]
         # Exact at both ends: η from the rim, ψ = π/2 − η from the axis.
         eta, psi = (np.pi / 2 - high)[:, None] + span * right, low[:, None] + span * left

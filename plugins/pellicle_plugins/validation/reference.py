@@ -46,13 +46,14 @@ def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
     if (
         not isinstance(kernel, (HalfSpace, TensedMembrane))
         or not isinstance(indenter, HasAbelTransform)
+        or indenter.kinks
         or run.grid.boundary != "free"
     ):
         raise ConfigError(
             f"kernel {kernel.type_name!r} and indenter {indenter.type_name!r}"
             f" on a {run.grid.boundary} boundary have no axisymmetric solution here; it needs the "
-            "kernel half_space or tensed_membrane, an indenter with an Abel transform such as "
-            "paraboloid, sphere or cone, and a free boundary",
+            "kernel half_space or tensed_membrane, an indenter with an Abel transform and without "
+            "edges such as paraboloid, sphere or sharp cone, and a free boundary",
             "reference",
         )
     if prescribed not in _PRESCRIBED:

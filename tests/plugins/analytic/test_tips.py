@@ -1,0 +1,161 @@
+"""Bodies of revolution with an edge, and others, from the pressures of flat punches."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import pi, radians, tan
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.integrate import quad
+
+import pellicle as pl
+from pellicle_plugins.axisymmetric.equation import solve
+from pellicle_plugins.axisymmetric.master_curves import _Power
+from pellicle_plugins.axisymmetric.reciprocity import contacts
+from pellicle_plugins.indenters.of_revolution import (
+    Axisymmetric,
+    Cone,
+    FlatPunch,
+    Paraboloid,
+    Sphere,
+)
+
+Array = NDArray[np.float64]
+WORN = Sphere(radius=5e-6, flat_radius=1e-6)
+BLUNT = Cone(half_angle=radians(70), tip_radius=20e-9)
+TIPS = pytest.mark.parametrize("body", [WORN, BLUNT], ids=["worn", "blunt"])
+
+
+def curve(body: Axisymmetric, depth: Array, length: float = 0.0) -> Array:
+    """Return P/E*."""
+    return body.force_curve(depth, length).force
+
+
+@TIPS
+def test_transform_is_that_of_the_profile(body: Sphere | Cone) -> None:
+    """h(x) = −x ∫ f′(r)/√(x² − r²) dr, by x cos φ = √(x² − r²), and h′ is its slope."""
+    (kink,) = body.kinks
+
+    def slope(r: float) -> float:
+        step = 1e-5 * kink
+        ends = (body.profile(np.array(r + d), np.zeros(())) for d in (step, -step))
+        return float(np.subtract(*ends)) / (2 * step)
+
+    for x in kink * np.array([1.2, 2.0, 3.5]):
+        phi = float(np.arcsin(kink / x))
+        parts = ((0.0, phi), (phi, pi / 2))
+        h = -x * sum(quad(lambda p, x=x: slope(x * np.sin(p)), *part)[0] for part in parts)
+        assert body.abel_transform(np.array(x)) == pytest.approx(h, rel=1e-5)
+        ends = body.abel_transform(x * np.array([1 - 1e-5, 1 + 1e-5]))
+        assert body.abel_slope(np.array(x)) == pytest.approx(np.diff(ends)[0] / 2e-5 / x, rel=1e-6)
+
+
+def test_a_blunted_cone_is_that_of_briscoe() -> None:
+    """Force and depth without tension of Briscoe, Sebastian & Adams (1994, eqs 6 and 7)."""
+    radius, slope = BLUNT.tip_radius or 0.0, 1 / tan(BLUNT.half_angle)
+    b = radius * slope
+    a = b * np.geomspace(1.0, 50.0, 23)
+    root, angle = np.sqrt(a**2 - b**2), pi / 2 - np.arcsin(b / a)
+    depth = a * (slope * angle + (a - root) / radius)
+    inner = a**2 / 2 * slope * angle + a**3 / 3 / radius
+    force = 2 * (a * depth - inner + root * (b / 2 * slope + (a**2 - b**2) / 3 / radius))
+    assert curve(BLUNT, depth) == pytest.approx(force, rel=1e-6)
+
+
+def test_a_worn_sphere_is_that_of_sneddon() -> None:
+    """F = 2E*(ah(a) − ∫h dx) without tension (Sneddon 1965)."""
+    (b,) = WORN.kinks
+    for a in b * np.array([1.0003, 1.01, 1.2, 2.0, 4.0]):
+        depth = WORN.abel_transform(np.array(a))
+        # In units of b, and from an integrand without a root.
+        area, _ = quad(
+            lambda u: 2 * u * float(WORN.abel_transform(b * (1 + u**2))), 0, (a / b - 1) ** 0.5
+        )
+        force = 2 * (a * float(depth) - b * area)
+        assert curve(WORN, np.array([depth]))[0] == pytest.approx(force, rel=1e-6)
+
+
+@TIPS
+@pytest.mark.parametrize("ratio", [0.0, 1e-3, 0.3, 20.0])
+def test_far_from_the_edge_it_does_not_matter(body: Sphere | Cone, ratio: float) -> None:
+    """Shallow, a worn sphere is a punch and a blunted cone a paraboloid; deep, they are whole."""
+    (edge,) = body.kinks
+    if isinstance(body, Sphere):
+        shallow: Axisymmetric = FlatPunch(radius=edge)
+        whole: Axisymmetric = Sphere(radius=edge * 1e3)
+        deep: Axisymmetric = Sphere(radius=edge * 1e3, flat_radius=edge)
+    else:
+        shallow, whole = Paraboloid(radius=body.tip_radius or 0.0), Cone(half_angle=body.half_angle)
+        deep = body
+    depth, length = np.array([1e-3 * edge]), ratio * edge
+    if ratio or isinstance(body, Cone):
+        assert curve(body, depth, length) == pytest.approx(curve(shallow, depth, length), rel=1e-6)
+    depth = np.array([400 * edge])
+    # A blunted cone is lower by a constant.
+    assert curve(deep, depth, length) == pytest.approx(curve(whole, depth, length), rel=1e-2)
+
+
+@pytest.mark.parametrize("ratio", [1e-6, 1e-3, 0.05, 1.0, 30.0, 1e4])
+@pytest.mark.parametrize("exponent", [1, 2, 4])
+def test_any_body_solves_the_equation(exponent: int, ratio: float) -> None:
+    """Force and depth at a radius are those of the equation."""
+    body = _Power(exponent, pointed=exponent == 1)
+    force, depth = solve(body, 1.0, ratio, 1).moments()
+    found = contacts(body, np.ones(1), ratio)
+    assert found.depth[0] == pytest.approx(depth, rel=3e-9)
+    assert found.force[0] == pytest.approx(force, rel=3e-9)
+
+
+@TIPS
+@pytest.mark.parametrize("ratio", [0.0, 0.2, 5.0])
+def test_curves_rise_smoothly(body: Sphere | Cone, ratio: float) -> None:
+    """The derivatives of the force are those that are told, and the stiffness is a punch's."""
+    (edge,) = body.kinks
+    length, depth = ratio * edge, edge * np.geomspace(1e-3, 3.0, 40)
+    found = body.force_curve(depth, length)
+    up, down = (curve(body, depth * (1 + d), length) for d in (1e-4, -1e-4))
+    assert found.by_depth == pytest.approx((up - down) / 2e-4 / depth, rel=2e-5)
+    contact = body.contact_radius(depth, length)
+    assert np.all(np.diff(contact.radius) > -1e-7 * edge)
+    if length:
+        punches = [FlatPunch(radius=float(a)) for a in contact.radius]
+        stiffness = [float(curve(one, np.ones(1), length)[0]) for one in punches]
+        assert found.by_depth == pytest.approx(stiffness, rel=1e-6)
+        up, down = (curve(body, depth, length * (1 + d)) for d in (1e-4, -1e-4))
+        assert found.by_length == pytest.approx((up - down) / 2e-4 / length, rel=1e-4)
+
+
+@pytest.mark.slow
+@TIPS
+def test_the_grid_solves_the_same(body: Sphere | Cone) -> None:
+    """Under tension the force on a grid, whose error falls with its cells, goes to the curve."""
+    (edge,) = body.kinks
+    depth, length = 1.5 * edge, 0.5 * edge
+    true = float(curve(body, np.array([depth]), length)[0])
+    errors = []
+    for points in (64, 128, 256):
+        run: dict[str, Any] = {
+            "grid": {"points": points, "size": 9 * edge},
+            "kernel": {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": length / 2},
+            "indenter": body.model_dump(),
+            "loading": {"depth": depth},
+        }
+        errors.append(abs(float(pl.run(run).dataset["force"][-1]) / true - 1))
+    assert errors[-1] < 5e-3
+    assert errors[-1] < errors[0]
+
+
+@pytest.mark.parametrize(
+    ("make", "field"),
+    [
+        (lambda: pl.indenter("sphere", radius=1e-6, flat_radius=1e-6), "flat_radius"),
+        (lambda: pl.indenter("cone", half_angle=1.2, tip_radius=0.0), "tip_radius"),
+    ],
+)
+def test_what_is_no_tip_is_refused(make: Callable[[], object], field: str) -> None:
+    """The field is named."""
+    with pytest.raises(pl.ConfigError, match=field):
+        make()
