@@ -44,7 +44,7 @@ def panels(fit: Fit | ManyFits) -> dict[str, Drawing]:
     """Return what fills the figures of a fit or of many fits, and their sizes, by caption."""
     if isinstance(fit, Fit):
         return {caption: figure_of(beside) for caption, beside in charts(fit).items()}
-    found = dict[str, Drawing]()
+    found: dict[str, Drawing] = {}
     if beside := distributions(fit.rows):
         caption = "Accepted curves with closed intervals, by group; dotted, the median."
         found[caption] = figure_of(beside)

@@ -94,7 +94,7 @@ def _many(fits: ManyFits) -> list[Block]:
     read = [(text, row) for row in rows for text in row.fit.get("messages", ())]
     notes = [(text, row.name) for text, row in read if text in row.fit["notes"]]
     warnings = [(text, row.name) for text, row in read if text not in row.fit["notes"]]
-    blocks: list[Block] = [Text(line, lead=True) for line in sentences_of_population(fits)]
+    blocks: list[Block] = [Text(line, lead=True) for line in sentences_of_population(rows)]
     if failed:
         lost = f"{len(failed)} of {len(rows)} curves could not be fitted:"
         blocks.append(Notice(lost, good=False, details=by_text(failed)))
