@@ -30,10 +30,6 @@ class Step(NamedTuple):
     do: str
     why: str
 
-    def __str__(self) -> str:
-        """Return both in a line."""
-        return f"{self.do}: {self.why}"
-
 
 def steps(answer: Answer, members: Sequence[Member], config: FitConfig) -> list[Step]:
     """Return what to do next, the most urgent first: mend the fit, else measure; or nothing."""
@@ -83,7 +79,7 @@ def _of_options(answer: Answer, members: Sequence[Member], config: FitConfig) ->
     if Flaw.SPIKES in flaws:
         why = "single points lie far from their neighbours, and shift the fit"
         yield Step("look at single outlying rows, and delete faulty ones", why)
-    rows = next((member.left_out for member in members if member.left_out), None)
+    rows = next((one for member in members if (one := member.measured.left_out)), None)
     if answer.verdict is Verdict.CANNOT_TELL and rows:
         why = f"rows {rows[0]} to {rows[1]}, the retraction, may tell them apart"
         yield Step("fit with --segment both", why)
