@@ -83,9 +83,7 @@ class Rule:
 
 def rules(texts: tuple[str, ...]) -> tuple[str, ...]:
     """Return the texts of rules; it raises what `Rule` does."""
-    for text in texts:
-        Rule(text)
-    return texts
+    return tuple(Rule(text).text for text in texts)
 
 
 class Names:

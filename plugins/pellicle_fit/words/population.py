@@ -18,7 +18,6 @@ _NAMES = 10
 """Curves that would be helped alike and are named."""
 _STEPS = 6
 """Kinds of steps that are told, those that help most curves."""
-_PERCENT = f"{100 * CONFIDENCE:.0f}"
 
 
 def sentences_of_population(rows: Sequence[Row]) -> list[str]:
@@ -36,7 +35,8 @@ def sentences_of_population(rows: Sequence[Row]) -> list[str]:
     if any(row.fit.get("tension_needed") for row in rows):
         sentences.append(NOT_WEIGHED)
     calibrations = {row.fit["calibration"] for row in rows if row.is_fitted}
-    return [*sentences, *(f"intervals of {_PERCENT} %; {text}" for text in calibrations)]
+    level = f"intervals of {100 * CONFIDENCE:.0f} %"
+    return [*sentences, *(f"{level}; {text}" for text in calibrations)]
 
 
 def advice_of_population(rows: Sequence[Row]) -> list[str]:
