@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Sequence
-from pathlib import Path
 
 from pellicle.errors import first_of
 from pellicle_fit.intervals import CONFIDENCE
@@ -31,7 +30,7 @@ def sentences_of_population(rows: Sequence[Row]) -> list[str]:
         counts += f"; verdicts: {', '.join(f'{verdict} in {count}' for verdict, count in verdicts)}"
     sentences = [counts]
     if far := [row.name for row in rows if row.outlier]:
-        sentences.append(f"far from the median modulus, and counted: {_listed(far)}")
+        sentences.append(f"far from the median modulus, and counted: {listed(far, most=_NAMES)}")
     if any(row.fit.get("tension_needed") for row in rows):
         sentences.append(NOT_WEIGHED)
     calibrations = {row.fit["calibration"] for row in rows if row.is_fitted}
@@ -53,16 +52,10 @@ def advice_of_population(rows: Sequence[Row]) -> list[str]:
     lines, fitted = [], sum(row.is_fitted for row in rows)
     for do, whys in sorted(found.items(), key=lambda item: -len(item[1]))[:_STEPS]:
         first, why = next(iter(whys.items()))
-        which = f"all {fitted} curves" if len(whys) == fitted > 1 else _listed([*whys])
+        which = f"all {fitted} curves" if len(whys) == fitted > 1 else listed([*whys], most=_NAMES)
         example = "" if {*whys.values()} == {why} else f"{first}: "
         lines.append(f"{which}: {do} ({example}{why})")
     return lines
-
-
-def _listed(names: Sequence[str]) -> str:
-    """Return names of curves, without folders if they differ without."""
-    short = [Path(name).name for name in names]
-    return listed(short if len({*short}) == len(names) else names, most=_NAMES)
 
 
 def by_text(pairs: Sequence[tuple[str, str]]) -> list[str]:
