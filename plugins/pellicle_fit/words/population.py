@@ -43,18 +43,16 @@ def advice_of_population(rows: Sequence[Row]) -> list[str]:
 
     Steps of one kind differ in numbers alone.
     """
-    found: dict[str, dict[str, str]] = {}
-    kinds: dict[str, str] = {}
+    kinds: dict[str, dict[str, dict[str, str]]] = {}
     for row in rows:
         for step in row.fit.get("next", ()):
-            do = kinds.setdefault(re.sub(r"\d[\d.]*", "", step["do"]), step["do"])
-            found.setdefault(do, {})[row.name] = step["why"]
+            kinds.setdefault(re.sub(r"\d[\d.]*", "", step["do"]), {})[row.name] = step
     lines, fitted = [], sum(row.is_fitted for row in rows)
-    for do, whys in sorted(found.items(), key=lambda item: -len(item[1]))[:_STEPS]:
-        first, why = next(iter(whys.items()))
-        which = f"all {fitted} curves" if len(whys) == fitted > 1 else listed([*whys], most=_NAMES)
-        example = "" if {*whys.values()} == {why} else f"{first}: "
-        lines.append(f"{which}: {do} ({example}{why})")
+    for steps in sorted(kinds.values(), key=len, reverse=True)[:_STEPS]:
+        (first, step), *others = steps.items()
+        of = f"all {fitted} curves" if len(steps) == fitted > 1 else listed([*steps], most=_NAMES)
+        example = "" if all(one["why"] == step["why"] for _, one in others) else f"{first}: "
+        lines.append(f"{of}: {step['do']} ({example}{step['why']})")
     return lines
 
 
