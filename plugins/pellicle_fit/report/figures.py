@@ -23,7 +23,7 @@ from pellicle_fit.words.names import words_of
 
 from .contact_sheet import PAGE, sheets
 from .likelihood_map import likelihood_map
-from .population import distributions, guide, map_figure
+from .population import bars, distributions, guide, map_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,10 +44,10 @@ def panels(fit: Fit | ManyFits) -> dict[str, Drawing]:
     """Return what fills the figures of a fit or of many fits, and their sizes, by caption."""
     if isinstance(fit, Fit):
         return {caption: figure_of(beside) for caption, beside in charts(fit).items()}
-    found: dict[str, Drawing] = {}
-    if beside := distributions(fit.rows):
-        caption = "Accepted curves with closed intervals, by group; dotted, the median."
-        found[caption] = figure_of(beside)
+    of_bars = "Filled, accepted curves; hollow, rejected ones; bars to 0 or a triangle are open."
+    closed = "Accepted curves with closed intervals, by group; dotted, the median."
+    beside = {of_bars: bars(fit.rows), closed: distributions(fit.rows)}
+    found: dict[str, Drawing] = {caption: figure_of(of) for caption, of in beside.items() if of}
     for name, images in fit.maps.items():
         title = Path(name).name
         caption = f"{title}: grey where there is no accepted fit, or an interval is open."

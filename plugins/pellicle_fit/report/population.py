@@ -28,6 +28,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _DRAWN = {MODULUS: "Pa", TENSION: "N/m"}
+_BARS = 200
+"""Most curves whose intervals are drawn beside each other."""
+_OPEN_TOP = 1.1
+"""Position of an open upper end, as a multiple of the largest value drawn."""
 _BINS = 5, 40
 """Least and greatest number of bins."""
 _DECADE = 10.0
@@ -40,6 +44,36 @@ def guide(x: Sequence[float], y: Sequence[float], legend: str = "") -> Series:
     """Return a thin dotted line that guides the eye, whose numbers are not written."""
     ends = np.array(x, dtype=float), np.array(y, dtype=float)
     return Series(*ends, legend=legend, look=Look(None, 3), role="reference", written=False)
+
+
+def bars(rows: Sequence[Row]) -> list[Chart]:
+    """Return modulus and tension of each curve with their intervals, if they were fitted.
+
+    A bar with an open end reaches down to 0, or up to a triangle at the top; markers of rejected
+    curves are hollow.
+    """
+    series, axes = list[Series](), list[Axis]()
+    for name, unit in _DRAWN.items():
+        fitted = [
+            (number, row.accepted, e.value, e.low, e.high)
+            for number, row in enumerate(rows, 1)
+            if (e := row.estimates.get(name)) is not None and not e.held
+        ]
+        if not fitted:
+            continue
+        # An open end is None, which becomes NaN.
+        x, accepted, values, low, high = np.array(fitted, dtype=float).T
+        opened, panel = np.isnan(high), len(axes)
+        high[opened] = _OPEN_TOP * max(values.max(), np.nanmax([*high, 0.0]))
+        ends = np.column_stack([np.nan_to_num(low), high, np.full(x.size, np.nan)])
+        series.append(Series(np.repeat(x, 3), ends.ravel(), panel=panel))
+        for filled, of in ((True, accepted > 0), (False, accepted == 0)):
+            for marker, y, which in ((0, values, of), (2, high, of & opened)):
+                look = Look(0, None, marker, filled=filled)
+                series.append(Series(x[which], y[which], look=look, panel=panel))
+        axes.append(Axis(words(name), unit, limits=(0, None)))
+    across = Axis("curve, in the order of the table")
+    return [Chart(across, axes, series)] if axes and len(rows) <= _BARS else []
 
 
 def distributions(rows: Sequence[Row]) -> list[Chart]:

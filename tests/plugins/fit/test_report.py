@@ -17,6 +17,7 @@ from pellicle_fit.report import tables
 from pellicle_fit.report.figures import charts, panels, save_figure
 from pellicle_fit.report.likelihood_map import likelihood_map
 from pellicle_fit.report.page import save_report
+from pellicle_fit.report.population import bars
 from pellicle_fit.words.story import story
 from tests.plugins.fit.test_many import BEAD, MODULUS, RADIUS, curve
 from tests.plugins.fit.test_population import row
@@ -83,10 +84,13 @@ def test_figure_of_both_passes() -> None:
     assert {*contact.x} == {0.0}
 
 
-def test_units_of_a_table() -> None:
-    """One curve gives no other unit to the table."""
+def test_bars_and_units() -> None:
+    """Marks of rejected curves are hollow; one curve gives no other unit to the table."""
     rows = [row(f"{k}", modulus) for k, modulus in enumerate((1e3, 1.1e3, 1.2e3, 5e6))]
     judge(rows, ["reduced_modulus < 1 MPa"], None)
+    (chart,) = bars(rows)
+    marks = {one.look.filled: one.x.tolist() for one in chart.series if one.look.marker == 0}
+    assert marks == {True: [1, 2, 3], False: [4]}
     heads = [column.read()[0] for column in tables.rows(rows).columns]
     assert heads[:3] == ["curve", "verdict", "reduced modulus [kPa]"]
     assert tables.groups(rows).columns[1].values[0] == "reduced modulus [kPa]"
