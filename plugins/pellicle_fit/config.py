@@ -223,9 +223,6 @@ class FitConfig(FromFile, Calibration):
         AfterValidator(rules),
         Field(description="rules for the curves of a population, such as r_squared > 0.95"),
     ] = ()
-    accepted: InputPath | None = Field(
-        None, description="file that names the only curves that can be accepted, one on each line"
-    )
     rejected: InputPath | None = Field(
         None, description="file that names curves that are rejected, one on each line, and why"
     )

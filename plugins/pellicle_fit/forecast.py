@@ -28,8 +28,6 @@ _DEEPEST = 0.5
 """Largest depth over radius that is proposed, roughly the limit of linear elasticity."""
 _MANY = 30
 """Largest number of curves that is proposed."""
-_GAIN = 1.3
-"""Least factor by which a measurement that is proposed has a smaller bound."""
 
 
 def telling(asked: Candidate, others: Sequence[Candidate]) -> tuple[str, int]:
@@ -58,27 +56,6 @@ def telling(asked: Candidate, others: Sequence[Candidate]) -> tuple[str, int]:
             break
     count = int(np.ceil(_NEEDED / most)) if words else 1
     return (words, count) if count <= _MANY else ("", 1)
-
-
-def tightening(fit: Candidate, names: Sequence[str]) -> str:
-    """Return the measurement after which some quantities have smaller errors; empty if none has.
-
-    What counts is the greatest of their Cramér–Rao bounds, each over that of the curve alone.
-    """
-
-    def bounds(*further: Curve) -> Array:
-        objective, start = _foretold(fit, fit, *further)
-        found = zip(objective.slots, objective.deviations(start), strict=True)
-        return np.array([bound for slot, bound in found if slot.name in names])
-
-    # Two curves of one kind would bring √2.
-    now, words, most = bounds(), "", _GAIN * np.sqrt(2)
-    for kind, measurement in measurements(fit):
-        with suppress(PellicleError):
-            gain = float(np.min(now / bounds(measurement)))
-            if gain > most:
-                words, most = kind, gain
-    return words
 
 
 def measurements(fit: Candidate) -> Iterator[tuple[str, Curve]]:
@@ -114,19 +91,19 @@ def measurements(fit: Candidate) -> Iterator[tuple[str, Curve]]:
             yield words, Curve(down, unknown, other, forth, inward)
 
 
-def _foretold(truth: Candidate, guess: Candidate, *further: Curve) -> tuple[Objective, Array]:
+def _foretold(truth: Candidate, guess: Candidate, other: Curve) -> tuple[Objective, Array]:
     """Return χ² of an explanation on what another predicts, and coordinates to start from.
 
-    It predicts the first curve again and further ones, which have no noise and touch at 0.
+    It predicts the first curve again and another, which have no noise and touch at 0.
     """
     curve, known = truth.whole[0], truth.objective.known(truth.minimum.at, 0)
     means, point = curve.binned(_ROWS), known.solid.contact_point
     again = Curve(means.base - point, means.force, curve.indenter, means.time, means.moves_out)
     known = replace(known, solid=known.solid.model_copy(update={CONTACT_POINT: 0.0}))
-    curves = tuple(_predicted(known, one, curve) for one in (again, *further))
+    curves = tuple(_predicted(known, one, curve) for one in (again, other))
     # That of a mean of rows.
     noise = float(truth.objective.noise[0] * np.sqrt(_ROWS / curve.passes[0].size))
-    objective = replace(guess.objective, curves=curves, noise=(noise,) * len(curves), memory=())
+    objective = replace(guess.objective, curves=curves, noise=(noise, noise), memory=())
     values = guess.objective.values(guess.minimum.at).items()
     first = {name: value for (name, owner), value in values if not owner} | {CONTACT_POINT: 0.0}
     start = [slot.coordinate(first.get(slot.name, 0.0)) for slot in objective.slots]

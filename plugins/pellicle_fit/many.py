@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 _JOURNAL = "curves"
 _WITHOUT_EFFECT = {
     *("curves", "indenter", "per_file", "pool", "executor", "cache"),
-    *("accept", "accepted", "rejected", "group_by"),
+    *("accept", "rejected", "group_by"),
 }
 """Fields of a configuration that do not change the fit of a curve."""
 _OF_ALL = {"configuration", "versions", "date", "wall_time"}
@@ -163,7 +163,7 @@ def fit_sources(
     from .report.population import save_population
 
     directory = None if directory is None else Path(directory)
-    lists = [None if path is None else Names(path) for path in (config.accepted, config.rejected)]
+    rejected = None if config.rejected is None else Names(config.rejected)
     fits, began = ManyFits([], configuration=config.to_dict()), perf_counter()
     with nullcontext() if directory is None else locked(directory, "fits"):
         if directory is not None:
@@ -176,7 +176,7 @@ def fit_sources(
                 tasks = [task for task in made if task is not None]
                 bar.expect(len(fits.rows), len(batch) - len(tasks))
                 mapped(config.executor, work, tasks, dict, _keep, bar)
-        notes = judge(fits.rows, config.accept, *lists)
+        notes = judge(fits.rows, config.accept, rejected)
         fits.maps, of_maps = force_maps(fits.rows)
         fits.notes = [*notes, *of_maps]
         if directory is not None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from pellicle.cli import echo, print_table
 
 from .noise import Flaw
-from .population.fits import ManyFits
+from .population.fits import ManyFits, summary
 from .report import tables
 from .result import Fit
 from .words.population import advice_of_population, by_text, sentences_of_population
@@ -36,7 +36,7 @@ def print_fit(fit: Fit, *, quiet: bool, details: bool, si: bool) -> None:
 
 
 def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None, si: bool) -> None:
-    """Print a line for each curve, unless a folder has many, and for each group, and notes."""
+    """Print a line for each curve, unless a folder has many, and the medians, and notes."""
     reasons = [(row.status.partition(": ")[2], row.name) for row in fits.rows]
     for line in by_text([pair for pair in reasons if pair[0]]):
         echo(line, err=True)
@@ -48,7 +48,7 @@ def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None, si: bool)
         print_table(tables.rows(fits.rows, si=si), si=si)
     else:
         echo(f"{len(fits.rows)} curves: see {directory / 'fits.csv'}")
-    if len({row.group for row in fits.rows if row.accepted}) > 1:
+    if summary(fits.rows):
         print_table(tables.groups(fits.rows, si=si), si=si)
-    for line in [*sentences_of_population(fits), *advice_of_population(fits.rows)]:
+    for line in [*sentences_of_population(fits.rows), *advice_of_population(fits.rows)]:
         echo(line)

@@ -87,7 +87,7 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
     members = []
     for source, one, body in zip(sources, measured, bodies, strict=True):
         curve = Curve(one.position, one.force, body, one.time, one.unloading, one.stiffness)
-        members.append(Member(source.name, curve, one.messages, one.left_out, data_of(one, config)))
+        members.append(Member(source.name, curve, one, data_of(one, config)))
     model = _known(config.model, fix, ratio)
     # What is given leaves nothing to ask.
     given = [effect for effect in model if quantities(type(effect)) and not effect.open]

@@ -12,7 +12,7 @@ from pellicle.files import json_text
 from .candidate import Candidate
 from .config import FitConfig, described
 from .curve import Curve
-from .files.measurement import Note
+from .files.measurement import Measurement, Note
 from .intervals import CONFIDENCE, Estimate
 from .objective import MODULUS
 from .recipe import TENSION, Answer
@@ -31,10 +31,8 @@ class Member(NamedTuple):
     name: str
     """File, and label in it."""
     curve: Curve
-    messages: tuple[str, ...]
-    """Of reading and cleaning; each is a `Note` or a warning."""
-    left_out: tuple[int, int] | None
-    """First and last row of the retraction where the approach alone is fitted."""
+    measured: Measurement
+    """It as it was read and cleaned, with messages of both."""
     data: dict[str, Any]
     """Origin, and the part that is fitted, as JSON data."""
 
@@ -108,7 +106,7 @@ class Fit:
     @property
     def advice(self) -> str:
         """What to do next, in words; empty if nothing would help."""
-        return str(self.steps[0]) if self.steps else ""
+        return ": ".join(self.steps[0]) if self.steps else ""
 
     @property
     def agreement(self) -> str:
@@ -120,7 +118,7 @@ class Fit:
         """Warnings, and notes of what was done; those of one of several curves with its name."""
         several, found = len(self.members) > 1, []
         for member, judged in zip(self.members, self.answer.judgements, strict=True):
-            own = [*member.messages, *judged.failed_checks.values()]
+            own = [*member.measured.messages, *judged.failed_checks.values()]
             found += [type(text)(f"{member.name}: {text}") if several else text for text in own]
         return [*found, *remarks(self.answer)]
 
@@ -204,7 +202,7 @@ class Fit:
             "failed_checks": [
                 {"code": code, "message": text} for code, text in judged.failed_checks.items()
             ],
-            "messages": list(member.messages),
+            "messages": list(member.measured.messages),
             **{slot.name: vars(parameters[slot.full_name]) for slot in slots},
             "data": member.data,
         }

@@ -39,17 +39,13 @@ def read_tree(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns]
         raise StorageError(f"{path}: cannot be read as {kind} file ({reason})") from None
 
 
-def _arrays(
-    node: Mapping[str, Any], folder: str = "", above: tuple[object, ...] = ()
-) -> Iterator[tuple[str, Any]]:
+def _arrays(node: Mapping[str, Any], folder: str = "") -> Iterator[tuple[str, Any]]:
     """Yield the arrays of numbers in a folder and below by their paths."""
-    above = (*above, node)
     for name in node:
-        # A link of an HDF5 file may lead nowhere, or back.
+        # A link of an HDF5 file may lead nowhere.
         child = node.get(name)
         if isinstance(child, Mapping):
-            if isinstance(child, dict) or child not in above:
-                yield from _arrays(child, f"{folder}{name}/", above)
+            yield from _arrays(child, f"{folder}{name}/")
         elif getattr(getattr(child, "dtype", None), "kind", "") in ("f", "i", "u"):
             yield f"{folder}{name}", child
 

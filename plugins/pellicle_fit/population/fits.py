@@ -15,8 +15,6 @@ from .row import ENDS, OVER_TIED, SHOWN, Row, units
 if TYPE_CHECKING:
     import xarray as xr
 
-ALL = "all"
-"""Name of the line of all accepted curves."""
 QUARTILES = "minimum", "lower_quartile", "median", "upper_quartile", "maximum"
 _MEASURED = {"spring_constant": "N/m", "sensitivity": "m/V", "poissons_ratio": "1"}
 """Numbers in the data of a row, and their units."""
@@ -112,7 +110,7 @@ def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
     for name, whole in frame.groupby("parameter", sort=False):
         groups = whole.groupby("group", sort=False) if len(curves) > 1 else ()
         parts = [(label(group), curves[group], part) for group, part in groups]
-        for group, count, part in (*parts, (ALL, len(rows), whole)):
+        for group, count, part in (*parts, ("all", len(rows), whole)):
             values = part["value"]
             line = {"group": group, "parameter": name, "unit": part["unit"].iloc[0]}
             line |= {"curves": count, "n": len(part), "open": int(values.isna().sum())}

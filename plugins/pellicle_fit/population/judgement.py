@@ -83,9 +83,7 @@ class Rule:
 
 def rules(texts: tuple[str, ...]) -> tuple[str, ...]:
     """Return the texts of rules; it raises what `Rule` does."""
-    for text in texts:
-        Rule(text)
-    return texts
+    return tuple(Rule(text).text for text in texts)
 
 
 class Names:
@@ -120,31 +118,23 @@ def group_of(group_by: str, file: str, column: str) -> str:
     return match[1] if match else ""
 
 
-def judge(
-    rows: Sequence[Row], rules: Sequence[str], accepted: Names | None, rejected: Names | None
-) -> list[str]:
+def judge(rows: Sequence[Row], rules: Sequence[str], rejected: Names | None) -> list[str]:
     """Set ``accepted``, ``reason`` and ``outlier`` of each row, and return notes.
 
-    A curve is accepted if it was fitted, is not in the list of rejected curves, is in that of
-    accepted ones if there is one, and obeys all rules; if there are none, if a model describes it.
-    Outliers stay accepted.
+    A curve is accepted if it was fitted, is not in the list of rejected curves, and obeys all
+    rules; if there are none, if a model describes it.  Outliers stay accepted.
     """
     checks, notes = [Rule(text) for text in rules], []
-    for names in filter(None, (accepted, rejected)):
-        used = {names.entry(row) for row in rows}
-        notes += [
-            f"{names.path} names {shown(name)}, which is none of the curves"
-            for name in names.reasons
-            if name not in used
-        ]
+    if rejected:
+        used = {rejected.entry(row) for row in rows}
+        unknown = [shown(name) for name in rejected.reasons if name not in used]
+        notes += [f"{rejected.path} names {n}, which is none of the curves" for n in unknown]
     for row in rows:
         if not row.is_fitted:
             row.reason = row.status
         elif rejected and (entry := rejected.entry(row)):
             why = rejected.reasons[entry]
             row.reason = f"in {rejected.path.name}{f': {why}' if why else ''}"
-        elif accepted and not accepted.entry(row):
-            row.reason = f"not in {accepted.path.name}"
         elif not checks and row.fit["verdict"] == Verdict.UNDESCRIBED.value:
             row.reason = row.fit["comparison"].partition(": ")[2].partition("; ")[0]
         else:

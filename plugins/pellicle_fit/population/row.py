@@ -9,7 +9,7 @@ import numpy as np
 
 from pellicle import registry
 from pellicle.arrays import Array
-from pellicle_fit.effect import Effect, Fittable, Solid, quantities
+from pellicle_fit.effect import Effect, Solid, quantities
 from pellicle_fit.files.measurement import Site
 from pellicle_fit.intervals import Estimate
 
@@ -128,6 +128,5 @@ def units() -> dict[str, str]:
     effects = registry().components.get(Effect.family, {}).values()
     names = {"youngs_modulus": "Pa"}
     for component in (Solid, *(effect.component for effect in effects)):
-        if isinstance(component, type) and issubclass(component, Fittable):
-            names |= {name: quantity.unit for name, quantity in quantities(component).items()}
+        names |= {name: quantity.unit for name, quantity in quantities(component).items()}
     return {f"{name}{end}": unit for name, unit in names.items() for end in ENDS} | NUMBERS

@@ -12,7 +12,7 @@ from pellicle.components import Column, Table
 from pellicle.files import atomic_write
 from pellicle.show import Block, Code, Notice, Picture, Section, Text
 from pellicle_fit.config import FitConfig
-from pellicle_fit.population.fits import ManyFits
+from pellicle_fit.population.fits import ManyFits, summary
 from pellicle_fit.result import Fit
 from pellicle_fit.verdict import Verdict
 from pellicle_fit.words.population import advice_of_population, by_text, sentences_of_population
@@ -94,14 +94,14 @@ def _many(fits: ManyFits) -> list[Block]:
     read = [(text, row) for row in rows for text in row.fit.get("messages", ())]
     notes = [(text, row.name) for text, row in read if text in row.fit["notes"]]
     warnings = [(text, row.name) for text, row in read if text not in row.fit["notes"]]
-    blocks: list[Block] = [Text(line, lead=True) for line in sentences_of_population(fits)]
+    blocks: list[Block] = [Text(line, lead=True) for line in sentences_of_population(rows)]
     if failed:
         lost = f"{len(failed)} of {len(rows)} curves could not be fitted:"
         blocks.append(Notice(lost, good=False, details=by_text(failed)))
     if fits.notes:
         blocks.append(Notice("Population:", good=None, details=fits.notes))
     blocks += [*map(Text, advice_of_population(rows)), tables.rows(rows)]
-    if any(row.accepted for row in rows):
+    if summary(rows):
         blocks.append(tables.groups(rows))
     return [*blocks, *_told(by_text(warnings), by_text(notes))]
 

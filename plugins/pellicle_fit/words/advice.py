@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from pellicle.units import readable
-from pellicle_fit.forecast import telling, tightening
+from pellicle_fit.forecast import telling
 from pellicle_fit.noise import FEWEST, Flaw
-from pellicle_fit.objective import CONTACT_POINT, MODULUS
-from pellicle_fit.recipe import TENSION, Answer
+from pellicle_fit.objective import CONTACT_POINT
+from pellicle_fit.recipe import Answer
 from pellicle_fit.verdict import Verdict
 
-from .names import PLAUSIBLE, listed, words
+from .names import PLAUSIBLE, words
 
 if TYPE_CHECKING:
     from pellicle_fit.config import FitConfig
@@ -30,15 +30,12 @@ class Step(NamedTuple):
     do: str
     why: str
 
-    def __str__(self) -> str:
-        """Return both in a line."""
-        return f"{self.do}: {self.why}"
-
 
 def steps(answer: Answer, members: Sequence[Member], config: FitConfig) -> list[Step]:
     """Return what to do next, the most urgent first: mend the fit, else measure; or nothing."""
     first = [*_of_input(answer), *_of_options(answer, members, config)]
-    return first or [*_of_measurement(answer)]
+    is_open = answer.verdict is Verdict.CANNOT_TELL
+    return [_measurement(answer)] if is_open and not first else first
 
 
 def _of_input(answer: Answer) -> Iterator[Step]:
@@ -82,7 +79,7 @@ def _of_options(answer: Answer, members: Sequence[Member], config: FitConfig) ->
     if Flaw.SPIKES in flaws:
         why = "single points lie far from their neighbours, and shift the fit"
         yield Step("look at single outlying rows, and delete faulty ones", why)
-    rows = next((member.left_out for member in members if member.left_out), None)
+    rows = next((one for member in members if (one := member.measured.left_out)), None)
     if answer.verdict is Verdict.CANNOT_TELL and rows:
         why = f"rows {rows[0]} to {rows[1]}, the retraction, may tell them apart"
         yield Step("fit with --segment both", why)
@@ -95,21 +92,11 @@ def _of_options(answer: Answer, members: Sequence[Member], config: FitConfig) ->
         yield Step("fit with --segment approach", why)
 
 
-def _of_measurement(answer: Answer) -> Iterator[Step]:
-    """Yield what to measure, if something is open and a measurement would help."""
-    if answer.verdict is Verdict.UNDESCRIBED:
-        return
-    if answer.verdict is Verdict.CANNOT_TELL:
-        measure, count = telling(answer.asked, answer.tied_without)
-        aim = "tell these explanations apart"
-    else:
-        found = {name: answer.chosen.estimates.get(name) for name in (MODULUS, TENSION)}
-        names = [name for name, estimate in found.items() if estimate and estimate.high is None]
-        measure, count = tightening(answer.chosen, names) if names else "", 1
-        aim = f"bound {listed([*map(words, names)])}"
-    if measure:
-        curves = f"{count} curves of this kind" if count > 1 else "it"
-        yield Step(f"measure {measure}", f"{curves} would {aim}")
-    elif answer.verdict is Verdict.CANNOT_TELL:
+def _measurement(answer: Answer) -> Step:
+    """Return what to measure, so that explanations can be told apart."""
+    measure, count = telling(answer.asked, answer.tied_without)
+    if not measure:
         why = "no other speed, dwell, pass, depth or radius would tell them apart"
-        yield Step("measure with less noise", why)
+        return Step("measure with less noise", why)
+    curves = f"{count} curves of this kind" if count > 1 else "it"
+    return Step(f"measure {measure}", f"{curves} would tell these explanations apart")

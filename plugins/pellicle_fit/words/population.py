@@ -1,35 +1,26 @@
-"""What a laboratory reads of many fits: how many, their medians, and what to do next."""
+"""What a laboratory reads of many fits: how many, their verdicts, and what to do next."""
 
 from __future__ import annotations
 
 import re
 from collections import Counter
 from collections.abc import Sequence
-from pathlib import Path
 
 from pellicle.errors import first_of
 from pellicle_fit.intervals import CONFIDENCE
-from pellicle_fit.population.fits import ALL, QUARTILES, ManyFits, summary
 from pellicle_fit.population.row import Row
-from pellicle_fit.recipe import TENSION
 
-from .names import FEW, listed, unit_of, words
+from .names import listed
 from .story import NOT_WEIGHED
 
 _NAMES = 10
 """Curves that would be helped alike and are named."""
 _STEPS = 6
 """Kinds of steps that are told, those that help most curves."""
-_PERCENT = f"{100 * CONFIDENCE:.0f}"
-_MODULI = "reduced_modulus", "youngs_modulus"
 
 
-def sentences_of_population(fits: ManyFits) -> list[str]:
-    """Return how many curves were fitted and accepted, then the medians unless there are groups.
-
-    Those of groups are in their table. The modulus is Young's where Poisson's ratio is known.
-    """
-    rows, parts = fits.rows, summary(fits.rows)
+def sentences_of_population(rows: Sequence[Row]) -> list[str]:
+    """Return how many curves were fitted and accepted, their verdicts, and what to keep in mind."""
     fitted, accepted = sum(row.is_fitted for row in rows), sum(row.accepted for row in rows)
     counts = f"{fitted} of {len(rows)} curves were fitted"
     if accepted != fitted:
@@ -37,28 +28,14 @@ def sentences_of_population(fits: ManyFits) -> list[str]:
     verdicts = Counter(row.fit["verdict"] for row in rows if row.is_fitted).most_common()
     if verdicts:
         counts += f"; verdicts: {', '.join(f'{verdict} in {count}' for verdict, count in verdicts)}"
-    moduli = [part["parameter"] for part in parts if part["parameter"] in _MODULI]
-    usual = {part["parameter"] for part in parts if 2 * part["n"] >= accepted}
-    shown = {TENSION, *moduli[-1:], *usual - {*_MODULI}}
-    sentences, medians = [counts], []
-    for part in parts if {part["group"] for part in parts} == {ALL} else ():
-        if part["parameter"] in shown:
-            quartiles = [part[name] for name in QUARTILES[1:4]]
-            unit = unit_of([quartiles[1] or quartiles[2]], part["unit"])
-            low, median, high = (unit.number(value, FEW) for value in quartiles)
-            closed = part["n"] - part["open"]
-            text = f"median {unit.with_unit(median)}, quartiles {low} to {high}, "
-            of = f"of the {closed} of {part['curves']} curves that determine it"
-            text = f"{text}{of}" if closed else "determined by no curve"
-            medians.append(f"{words(part['parameter'])}: {text}")
-    if medians:
-        sentences.append("; ".join(medians))
+    sentences = [counts]
     if far := [row.name for row in rows if row.outlier]:
-        sentences.append(f"far from the median modulus, and counted: {_listed(far)}")
+        sentences.append(f"far from the median modulus, and counted: {listed(far, most=_NAMES)}")
     if any(row.fit.get("tension_needed") for row in rows):
         sentences.append(NOT_WEIGHED)
     calibrations = {row.fit["calibration"] for row in rows if row.is_fitted}
-    return [*sentences, *(f"intervals of {_PERCENT} %; {text}" for text in calibrations)]
+    level = f"intervals of {100 * CONFIDENCE:.0f} %"
+    return [*sentences, *(f"{level}; {text}" for text in calibrations)]
 
 
 def advice_of_population(rows: Sequence[Row]) -> list[str]:
@@ -66,25 +43,17 @@ def advice_of_population(rows: Sequence[Row]) -> list[str]:
 
     Steps of one kind differ in numbers alone.
     """
-    found: dict[str, dict[str, str]] = {}
-    kinds: dict[str, str] = {}
+    kinds: dict[str, dict[str, dict[str, str]]] = {}
     for row in rows:
         for step in row.fit.get("next", ()):
-            do = kinds.setdefault(re.sub(r"\d[\d.]*", "", step["do"]), step["do"])
-            found.setdefault(do, {})[row.name] = step["why"]
+            kinds.setdefault(re.sub(r"\d[\d.]*", "", step["do"]), {})[row.name] = step
     lines, fitted = [], sum(row.is_fitted for row in rows)
-    for do, whys in sorted(found.items(), key=lambda item: -len(item[1]))[:_STEPS]:
-        first, why = next(iter(whys.items()))
-        which = f"all {fitted} curves" if len(whys) == fitted > 1 else _listed([*whys])
-        example = "" if {*whys.values()} == {why} else f"{first}: "
-        lines.append(f"{which}: {do} ({example}{why})")
+    for steps in sorted(kinds.values(), key=len, reverse=True)[:_STEPS]:
+        (first, step), *others = steps.items()
+        of = f"all {fitted} curves" if len(steps) == fitted > 1 else listed([*steps], most=_NAMES)
+        example = "" if all(one["why"] == step["why"] for _, one in others) else f"{first}: "
+        lines.append(f"{of}: {step['do']} ({example}{step['why']})")
     return lines
-
-
-def _listed(names: Sequence[str]) -> str:
-    """Return names of curves, without folders if they differ without."""
-    short = [Path(name).name for name in names]
-    return listed(short if len({*short}) == len(names) else names, most=_NAMES)
 
 
 def by_text(pairs: Sequence[tuple[str, str]]) -> list[str]:

@@ -24,7 +24,7 @@ from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.files.sources import Source
 from pellicle_fit.intervals import Estimate
 from pellicle_fit.many import fit_sources
-from pellicle_fit.population.fits import ManyFits, summary
+from pellicle_fit.population.fits import summary
 from pellicle_fit.population.judgement import (
     Names,
     Rule,
@@ -99,13 +99,10 @@ def test_lists(tmp_path: Path) -> None:
     listed = tmp_path / "rejected.txt"
     listed.write_text("# a comment\na.csv, a bubble\nmap.h5:1\nold/b.csv\nzz.csv\n")
     rows = [row(n) for n in ("day/a.csv", "day/aa.csv", "map.h5:1", "map.h5:11", "x/old/b.csv")]
-    notes = judge(rows, [], None, Names(listed))
+    notes = judge(rows, [], Names(listed))
     assert [r.accepted for r in rows] == [False, True, False, True, False]
     assert rows[0].reason == "in rejected.txt: a bubble"
     assert any("'zz.csv', which is none of the curves" in note for note in notes)
-    judge(rows, [], Names(listed), None)
-    assert [r.accepted for r in rows] == [True, False, True, False, True]
-    assert rows[1].reason == "not in rejected.txt"
     with pytest.raises(StorageError, match="cannot be read as a list"):
         Names(tmp_path / "none.txt")
 
@@ -133,10 +130,10 @@ def test_outliers_are_kept() -> None:
     rows = [row(f"{k}", 1e3 * s, group="soft/1") for k, s in enumerate(spread)]
     rows += [row(f"s{k}", 1e5 * s, group="stiff") for k, s in enumerate(spread)]
     rows[3] = row("3", 1e5, group="soft/1")
-    judge(rows, [], None, None)
+    judge(rows, [], None)
     assert [r.name for r in rows if r.outlier] == ["3"]
     assert rows[3].accepted
-    assert sentences_of_population(ManyFits(rows))[-2].endswith("counted: 3")
+    assert sentences_of_population(rows)[-2].endswith("counted: 3")
     parts = {part["group"]: part for part in summary(rows)}
     assert (parts["soft/1"]["n"], parts["soft/1"]["outliers"], parts["all"]["n"]) == (20, 1, 40)
     soft = [r.estimates["reduced_modulus"].value for r in rows[:20]]
@@ -151,12 +148,10 @@ def test_open_intervals_have_no_median() -> None:
     """Their values are some of many: they are counted, and change no statistics."""
     rows = [row(f"{k}", modulus) for k, modulus in enumerate((1e3, 1.1e3, 1.2e3, 1.3e3, 1.4e3))]
     rows += [row(f"open {k}", 1e6, is_open=True) for k in range(5)]
-    judge(rows, [], None, None)
+    judge(rows, [], None)
     assert not any(r.outlier for r in rows)
     (part,) = summary(rows)
     assert [part[k] for k in ("n", "open", "median", "maximum")] == [10, 5, 1.2e3, 1.4e3]
-    _, medians, _ = sentences_of_population(ManyFits(rows))
-    assert "1.2 kPa, quartiles 1.1 to 1.3, of the 5 of 10 curves" in medians
     (part,) = summary(rows[5:])
     assert (part["n"], part["open"], np.isnan(part["median"])) == (5, 5, True)
     assert distributions(rows)[0].series[-1].x.tolist() == [1.2e3, 1.2e3]
@@ -178,7 +173,7 @@ def test_a_value_is_quoted_where_its_interval_determines_it() -> None:
 def test_nothing_is_left() -> None:
     """That no curve is accepted is said; statistics and figures then have nothing to show."""
     rows = [row("a"), row("b", None)]
-    notes = judge(rows, ["r_squared > 1"], None, None)
+    notes = judge(rows, ["r_squared > 1"], None)
     assert notes == ["none of 2 curves was accepted"]
     assert rows[1].reason == "failed: no contact"
     assert summary(rows) == []

@@ -87,7 +87,7 @@ def test_figure_of_both_passes() -> None:
 def test_bars_and_units() -> None:
     """Marks of rejected curves are hollow; one curve gives no other unit to the table."""
     rows = [row(f"{k}", modulus) for k, modulus in enumerate((1e3, 1.1e3, 1.2e3, 5e6))]
-    judge(rows, ["reduced_modulus < 1 MPa"], None, None)
+    judge(rows, ["reduced_modulus < 1 MPa"], None)
     (chart,) = bars(rows)
     marks = {one.look.filled: one.x.tolist() for one in chart.series if one.look.marker == 0}
     assert marks == {True: [1, 2, 3], False: [4]}
