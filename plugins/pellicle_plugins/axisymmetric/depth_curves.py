@@ -14,8 +14,8 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.components import ForceCurve
 
-from .equation import HasAbelTransform
-from .reciprocity import contacts
+from .equation import HasAbelTransform, kinks_of
+from .reciprocity import contacts, transform
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline
@@ -42,8 +42,7 @@ def force_curve(body: HasAbelTransform, depth: Array, length: float) -> ForceCur
     out = np.zeros((3, depth.size))
     if touching.any():
         d = np.maximum(depth[touching], LEAST_DEPTH)
-        last = int(np.searchsorted(_depths(body), d.max()))
-        curve = _curve(body, length, -(-last // _ROUND) * _ROUND)
+        curve = _curve(body, length, _last(body, float(d.max())))
         x = np.log(d)
         inside = np.clip(x, curve.t[0], curve.t[-1])
         log_force, log_stiffness, by_length = curve(inside).T
@@ -53,10 +52,20 @@ def force_curve(body: HasAbelTransform, depth: Array, length: float) -> ForceCur
     return ForceCurve(*out)
 
 
+def _last(body: HasAbelTransform, depth: float) -> int:
+    """Return the number of a node that is as deep without tension [m], and beyond kinks."""
+    radii, depths = _all(body)
+    beyond = 2 * max(kinks_of(body), default=0.0)
+    last = max(np.searchsorted(depths, depth), np.searchsorted(radii, beyond))
+    # All from the end of the profile on are one.
+    return int(min(-(-last // _ROUND) * _ROUND, np.searchsorted(radii, radii[-1])))
+
+
 @lru_cache(maxsize=64)
-def _depths(body: HasAbelTransform) -> Array:
-    """Return the depths without tension [m] of all nodes, which are least at a radius."""
-    return body.abel_transform(_radii(body, _FIRST, _LAST))
+def _all(body: HasAbelTransform) -> tuple[Array, Array]:
+    """Return the radii of all nodes and their depths without tension [m]."""
+    radii = _radii(body, _FIRST, _LAST)
+    return radii, transform(body, radii)
 
 
 def _radii(body: HasAbelTransform, first: int, last: int) -> Array:
@@ -71,7 +80,7 @@ def _radii(body: HasAbelTransform, first: int, last: int) -> Array:
 def _nodes(body: HasAbelTransform, last: int) -> Array:
     """Return the radii [m] of nodes up to one, denser beside kinks."""
     radius = _radii(body, last + _FIRST - _COUNT, last + _FIRST + 1)
-    beside = (kink * (1 + side * _BESIDE) for kink in body.kinks for side in (-1, 1))
+    beside = (kink * (1 + side * _BESIDE) for kink in kinks_of(body) for side in (-1, 1))
     near = np.concatenate([radius, *beside])
     return np.unique(near[(near >= radius[0]) & (near <= radius[-1])])
 

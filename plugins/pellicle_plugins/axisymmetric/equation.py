@@ -39,6 +39,9 @@ class HasAbelTransform(Hashable, Protocol):
 
     Without tension the depth is h(a) and the force 2 E* (a h(a) − ∫₀^a h dx) at contact radius a
     (Sneddon 1965). An indenter with this transform has a reference solution under tension too.
+
+    If slope or curvature of the profile jumps, ``kinks`` are the radii [m] where, in order, and
+    ``abel_transform(x)`` returns h(x) [m]; of other profiles h is integrated.
     """
 
     @property
@@ -49,15 +52,6 @@ class HasAbelTransform(Hashable, Protocol):
     @property
     def pointed(self) -> bool:
         """Whether the profile has a corner at its apex."""
-        ...
-
-    @property
-    def kinks(self) -> tuple[float, ...]:
-        """Radii [m], in order, at which slope or curvature of the profile jumps."""
-        ...
-
-    def abel_transform(self, x: Array) -> Array:
-        """Return h(x) [m] at positions 0 ≤ x < `contact_radius_limit` [m], of any shape."""
         ...
 
     def abel_slope(self, x: Array) -> Array:
@@ -158,11 +152,14 @@ def without_negligible(ratio: float) -> float:
     return ratio if ratio > _NEGLIGIBLE else 0.0
 
 
+def kinks_of(indenter: HasAbelTransform) -> tuple[float, ...]:
+    """Return the radii [m], in order, at which slope or curvature of a profile jumps."""
+    return getattr(indenter, "kinks", ())
+
+
 def without_kinks(indenter: HasAbelTransform) -> None:
     """Raise a ConfigError if a profile has kinks, which the panels do not resolve."""
-    if indenter.kinks:
+    if kinks := kinks_of(indenter):
         raise ConfigError(
-            f"has a kink at {shown(indenter.kinks[0])} m; only its force over depth is known, as "
-            "force_curve",
-            "indenter",
+            f"has an edge at {shown(kinks[0])} m; only its force_curve is known", "indenter"
         )

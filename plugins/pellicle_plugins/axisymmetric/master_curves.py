@@ -39,11 +39,6 @@ class _Power(NamedTuple):
     exponent: int
     contact_radius_limit: float = np.inf
     pointed: bool = False
-    kinks: tuple[float, ...] = ()
-
-    def abel_transform(self, x: Array) -> Array:
-        """Return h(x)."""
-        return np.asarray(x**self.exponent)
 
     def abel_slope(self, x: Array) -> Array:
         """Return h'(x)."""

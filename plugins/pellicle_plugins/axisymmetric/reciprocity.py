@@ -21,13 +21,13 @@ from __future__ import annotations
 from functools import cache, lru_cache
 from importlib.resources import as_file, files
 from itertools import pairwise
-from typing import NamedTuple
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
 from pellicle.arrays import Array
 
-from .equation import HasAbelTransform
+from .equation import HasAbelTransform, kinks_of
 from .stretched_spline import Interpolant, stretched_spline
 
 LENGTH_SCALE = 1e-8
@@ -41,6 +41,11 @@ ANGLES: Array = np.minimum(
 FILE = files("pellicle_plugins.axisymmetric").joinpath("punches.npz")
 _STEPS = 0.06 * np.arange(-60, 61)
 """Nodes of the quadrature before its substitution."""
+
+
+@runtime_checkable
+class _HasTransform(Protocol):
+    def abel_transform(self, x: Array) -> Array: ...
 
 
 class Contacts(NamedTuple):
@@ -110,31 +115,41 @@ def _moments(body: HasAbelTransform, radii: bytes) -> tuple[Array, Array]:
     """Return 2π ∫ mode h dx and 2π ∫ mode (h + x h′) dx/a over (0, a), of shape (n, modes)."""
     radius = np.frombuffer(radii)
     ends = [np.zeros_like(radius)]
-    for kink in body.kinks:
+    kinks = kinks_of(body)
+    for kink in kinks:
         share = np.minimum(kink / radius, 1.0)
         ends.append(np.arctan2(share, np.sqrt((1 - share) * (1 + share))))
     ends.append(np.full_like(radius, np.pi / 2))
     integral, slope = 0.0, 0.0
-    left, right, weight = rule()
+    left, right, weight = _rule()
     for low, high in pairwise(ends):
         span = (high - low)[:, None]
         # Exact at both ends: η from the rim, ψ = π/2 − η from the axis.
         eta, psi = (np.pi / 2 - high)[:, None] + span * right, low[:, None] + span * left
         x = radius[:, None] * np.sin(psi)
-        h = body.abel_transform(x)
+        h = transform(body, x)
         # Without kinks all radii have the same nodes.
-        modes = _modes()(eta.ravel() if body.kinks else eta[0])[0]
-        if body.kinks:
+        modes = _modes()(eta.ravel() if kinks else eta[0])[0]
+        if kinks:
             modes = modes.reshape(*eta.shape, -1)
-        part = "anm" if body.kinks else "nm"
+        part = "anm" if kinks else "nm"
         values = span * weight * h, span * weight * (h + x * body.abel_slope(x))
         one, other = (np.einsum(f"an,{part}->am", value, modes) for value in values)
         integral, slope = integral + one, slope + other
     return 2 * np.pi * radius[:, None] * integral, 2 * np.pi * np.asarray(slope)
 
 
+def transform(body: HasAbelTransform, x: Array) -> Array:
+    """Return h(x) [m] at positions [m] of any shape."""
+    if isinstance(body, _HasTransform):
+        return body.abel_transform(x)
+    left, _, weight = _rule()
+    slopes = body.abel_slope(np.multiply.outer(x, left))
+    return np.asarray(x * (slopes @ weight))
+
+
 @cache
-def rule() -> tuple[Array, Array, Array]:
+def _rule() -> tuple[Array, Array, Array]:
     """Return nodes in (0, 1), their distances to 1, and weights (Takahasi & Mori 1974).
 
     Singularities at either end do not matter to this double exponential rule.

@@ -98,9 +98,7 @@ class Sphere(Axisymmetric):
     type: Literal["sphere"] = "sphere"
     examples = ({"radius": "0.4 mm"}, {"radius": "0.4 mm", "flat_radius": "0.05 mm"})
     radius: Annotated[Length, Field(description="radius R [m]")]
-    flat_radius: Annotated[
-        float | None, Quantity("m", above=0), Field(description="radius b of a worn tip [m]")
-    ] = None
+    flat_radius: Length | None = Field(default=None, description="radius b of a worn tip [m]")
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -214,11 +212,9 @@ class Cone(Axisymmetric):
             title="half-angle", description="angle between axis and side [rad], or as '70 degree'"
         ),
     ]
-    tip_radius: Annotated[
-        float | None,
-        Quantity("m", above=0),
-        Field(description="radius of curvature R of a blunt tip [m]"),
-    ] = None
+    tip_radius: Length | None = Field(
+        default=None, description="radius of curvature R of a blunt tip [m]"
+    )
 
     def profile(self, x: Array, y: Array) -> Array:
         """Return −r cot α [m]; of a blunted cone −r²/2R up to b, and −(r − b/2) cot α beyond."""

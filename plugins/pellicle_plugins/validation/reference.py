@@ -16,7 +16,7 @@ from pellicle.results.derived import DERIVED, derive
 from pellicle.results.result import Result
 from pellicle.results.runs import StoredRuns
 from pellicle.variables import CORRECTED_AREA, CORRECTED_FRACTION, names_of
-from pellicle_plugins.axisymmetric.equation import HasAbelTransform
+from pellicle_plugins.axisymmetric.equation import HasAbelTransform, kinks_of
 from pellicle_plugins.axisymmetric.indentation import AxisymmetricContact, indent
 from pellicle_plugins.kernels.half_spaces import HalfSpace, TensedMembrane
 
@@ -46,7 +46,7 @@ def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
     if (
         not isinstance(kernel, (HalfSpace, TensedMembrane))
         or not isinstance(indenter, HasAbelTransform)
-        or indenter.kinks
+        or kinks_of(indenter)
         or run.grid.boundary != "free"
     ):
         raise ConfigError(

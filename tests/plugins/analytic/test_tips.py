@@ -110,6 +110,18 @@ def test_any_body_solves_the_equation(exponent: int, ratio: float) -> None:
 
 
 @TIPS
+def test_each_depth_has_a_force(body: Sphere | Cone) -> None:
+    """From far above the edge to far below it, and beyond the end of the profile, it grows."""
+    (edge,) = body.kinks
+    for depth in (1e-9, 1.0, 1e3):
+        for length in (0.0, 1e-6, 1e6):
+            at = np.geomspace(1e-3, 1.0, 20) * depth * edge
+            force = curve(body, at, length * edge)
+            assert np.all(np.isfinite(force))
+            assert np.all(np.diff(force) > 0)
+
+
+@TIPS
 @pytest.mark.parametrize("ratio", [0.0, 0.2, 5.0])
 def test_curves_rise_smoothly(body: Sphere | Cone, ratio: float) -> None:
     """The derivatives of the force are those that are told, and the stiffness is a punch's."""
