@@ -19,7 +19,7 @@ CEILINGS = {
     "notebook": 260,
     "grid": 700,
     "kernels": 900,
-    "indenters": 900,
+    "indenters": 1150,
     "loading": 1250,
     "adhesion": 1300,
     "time": 950,
