@@ -16,11 +16,11 @@ from numpy.polynomial import chebyshev
 from numpy.polynomial.legendre import legval
 
 from pellicle.arrays import Array
-from pellicle_plugins.axisymmetric import layer_curves, reciprocity
-from pellicle_plugins.axisymmetric.equation import influence
-from pellicle_plugins.axisymmetric.layer_curves import Shape
-from pellicle_plugins.axisymmetric.panels import gauss, graded
-from pellicle_plugins.axisymmetric.product_integration import clustering, collocation
+from pellicle.axisymmetric import layer_curves, reciprocity
+from pellicle.axisymmetric.equation import influence
+from pellicle.axisymmetric.layer_curves import Shape
+from pellicle.axisymmetric.panels import gauss, graded
+from pellicle.axisymmetric.product_integration import clustering, collocation
 
 SHAPES: tuple[Shape, ...] = ("smooth", "pointed", "punch")
 _ORDER, _FINEST = 12, 1e-3

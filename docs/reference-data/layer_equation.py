@@ -21,11 +21,11 @@ from numpy.polynomial.legendre import leggauss
 
 from pellicle import kernel
 from pellicle.arrays import Array
-from pellicle_plugins.axisymmetric.equation import LEVELS, influence
-from pellicle_plugins.axisymmetric.layer_curves import Shape
-from pellicle_plugins.axisymmetric.panels import Panel, Points, gauss, graded, joined, points_at
-from pellicle_plugins.axisymmetric.product_integration import clustering, collocation, weights
-from pellicle_plugins.axisymmetric.tension_kernel import primitive
+from pellicle.axisymmetric.equation import LEVELS, influence
+from pellicle.axisymmetric.layer_curves import Shape
+from pellicle.axisymmetric.panels import Panel, Points, gauss, graded, joined, points_at
+from pellicle.axisymmetric.product_integration import clustering, collocation, weights
+from pellicle.axisymmetric.tension_kernel import primitive
 
 _ENDS = np.concatenate([[0.0], np.geomspace(1e-5, 0.5, 12), np.arange(1.0, 15.0)])
 """Ends of intervals of qh; beyond the last the layer is a half-space to 1e-10."""

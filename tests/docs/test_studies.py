@@ -12,10 +12,10 @@ import xarray as xr
 from images import compliance
 from typer.testing import CliRunner
 
+from pellicle.axisymmetric.adhesive_contact import Adhesion
+from pellicle.axisymmetric.indentation import indent
 from pellicle.cli.app import app
 from pellicle.config.study import from_toml
-from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion
-from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.docs.blocks import ROOT
 

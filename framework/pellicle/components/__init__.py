@@ -40,6 +40,7 @@ from .executor import Workers as Workers
 from .indenter import ContactRadius as ContactRadius
 from .indenter import Footprint as Footprint
 from .indenter import ForceCurve as ForceCurve
+from .indenter import HasAbelSlope as HasAbelSlope
 from .indenter import HasContactRadius as HasContactRadius
 from .indenter import HasForceCurve as HasForceCurve
 from .indenter import HasLayerForceCurve as HasLayerForceCurve

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Hashable
 from typing import ClassVar, Literal, NamedTuple, Protocol, get_args, runtime_checkable
 
 import numpy as np
@@ -48,6 +49,36 @@ class Indenter(Component):
         is rotated, ``x`` and ``y`` both have shape (nx, ny). An indenter that has no profile on
         these points raises a ConfigError.
         """
+
+
+@runtime_checkable
+class HasAbelSlope(Hashable, Protocol):
+    """A smooth-edged indenter of revolution; optional for an indenter component.
+
+    For a profile f(r) ≤ 0 [m], 0 at the apex, the transform is
+
+        h(x) = −x ∫₀^x f'(r) / sqrt(x² − r²) dr   [m].
+
+    Without tension the depth is h(a) and the force 2 E* (a h(a) − ∫₀^a h dx) at contact radius a
+    (Sneddon 1965). An indenter with this transform has a reference solution under tension too.
+
+    If slope or curvature of the profile jumps, ``kinks`` are the radii [m] where, in order, and
+    ``abel_transform(x)`` returns h(x) [m]; of other profiles h is integrated.
+    """
+
+    @property
+    def contact_radius_limit(self) -> float:
+        """Upper bound of the contact radius, never attained [m]; infinite if there is none."""
+        ...
+
+    @property
+    def pointed(self) -> bool:
+        """Whether the profile has a corner at its apex."""
+        ...
+
+    def abel_slope(self, x: Array) -> Array:
+        """Return h'(x), dimensionless, at positions 0 ≤ x < `contact_radius_limit` [m]."""
+        ...
 
 
 class ForceCurve(NamedTuple):

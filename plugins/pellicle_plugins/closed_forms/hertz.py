@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike
 from scipy.special import elliprd, elliprf
 
 from pellicle.arrays import Array
-
-from .arguments import positive, single
+from pellicle.axisymmetric import positive, single
 
 
 @dataclass(frozen=True)

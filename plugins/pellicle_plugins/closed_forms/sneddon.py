@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
+from pellicle.axisymmetric import positive, single
 from pellicle.errors import ConfigError
-
-from .arguments import positive, single
 
 
 @dataclass(frozen=True)

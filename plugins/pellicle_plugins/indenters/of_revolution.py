@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
-from functools import lru_cache
 from math import inf, pi, sqrt, tan
 from typing import Annotated, ClassVar, Literal, Self
 
@@ -11,88 +9,24 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from pellicle.arrays import Array
-from pellicle.components import ContactRadius, ForceCurve, Indenter, LayerForceCurve
-from pellicle.errors import ConfigError, shown
-from pellicle.units import Length, Quantity
-from pellicle_plugins.axisymmetric import master_curves
-from pellicle_plugins.axisymmetric.depth_curves import force_curve
-from pellicle_plugins.axisymmetric.layer_curves import (
+from pellicle.axisymmetric import (
+    BodyOfRevolution,
     Profile,
     Punch,
     TensedLayer,
+    cone,
     cone_profile,
+    flat_punch,
+    paraboloid,
+    punch_radius,
     smooth_profile,
 )
-from pellicle_plugins.axisymmetric.master_curves import punch_radius
+from pellicle.components import ContactRadius, ForceCurve, Indenter, LayerForceCurve
+from pellicle.errors import ConfigError, shown
+from pellicle.units import Length, Quantity
 
 
-class Axisymmetric(Indenter):
-    """An indenter of revolution with curves of the axisymmetric equation."""
-
-    @property
-    def depth_limit(self) -> float:
-        """Depth [m] up to which the force curve holds; infinite unless the shape ends."""
-        return float("inf")
-
-    def force_curve(self, depth: Array, length: float) -> ForceCurve:
-        """Return P/E* and its partial derivatives at depths [m] and s = 2τ₀/E* [m]."""
-        return ForceCurve(*(part.copy() for part in self._curve(depth, length)))
-
-    @property
-    def kinks(self) -> tuple[float, ...]:
-        """Radii [m] at which slope or curvature of the profile jumps."""
-        return ()
-
-    def contact_radius(self, depth: Array, length: float) -> ContactRadius:
-        """Return the contact radius without adhesion at depths > 0 [m], and dk/da over E*.
-
-        The stiffness dF/dδ is that of the flat punch of the same radius.
-        """
-        return punch_radius(self._curve(depth, length).by_depth, length)
-
-    def layer_depth_limit(self, thickness: float, poissons_ratio: float) -> float:
-        """Return the depth [m] up to which the force curve holds on a bonded layer."""
-        curves = _layer_curves(self)
-        limit = curves.depth_limit(thickness, poissons_ratio) if curves else 0.0
-        return min(limit, self.depth_limit)
-
-    def layer_force_curve(
-        self, depth: Array, length: float, thickness: float, poissons_ratio: float
-    ) -> LayerForceCurve:
-        """Return P/E* and its partial derivatives on a bonded layer, 0 ≤ ν ≤ ½."""
-        curves = _layer_curves(self)
-        if curves is None:
-            raise ConfigError(f"{self.type_name}: a tip with an edge has no curve on a layer")
-        return curves.curve(depth, TensedLayer(length, thickness, poissons_ratio))
-
-    def _curve(self, depth: Array, length: float) -> ForceCurve:
-        """Return the force curve at depths of shape (n,), in arrays that calls share."""
-        depth = np.asarray(depth, dtype=float)
-        return _kept_curve(self, depth.tobytes(), depth.shape, length)
-
-    @abstractmethod
-    def _master_curve(self, depth: Array, length: float) -> ForceCurve: ...
-
-    @abstractmethod
-    def _make_layer_curves(self) -> Profile | Punch | None:
-        """Return the curves on a layer; None if there are none."""
-
-
-# A fit with adhesion asks for the force curve and the contact radius at the same depths.
-@lru_cache(maxsize=1)
-def _kept_curve(
-    indenter: Axisymmetric, depth: bytes, shape: tuple[int, ...], length: float
-) -> ForceCurve:
-    return indenter._master_curve(np.frombuffer(depth).reshape(shape), length)
-
-
-@lru_cache(maxsize=64)
-def _layer_curves(indenter: Axisymmetric) -> Profile | Punch | None:
-    # Splines are kept for each profile, which has to be the same object for equal indenters.
-    return indenter._make_layer_curves()
-
-
-class Sphere(Axisymmetric):
+class Sphere(BodyOfRevolution):
     """Sphere with its exact profile up to its equator, or with a tip that is worn flat."""
 
     type: Literal["sphere"] = "sphere"
@@ -136,15 +70,13 @@ class Sphere(Axisymmetric):
         """Depth R at which the equator is reached [m]; less of a worn tip."""
         return self.radius * self._height
 
-    pointed: ClassVar[bool] = False
-
     @property
     def contact_radius_limit(self) -> float:
         """R [m]: no contact is wider than the equator."""
         return self.radius
 
     def abel_transform(self, x: Array) -> Array:
-        """Return h(x) = x artanh √((x² − b²)/(R² − b²)) [m]; see `HasAbelTransform`."""
+        """Return h(x) = x artanh √((x² − b²)/(R² − b²)) [m]; see `HasAbelSlope`."""
         return np.asarray(x * np.arctanh(self._share(x)))
 
     def abel_slope(self, x: Array) -> Array:
@@ -158,15 +90,12 @@ class Sphere(Axisymmetric):
         root = np.sqrt(np.maximum(x - flat, 0.0)) * np.sqrt(x + flat)
         return np.asarray(root / self.radius / self._height)
 
-    def _master_curve(self, depth: Array, length: float) -> ForceCurve:
-        return force_curve(self, depth, length)
-
-    def _make_layer_curves(self) -> Profile | None:
+    def _layer_curves(self) -> Profile | None:
         smooth = self.flat_radius is None
         return smooth_profile(self.radius, self.radius, self.abel_slope) if smooth else None
 
 
-class Paraboloid(Axisymmetric):
+class Paraboloid(BodyOfRevolution):
     """Paraboloid of revolution, as in the theory of Hertz: the shallow limit of a sphere."""
 
     type: Literal["paraboloid"] = "paraboloid"
@@ -178,21 +107,18 @@ class Paraboloid(Axisymmetric):
         # 2R of the largest double would be infinite and the paraboloid flat.
         return -(x**2 + y**2) / 2 / self.radius
 
-    contact_radius_limit: ClassVar[float] = inf
-    pointed: ClassVar[bool] = False
-
     def abel_transform(self, x: Array) -> Array:
-        """Return h(x) = x²/R [m] for contact radii x [m]; see `HasAbelTransform`."""
+        """Return h(x) = x²/R [m] for contact radii x [m]; see `HasAbelSlope`."""
         return x**2 / self.radius
 
     def abel_slope(self, x: Array) -> Array:
         """Return h'(x) = 2x/R for contact radii x [m]."""
         return 2 * x / self.radius
 
-    def _master_curve(self, depth: Array, length: float) -> ForceCurve:
-        return master_curves.paraboloid(self.radius, depth, length)
+    def _half_space_curve(self, depth: Array, length: float) -> ForceCurve:
+        return paraboloid(self.radius, depth, length)
 
-    def _make_layer_curves(self) -> Profile:
+    def _layer_curves(self) -> Profile:
         return smooth_profile(self.radius, inf, self.abel_slope)
 
     def whole_shape(self) -> Sphere:
@@ -200,7 +126,7 @@ class Paraboloid(Axisymmetric):
         return Sphere(radius=self.radius)
 
 
-class Cone(Axisymmetric):
+class Cone(BodyOfRevolution):
     """Cone with its tip down, sharp or blunted by a paraboloid that goes over into it smoothly."""
 
     type: Literal["cone"] = "cone"
@@ -227,8 +153,6 @@ class Cone(Axisymmetric):
     def _blunt(self) -> float:
         """Radius b = R cot α [m] at which the tip goes over into the cone; 0 if it is sharp."""
         return (self.tip_radius or 0.0) / tan(self.half_angle)
-
-    contact_radius_limit: ClassVar[float] = inf
 
     @property
     def pointed(self) -> bool:
@@ -261,16 +185,16 @@ class Cone(Axisymmetric):
         tip = (x - root) / self.tip_radius
         return np.asarray(times * tip + np.arccos(self._blunt / beyond) / tan(self.half_angle))
 
-    def _master_curve(self, depth: Array, length: float) -> ForceCurve:
+    def _half_space_curve(self, depth: Array, length: float) -> ForceCurve:
         if self.tip_radius is None:
-            return master_curves.cone(self.half_angle, depth, length)
-        return force_curve(self, depth, length)
+            return cone(self.half_angle, depth, length)
+        return super()._half_space_curve(depth, length)
 
-    def _make_layer_curves(self) -> Profile | None:
+    def _layer_curves(self) -> Profile | None:
         return cone_profile(self.half_angle) if self.tip_radius is None else None
 
 
-class FlatPunch(Axisymmetric):
+class FlatPunch(Indenter):
     """Flat-ended circular cylinder of the cells whose centres lie under it."""
 
     type: Literal["flat_punch"] = "flat_punch"
@@ -281,8 +205,22 @@ class FlatPunch(Axisymmetric):
         """Return 0 under the punch and −inf beside it [m]."""
         return np.where(x**2 + y**2 <= self.radius**2, 0.0, -np.inf)
 
-    def _master_curve(self, depth: Array, length: float) -> ForceCurve:
-        return master_curves.flat_punch(self.radius, depth, length)
+    depth_limit: ClassVar[float] = inf
 
-    def _make_layer_curves(self) -> Punch:
-        return Punch(self.radius)
+    def force_curve(self, depth: Array, length: float) -> ForceCurve:
+        """Return P/E* and its partial derivatives at depths [m] and s = 2τ₀/E* [m]."""
+        return flat_punch(self.radius, depth, length)
+
+    def contact_radius(self, depth: Array, length: float) -> ContactRadius:
+        """Return the radius at depths > 0 [m], and dk/da over E*."""
+        return punch_radius(self.force_curve(depth, length).by_depth, length)
+
+    def layer_depth_limit(self, thickness: float, poissons_ratio: float) -> float:
+        """Return the depth [m] up to which the force curve holds on a bonded layer."""
+        return Punch(self.radius).depth_limit(thickness, poissons_ratio)
+
+    def layer_force_curve(
+        self, depth: Array, length: float, thickness: float, poissons_ratio: float
+    ) -> LayerForceCurve:
+        """Return P/E* and its partial derivatives on a bonded layer, 0 ≤ ν ≤ ½."""
+        return Punch(self.radius).curve(depth, TensedLayer(length, thickness, poissons_ratio))

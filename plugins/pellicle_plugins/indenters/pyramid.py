@@ -56,7 +56,7 @@ class Pyramid(Indenter):
         azimuth = np.abs((np.arctan2(y, x) + part) % (2 * part) - part)
         radius = np.hypot(x, y)
         if self.tip_radius is None:
-            return -self.slope * radius * np.cos(azimuth)
+            return np.asarray(-self.slope * radius * np.cos(azimuth))
         round_ = self.tip_radius * self.slope
         along, across = radius * np.cos(azimuth - part), radius * np.sin(azimuth - part)
         # w is the point of the polygon that is next to x/Rc; its corners are the normals.
@@ -65,4 +65,4 @@ class Pyramid(Indenter):
             np.maximum(across / round_, -sin(part)),
         )
         lift = side * along + corner * across
-        return -self.slope * (lift - round_ / 2 * (side**2 + corner**2))
+        return np.asarray(-self.slope * (lift - round_ / 2 * (side**2 + corner**2)))

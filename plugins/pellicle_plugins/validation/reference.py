@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pellicle import Run
-from pellicle.components import Runs
+from pellicle.axisymmetric import AxisymmetricContact, indent, kinks_of
+from pellicle.components import HasAbelSlope, Runs
 from pellicle.errors import ConfigError
 from pellicle.results.derived import DERIVED, derive
 from pellicle.results.result import Result
 from pellicle.results.runs import StoredRuns
 from pellicle.variables import CORRECTED_AREA, CORRECTED_FRACTION, names_of
-from pellicle_plugins.axisymmetric.equation import HasAbelTransform, kinks_of
-from pellicle_plugins.axisymmetric.indentation import AxisymmetricContact, indent
 from pellicle_plugins.kernels.half_spaces import HalfSpace, TensedMembrane
 
 if TYPE_CHECKING:
@@ -45,7 +44,7 @@ def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
         )
     if (
         not isinstance(kernel, (HalfSpace, TensedMembrane))
-        or not isinstance(indenter, HasAbelTransform)
+        or not isinstance(indenter, HasAbelSlope)
         or kinks_of(indenter)
         or run.grid.boundary != "free"
     ):

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from pellicle.axisymmetric.adhesive_contact import Adhesion, punch_pull_off
+from pellicle.axisymmetric.indentation import indent
+from pellicle.axisymmetric.radius_curves import radius_curves
+from pellicle.axisymmetric.tensed_punch import punch
+from pellicle.components import HasAbelSlope
 from pellicle.errors import ConfigError
-from pellicle_plugins.axisymmetric.adhesive_contact import Adhesion, punch_pull_off
-from pellicle_plugins.axisymmetric.equation import HasAbelTransform
-from pellicle_plugins.axisymmetric.indentation import indent
-from pellicle_plugins.axisymmetric.radius_curves import radius_curves
-from pellicle_plugins.axisymmetric.tensed_punch import punch
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid, Sphere
 
 DATA = Path(__file__).parents[2] / "data" / "jkr_tension.csv"
@@ -23,7 +23,7 @@ PARABOLOID = Paraboloid(radius=1.0)
 
 
 def adhesion(
-    length: float, work: float = 1.0, modulus: float = 1.0, indenter: HasAbelTransform = PARABOLOID
+    length: float, work: float = 1.0, modulus: float = 1.0, indenter: HasAbelSlope = PARABOLOID
 ) -> Adhesion:
     """Return the adhesive contact at an elastocapillary length s and a work w over E*."""
     return Adhesion(indenter, modulus, length * modulus / 2, work * modulus)
@@ -105,7 +105,7 @@ def test_stiffness_slope_is_the_line_load_at_the_rim(length: float) -> None:
         pytest.param(Cone(half_angle=1.4), marks=pytest.mark.slow),
     ],
 )
-def test_curves_between_nodes_are_solutions(indenter: HasAbelTransform) -> None:
+def test_curves_between_nodes_are_solutions(indenter: HasAbelSlope) -> None:
     """Interpolated force and depth are those of the equation, and dF₁/dδ₁ is k."""
     xi = np.log([0.31])
     curves = radius_curves(indenter, 0.5, xi)

@@ -8,10 +8,10 @@ import pytest
 from numpy.typing import NDArray
 
 import pellicle as pl
+from pellicle.axisymmetric import reciprocity
+from pellicle.axisymmetric.indentation import indent
+from pellicle.axisymmetric.tensed_punch import punch
 from pellicle.components import HasForceCurve
-from pellicle_plugins.axisymmetric import reciprocity
-from pellicle_plugins.axisymmetric.indentation import indent
-from pellicle_plugins.axisymmetric.tensed_punch import punch
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid, Sphere
 
 Array = NDArray[np.float64]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import pi, radians, tan
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from scipy.integrate import quad
 
 import pellicle as pl
-from pellicle_plugins.axisymmetric.equation import solve
-from pellicle_plugins.axisymmetric.master_curves import _Power
-from pellicle_plugins.axisymmetric.reciprocity import contacts
+from pellicle.axisymmetric import BodyOfRevolution
+from pellicle.axisymmetric.equation import solve
+from pellicle.axisymmetric.master_curves import _Power
+from pellicle.axisymmetric.reciprocity import contacts
 from pellicle_plugins.indenters.of_revolution import (
-    Axisymmetric,
     Cone,
     FlatPunch,
     Paraboloid,
@@ -24,12 +24,13 @@ from pellicle_plugins.indenters.of_revolution import (
 )
 
 Array = NDArray[np.float64]
+Tip = BodyOfRevolution | FlatPunch
 WORN = Sphere(radius=5e-6, flat_radius=1e-6)
 BLUNT = Cone(half_angle=radians(70), tip_radius=20e-9)
 TIPS = pytest.mark.parametrize("body", [WORN, BLUNT], ids=["worn", "blunt"])
 
 
-def curve(body: Axisymmetric, depth: Array, length: float = 0.0) -> Array:
+def curve(body: Tip, depth: Array, length: float = 0.0) -> Array:
     """Return P/E*."""
     return body.force_curve(depth, length).force
 
@@ -84,9 +85,9 @@ def test_far_from_the_edge_it_does_not_matter(body: Sphere | Cone, ratio: float)
     """Shallow, a worn sphere is a punch and a blunted cone a paraboloid; deep, they are whole."""
     (edge,) = body.kinks
     if isinstance(body, Sphere):
-        shallow: Axisymmetric = FlatPunch(radius=edge)
-        whole: Axisymmetric = Sphere(radius=edge * 1e3)
-        deep: Axisymmetric = Sphere(radius=edge * 1e3, flat_radius=edge)
+        shallow: Tip = FlatPunch(radius=edge)
+        whole: Tip = Sphere(radius=edge * 1e3)
+        deep: Tip = Sphere(radius=edge * 1e3, flat_radius=edge)
     else:
         shallow, whole = Paraboloid(radius=body.tip_radius or 0.0), Cone(half_angle=body.half_angle)
         deep = body
@@ -107,6 +108,39 @@ def test_any_body_solves_the_equation(exponent: int, ratio: float) -> None:
     found = contacts(body, np.ones(1), ratio)
     assert found.depth[0] == pytest.approx(depth, rel=3e-9)
     assert found.force[0] == pytest.approx(force, rel=3e-9)
+
+
+class Quartic(BodyOfRevolution):
+    """Stranger's body f = −r⁴/L³ with L = 10 µm, h′ = (32/3) x³/L³."""
+
+    type: Literal["quartic"] = "quartic"
+
+    def profile(self, x: Array, y: Array) -> Array:
+        """Return −r⁴/L³ [m]."""
+        return -((x**2 + y**2) ** 2) / 1e-15
+
+    def abel_slope(self, x: Array) -> Array:
+        """Return h'(x)."""
+        return 32 / 3 * x**3 / 1e-15
+
+
+def test_a_stranger_s_body_needs_its_slope_alone() -> None:
+    """δ = 8a⁴/3L³ and F = 64E*a⁵/15L³ (Sneddon 1965), and a contact radius."""
+    a = 1e-6 * np.array([0.5, 1.0, 3.0])
+    depth = 8 / 3 * a**4 / 1e-15
+    assert curve(Quartic(), depth) == pytest.approx(64 / 15 * a**5 / 1e-15, rel=1e-6)
+    assert Quartic().contact_radius(depth, 0.0).radius == pytest.approx(a, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_a_stranger_s_body_is_fitted() -> None:
+    """With its rivals, adhesion among them."""
+    random, position = np.random.default_rng(5), np.linspace(-0.3e-6, 1e-6, 200)
+    force = 2e3 * curve(Quartic(), position, 3e-6)
+    force += 3e-3 * force.max() * random.standard_normal(force.size)
+    fit = pl.fit(position + 2e-6, force, indenter=Quartic())
+    assert frozenset({"adhesion"}) in {one.types for one in fit.answer.explanations}
+    assert (fit.reduced_modulus.low or 0) < 2e3 < (fit.reduced_modulus.high or np.inf)
 
 
 @TIPS

@@ -11,14 +11,14 @@ import pytest
 from typer.testing import CliRunner
 
 import pellicle as pl
+from pellicle.axisymmetric.indentation import indent
 from pellicle.cli.app import app
+from pellicle.components import HasAbelSlope
 from pellicle_check.advice import advise
-from pellicle_plugins.axisymmetric.equation import HasAbelTransform
-from pellicle_plugins.axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid
 
 MODULUS, DEPTH = 1e4, 2e-6
-SHAPES: dict[str, tuple[dict[str, Any], HasAbelTransform]] = {
+SHAPES: dict[str, tuple[dict[str, Any], HasAbelSlope]] = {
     "paraboloid": ({"type": "paraboloid", "radius": 1e-4}, Paraboloid(radius=1e-4)),
     "cone": ({"type": "cone", "half_angle": 1.4}, Cone(half_angle=1.4)),
 }

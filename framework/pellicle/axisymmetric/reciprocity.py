@@ -26,8 +26,9 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle.components import HasAbelSlope
 
-from .equation import HasAbelTransform, kinks_of
+from .equation import kinks_of
 from .stretched_spline import Interpolant, stretched_spline
 
 LENGTH_SCALE = 1e-8
@@ -38,7 +39,7 @@ ANGLES: Array = np.minimum(
     ANGLE_SCALE * np.expm1(np.linspace(0.0, np.log1p(np.pi / 2 / ANGLE_SCALE), 201)), np.pi / 2
 )
 """Nodes η of the table."""
-FILE = files("pellicle_plugins.axisymmetric").joinpath("punches.npz")
+FILE = files("pellicle.axisymmetric").joinpath("punches.npz")
 _STEPS = 0.06 * np.arange(-60, 61)
 """Nodes of the quadrature before its substitution."""
 
@@ -63,7 +64,7 @@ class Contacts(NamedTuple):
     """∂(F/E*)/∂s at a given depth [m]."""
 
 
-def contacts(body: HasAbelTransform, radius: Array, length: float) -> Contacts:
+def contacts(body: HasAbelSlope, radius: Array, length: float) -> Contacts:
     """Return the contacts of radii [m], of shape (n,), for s = ``length`` [m]."""
     integral, slope = _moments(body, radius.tobytes())
     ratio = length / radius
@@ -111,7 +112,7 @@ def _modes() -> Interpolant:
 
 # Those of one body serve at each tension.
 @lru_cache(maxsize=256)
-def _moments(body: HasAbelTransform, radii: bytes) -> tuple[Array, Array]:
+def _moments(body: HasAbelSlope, radii: bytes) -> tuple[Array, Array]:
     """Return 2π ∫ mode h dx and 2π ∫ mode (h + x h′) dx/a over (0, a), of shape (n, modes)."""
     radius = np.frombuffer(radii)
     ends = [np.zeros_like(radius)]
@@ -139,7 +140,7 @@ def _moments(body: HasAbelTransform, radii: bytes) -> tuple[Array, Array]:
     return 2 * np.pi * radius[:, None] * integral, 2 * np.pi * np.asarray(slope)
 
 
-def transform(body: HasAbelTransform, x: Array) -> Array:
+def transform(body: HasAbelSlope, x: Array) -> Array:
     """Return h(x) [m] at positions [m] of any shape."""
     if isinstance(body, _HasTransform):
         return body.abel_transform(x)

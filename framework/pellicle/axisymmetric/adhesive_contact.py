@@ -23,10 +23,11 @@ from numpy.typing import ArrayLike
 
 from pellicle.analysis import AdhesiveContact
 from pellicle.arrays import Array
+from pellicle.components import HasAbelSlope
 from pellicle.errors import ConfigError
-from pellicle_plugins.closed_forms.arguments import not_negative, positive
 
-from .equation import HasAbelTransform, without_kinks
+from .arguments import not_negative, positive
+from .equation import without_kinks
 from .radius_curves import RadiusCurves, radius_at, radius_curves, xi_at
 from .tensed_punch import punch
 
@@ -44,7 +45,7 @@ class Adhesion:
     first order: the force at a fixed depth.
     """
 
-    indenter: HasAbelTransform
+    indenter: HasAbelSlope
     """A paraboloid, sphere or cone component, or any other object with this transform; no kinks."""
     reduced_modulus: float
     """E* = E / (1 − ν²) [Pa]."""

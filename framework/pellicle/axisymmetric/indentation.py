@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
+from pellicle.components import HasAbelSlope
 from pellicle.errors import ConfigError, ConvergenceError
-from pellicle_plugins.closed_forms.arguments import not_negative, positive, single
 
+from .arguments import not_negative, positive, single
 from .equation import (
     LEVELS,
-    HasAbelTransform,
     PanelSolution,
     solve,
     without_kinks,
@@ -60,7 +60,7 @@ class AxisymmetricContact:
 
 
 def _contact(
-    indenter: HasAbelTransform, reduced_modulus: float, tension: float, a: float
+    indenter: HasAbelSlope, reduced_modulus: float, tension: float, a: float
 ) -> AxisymmetricContact:
     ratio = without_negligible(2 * tension / reduced_modulus / a)
     change = np.array([np.inf])
@@ -83,7 +83,7 @@ def _contact(
 
 
 def indent(
-    indenter: HasAbelTransform,
+    indenter: HasAbelSlope,
     reduced_modulus: float,
     tension: float,
     *,
@@ -94,7 +94,7 @@ def indent(
     """Return the contact of a rigid axisymmetric indenter for one of a [m], δ [m] or P [N].
 
     The indenter is a paraboloid, sphere or cone component, or any other object with
-    `HasAbelTransform` and no kinks; E* = E / (1 − ν²) [Pa], and the tension τ₀ [N/m] may be zero.
+    `HasAbelSlope` and no kinks; E* = E / (1 − ν²) [Pa], and the tension τ₀ [N/m] may be zero.
     """
     without_kinks(indenter)
     positive(reduced_modulus=reduced_modulus)
@@ -112,7 +112,7 @@ def indent(
     return _contact(indenter, reduced_modulus, tension, a)
 
 
-def _radius(indenter: HasAbelTransform, s: float, quantity: str, target: float) -> float:
+def _radius(indenter: HasAbelSlope, s: float, quantity: str, target: float) -> float:
     """Return the contact radius [m] for a depth [m], or for a force over E* [m²]."""
     is_depth, limit = quantity == "depth", indenter.contact_radius_limit
 

@@ -3,7 +3,7 @@
 The Abel transform reduces the contact to ∫_{−a}^{a} φ(t) K(x − t) dt = E* (δ − h(x)),
 K(z) = ∫₀^∞ cos(qz) / (1 + s q) dq, s = 2τ₀/E*, with P = π ∫ φ and φ(±a) = 0 (after Kim &
 Gouldstone 2008 and Long et al. 2017).  Here h is not the profile f but, as in
-``HasAbelTransform``, h(x) = −x ∫₀^x f'(r) / sqrt(x² − r²) dr.  The derivative of the
+``HasAbelSlope``, h(x) = −x ∫₀^x f'(r) / sqrt(x² − r²) dr.  The derivative of the
 equation in x, with χ = −φ', does not contain the depth:
 
     ∫₀^a χ(t) [K(x − t) − K(x + t)] dt = E* h'(x),
@@ -15,49 +15,17 @@ first equation at x = 0.
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle.components import HasAbelSlope
 from pellicle.errors import ConfigError, shown
 
 from .panels import Panel, Points, graded, joined, points_at
 from .product_integration import IntegralKernel, clustering, collocation, weights
 from .tension_kernel import auxiliary_g, primitive
-
-
-@runtime_checkable
-class HasAbelTransform(Hashable, Protocol):
-    """A smooth-edged indenter of revolution; optional for an indenter component.
-
-    For a profile f(r) ≤ 0 [m], 0 at the apex, the transform is
-
-        h(x) = −x ∫₀^x f'(r) / sqrt(x² − r²) dr   [m].
-
-    Without tension the depth is h(a) and the force 2 E* (a h(a) − ∫₀^a h dx) at contact radius a
-    (Sneddon 1965). An indenter with this transform has a reference solution under tension too.
-
-    If slope or curvature of the profile jumps, ``kinks`` are the radii [m] where, in order, and
-    ``abel_transform(x)`` returns h(x) [m]; of other profiles h is integrated.
-    """
-
-    @property
-    def contact_radius_limit(self) -> float:
-        """Upper bound of the contact radius, never attained [m]; infinite if there is none."""
-        ...
-
-    @property
-    def pointed(self) -> bool:
-        """Whether the profile has a corner at its apex."""
-        ...
-
-    def abel_slope(self, x: Array) -> Array:
-        """Return h'(x), dimensionless, at positions 0 ≤ x < `contact_radius_limit` [m]."""
-        ...
-
 
 LEVELS = ((12, 1e-3), (16, 3e-4), (22, 1e-4))
 """Gauss points per panel, and size of the finest panel over that of the edge layer."""
@@ -112,7 +80,7 @@ class PanelSolution:
         return out
 
 
-def solve(indenter: HasAbelTransform, a: float, ratio: float, level: int) -> PanelSolution:
+def solve(indenter: HasAbelSlope, a: float, ratio: float, level: int) -> PanelSolution:
     """Solve for a contact radius a [m], s/a = ratio (zero included), on a mesh level."""
     order, finest = LEVELS[level]
     # At a smooth apex χ ~ t; at a corner χ ~ 1/t under tension and is finite without.
@@ -152,12 +120,12 @@ def without_negligible(ratio: float) -> float:
     return ratio if ratio > _NEGLIGIBLE else 0.0
 
 
-def kinks_of(indenter: HasAbelTransform) -> tuple[float, ...]:
+def kinks_of(indenter: HasAbelSlope) -> tuple[float, ...]:
     """Return the radii [m], in order, at which slope or curvature of a profile jumps."""
     return getattr(indenter, "kinks", ())
 
 
-def without_kinks(indenter: HasAbelTransform) -> None:
+def without_kinks(indenter: HasAbelSlope) -> None:
     """Raise a ConfigError if a profile has kinks, which the panels do not resolve."""
     if kinks := kinks_of(indenter):
         raise ConfigError(

@@ -16,9 +16,10 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from pellicle.arrays import Array
+from pellicle.components import HasAbelSlope
 from pellicle.errors import ConvergenceError
 
-from .equation import HasAbelTransform, solve, without_negligible
+from .equation import solve, without_negligible
 from .tensed_punch import unit_forces
 
 _PANEL = 2.0
@@ -52,20 +53,20 @@ class RadiusCurves(NamedTuple):
     """d² log k / dξ²."""
 
 
-def radius_at(indenter: HasAbelTransform, xi: Array) -> Array:
+def radius_at(indenter: HasAbelSlope, xi: Array) -> Array:
     """Return the contact radius [m] at ξ, of any shape."""
     scale = np.exp(xi)
     radius: Array = scale / (1 + scale / indenter.contact_radius_limit)
     return radius
 
 
-def xi_at(indenter: HasAbelTransform, radius: Array) -> Array:
+def xi_at(indenter: HasAbelSlope, radius: Array) -> Array:
     """Return ξ at a contact radius [m] below the end of the profile, of any shape."""
     xi: Array = np.log(radius) - np.log1p(-radius / indenter.contact_radius_limit)
     return xi
 
 
-def radius_curves(indenter: HasAbelTransform, length: float, xi: Array) -> RadiusCurves:
+def radius_curves(indenter: HasAbelSlope, length: float, xi: Array) -> RadiusCurves:
     """Return the contact without adhesion at ξ, of shape (n,), for s = ``length`` [m]."""
     index = np.floor(xi / _PANEL).astype(int)
     values = np.empty((3, 3, xi.size))
@@ -92,7 +93,7 @@ def radius_curves(indenter: HasAbelTransform, length: float, xi: Array) -> Radiu
 
 
 @lru_cache(maxsize=128)
-def _series(indenter: HasAbelTransform, length: float, panel: int) -> Array:
+def _series(indenter: HasAbelSlope, length: float, panel: int) -> Array:
     """Return the Chebyshev coefficients of log F₁/E*, log δ₁ and log k/E*, shape (n, 3)."""
     nodes = chebyshev.chebpts1(_NODES)
     radii = radius_at(indenter, _PANEL * (panel + (nodes + 1) / 2)).tolist()
@@ -110,7 +111,7 @@ def _series(indenter: HasAbelTransform, length: float, panel: int) -> Array:
 
 
 def _solved(
-    indenter: HasAbelTransform, length: float, radius: float, level: int
+    indenter: HasAbelSlope, length: float, radius: float, level: int
 ) -> tuple[float, float, float]:
     """Return F₁/E* [m²], δ₁ [m] and k/E* [m] at a radius [m], on a mesh level."""
     ratio = without_negligible(length / radius)

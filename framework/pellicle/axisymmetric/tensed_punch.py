@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from pellicle.errors import ConvergenceError
-from pellicle_plugins.closed_forms.arguments import not_negative, positive, single
 
+from .arguments import not_negative, positive, single
 from .equation import LEVELS, influence, without_negligible
 from .panels import gauss, graded, joined
 from .product_integration import clustering, collocation

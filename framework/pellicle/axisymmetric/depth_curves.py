@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.components import ForceCurve
+from pellicle.components import ForceCurve, HasAbelSlope
 
-from .equation import HasAbelTransform, kinks_of
+from .equation import kinks_of
 from .reciprocity import contacts, transform
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ LEAST_DEPTH = 1e-60
 """[m]; powers of a depth at the end of the range of floats would overflow."""
 
 
-def force_curve(body: HasAbelTransform, depth: Array, length: float) -> ForceCurve:
+def force_curve(body: HasAbelSlope, depth: Array, length: float) -> ForceCurve:
     """Return P/E* and its derivatives at depths [m], of shape (n,), for s = ``length`` [m]."""
     touching = depth > 0
     out = np.zeros((3, depth.size))
@@ -52,7 +52,7 @@ def force_curve(body: HasAbelTransform, depth: Array, length: float) -> ForceCur
     return ForceCurve(*out)
 
 
-def _last(body: HasAbelTransform, depth: float) -> int:
+def _last(body: HasAbelSlope, depth: float) -> int:
     """Return the number of a node that is as deep without tension [m], and beyond kinks."""
     radii, depths = _all(body)
     beyond = 2 * max(kinks_of(body), default=0.0)
@@ -62,13 +62,13 @@ def _last(body: HasAbelTransform, depth: float) -> int:
 
 
 @lru_cache(maxsize=64)
-def _all(body: HasAbelTransform) -> tuple[Array, Array]:
+def _all(body: HasAbelSlope) -> tuple[Array, Array]:
     """Return the radii of all nodes and their depths without tension [m]."""
     radii = _radii(body, _FIRST, _LAST)
     return radii, transform(body, radii)
 
 
-def _radii(body: HasAbelTransform, first: int, last: int) -> Array:
+def _radii(body: HasAbelSlope, first: int, last: int) -> Array:
     """Return the radii [m] of nodes, where the profile has not ended."""
     scale = np.exp(_STEP * np.arange(first, last))
     radius = scale / (1 + scale / body.contact_radius_limit)
@@ -77,7 +77,7 @@ def _radii(body: HasAbelTransform, first: int, last: int) -> Array:
 
 
 @lru_cache(maxsize=64)
-def _nodes(body: HasAbelTransform, last: int) -> Array:
+def _nodes(body: HasAbelSlope, last: int) -> Array:
     """Return the radii [m] of nodes up to one, denser beside kinks."""
     radius = _radii(body, last + _FIRST - _COUNT, last + _FIRST + 1)
     beside = (kink * (1 + side * _BESIDE) for kink in kinks_of(body) for side in (-1, 1))
@@ -86,7 +86,7 @@ def _nodes(body: HasAbelTransform, last: int) -> Array:
 
 
 @lru_cache(maxsize=64)
-def _curve(body: HasAbelTransform, length: float, last: int) -> BSpline:
+def _curve(body: HasAbelSlope, length: float, last: int) -> BSpline:
     """Return log(P/E*), log(k/E*) and ∂ log P/∂s over log δ up to a node and beyond."""
     from scipy.interpolate import make_interp_spline
 

@@ -52,7 +52,7 @@ HALF_SPACE_LENGTHS: Array = HALF_SPACE_SCALE * np.expm1(np.arange(0.0, 23.1, 0.1
 """Nodes s/a."""
 _FILLED = 0.8
 """Largest contact radius over the end of the profile."""
-FILE = files("pellicle_plugins.axisymmetric").joinpath("layer_curves.npz")
+FILE = files("pellicle.axisymmetric").joinpath("layer_curves.npz")
 Shape = Literal["smooth", "pointed", "punch"]
 """An indenter of revolution with a smooth apex, with a corner there, or with a flat end."""
 
