@@ -2,7 +2,7 @@
 
 A layer of thickness h has the compliance 2 L(qh) / (E* q (1 + s q L(qh))), s = 2τ₀/E*, where L is
 the ratio of its compliance without tension (Hayes et al. 1972) to that of a half-space.  So its
-equation is that of ``axisymmetric.equation`` or, for a flat punch, ``tensed_punch``, with a smooth
+equation is that of ``axisymmetric.equation`` or, for a flat punch, ``reciprocity``, with a smooth
 part of the kernel more, whose transform
 
     L/(1 + s q L) − 1/(1 + s q) = (L − 1) / ((1 + s q L)(1 + s q))

@@ -13,7 +13,7 @@ where that force is greatest (Barber 1974), so that, with ′ = ∂/∂a at a gi
 
 k and the shape of φ, over s/a and η = arccos(x/a), come from a table: the shape is a sum of some
 twenty products of a function of each, a singular value decomposition of solutions
-(``docs/reference-data/curve_tables.py``).  Force and depth have relative errors below 1e-9.
+(``docs/reference-data/curve_tables.py``).  Force and depth have relative errors below 2e-9.
 """
 
 from __future__ import annotations

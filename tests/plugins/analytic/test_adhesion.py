@@ -5,6 +5,7 @@ from collections.abc import Callable
 from math import inf, pi, radians, sqrt, tan
 from pathlib import Path
 
+import curve_tables
 import numpy as np
 import pytest
 
@@ -93,8 +94,11 @@ def test_stiffness_slope_is_the_line_load_at_the_rim(length: float) -> None:
     a = 0.7
     curves = radius_curves(PARABOLOID, length, np.log([a]))
     slope = curves.stiffness[0] / a * curves.stiffness_slope[0]
-    ring = punch(a, 1.0, length / 2, depth=1.0).ring_force
+    log, pressure = curve_tables.punch(length / a)
+    # φ sin η at the rim, times π² a for a depth of 1.
+    ring = pi**2 * a * 2 * np.exp(log) * pressure[0]
     assert slope == pytest.approx(ring**2 / (pi * a * length), rel=3e-8)
+    assert punch(a, 1.0, length / 2, depth=1.0).ring_force == pytest.approx(ring, rel=1e-8)
 
 
 @pytest.mark.parametrize(
@@ -110,8 +114,8 @@ def test_curves_between_nodes_are_solutions(indenter: HasAbelSlope) -> None:
     xi = np.log([0.31])
     curves = radius_curves(indenter, 0.5, xi)
     hard = indent(indenter, 1.0, 0.25, contact_radius=float(curves.radius[0]))
-    assert curves.force[0] == pytest.approx(hard.force, rel=1e-10)
-    assert curves.depth[0] == pytest.approx(hard.depth, rel=1e-10)
+    assert curves.force[0] == pytest.approx(hard.force, rel=2e-9)
+    assert curves.depth[0] == pytest.approx(hard.depth, rel=2e-9)
     rates = curves.force * curves.force_slope, curves.depth * curves.depth_slope
     assert rates[0][0] / rates[1][0] == pytest.approx(curves.stiffness[0], rel=1e-8)
 
