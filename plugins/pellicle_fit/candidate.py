@@ -16,10 +16,8 @@ from .intervals import Estimate
 from .noise import Flaw, Judged, judged
 from .objective import MODULUS, Minimum, Objective
 
-ROWS = 250
+ROWS = 400
 """Means that stand for the rows of each pass, where the force has no jumps."""
-_CORRECTIONS = 2
-"""How often means are corrected by the explanation that is fitted to them."""
 Types = frozenset[str]
 """Types of a set of effects."""
 NONE: Types = frozenset()
@@ -76,29 +74,6 @@ class Candidate:
     def forces(self) -> list[Array]:
         """Return the force [N] at all rows of each curve."""
         return self.of_rows.forces(self.minimum.at)
-
-    def refined(self) -> Candidate:
-        """Return the same at the least χ² of all rows, from means that lack nothing of it.
-
-        A mean of a curved force is not the force at the mean position: what the explanation itself
-        has in excess there is taken out of the measured means.
-        """
-        fit = self
-        for _ in range(_CORRECTIONS):
-            objective, at = fit.objective, fit.minimum.at
-            rows, means = fit.forces(), objective.forces(at)
-            curves = [*fit.whole]
-            parts = zip(fit.whole, objective.curves, rows, means, strict=True)
-            for i, (whole, curve, force, mean) in enumerate(parts):
-                if curve.counts is None:
-                    continue
-                left = replace(whole, force=whole.force - force, stiffness=None)
-                measured = mean + left.binned(ROWS).force
-                tip = curve.base - (measured / curve.stiffness if curve.stiffness else 0.0)
-                curves[i] = replace(curve, force=measured, position=tip)
-            objective = replace(objective, curves=tuple(curves))
-            fit = replace(fit, objective=objective, minimum=objective.minimise(at))
-        return fit
 
     def relaxed_for(self, time: float) -> Candidate:
         """Return the same with the modulus after another time of loading [s]."""

@@ -122,13 +122,34 @@ class Curve:
         """Square root of the rows that each row stands for, by which residuals are multiplied."""
         return np.ones_like(self.force) if self.counts is None else np.sqrt(self.counts)
 
+    def _groups(self, bins: int) -> list[NDArray[np.intp]]:
+        """Return groups of neighbouring rows of each pass, at most ``bins`` for each.
+
+        They are even in rows and in the root of the force, of most tips nearly the depth: a long
+        path may touch in its last hundredth.
+        """
+        found = []
+        for rows in self.passes:
+            if rows.size <= bins:
+                found += [*rows[:, None]]
+                continue
+            inward = rows[::-1] if self.moves_out[rows[0]] else rows
+            rise = np.maximum.accumulate(self.smoothed[inward])
+            share = (rise - rise[0]) / (float(np.ptp(rise)) or 1.0)
+            along = np.arange(rows.size) / rows.size + np.sqrt(share)
+            ends = np.unique(np.searchsorted(along, np.arange(1, bins) * (2 / bins)))
+            found += sorted(
+                (np.sort(part) for part in np.split(inward, ends) if part.size), key=min
+            )
+        return found
+
     def binned(self, bins: int) -> Curve:
-        """Return the means of neighbours on each pass, at most ``bins`` of them.
+        """Return means of neighbouring rows, at most ``bins`` for each pass.
 
         Over so short a way a force without jumps is straight: but for a constant, χ² of the rows is
         that of the means, weighted by their number.
         """
-        groups = [g for rows in self.passes for g in np.array_split(rows, min(bins, rows.size))]
+        groups = self._groups(bins)
         if len(groups) == self.force.size:
             return self
         order, counts = np.concatenate(groups), np.array([group.size for group in groups])

@@ -98,12 +98,14 @@ def _foretold(truth: Candidate, guess: Candidate, other: Curve) -> tuple[Objecti
     """
     curve, known = truth.whole[0], truth.objective.known(truth.minimum.at, 0)
     means, point = curve.binned(_ROWS), known.solid.contact_point
-    again = Curve(means.base - point, means.force, curve.indenter, means.time, means.moves_out)
+    again = replace(means, position=means.base - point, stiffness=None)
+    # Each row of a forecast stands for as many as the curve has.
+    counts = np.full(other.position.size, curve.passes[0].size / _ROWS)
     known = replace(known, solid=known.solid.model_copy(update={CONTACT_POINT: 0.0}))
-    curves = tuple(_predicted(known, one, curve) for one in (again, other))
-    # That of a mean of rows.
-    noise = float(truth.objective.noise[0] * np.sqrt(_ROWS / curve.passes[0].size))
-    objective = replace(guess.objective, curves=curves, noise=(noise, noise), memory=())
+    pair = again, replace(other, counts=counts)
+    curves = tuple(_predicted(known, one, curve) for one in pair)
+    noise = truth.objective.noise[:1] * 2
+    objective = replace(guess.objective, curves=curves, noise=noise, memory=())
     values = guess.objective.values(guess.minimum.at).items()
     first = {name: value for (name, owner), value in values if not owner} | {CONTACT_POINT: 0.0}
     start = [slot.coordinate(first.get(slot.name, 0.0)) for slot in objective.slots]

@@ -217,7 +217,6 @@ def with_estimates(
     fit: Candidate, threshold: float, extra: Sequence[Effect], names: Sequence[str]
 ) -> Candidate:
     """Return an explanation with the estimates of some of its quantities, or of all."""
-    fit = fit.refined()
     objective, minimum = fit.objective, fit.minimum
     accuracy = max(
         objective.known(minimum.at, i).accuracy(curve) * curve.largest / noise
