@@ -24,8 +24,8 @@ _STEP = 0.1
 """Distance of nodes in ξ = log(a / (1 − a/L)), where L is the end of the profile."""
 _COUNT, _ROUND = 160, 8
 """Nodes of a curve, and of how many the number of the last is a multiple."""
-_FIRST, _LAST = -600, 600
-"""Least and greatest number of a node."""
+_FIRST, _LAST = -600, 200
+"""Least and greatest number of a node: steep bodies would overflow beyond."""
 _END = 1e-6
 """Share of the profile's radius that stays free of contact."""
 _BESIDE: Array = np.geomspace(1e-6, 0.9, 60)

@@ -26,7 +26,7 @@ from pellicle.arrays import Array
 from pellicle.components import ForceCurve, LayerForceCurve
 
 from . import master_curves
-from .master_curves import LEAST_DEPTH
+from .depth_curves import LEAST_DEPTH
 from .stretched_spline import Interpolant, stretched_spline
 
 if TYPE_CHECKING:

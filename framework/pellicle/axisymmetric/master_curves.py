@@ -21,6 +21,7 @@ import numpy as np
 from pellicle.arrays import Array, Mask
 from pellicle.components import ContactRadius, ForceCurve
 
+from .depth_curves import LEAST_DEPTH
 from .reciprocity import contacts, punch_stiffness
 from .stretched_spline import Interpolant, stretched_spline
 
@@ -29,8 +30,6 @@ _LENGTHS: Array = SCALE * np.expm1(np.arange(0.15, 23.1, 0.15))
 """s over the contact radius at the nodes."""
 _PUNCH_RADII: tuple[float, float] = 1e-3, 1e8
 """Least and largest radius of a punch over s at which its stiffness is inverted."""
-LEAST_DEPTH = 1e-60
-"""[m]; powers of a depth at the end of the range of floats would overflow."""
 
 
 class _Power(NamedTuple):
@@ -59,16 +58,11 @@ def _one_variable(exponent: int) -> Interpolant:
 def paraboloid(radius: float, depth: Array, length: float) -> ForceCurve:
     """Return P/E* under a paraboloid of R = ``radius`` [m] at s = ``length`` [m]."""
     touching, d = _touching(depth)
-    return _spread(touching, *_paraboloid(radius, d, length))
-
-
-def _paraboloid(radius: float, d: Array, length: float) -> ForceCurve:
-    """Return P/E* under a paraboloid at depths > 0 [m]."""
     root = np.sqrt(d * radius)
     x = _ratio(length, root)
     log, rate = _one_variable(2)(x)
     force = 4 / 3 * np.sqrt(radius) * d**1.5 * np.exp(log)
-    return ForceCurve(force, force / d * (1.5 - rate * x / 2), force * rate / root)
+    return _spread(touching, force, force / d * (1.5 - rate * x / 2), force * rate / root)
 
 
 def cone(half_angle: float, depth: Array, length: float) -> ForceCurve:
