@@ -111,7 +111,8 @@ def groups(of: Sequence[Row], *, si: bool = False) -> Table:
         low, median, high = (unit.number(part[name]) for name in QUARTILES[1:4])
         counts = f"{part['n']} of {part['curves']}", str(part["open"]), str(part["outliers"])
         named = part["group"], f"{words(part['parameter'])} [{unit.unit}]"
-        cells.append((*named, *counts, median, f"{low} to {high}"))
+        ends = (median, f"{low} to {high}") if part["open"] < part["n"] else ("not determined", "")
+        cells.append((*named, *counts, *ends))
     heads = "group", "parameter", "accepted", "open", "outliers", "median", "quartiles"
     return Table.of_rows(heads, cells, "The accepted curves.")
 
