@@ -155,7 +155,7 @@ def test_open_intervals_have_no_median() -> None:
     assert [part[k] for k in ("n", "open", "median", "maximum")] == [10, 5, 1.2e3, 1.4e3]
     (part,) = summary(rows[5:])
     assert (part["n"], part["open"], np.isnan(part["median"])) == (5, 5, True)
-    assert groups(rows[5:]).columns[-2].values == ["not determined"]
+    assert groups(rows[5:]).columns[-2].values == ("not determined",)
     assert distributions(rows)[0].series[-1].x.tolist() == [1.2e3, 1.2e3]
 
 
