@@ -134,8 +134,10 @@ class Curve:
                 found += [*rows[:, None]]
                 continue
             inward = rows[::-1] if self.moves_out[rows[0]] else rows
-            rise = np.maximum.accumulate(self.smoothed[inward])
-            share = (rise - rise[0]) / (float(np.ptp(rise)) or 1.0)
+            force = self.smoothed[inward]
+            # It grows before the largest force and, where a pass ends with a fall, after it.
+            way = np.maximum.accumulate(force) - np.maximum.accumulate(force[::-1])[::-1]
+            share = (way - way[0]) / (float(np.ptp(way)) or 1.0)
             along = np.arange(rows.size) / rows.size + np.sqrt(share)
             ends = np.unique(np.searchsorted(along, np.arange(1, bins) * (2 / bins)))
             found += sorted(
