@@ -28,12 +28,11 @@ from pellicle.errors import ConfigError
 
 from .arguments import not_negative, positive
 from .equation import without_kinks
-from .radius_curves import RadiusCurves, radius_at, radius_curves, xi_at
+from .radius_curves import END, RadiusCurves, radius_at, radius_curves, xi_at
+from .reciprocity import punch_slope
 from .tensed_punch import punch
 
 _STEP = 0.5
-_END = 1e-6
-"""Share of the profile's radius that stays free of contact."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +120,7 @@ class Adhesion:
     def _last(self) -> float:
         """The largest ξ."""
         limit = self.indenter.contact_radius_limit
-        return inf if limit == inf else float(xi_at(self.indenter, np.array(limit * (1 - _END))))
+        return inf if limit == inf else float(xi_at(self.indenter, np.array(limit * (1 - END))))
 
     def _guess(self) -> float:
         """Return ξ near pull-off: the indenter is as steep at the rim as adhesion lifts it."""
@@ -178,10 +177,8 @@ def punch_pull_off(
     """
     positive(work_of_adhesion=work_of_adhesion)
     contact = punch(radius, reduced_modulus, tension, depth=1.0)
-    slope = 2 * reduced_modulus
-    if contact.ring_force:
-        # The line load N at the rim has the energy release rate N² / 2τ₀.
-        slope = contact.ring_force**2 / (2 * pi * radius * tension)
+    ratio = np.array([2 * tension / reduced_modulus / radius])
+    slope = reduced_modulus * float(punch_slope(ratio)[0])
     retraction = sqrt(4 * pi * radius * work_of_adhesion / slope)
     return AdhesiveContact(
         np.array(radius), np.array(-retraction), np.array(-contact.force * retraction)

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pellicle.arrays import Array
+from pellicle.arrays import Array, Mask
 from pellicle.components import ForceCurve, HasAbelSlope
 
 from .equation import kinks_of
+from .radius_curves import END, radius_at
 from .reciprocity import contacts, transform
 
 if TYPE_CHECKING:
@@ -26,8 +27,6 @@ _COUNT, _ROUND = 160, 8
 """Nodes of a curve, and of how many the number of the last is a multiple."""
 _FIRST, _LAST = -600, 200
 """Least and greatest number of a node: steep bodies would overflow beyond."""
-_END = 1e-6
-"""Share of the profile's radius that stays free of contact."""
 _BESIDE: Array = np.geomspace(1e-6, 0.9, 60)
 """Distances of nodes from a kink on both sides, over its radius."""
 _RISE = 1e-3
@@ -38,17 +37,26 @@ LEAST_DEPTH = 1e-60
 
 def force_curve(body: HasAbelSlope, depth: Array, length: float) -> ForceCurve:
     """Return P/E* and its derivatives at depths [m], of shape (n,), for s = ``length`` [m]."""
-    touching = depth > 0
-    out = np.zeros((3, depth.size))
-    if touching.any():
-        d = np.maximum(depth[touching], LEAST_DEPTH)
-        curve = _curve(body, length, _last(body, float(d.max())))
-        x = np.log(d)
-        inside = np.clip(x, curve.t[0], curve.t[-1])
-        log_force, log_stiffness, by_length = curve(inside).T
-        power = np.exp(log_stiffness + inside - log_force)
-        force = np.exp(log_force + power * (x - inside))
-        out[:, touching] = force, force * power / d, force * by_length
+    touches, d = touching(depth)
+    curve = _curve(body, length, _last(body, float(d.max(initial=LEAST_DEPTH))))
+    x = np.log(d)
+    inside = np.clip(x, curve.t[0], curve.t[-1])
+    log_force, log_stiffness, by_length = curve(inside).T
+    power = np.exp(log_stiffness + inside - log_force)
+    force = np.exp(log_force + power * (x - inside))
+    return spread(touches, force, force * power / d, force * by_length)
+
+
+def touching(depth: Array) -> tuple[Mask, Array]:
+    """Return where there is contact, and the depths there."""
+    touches = depth > 0
+    return touches, np.maximum(depth[touches], LEAST_DEPTH)
+
+
+def spread(touches: Mask, *values: Array) -> ForceCurve:
+    """Return values known in contact as a curve that is 0 elsewhere."""
+    out = np.zeros((3, touches.size))
+    out[:, touches] = values
     return ForceCurve(*out)
 
 
@@ -70,9 +78,8 @@ def _all(body: HasAbelSlope) -> tuple[Array, Array]:
 
 def _radii(body: HasAbelSlope, first: int, last: int) -> Array:
     """Return the radii [m] of nodes, where the profile has not ended."""
-    scale = np.exp(_STEP * np.arange(first, last))
-    radius = scale / (1 + scale / body.contact_radius_limit)
-    radii: Array = np.minimum(radius, (1 - _END) * body.contact_radius_limit)
+    radius = radius_at(body, _STEP * np.arange(first, last, dtype=np.float64))
+    radii: Array = np.minimum(radius, (1 - END) * body.contact_radius_limit)
     return radii
 
 

@@ -26,7 +26,7 @@ from pellicle.arrays import Array
 from pellicle.components import ForceCurve, LayerForceCurve
 
 from . import master_curves
-from .depth_curves import LEAST_DEPTH
+from .depth_curves import touching
 from .stretched_spline import Interpolant, stretched_spline
 
 if TYPE_CHECKING:
@@ -96,8 +96,7 @@ class Profile:
     def curve(self, depth: Array, layer: TensedLayer) -> LayerForceCurve:
         """Return P/E* and its derivatives at depths [m] of shape (n,), 0 without contact."""
         change, rates, last = _splines(self, layer)
-        touching = depth > 0
-        d = np.maximum(depth[touching], LEAST_DEPTH)
+        touches, d = touching(depth)
         x, x_rate = self.stretched(d, layer.thickness)
         inside = np.minimum(x, last)
         slope = change(inside, 1)
@@ -106,7 +105,7 @@ class Profile:
         force = base.force * factor
         by_length, by_thickness = (rates(inside) + rates(inside, 1) * (x - inside)[:, None]).T
         out = np.zeros((4, depth.size))
-        out[:, touching] = (
+        out[:, touches] = (
             force,
             base.by_depth * factor + force * slope * x_rate,
             base.by_length * factor + force * by_length,

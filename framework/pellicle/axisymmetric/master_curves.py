@@ -18,11 +18,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pellicle.arrays import Array, Mask
+from pellicle.arrays import Array
 from pellicle.components import ContactRadius, ForceCurve
 
-from .depth_curves import LEAST_DEPTH
-from .reciprocity import contacts, punch_stiffness
+from .depth_curves import spread, touching
+from .reciprocity import contacts, punch_slope, punch_stiffness
 from .stretched_spline import Interpolant, stretched_spline
 
 SCALE = 1e-3
@@ -57,31 +57,31 @@ def _one_variable(exponent: int) -> Interpolant:
 
 def paraboloid(radius: float, depth: Array, length: float) -> ForceCurve:
     """Return P/E* under a paraboloid of R = ``radius`` [m] at s = ``length`` [m]."""
-    touching, d = _touching(depth)
+    touches, d = touching(depth)
     root = np.sqrt(d * radius)
     x = _ratio(length, root)
     log, rate = _one_variable(2)(x)
     force = 4 / 3 * np.sqrt(radius) * d**1.5 * np.exp(log)
-    return _spread(touching, force, force / d * (1.5 - rate * x / 2), force * rate / root)
+    return spread(touches, force, force / d * (1.5 - rate * x / 2), force * rate / root)
 
 
 def cone(half_angle: float, depth: Array, length: float) -> ForceCurve:
     """Return P/E* under a cone of α = ``half_angle`` [rad] at s = ``length`` [m]."""
-    touching, d = _touching(depth)
+    touches, d = touching(depth)
     radius = 2 / np.pi * np.tan(half_angle) * d
     x = _ratio(length, radius)
     log, rate = _one_variable(1)(x)
     force = radius * d * np.exp(log)
-    return _spread(touching, force, force / d * (2 - rate * x), force * rate / radius)
+    return spread(touches, force, force / d * (2 - rate * x), force * rate / radius)
 
 
 def flat_punch(radius: float, depth: Array, length: float) -> ForceCurve:
     """Return P/E* under a flat punch of a = ``radius`` [m] at s = ``length`` [m]."""
-    touching, d = _touching(depth)
+    touches, d = touching(depth)
     log, rate = punch_stiffness(np.array([length / radius]))
     stiffness = 2 * radius * np.exp(log)
     force = stiffness * d
-    return _spread(touching, force, np.full_like(d, stiffness[0]), force * rate / radius)
+    return spread(touches, force, np.full_like(d, stiffness[0]), force * rate / radius)
 
 
 def punch_radius(stiffness: Array, length: float) -> ContactRadius:
@@ -93,9 +93,7 @@ def punch_radius(stiffness: Array, length: float) -> ContactRadius:
     # Beyond the last node tension changes nothing.
     radius = np.where(size < last, length * np.exp(inverse(np.clip(size, first, last))), 0.0)
     radius = np.where(size < last, radius, stiffness / 2)
-    ratio = length / radius
-    log, rate = punch_stiffness(ratio)
-    return ContactRadius(radius, 2 * np.exp(log) * (1 - ratio * rate))
+    return ContactRadius(radius, punch_slope(length / radius))
 
 
 @cache
@@ -116,16 +114,3 @@ def _ratio(length: float, sizes: Array) -> Array:
     """
     ratio: Array = length / sizes if length else np.zeros(1)
     return ratio
-
-
-def _touching(depth: Array) -> tuple[Mask, Array]:
-    """Return where there is contact, and the depths there."""
-    touching = depth > 0
-    return touching, np.maximum(depth[touching], LEAST_DEPTH)
-
-
-def _spread(touching: Mask, *values: Array) -> ForceCurve:
-    """Return values known in contact as a curve that is 0 elsewhere."""
-    out = np.zeros((3, touching.size))
-    out[:, touching] = values
-    return ForceCurve(*out)

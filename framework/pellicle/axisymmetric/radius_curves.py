@@ -24,6 +24,8 @@ from .reciprocity import contacts
 _PANEL = 2.0
 _NODES = 14
 TOLERANCE = 1e-9
+END = 1e-6
+"""Share of the profile's radius that stays free of contact."""
 
 
 class RadiusCurves(NamedTuple):

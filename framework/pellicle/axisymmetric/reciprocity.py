@@ -18,10 +18,11 @@ twenty products of a function of each, a singular value decomposition of solutio
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache, lru_cache
 from importlib.resources import as_file, files
 from itertools import pairwise
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -42,11 +43,6 @@ ANGLES: Array = np.minimum(
 FILE = files("pellicle.axisymmetric").joinpath("punches.npz")
 _STEPS = 0.06 * np.arange(-60, 61)
 """Nodes of the quadrature before its substitution."""
-
-
-@runtime_checkable
-class _HasTransform(Protocol):
-    def abel_transform(self, x: Array) -> Array: ...
 
 
 class Contacts(NamedTuple):
@@ -84,6 +80,12 @@ def contacts(body: HasAbelSlope, radius: Array, length: float) -> Contacts:
 def punch_stiffness(ratio: Array) -> tuple[Array, Array]:
     """Return log(k/2E*a) of flat punches at s/a = ratio, of shape (n,), and its derivative."""
     return _stiffness()(ratio)
+
+
+def punch_slope(ratio: Array) -> Array:
+    """Return dk/da over E* of flat punches at s/a = ratio, of shape (n,)."""
+    log, rate = punch_stiffness(ratio)
+    return np.asarray(2 * np.exp(log) * (1 - ratio * rate))
 
 
 @cache
@@ -142,8 +144,9 @@ def _moments(body: HasAbelSlope, radii: bytes) -> tuple[Array, Array]:
 
 def transform(body: HasAbelSlope, x: Array) -> Array:
     """Return h(x) [m] at positions [m] of any shape."""
-    if isinstance(body, _HasTransform):
-        return body.abel_transform(x)
+    own: Callable[[Array], Array] | None = getattr(body, "abel_transform", None)
+    if own is not None:
+        return own(x)
     left, _, weight = _rule()
     slopes = body.abel_slope(np.multiply.outer(x, left))
     return np.asarray(x * (slopes @ weight))

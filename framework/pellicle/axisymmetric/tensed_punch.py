@@ -8,7 +8,7 @@ from math import exp, pi, sqrt
 import numpy as np
 
 from .arguments import not_negative, positive, single
-from .reciprocity import punch_stiffness
+from .reciprocity import punch_slope, punch_stiffness
 
 
 @dataclass(frozen=True)
@@ -42,9 +42,9 @@ def punch(
     positive(radius=radius, reduced_modulus=reduced_modulus)
     not_negative(tension=tension)
     quantity, value = single(depth=depth, force=force)
-    ratio = 2 * tension / reduced_modulus / radius
-    log, rate = (float(part[0]) for part in punch_stiffness(np.array([ratio])))
-    slope = 2 * reduced_modulus * exp(log)
-    stiffness, ring = radius * slope, sqrt(2 * pi * radius * tension * slope * (1 - ratio * rate))
+    ratio = np.array([2 * tension / reduced_modulus / radius])
+    log, slope = float(punch_stiffness(ratio)[0][0]), reduced_modulus * float(punch_slope(ratio)[0])
+    stiffness = 2 * reduced_modulus * radius * exp(log)
+    ring = sqrt(2 * pi * radius * tension * slope)
     depth = value if quantity == "depth" else value / stiffness
     return TensedPunch(radius, depth, stiffness * depth, ring * depth)
