@@ -47,6 +47,17 @@ def force_curve(body: HasAbelSlope, depth: Array, length: float) -> ForceCurve:
     return spread(touches, force, force * power / d, force * by_length)
 
 
+def stretched(
+    body: HasAbelSlope, width: float, height: float, depth: Array, length: float
+) -> ForceCurve:
+    """Return P/E* of a body stretched by ``width`` along radii and by ``height`` along the axis.
+
+    All bodies that are stretched copies of one share its contacts.
+    """
+    force, by_depth, by_length = force_curve(body, depth / height, length / width)
+    return ForceCurve(width * height * force, width * by_depth, height * by_length)
+
+
 def touching(depth: Array) -> tuple[Mask, Array]:
     """Return where there is contact, and the depths there."""
     touches = depth > 0
@@ -103,4 +114,4 @@ def _curve(body: HasAbelSlope, length: float, last: int) -> BSpline:
     touches[1:] &= found.depth[1:] > (1 + _RISE) * np.maximum.accumulate(found.depth)[:-1]
     depth, force, stiffness, _, by_length = (part[touches] for part in found)
     values = np.column_stack([np.log(force), np.log(stiffness), by_length / force])
-    return make_interp_spline(np.log(depth), values, 3)
+    return make_interp_spline(np.log(depth), values, 5)

@@ -9,14 +9,12 @@ from pellicle_fit.effect import Bends, Contact, Curve
 
 
 class Shape(Bends):
-    """Another shape in place of the indenter; a tension can make up for it in any one curve."""
+    """Another shape in place of the indenter."""
 
     rank: ClassVar[int] = 1
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
-        """Refuse a set with a tension, and a tip that is not round."""
-        if "tension" in beside:
-            return "a tension makes up for any shape"
+        """Refuse a tip that is not round."""
         return "" if contact.tip_radius else "needs a round tip"
 
 

@@ -1,4 +1,4 @@
-"""A paraboloid with a worn tip."""
+"""A round tip that is worn."""
 
 from dataclasses import replace
 from typing import Annotated, Literal
@@ -7,14 +7,15 @@ import numpy as np
 
 from pellicle_fit.effect import Array, Contact, Fitted, fitted
 
-from .shape import Shape
+from .shape import Shape, in_place
 
 
 class WornTip(Shape, title="a worn tip"):
     """A paraboloid or a sphere whose tip is worn to a flat of radius b.
 
-    δ = (a/R) √(a² − b²), F = (2 E*/3R) (2a² + b²) √(a² − b²) (Popov, Heß & Willert 2019), times the
-    force of a sphere over that of a paraboloid at the same depth.
+    The force is that of a worn paraboloid, without tension δ = (a/R) √(a² − b²),
+    F = (2 E*/3R) (2a² + b²) √(a² − b²) (Popov, Heß & Willert 2019), times that of the round tip
+    over that of a whole paraboloid at the same depth.
     """
 
     type: Literal["worn_tip"] = "worn_tip"
@@ -25,15 +26,15 @@ class WornTip(Shape, title="a worn tip"):
 
     def contact(self, contact: Contact) -> Contact:
         """Return the contact of the worn tip."""
-        radius, flat = contact.tip_radius or 0.0, self.flat_radius
+        flat = self.flat_radius or None
+        worn = in_place(contact, "paraboloid", radius=contact.tip_radius, flat_radius=flat)
+        whole = in_place(contact, "paraboloid", radius=contact.tip_radius)
+        if contact.indenter == whole.indenter:
+            return worn
 
         def area(depth: Array, length: float) -> Array:
-            deep = np.maximum(depth, 0.0)
-            squared = (flat**2 + np.sqrt(flat**4 + 4 * (radius * deep) ** 2)) / 2
-            rise = np.sqrt(np.maximum(squared - flat**2, 0.0))
-            hertz = 4 / 3 * np.sqrt(radius * np.maximum(deep, 1e-90) ** 3)
-            worn = 2 / (3 * radius) * (2 * squared + flat**2) * rise
-            whole = contact.tabulated(float(np.max(deep))).area(depth, length)
-            return worn * np.where(deep > 0, whole / hertz, 0.0)
+            round_, hertz = contact.area(depth, length), whole.area(depth, length)
+            share = np.divide(round_, hertz, out=np.zeros_like(hertz), where=hertz > 0)
+            return worn.area(depth, length) * share
 
-        return replace(contact, area=area)
+        return replace(worn, area=area, depth_limit=contact.depth_limit)

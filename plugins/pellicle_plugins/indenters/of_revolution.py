@@ -20,6 +20,7 @@ from pellicle.axisymmetric import (
     paraboloid,
     punch_radius,
     smooth_profile,
+    stretched,
 )
 from pellicle.components import ContactRadius, ForceCurve, Indenter, LayerForceCurve
 from pellicle.errors import ConfigError, shown
@@ -96,34 +97,57 @@ class Sphere(BodyOfRevolution):
 
 
 class Paraboloid(BodyOfRevolution):
-    """Paraboloid of revolution, as in the theory of Hertz: the shallow limit of a sphere."""
+    """Paraboloid of revolution, as in the theory of Hertz, or with a tip that is worn flat.
+
+    It is the shallow limit of a sphere.
+    """
 
     type: Literal["paraboloid"] = "paraboloid"
-    examples = ({"radius": "1 mm"},)
+    examples = ({"radius": "1 mm"}, {"radius": "1 mm", "flat_radius": "0.1 mm"})
     radius: Annotated[Length, Field(description="radius of curvature R at the tip [m]")]
+    flat_radius: Length | None = Field(default=None, description="radius b of a worn tip [m]")
 
     def profile(self, x: Array, y: Array) -> Array:
-        """Return −(x² + y²)/2R [m]."""
+        """Return −(r² − b²)/2R [m], and 0 up to the radius of the flat."""
         # 2R of the largest double would be infinite and the paraboloid flat.
-        return -(x**2 + y**2) / 2 / self.radius
+        if self.flat_radius is None:
+            return -(x**2 + y**2) / 2 / self.radius
+        distance = np.hypot(x, y)
+        beyond = np.maximum(distance - self.flat_radius, 0.0)
+        return np.asarray(-beyond * (distance + self.flat_radius) / 2 / self.radius)
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Radius of the flat [m]."""
+        return () if self.flat_radius is None else (self.flat_radius,)
 
     def abel_transform(self, x: Array) -> Array:
-        """Return h(x) = x²/R [m] for contact radii x [m]; see `HasAbelSlope`."""
-        return x**2 / self.radius
+        """Return h(x) = (x/R) √(x² − b²) [m] for contact radii x [m]; see `HasAbelSlope`."""
+        return x * self._root(x) / self.radius
 
     def abel_slope(self, x: Array) -> Array:
-        """Return h'(x) = 2x/R for contact radii x [m]."""
-        return 2 * x / self.radius
+        """Return h'(x) for contact radii x [m]."""
+        root = self._root(x)
+        rate = np.divide(x**2, root, out=np.zeros_like(x), where=root > 0)
+        return (root + rate) / self.radius
+
+    def _root(self, x: Array) -> Array:
+        flat = self.flat_radius or 0.0
+        return np.asarray(np.sqrt(np.maximum(x - flat, 0.0)) * np.sqrt(x + flat))
 
     def _half_space_curve(self, depth: Array, length: float) -> ForceCurve:
-        return paraboloid(self.radius, depth, length)
+        flat = self.flat_radius
+        if flat is None:
+            return paraboloid(self.radius, depth, length)
+        return stretched(_WORN, flat, flat**2 / self.radius, depth, length)
 
-    def _layer_curves(self) -> Profile:
-        return smooth_profile(self.radius, inf, self.abel_slope)
+    def _layer_curves(self) -> Profile | None:
+        smooth = self.flat_radius is None
+        return smooth_profile(self.radius, inf, self.abel_slope) if smooth else None
 
     def whole_shape(self) -> Sphere:
         """Return the sphere of the same radius."""
-        return Sphere(radius=self.radius)
+        return Sphere(radius=self.radius, flat_radius=self.flat_radius)
 
 
 class Cone(BodyOfRevolution):
@@ -188,10 +212,16 @@ class Cone(BodyOfRevolution):
     def _half_space_curve(self, depth: Array, length: float) -> ForceCurve:
         if self.tip_radius is None:
             return cone(self.half_angle, depth, length)
-        return super()._half_space_curve(depth, length)
+        height = self._blunt**2 / self.tip_radius
+        return stretched(_BLUNT, self._blunt, height, depth, length)
 
     def _layer_curves(self) -> Profile | None:
         return cone_profile(self.half_angle) if self.tip_radius is None else None
+
+
+_WORN = Paraboloid(radius=1.0, flat_radius=1.0)
+_BLUNT = Cone(half_angle=pi / 4, tip_radius=1.0)
+"""Bodies of which all worn paraboloids and all blunted cones are stretched copies."""
 
 
 class FlatPunch(Indenter):

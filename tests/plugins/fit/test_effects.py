@@ -89,14 +89,17 @@ def test_a_size_is_that_of_the_indenter() -> None:
 
 
 def test_a_worn_tip() -> None:
-    """δ = (a/R) √(a² − b²), F = (2 E*/3R) (2a² + b²) √(a² − b²); b = 0 is Hertz."""
+    """δ = (a/R) √(a² − b²), F = (2 E*/3R) (2a² + b²) √(a² − b²); b = 0 is Hertz.
+
+    Its contact is interpolated, to 1e-8.
+    """
     flat = 0.6e-6
     a = np.linspace(flat, 2.5e-6, 40)
     rise = np.sqrt(a**2 - flat**2)
     contact = Contact.on_half_space(body("paraboloid", radius=R), E)
     worn = effect("worn_tip", flat_radius=flat).contact(contact)
     expected = 2 * E / 3 / R * (2 * a**2 + flat**2) * rise
-    np.testing.assert_allclose(worn.force(a / R * rise), expected, rtol=1e-9, atol=1e-20)
+    np.testing.assert_allclose(worn.force(a / R * rise), expected, rtol=1e-7, atol=1e-20)
     np.testing.assert_allclose(worn.radius(a[5:] / R * rise[5:]), a[5:], rtol=1e-6)
     for tip in ("paraboloid", "sphere"):
         curve = bead(tip=body(tip, radius=R))
@@ -293,17 +296,18 @@ BOTH = np.append(DEPTH, DEPTH[-2::-1])
     ("names", "curve", "words"),
     [
         (["adhesion", "layer"], bead(), "on a half-space"),
-        (["adhesion", "worn_tip"], bead(), "on a half-space"),
+        (["adhesion", "worn_tip"], bead(), ""),
         (["adhesion", Softening()], bead(), "on a half-space"),
         (["adhesion", effect("size", size_error=0.1), "sphere"], bead(), ""),
-        (["layer", "worn_tip"], bead(), "curve on a layer is known"),
+        (["layer", "worn_tip"], bead(), "curve of this tip on a layer is not known"),
         (["drag", "layer"], bead(), "needs a contact radius"),
         (["drag", "worn_tip"], bead(), ""),
         (["cone"], bead(tip=body("cone", half_angle=1.2)), "the indenter is one"),
         (["worn_tip"], bead(tip=body("cone", half_angle=1.2)), "needs a round tip"),
         (["sphere"], bead(tip=body("flat_punch", radius=R)), "needs a round tip"),
         (["sphere"], bead(0.1 * DEPTH), "on a shallow curve"),
-        (["worn_tip", "tension"], bead(), "a tension makes up for any shape"),
+        (["sphere", "worn_tip"], bead(), "in one place"),
+        (["cone", "tension"], bead(), ""),
         (["drift"], bead(), "on one pass it is a sloping baseline"),
         (["drift"], bead(BOTH), ""),
         (["power_law", "tension"], bead(), ""),
