@@ -127,7 +127,8 @@ def _on_solid(
         kernel = {"type": "coated", "substrate": bonded}
     bodies: list[Any] = []
     for indenter, curve in zip(indenters, measured, strict=True):
-        if kernel is None and isinstance(indenter, HasForceCurve):
+        known = isinstance(indenter, HasForceCurve) and indenter.depth_limit > 0
+        if kernel is None and known:
             bodies.append(indenter)
             continue
         if not isinstance(indenter, Indenter):

@@ -98,7 +98,7 @@ class HasForceCurve(Protocol):
 
     @property
     def depth_limit(self) -> float:
-        """Largest depth [m] at which the curve is valid; infinite if unlimited."""
+        """Largest depth [m] at which it is valid; infinite if unlimited, 0 if there is none."""
         ...
 
     def force_curve(self, depth: Array, length: float) -> ForceCurve:

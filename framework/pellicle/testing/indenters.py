@@ -61,7 +61,7 @@ def heights_depend_on_their_own_point(indenter: Indenter, grid: Grid) -> None:
 
 def force_curve_rises(indenter: Indenter, grid: Grid) -> None:
     """A force curve is 0 without contact, rises with depth, and agrees with its derivatives."""
-    if not isinstance(indenter, HasForceCurve):
+    if not isinstance(indenter, HasForceCurve) or not indenter.depth_limit:
         return
     scale = 0.01 * (_range(indenter.profile(*grid.coordinates())) or min(grid.size))
     unit = min(scale, 0.1 * indenter.depth_limit)

@@ -2,15 +2,42 @@
 
 from __future__ import annotations
 
-from math import cos, pi, sin, tan
-from typing import Annotated, Literal
+from functools import cache
+from math import atan, cos, inf, pi, sin, tan
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
 
 from pellicle.arrays import Array
-from pellicle.components import Indenter
+from pellicle.axisymmetric import Interpolant, cone, stretched_spline
+from pellicle.components import ForceCurve, Indenter
 from pellicle.units import Length, Quantity
+
+SCALE = 0.03
+LENGTHS: Array = SCALE * np.expm1(np.arange(0.0, 15.1, 0.5))
+"""x = sc/δ of nodes."""
+_RATIOS = {
+    3: (
+        *(0.32649, 0.32747, 0.32856, 0.32896, 0.32739, 0.32119, 0.30661, 0.28183),
+        *(0.24952, 0.21584, 0.18541, 0.15993, 0.13930, 0.12278, 0.10946, 0.09874),
+        *(0.08984, 0.08249, 0.07626, 0.07090, 0.06630, 0.06195, 0.05859, 0.05555),
+        *(0.05275, 0.05021, 0.04791, 0.04582, 0.04391, 0.04215, 0.04054),
+    ),
+    4: (
+        *(0.14724, 0.14785, 0.14854, 0.14899, 0.14845, 0.14558, 0.13876, 0.12734),
+        *(0.11274, 0.09764, 0.08407, 0.07277, 0.06363, 0.05631, 0.05041, 0.04560),
+        *(0.04162, 0.03829, 0.03547, 0.03304, 0.03094, 0.02910, 0.02747, 0.02602),
+        *(0.02472, 0.02355, 0.02249, 0.02152, 0.02064, 0.01983, 0.01908),
+    ),
+}
+"""Logarithm of the force, over that of the cone whose side has the slope of the faces, at nodes
+(``docs/reference-data/pyramid_curves.py``)."""
+
+
+@cache
+def _ratio(sides: int) -> Interpolant:
+    return stretched_spline(LENGTHS, _RATIOS[sides], SCALE)
 
 
 class Pyramid(Indenter):
@@ -42,6 +69,32 @@ class Pyramid(Indenter):
     tip_radius: Length | None = Field(
         default=None, description="radius of curvature R of a rounded tip [m]"
     )
+
+    accuracy: ClassVar[float] = 3e-4
+    """Error of the force curve over the largest force."""
+
+    @property
+    def depth_limit(self) -> float:
+        """Depth up to which the force curve holds [m]: infinite if it is sharp, else 0."""
+        return inf if self.tip_radius is None else 0.0
+
+    def force_curve(self, depth: Array, length: float) -> ForceCurve:
+        """Return P/E* and its derivatives under a sharp pyramid at depths [m] and s [m].
+
+        By similarity it is that of a cone times a function of sc/δ, from contacts on grids.
+        """
+        touches = depth > 0
+        by_length = np.divide(self.slope, depth, out=np.zeros_like(depth), where=touches)
+        x = length * by_length
+        ratio, rate = _ratio(self.sides)(x)
+        factor, of_cone = np.exp(ratio), cone(atan(1 / self.slope), depth, length)
+        force = of_cone.force * factor
+        by_depth = np.divide(-rate * x * force, depth, out=np.zeros_like(depth), where=touches)
+        return ForceCurve(
+            force,
+            of_cone.by_depth * factor + by_depth,
+            of_cone.by_length * factor + rate * by_length * force,
+        )
 
     @property
     def slope(self) -> float:

@@ -47,12 +47,16 @@ def test_the_angle_of_the_edges(sides: int) -> None:
     assert body.profile(np.array(x), np.array(y)) == pytest.approx(-1 / np.tan(1.2))
 
 
-def force(sides: int, points: int, angle: float = 0.0) -> float:
-    """Return P tan α / E*δ² without tension."""
+def force(sides: int, points: int, angle: float = 0.0, ratio: float = 0.0) -> float:
+    """Return P tan α / E*δ² at a ratio sc/δ."""
     pyramid = {"type": "pyramid", "half_angle": atan(1 / SLOPE), "sides": sides}
     run: dict[str, Any] = {
-        "grid": {"points": points, "size": 3.2},
-        "kernel": {"type": "half_space", "reduced_modulus": 1.0},
+        "grid": {"points": points, "size": 3.2 if ratio <= 1 else 1.7},
+        "kernel": {
+            "type": "tensed_membrane",
+            "reduced_modulus": 1.0,
+            "tension": ratio / 2 * DEPTH / SLOPE,
+        },
         "indenter": {"type": "rotated", "part": pyramid, "angle": angle},
         "loading": {"depth": DEPTH},
     }
@@ -78,3 +82,14 @@ def test_a_turned_pyramid_has_the_same_force() -> None:
     assert force(4, 128, pi / 4) == pytest.approx(force(4, 128), rel=1e-3)
     assert force(4, 64, pi / 2) == pytest.approx(force(4, 64), rel=1e-9)
     assert force(3, 64, pi) == pytest.approx(force(3, 64), rel=1e-9)
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.1, 1.0, 10.0])
+@SIDES
+def test_the_curve_is_that_of_the_grid(sides: int, ratio: float) -> None:
+    """At any s/δ its force is that of the grid to 0.5 %."""
+    pyramid = Pyramid(half_angle=atan(1 / SLOPE), sides=sides)
+    curve = pyramid.force_curve(np.array([DEPTH]), ratio * DEPTH / SLOPE)
+    assert curve.force[0] * SLOPE / DEPTH**2 == pytest.approx(
+        force(sides, 128, ratio=ratio), rel=5e-3
+    )
