@@ -27,6 +27,8 @@ _ORDER, _FINEST = 12, 1e-3
 """Gauss points per panel, and size of the finest panel over that of the edge layer."""
 _MODES = 24
 """Products of the decomposition; what is left out is below 1e-11 of the largest."""
+_STEP = 2.0**-24
+"""To which changes by a layer are rounded: digits of small ones would be most of the file."""
 
 
 def punch(ratio: float) -> tuple[float, Array]:
@@ -101,8 +103,9 @@ def main() -> None:
             [change_by_layer(shape, s, a) for a in layer_curves.CONFINEMENTS.tolist()]
             for s in layer_curves.LENGTHS.tolist()
         ]
+        rounded = np.round(np.array(changes) / _STEP) * _STEP
         # The axes are ν, s/h, a/h and the columns of a row.
-        tables[f"{shape}_layer"] = np.moveaxis(np.array(changes, dtype=np.float32), 2, 0)
+        tables[f"{shape}_layer"] = np.moveaxis(rounded.astype(np.float32), 2, 0)
     np.savez_compressed(Path(str(layer_curves.FILE)), **tables)
 
 

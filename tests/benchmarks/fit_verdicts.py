@@ -279,15 +279,15 @@ def outcome(kind: str, protocol: str, number: int, seed: int) -> dict[str, Any]:
         "lead": answer.decision.lead,
         "other": sorted(answer.decision.other),
         "behind": right[0].aic - best if right else None,
-        "modulus": _held(fit.reduced_modulus, modulus),
+        "modulus": held(fit.reduced_modulus, modulus),
         "off": _off(fit.reduced_modulus, modulus),
-        "tension": _held(fit.tension, truth.tension),
+        "tension": held(fit.tension, truth.tension),
         "expected": expected(answer, truth, protocol) if truth.tension else None,
         "seconds": round(seconds, 2),
     }
 
 
-def _held(estimate: pl.Estimate, truth: float) -> bool:
+def held(estimate: pl.Estimate, truth: float) -> bool:
     """Return whether an interval holds a value."""
     low = -np.inf if estimate.low is None else estimate.low
     return bool(low <= truth <= (np.inf if estimate.high is None else estimate.high))

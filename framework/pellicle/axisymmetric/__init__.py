@@ -23,7 +23,7 @@ from .master_curves import paraboloid as paraboloid
 from .master_curves import punch_radius as punch_radius
 from .reciprocity import Contacts as Contacts
 from .reciprocity import contacts as contacts
-from .stretched_spline import Interpolant as Interpolant
-from .stretched_spline import stretched_spline as stretched_spline
+from .splines import Interpolant as Interpolant
+from .splines import stretched_spline as stretched_spline
 from .tensed_punch import TensedPunch as TensedPunch
 from .tensed_punch import punch as punch

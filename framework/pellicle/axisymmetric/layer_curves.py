@@ -27,7 +27,7 @@ from pellicle.components import ForceCurve, LayerForceCurve
 
 from . import master_curves
 from .depth_curves import touching
-from .stretched_spline import Interpolant, stretched_spline
+from .splines import Interpolant, stretched_spline
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline

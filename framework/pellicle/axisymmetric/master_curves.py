@@ -23,7 +23,7 @@ from pellicle.components import ContactRadius, ForceCurve
 
 from .depth_curves import spread, touching
 from .reciprocity import contacts, punch_slope, punch_stiffness
-from .stretched_spline import Interpolant, stretched_spline
+from .splines import Interpolant, stretched_spline
 
 SCALE = 1e-3
 _LENGTHS: Array = SCALE * np.expm1(np.arange(0.15, 23.1, 0.15))

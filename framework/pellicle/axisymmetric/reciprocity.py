@@ -30,7 +30,7 @@ from pellicle.arrays import Array
 from pellicle.components import HasAbelSlope
 
 from .equation import kinks_of
-from .stretched_spline import Interpolant, stretched_spline
+from .splines import Interpolant, stretched_spline
 
 LENGTH_SCALE = 1e-8
 LENGTHS: Array = LENGTH_SCALE * np.expm1(np.linspace(0.0, np.log1p(1e8 / LENGTH_SCALE), 245))

@@ -13,7 +13,7 @@ from pellicle.axisymmetric import Adhesion, indent
 from pellicle.components import Case, Suite
 from pellicle.results.result import Result
 from pellicle_plugins.closed_forms import hertz, sneddon
-from pellicle_plugins.indenters.of_revolution import Paraboloid
+from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid, Sphere
 
 from .adhesive_path import curve_of
 
@@ -53,11 +53,41 @@ def _pressed() -> Iterator[Case]:
     force = 2 * _MODULUS * radius * _DEPTH
     yield from _cases("flat punch", "Sneddon 1965", end, 2.2 * radius, force, tolerance=1e-2)
 
+    yield from _tips()
+
     tensed = indent(Paraboloid(radius=_RADIUS), _MODULUS, _TENSION, depth=_DEPTH)
     radius, source = tensed.contact_radius, "integral equation, after Long et al. 2017"
     expected = tensed.force, pi * radius**2, float(tensed.pressure(np.array(0.0)))
     size = 2.6 * radius
     yield from _cases("tensed paraboloid", source, round_, size, *expected, tension=_TENSION)
+
+
+def _tips() -> Iterator[Case]:
+    """Yield the cases of tips that are blunt, worn or pyramids."""
+    at, angle = np.array([_DEPTH]), radians(70)
+    blunt = Cone(half_angle=angle, tip_radius=0.2 * _RADIUS)
+    worn = Sphere(radius=_RADIUS, flat_radius=0.1 * _RADIUS)
+    for name, body, source in (
+        ("blunt cone", blunt, "Briscoe, Sebastian & Adams 1994"),
+        ("worn sphere", worn, "Sneddon 1965"),
+    ):
+        force = _MODULUS * float(body.force_curve(at, 0.0).force[0])
+        radius = float(body.contact_radius(at, 0.0).radius[0])
+        tip = body.model_dump(exclude_none=True)
+        yield from _cases(name, source, tip, 2.6 * radius, force, pi * radius**2)
+
+    length = 2 * _TENSION / _MODULUS
+    tip = blunt.model_dump(exclude_none=True)
+    force = _MODULUS * float(blunt.force_curve(at, length).force[0])
+    size, source = 2 * float(blunt.contact_radius(at, 0.0).radius[0]), "reciprocity"
+    yield from _cases("tensed blunt cone", source, tip, size, force, tension=_TENSION)
+
+    # His pressure is an approximate one.
+    for sides, share in ((3, 0.887), (4, 0.7453)):
+        tip = {"type": "pyramid", "half_angle": angle, "sides": sides}
+        force, size = share * _MODULUS * np.tan(angle) * _DEPTH**2, 4 * _DEPTH * np.tan(angle)
+        name = f"pyramid of {sides} sides"
+        yield from _cases(name, "Bilodeau 1992", tip, size, force, tolerance=1.2e-2)
 
 
 def _adhesion() -> Iterator[Case]:

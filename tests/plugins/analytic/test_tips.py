@@ -27,7 +27,8 @@ Array = NDArray[np.float64]
 Tip = BodyOfRevolution | FlatPunch
 WORN = Sphere(radius=5e-6, flat_radius=1e-6)
 BLUNT = Cone(half_angle=radians(70), tip_radius=20e-9)
-TIPS = pytest.mark.parametrize("body", [WORN, BLUNT], ids=["worn", "blunt"])
+FLAT = Paraboloid(radius=5e-6, flat_radius=1e-6)
+TIPS = pytest.mark.parametrize("body", [WORN, FLAT, BLUNT], ids=["worn", "flat", "blunt"])
 
 
 def curve(body: Tip, depth: Array, length: float = 0.0) -> Array:
@@ -36,7 +37,7 @@ def curve(body: Tip, depth: Array, length: float = 0.0) -> Array:
 
 
 @TIPS
-def test_transform_is_that_of_the_profile(body: Sphere | Cone) -> None:
+def test_transform_is_that_of_the_profile(body: Sphere | Paraboloid | Cone) -> None:
     """h(x) = −x ∫ f′(r)/√(x² − r²) dr, by x cos φ = √(x² − r²), and h′ is its slope."""
     (kink,) = body.kinks
 
@@ -81,16 +82,19 @@ def test_a_worn_sphere_is_that_of_sneddon() -> None:
 
 @TIPS
 @pytest.mark.parametrize("ratio", [0.0, 1e-3, 0.3, 20.0])
-def test_far_from_the_edge_it_does_not_matter(body: Sphere | Cone, ratio: float) -> None:
+def test_far_from_the_edge_it_does_not_matter(
+    body: Sphere | Paraboloid | Cone, ratio: float
+) -> None:
     """Shallow, a worn sphere is a punch and a blunted cone a paraboloid; deep, they are whole."""
     (edge,) = body.kinks
-    if isinstance(body, Sphere):
-        shallow: Tip = FlatPunch(radius=edge)
-        whole: Tip = Sphere(radius=edge * 1e3)
-        deep: Tip = Sphere(radius=edge * 1e3, flat_radius=edge)
+    if isinstance(body, Cone):
+        shallow: Tip = Paraboloid(radius=body.tip_radius or 0.0)
+        whole: Tip = Cone(half_angle=body.half_angle)
+        deep: Tip = body
     else:
-        shallow, whole = Paraboloid(radius=body.tip_radius or 0.0), Cone(half_angle=body.half_angle)
-        deep = body
+        shallow = FlatPunch(radius=edge)
+        whole = body.model_copy(update={"radius": 1e3 * edge, "flat_radius": None})
+        deep = body.model_copy(update={"radius": 1e3 * edge})
     depth, length = np.array([1e-3 * edge]), ratio * edge
     if ratio or isinstance(body, Cone):
         assert curve(body, depth, length) == pytest.approx(curve(shallow, depth, length), rel=1e-6)
@@ -144,7 +148,7 @@ def test_a_stranger_s_body_is_fitted() -> None:
 
 
 @TIPS
-def test_each_depth_has_a_force(body: Sphere | Cone) -> None:
+def test_each_depth_has_a_force(body: Sphere | Paraboloid | Cone) -> None:
     """From far above the edge to far below it, and beyond the end of the profile, it grows."""
     (edge,) = body.kinks
     for depth in (1e-9, 1.0, 1e3):
@@ -157,7 +161,7 @@ def test_each_depth_has_a_force(body: Sphere | Cone) -> None:
 
 @TIPS
 @pytest.mark.parametrize("ratio", [0.0, 0.2, 5.0])
-def test_curves_rise_smoothly(body: Sphere | Cone, ratio: float) -> None:
+def test_curves_rise_smoothly(body: Sphere | Paraboloid | Cone, ratio: float) -> None:
     """The derivatives of the force are those that are told, and the stiffness is a punch's."""
     (edge,) = body.kinks
     length, depth = ratio * edge, edge * np.geomspace(1e-3, 3.0, 40)
@@ -176,7 +180,7 @@ def test_curves_rise_smoothly(body: Sphere | Cone, ratio: float) -> None:
 
 @pytest.mark.slow
 @TIPS
-def test_the_grid_solves_the_same(body: Sphere | Cone) -> None:
+def test_the_grid_solves_the_same(body: Sphere | Paraboloid | Cone) -> None:
     """Under tension the force on a grid, whose error falls with its cells, goes to the curve."""
     (edge,) = body.kinks
     depth, length = 1.5 * edge, 0.5 * edge
