@@ -17,7 +17,7 @@ from .curve import Curve
 from .effect import Effect, Records, Responds, Solid
 from .intervals import Estimate, estimates, threshold_of
 from .noise import CHANCE, Judged
-from .objective import MODULUS
+from .objective import CONTACT_POINT, MODULUS
 from .rivals import Question, comparison
 from .strangers import refuse_broken, strangers_named
 from .verdict import MARGIN, SMALL, Decision, Verdict, choice, decision, doubtful, ties
@@ -193,12 +193,14 @@ def answer(
     alone = {types: candidates.get(types - word) for types in excused if word < types}
     responses = {types: known.of(Responds) for types, known in alone.items() if known}
     untried = [types for types, own in responses.items() if any(e.type_name in types for e in own)]
-    # What may be right and has no model leaves nothing to bound.
-    ends = not (untried and decided.verdict is Verdict.UNDESCRIBED)
+    # Of what no model describes few ends are worth seeking; none if what may be right has no model.
+    described = decided.verdict is not Verdict.UNDESCRIBED
+    rise = threshold if described or not untried else np.inf
+    own = () if described else (MODULUS, TENSION, CONTACT_POINT)
     tied = ties(fits, word, decided, chosen)
     for types in tied:
-        names = () if types == chosen else (MODULUS, TENSION)
-        fits[types] = with_estimates(fits[types], threshold if ends else np.inf, uncertainty, names)
+        names = own if types == chosen else (MODULUS, TENSION)
+        fits[types] = with_estimates(fits[types], rise, uncertainty, names)
     return Answer(
         tuple(sorted(fits.values(), key=lambda fit: fit.aic)),
         question,

@@ -81,12 +81,15 @@ class Fit:
     def estimates(self) -> dict[str, Estimate]:
         """Return modulus and tension, and the other quantities of the chosen explanation by name.
 
-        Those of further curves have their number behind the name, as ``contact_point_1``.
+        Those of further curves have their number behind the name, as ``contact_point_1``.  Of what
+        no model describes there are modulus, tension and contact points alone.
         """
         found = {"reduced_modulus": self.reduced_modulus, "tension": self.tension}
         if youngs := self.youngs_modulus:
             found["youngs_modulus"] = youngs
-        return {**found, **self.answer.chosen.parameters, **found}
+        chosen = self.answer.chosen
+        own = {n: e for n, e in chosen.parameters.items() if e.held or n in chosen.estimates}
+        return {**found, **own, **found}
 
     @property
     def verdict(self) -> Verdict:
