@@ -132,10 +132,8 @@ def fit_map(
 
     Raises
     ------
-    ConfigError, PluginError
-        An argument is not allowed, or the curves are not those of one map.
-    StorageError
-        The folder cannot be used.
+    ConfigError, PluginError, StorageError
+        As in `fit_many`, or the curves are not those of one map.
     """
     config = FitConfig.merged(config, **options)
     fits = fit_sources(config, config.sources(curves), directory, progress=progress)

@@ -194,10 +194,9 @@ def answer(
     responses = {types: known.of(Responds) for types, known in alone.items() if known}
     untried = [types for types, own in responses.items() if any(e.type_name in types for e in own)]
     # Of what no model describes few ends are worth seeking; none if what may be right has no model.
-    described = decided.verdict is not Verdict.UNDESCRIBED
-    rise = threshold if described or not untried else np.inf
-    own = () if described else (MODULUS, TENSION, CONTACT_POINT)
-    tied = ties(fits, word, decided, chosen)
+    undescribed = decided.verdict is Verdict.UNDESCRIBED
+    own = (MODULUS, TENSION, CONTACT_POINT) if undescribed else ()
+    rise, tied = np.inf if undescribed and untried else threshold, ties(fits, word, decided, chosen)
     for types in tied:
         names = own if types == chosen else (MODULUS, TENSION)
         fits[types] = with_estimates(fits[types], rise, uncertainty, names)

@@ -13,9 +13,7 @@ from .shape import Shape, in_place
 class WornTip(Shape, title="a worn tip"):
     """A paraboloid or a sphere whose tip is worn to a flat of radius b.
 
-    The force is that of a worn paraboloid, without tension δ = (a/R) √(a² − b²),
-    F = (2 E*/3R) (2a² + b²) √(a² − b²) (Popov, Heß & Willert 2019), times that of the round tip
-    over that of a whole paraboloid at the same depth.
+    A sphere has the force of the worn paraboloid times its own over that of the whole one.
     """
 
     type: Literal["worn_tip"] = "worn_tip"
