@@ -2,49 +2,33 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-from functools import cached_property
-from typing import Final, NamedTuple
+from dataclasses import replace
+from typing import Final
 
 import numpy as np
-import scipy.fft
 
-from pellicle import Grid
 from pellicle.analysis import perimeter
 from pellicle.arrays import Array, Mask
 from pellicle.contact import (
-    Attraction,
     Law,
     Problem,
-    Progress,
     State,
     Stop,
-    adhesive_scale,
     first_guess,
 )
 
+from .adhesive_round import Round
+from .anderson import Tried, extrapolated, is_convex
 from .contact_cg import SIGN_CERTAINTY, inner_solve
+from .front import Front
 from .nested_grids import prolonged
-from .preconditioner import OnContact, Preconditioner, edges
+from .preconditioner import OnContact, Preconditioner
 from .scaling import ScaledSolver
 
 # The gap on the contact is closed to this share of the error of the tractions.
 _CONTACT_SHARE: Final = 0.05
 # Rounds whose tractions are extrapolated.
 _MEMORY: Final = 8
-# A front moves in a round by at most this many cells, or as far as estimated without the gain if
-# that is more, up to this share of the mean extent of the contact (area over perimeter); beyond,
-# the linear estimate says nothing. A gain from a contact that is not settled would carry the front
-# of a paraboloid with 512 points on by thousands of cells.
-_MOST_CELLS: Final = 3.0
-_MOST_SHARE: Final = 0.3
-# Shift in cells above which the zone is continued to both sides.
-_EXTENDED: Final = 0.3
-# Energy by which a front of unit length resists a wave of unit wavenumber, over the work of
-# adhesion: 1 on a half-space (Rice 1985), 2 on a membrane.
-_FRONT_STIFFNESS: Final = 1.25
-# Longest wave of a front, as a multiple of the mean extent of the contact, area over perimeter.
-_LONGEST: Final = 0.5
 # Bounds of the factor on the shift of the fronts, and its growth in a round.
 _LEAST_GAIN: Final = 1 / 16
 _GREATEST_GAIN: Final = 2.0
@@ -70,89 +54,6 @@ _SINGLE: Final = 1e-6
 # Gaps at which a law is asked whether it attracts, and the relative rounding error of tractions.
 _GAPS: Final = 2001
 _ROUNDING: Final = 1e-12
-# Residual of a round that ended before every cell was on its side.
-_UNSETTLED: Final = 1e-3
-
-
-class _Earlier(NamedTuple):
-    """What is kept of an earlier round."""
-
-    traction: Array
-    missed: Array
-    wall: Array
-    contact: Mask
-
-
-@dataclass(frozen=True)
-class _Round:
-    """The state after the contact is closed under given tractions across the gap."""
-
-    problem: Problem
-    on_contact: OnContact
-    wall: Array
-    """Wall pressure w [Pa]; 0 off the contact."""
-    traction: Array
-    """Traction across the gap, from which the contact was closed [Pa]; −(strength) in contact."""
-    displacement: Array
-    """Displacement [m] under the sum of both."""
-    gap: Array
-    depth: float
-    attraction: Attraction
-    """What the law exerts across `gap`."""
-    settled: bool = True
-    """Whether the wall pressure is ≥ 0 and no cell penetrates."""
-    history: tuple[_Earlier, ...] = ()
-    """Earlier rounds, of which those on the same contact obey the same equations."""
-    progress: Progress = field(default_factory=Progress)
-    gain: float = 1.0
-    """Factor on the estimated shift of the fronts."""
-
-    @property
-    def contact(self) -> Mask:
-        return self.on_contact.contact
-
-    @cached_property
-    def missed(self) -> Array:
-        """Traction that the law exerts minus `traction` [Pa]."""
-        return self.attraction.traction - self.traction
-
-    @cached_property
-    def on_this_contact(self) -> tuple[_Earlier, ...]:
-        """Earlier rounds on the same contact."""
-        return tuple(r for r in self.history if np.array_equal(r.contact, self.contact))
-
-    @cached_property
-    def residual(self) -> float:
-        if self.problem.prescribed == "force" and not self.contact.any():
-            return 1.0
-        contact, gap = self.contact, self.gap
-        closed = np.abs(gap[contact])
-        error = max(float(closed.max(initial=0.0)), -float(gap.min(initial=0.0, where=~contact)))
-        # The law attracts even where the wall bears it all and there is no pressure.
-        exerted = float(np.abs(self.attraction.traction).sum())
-        magnitude = max(float(np.abs(self.wall + self.traction).sum()), exerted)
-        missed = work = 0.0
-        if magnitude:
-            work = float((np.abs(self.wall[contact]) * closed).sum()) / magnitude / self.scale
-            missed = float(np.abs(self.missed).sum()) / magnitude
-        return max(error / self.scale, missed, work, 0.0 if self.settled else _UNSETTLED)
-
-    @property
-    def energy(self) -> float:
-        """Energy over that of closed cells all over, to the digits that show an advance."""
-        law = self.problem.law
-        assert law
-        bound = self.attraction.energy
-        elastic = 0.5 * float(((self.wall + self.traction) * self.displacement).sum())
-        load = 0.0
-        if self.problem.prescribed == "force":
-            load = self.depth * self.problem.value / self.problem.grid.cell_area
-        unit = law.work_of_adhesion() * self.gap.size
-        return round((elastic + bound - load) / unit, 9)
-
-    @cached_property
-    def scale(self) -> float:
-        return adhesive_scale(self.problem, self.contact, self.displacement)
 
 
 def refusal_of(law: Law) -> str:
@@ -198,7 +99,7 @@ class AdhesionSolver(ScaledSolver):
        (Anderson 1965).
     """
 
-    def begin(self, problem: Problem, start: State | None) -> _Round:
+    def begin(self, problem: Problem, start: State | None) -> Round:
         """Return the round from the last state; without one, from that of a coarser grid."""
         assert problem.law
         preconditioner = Preconditioner(problem.operator)
@@ -225,10 +126,10 @@ class AdhesionSolver(ScaledSolver):
         wall = np.where(contact, np.maximum(pressure - traction, 0.0), 0.0)
         return self._closed(problem, preconditioner.on(contact), wall, traction)
 
-    def step(self, problem: Problem, state: _Round) -> _Round:
+    def step(self, problem: Problem, state: Round) -> Round:
         """Return the next round."""
-        traction, missed, wall = _extrapolated(state)
-        following, contact = _with_shifted_fronts(state, traction + missed, missed)
+        traction, missed, wall = extrapolated([*state.on_this_contact, state.tried], state.contact)
+        following, contact = _with_shifted_front(state, traction + missed, missed)
         on_contact, changes = state.on_contact, _CHANGES
         if not np.array_equal(contact, state.contact):
             on_contact, changes = on_contact.preconditioner.on(contact), _CHANGES_SHIFTED
@@ -242,19 +143,19 @@ class AdhesionSolver(ScaledSolver):
             return replace(state, gain=max(0.5 * state.gain, _LEAST_GAIN))
         return replace(after, gain=_gain(state, after))
 
-    def residual(self, problem: Problem, state: _Round) -> float:
+    def residual(self, problem: Problem, state: Round) -> float:
         """Return the largest of gap, penetration and missed traction, each relative."""
         return state.residual
 
-    def pressure(self, state: _Round) -> Array:
+    def pressure(self, state: Round) -> Array:
         """Return the traction on the surface [Pa]."""
         return state.wall + state.traction
 
-    def state(self, state: _Round) -> State:
+    def state(self, state: Round) -> State:
         """Return traction, wall pressure and depth."""
         return State(state.wall + state.traction, np.maximum(state.wall, 0.0), state.depth)
 
-    def terminate(self, problem: Problem, state: _Round) -> Stop | None:
+    def terminate(self, problem: Problem, state: Round) -> Stop | None:
         """Return why the rounds end above the tolerance."""
         if problem.prescribed == "force" and not state.contact.any():
             return Stop.PULLED_OFF
@@ -266,9 +167,9 @@ class AdhesionSolver(ScaledSolver):
         on_contact: OnContact,
         wall: Array,
         traction: Array,
-        before: _Round | None = None,
+        before: Round | None = None,
         changes: int = _CHANGES,
-    ) -> _Round:
+    ) -> Round:
         """Return the round in which the contact is closed under ``traction``.
 
         The contact changes ``changes`` times at most.
@@ -331,39 +232,28 @@ def _finished(
     wall: Array,
     traction: Array,
     displacement: Array,
-    before: _Round | None,
+    before: Round | None,
     settled: bool = True,
-) -> _Round:
+) -> Round:
     contact = on_contact.contact
     gap = displacement - problem.profile
     depth = problem.depth(gap[contact] if contact.any() else np.zeros(1))
     gap -= depth
     acting = problem.attraction(gap, contact)
-    state = _Round(problem, on_contact, wall, traction, displacement, gap, depth, acting, settled)
+    state = Round(problem, on_contact, wall, traction, displacement, gap, depth, acting, settled)
     if before is None:
         return state
-    history: tuple[_Earlier, ...] = ()
+    history: tuple[tuple[Mask, Tried], ...] = ()
     # A cell that just touches may leave the contact and return, where earlier rounds are of use.
     is_other = not np.array_equal(contact, before.contact)
-    if settled and before.settled and (is_other or _is_convex(before, state)):
-        earlier = _Earlier(before.traction, before.missed, before.wall, before.contact)
-        history = (*before.history, earlier)[-_MEMORY:]
+    if settled and before.settled and (is_other or is_convex(before.tried, state.tried, contact)):
+        history = (*before.history, (before.contact, before.tried))[-_MEMORY:]
     return replace(
         state, history=history, progress=before.progress.after(state.residual, state.energy)
     )
 
 
-def _is_convex(before: _Round, after: _Round) -> bool:
-    """Whether the energy is convex between two rounds, so that a minimum may be extrapolated.
-
-    Where it is not, the state between two positions of the edge on the lattice is unstable, and an
-    extrapolation would return to it.
-    """
-    step, change = after.traction - before.traction, after.missed - before.missed
-    return float((step * change)[~after.contact].sum()) < 0
-
-
-def _gain(before: _Round, after: _Round) -> float:
+def _gain(before: Round, after: Round) -> float:
     """Return the factor on the next shift of the fronts, from where this round should have ended.
 
     The missed tractions along the step fall linearly with its length on a smooth front, to 0 at the
@@ -392,101 +282,13 @@ def _with_wall_force(problem: Problem, contact: Mask, wall: Array, traction: Arr
     return wall * (wanted / total) if total > 0 else contact * (wanted / contact.sum())
 
 
-def _extrapolated(state: _Round) -> tuple[Array, Array, Array]:
-    """Return traction, missed traction and wall pressure of least missed traction.
-
-    They are the combination of the rounds on the same contact, whose coefficients sum to 1
-    (Anderson 1965).
-    """
-    latest = state.traction, state.missed, state.wall
-    rounds = [*(earlier[:3] for earlier in state.on_this_contact), latest]
-    if len(rounds) == 1:
-        return latest
-    cells = np.flatnonzero(np.any([part[1] != 0 for part in rounds], axis=0) & ~state.contact)
-    missed = np.array([part[1].ravel()[cells] for part in rounds])
-    weights, *_ = np.linalg.lstsq(np.diff(missed, axis=0).T, missed[-1], rcond=1e-10)
-    one, two, three = (part.copy() for part in latest)
-    for weight, a, b in zip(weights, rounds, rounds[1:], strict=False):
-        one -= weight * (b[0] - a[0])
-        two -= weight * (b[1] - a[1])
-        three -= weight * (b[2] - a[2])
-    # The missed traction is the direction of falling energy: a step against it leads to a saddle.
-    falls = float(((one + two - latest[0]) * latest[1]).ravel()[cells].sum()) > 0
-    return (one, two, three) if falls else latest
-
-
-def _with_shifted_fronts(state: _Round, traction: Array, missed: Array) -> tuple[Array, Mask]:
-    """Return tractions [Pa] and contact after the fronts have moved by what is missed.
-
-    A front that moves by v changes the tractions by v times their slope across it. Missed tractions
-    r push it with the force per length ∫ (dg/dn) r dn over the width of the zone, which waves κ
-    along the front resist with w|κ|; on the plane this is the potential of charges in two
-    dimensions.
-    """
-    from scipy.ndimage import distance_transform_edt
-
+def _with_shifted_front(state: Round, traction: Array, missed: Array) -> tuple[Array, Mask]:
+    """Return tractions [Pa] that the law can exert, and contact, after its edge has moved."""
     problem, contact = state.problem, state.contact
-    law, grid = problem.law, problem.grid
-    assert law
-    strength = law.strength()
-    border = perimeter(contact, grid)
+    assert problem.law
     # On springs a front has no stiffness, and each cell its own minima: a shift would leave them.
-    if not border or state.on_contact.preconditioner.is_bed:
-        return np.clip(traction, -strength, 0.0), contact
-    dx, dy = edges(grid)
-    exerted = state.attraction.traction
-    zone = ((exerted < 0) | (missed != 0)) & ~contact
-    # The gap is infinite where there is no indenter.
-    gap = np.clip(np.where(contact, 0.0, state.gap), 0.0, 2 * law.cutoff())
-    gap_slope = np.where(zone, _slope(gap, dx, dy), 0.0)
-    slope = np.where(zone, _slope(exerted, dx, dy), 0.0)
-    extent = np.count_nonzero(contact) * grid.cell_area / border
-    qx, qy = grid.wavenumbers()
-    longest = _LONGEST * extent
-    per_wave = 0.5 * _FRONT_STIFFNESS * law.work_of_adhesion()
-    stiffness = per_wave * (qx**2 + qy**2 + 1 / longest**2)
-    push = scipy.fft.rfft2(gap_slope * missed)
-    estimate = scipy.fft.irfft2(push / stiffness, s=grid.shape)
-    few_cells = _MOST_CELLS * max(dx, dy)
-    limit = np.clip(np.abs(estimate), few_cells, max(few_cells, _MOST_SHARE * extent))
-    shift = np.clip(state.gain * estimate, -limit, limit)
-    following = traction + slope * shift
-    greatest = float(np.abs(shift).max(where=zone, initial=0.0))
-    if greatest > _EXTENDED * max(dx, dy):
-        # The slope of the zone is continued into the contact and beyond the zone.
-        for inside, side in ((contact, -1.0), (~(contact | zone), 1.0)):
-            distance, (i, j) = distance_transform_edt(
-                inside, sampling=grid.spacing, return_indices=True
-            )
-            ring = inside & (distance <= greatest)
-            i, j = i[ring], j[ring]
-            moved = shift[i, j] + side * distance[ring]
-            following[ring] = traction[i, j] + slope[i, j] * moved
-        contact = _shifted_contact(contact, shift, 0.5 * max(dx, dy), grid)
-        contact &= np.isfinite(problem.profile)
-    return np.asarray(np.clip(following, -strength, 0.0)), contact
-
-
-def _shifted_contact(contact: Mask, shift: Array, half: float, grid: Grid) -> Mask:
-    """Return the contact after its edge has moved into it by ``shift`` [m], or out of it if < 0.
-
-    The edge lies ``half`` a cell [m] from the cells on both sides. A cell leaves if it has passed
-    the cell by as much, and joins as soon as it is reached: of a cell that joins too late the gap
-    closes, but one that leaves too late is pulled out by its wall pressure.
-    """
-    from scipy.ndimage import distance_transform_edt
-
-    inside, outside = (
-        distance_transform_edt(mask, sampling=grid.spacing) for mask in (contact, ~contact)
-    )
-    shifted: Mask = np.where(contact, shift <= inside + half, -shift > outside - half)
-    return shifted
-
-
-def _slope(values: Array, dx: float, dy: float) -> Array:
-    """Return the magnitude of the gradient, from central differences."""
-    slopes: Array = np.zeros(values.shape)
-    for axis, width in ((0, dx), (1, dy)):
-        if values.shape[axis] > 1:
-            slopes += np.square(np.gradient(values, width, axis=axis))
-    return np.asarray(np.sqrt(slopes))
+    if not state.on_contact.preconditioner.is_bed:
+        front = Front(problem, contact, state.gap, state.attraction.traction)
+        if front.length:
+            traction, contact = front.moved(traction, missed, state.gain)
+    return np.asarray(np.clip(traction, -problem.law.strength(), 0.0)), contact
