@@ -34,7 +34,7 @@ CEILINGS = {
     "theory": 1500,
     "solids": 1500,
     "adhesion-theory": 650,
-    "solver": 2000,
+    "solver": 2300,
     "fit-method": 1300,
     "validation": 1050,
     "performance": 850,
