@@ -174,14 +174,7 @@ class AdhesionSolver(ScaledSolver):
 
         The contact changes ``changes`` times at most.
         """
-        law = problem.law
-        assert law
-        goal = 0.01 * law.cutoff()
-        if before:
-            size = float(np.abs(before.missed).max(where=~before.contact, initial=0.0))
-            goal = min(goal, _CONTACT_SHARE * size * law.cutoff() / law.strength())
-            goal = max(goal, _FLOOR * self.tolerance * before.scale)
-        hard = replace(problem, law=None)
+        goal, hard = self._goal(problem, before), replace(problem, law=None)
         contact = on_contact.contact
         settled, opened = False, 0.0
         for _ in range(changes):
@@ -224,6 +217,17 @@ class AdhesionSolver(ScaledSolver):
         # What an inner solve has closed may be open by more than the tolerance.
         displacement = problem.operator(wall + traction)
         return _finished(problem, on_contact, wall, traction, displacement, before, settled)
+
+    def _goal(self, problem: Problem, before: Round | None) -> float:
+        """Return the gap [m] to which a round closes: the less, the less the last one missed."""
+        law = problem.law
+        assert law
+        goal = 0.01 * law.cutoff()
+        if before is None:
+            return goal
+        size = float(np.abs(before.missed).max(where=~before.contact, initial=0.0))
+        goal = min(goal, _CONTACT_SHARE * size * law.cutoff() / law.strength())
+        return max(goal, _FLOOR * self.tolerance * before.scale)
 
 
 def _finished(
