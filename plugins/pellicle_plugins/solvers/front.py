@@ -1,10 +1,11 @@
 """The edge of a contact under an attraction, which moves by what the tractions beside it miss.
 
 A front that moves by v changes the tractions by v times their slope across it.  Tractions r that
-are missed push it with the force f = ∫ (dg/dn) r dn per length, across the zone in which the law
-acts.  A wave κ along it resists with a stiffness cw|κ|, w being the work of adhesion: the energy
-release rate at the edge of a crack of small waves v differs by −w|κ|v (Rice 1985), so c = 1 on a
-half-space; on a membrane, where the slope at the edge falls by |κ|v of itself, c = 2.
+are missed push it inwards with the force f = ∫ (dg/dn) r dn per length, across the zone in which
+the law acts.  A wave κ along it resists with a stiffness cw|κ|, w being the work of adhesion: the
+energy release rate at the edge of a crack of small waves v differs by −w|κ|v (Rice 1985), so c = 1
+on a half-space; on a membrane, where the slope at the edge falls by |κ|v of itself, c = 2; where
+the stiffness goes as q^α, c = α.
 
 That stiffness is found on the plane: the solution V of (c/2) w (−∇² + 1/ℓ²) V = (dg/dn) r, the
 potential of charges on the front, is there f / (cw √(κ² + 1/ℓ²)).
@@ -26,10 +27,10 @@ from pellicle.contact import Problem
 
 from .preconditioner import edges
 
-# c, between the values of a half-space and of a membrane, for all kernels.
+# c, for all kernels.
 STIFFNESS: Final = 1.25
-# ℓ over the mean extent of the contact, its area over its perimeter: a front that moves as a whole
-# has the stiffness cw/ℓ.
+# ℓ over the mean extent of the contact, its area over its perimeter. As a whole a front has the
+# stiffness cw/ℓ: 5w/a on a disc of radius a, as a contact after Johnson et al. (1971) without load.
 LONGEST: Final = 0.5
 # A front moves in a round by at most this many cells, or as far as estimated without the gain if
 # that is more, up to this share of the mean extent of the contact; beyond, the linear estimate says
