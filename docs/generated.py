@@ -110,7 +110,7 @@ def _prescribed() -> Iterable[Variable]:
 def cases() -> str:
     """Return a table of the cases that ``pellicle validate`` solves."""
     rows = [
-        (case.name, _value(case.expected, case.unit), f"{case.tolerance:.0e}", _cell(case.source))
+        (case.name, _value(case.expected, case.unit), f"{case.tolerance:.2g}", _cell(case.source))
         for suite in pl.registry().suites
         for case in suite()
     ]

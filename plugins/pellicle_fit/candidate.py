@@ -34,7 +34,7 @@ class Candidate:
     whole: tuple[Curve, ...]
     """The curves with all their rows."""
     estimates: Mapping[str, Estimate] = field(default_factory=dict)
-    """Of the chosen explanation all, of those tied with it modulus and tension."""
+    """Those whose ends were sought: of the chosen explanation all, unless no model describes."""
 
     @cached_property
     def aic(self) -> float:
@@ -54,6 +54,16 @@ class Candidate:
                     value = float(getattr(part, name))
                     found[name] = Estimate(value, value, value, quantity.unit, held=True)
         return found
+
+    @property
+    def sought(self) -> dict[str, Estimate]:
+        """Those of the quantities that were given or whose ends were sought."""
+        return {n: e for n, e in self.parameters.items() if e.held or n in self.estimates}
+
+    @property
+    def holds_modulus(self) -> bool:
+        """Whether E* is that of the solid."""
+        return all(effect.holds_modulus for effect in self.objective.explanation.effects)
 
     @property
     def contact_points(self) -> list[float]:

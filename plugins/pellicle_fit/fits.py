@@ -31,7 +31,7 @@ def fit(
     assumed to be normal, with equal variance at all points; the intervals have a confidence of
     95 %.
 
-    An indenter that has a force curve of its own (paraboloid, sphere, cone, flat_punch) is fitted
+    An indenter that has a force curve of its own (a body of revolution, a sharp pyramid) is fitted
     at once.  Any other indenter, or any on another kernel, first needs a study of some 150 runs,
     which is kept in ``cache`` and serves all curves of about the same depth.
 
@@ -97,10 +97,8 @@ def fit_pooled(
 
     Raises
     ------
-    ConfigError
-        A curve cannot be read or fitted, there is only one, or an argument is not allowed.
-    StorageError
-        A folder cannot be read.
+    ConfigError, PluginError, ConvergenceError, StorageError
+        As in `fit`, or there is only one curve.
     """
     config = FitConfig.merged(config, pool=True, **options)
     sources = [*config.sources(curves)]

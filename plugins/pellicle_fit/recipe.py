@@ -87,11 +87,13 @@ class Answer:
         The interval is the least that contains theirs; without a lower end if one of them has none.
         """
         tied = [fit for fit in self.tied if fit not in self.not_held]
+        if name == MODULUS:
+            tied = [fit for fit in tied if fit.holds_modulus]
         found = [fit.estimates[name] for fit in tied if name in fit.estimates]
         none = Estimate(0.0, 0.0, 0.0, "N/m", held=True)
         own = self.chosen.parameters.get(name, none)
         if not found:
-            return own
+            return own if tied or own.held else replace(own, low=None, high=None)
         lows = [e.low for e in found if e.low is not None]
         highs = [e.high for e in found if e.high is not None]
         low = min(lows) if len(lows) == len(tied) else None
@@ -195,7 +197,7 @@ def answer(
     untried = [types for types, own in responses.items() if any(e.type_name in types for e in own)]
     # Of what no model describes few ends are worth seeking; none if what may be right has no model.
     undescribed = decided.verdict is Verdict.UNDESCRIBED
-    own = (MODULUS, TENSION, CONTACT_POINT) if undescribed else ()
+    own = (MODULUS, TENSION, CONTACT_POINT, *question.wanted) if undescribed else ()
     rise, tied = np.inf if undescribed and untried else threshold, ties(fits, word, decided, chosen)
     for types in tied:
         names = own if types == chosen else (MODULUS, TENSION)

@@ -81,15 +81,13 @@ class Fit:
     def estimates(self) -> dict[str, Estimate]:
         """Return modulus and tension, and the other quantities of the chosen explanation by name.
 
-        Those of further curves have their number behind the name, as ``contact_point_1``.  Of what
-        no model describes there are modulus, tension and contact points alone.
+        Those of further curves have their number behind the name, as ``contact_point_1``.  Where no
+        model describes the curves, what nobody asked for is left out.
         """
         found = {"reduced_modulus": self.reduced_modulus, "tension": self.tension}
         if youngs := self.youngs_modulus:
             found["youngs_modulus"] = youngs
-        chosen = self.answer.chosen
-        own = {n: e for n, e in chosen.parameters.items() if e.held or n in chosen.estimates}
-        return {**found, **own, **found}
+        return {**found, **self.answer.chosen.sought, **found}
 
     @property
     def verdict(self) -> Verdict:
@@ -147,7 +145,7 @@ class Fit:
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as JSON data."""
         answer, chosen = self.answer, self.answer.chosen
-        own, asked = chosen.parameters, ("reduced_modulus", "tension", "youngs_modulus")
+        own, asked = chosen.sought, ("reduced_modulus", "tension", "youngs_modulus")
         return {
             **{name: vars(e) for name, e in self.estimates().items() if name in asked},
             "parameters": {name: vars(estimate) for name, estimate in own.items()},
@@ -187,7 +185,7 @@ class Fit:
             "holds_modulus": fit not in answer.not_held,
             "parameters": {
                 name: vars(value)
-                if name in fit.estimates or value.held
+                if name in fit.sought
                 else {"value": value.value, "unit": value.unit}
                 for name, value in fit.parameters.items()
             },
@@ -206,7 +204,7 @@ class Fit:
                 {"code": code, "message": text} for code, text in judged.failed_checks.items()
             ],
             "messages": list(member.measured.messages),
-            **{slot.name: vars(parameters[slot.full_name]) for slot in slots},
+            **{s.name: vars(parameters[s.full_name]) for s in slots if s.full_name in parameters},
             "data": member.data,
         }
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from .candidate import NONE, ROWS, Candidate, Types, best_of
 from .curve import Curve
-from .effect import Effect, Sizes, Solid
+from .effect import Adds, Effect, Records, Sizes, Solid
 from .explanation import Explanation
 from .noise import neighbour_noise
 from .objective import ROUGH, Objective
@@ -38,6 +38,12 @@ class Question:
     def word(self) -> Types:
         """The set of what is asked for."""
         return frozenset({self.asked.type_name}) if self.asked else NONE
+
+    @property
+    def wanted(self) -> list[str]:
+        """Open quantities of what is asked for and of what is kept, unless it is a baseline."""
+        own = (e for e in (self.asked, *self.kept) if e and not isinstance(e, (Adds, Records)))
+        return [name for effect in own for name in effect.open]
 
     def candidates(self) -> dict[Types, Explanation]:
         """Return the explanations that are compared, by their types."""

@@ -108,8 +108,7 @@ def ties(fits: Fits, word: Types, decision: Decision, chosen: Types) -> list[Typ
     def lends(fit: Candidate) -> bool:
         if fit.types == chosen or (none and not fit.types):
             return True
-        holds = all(effect.holds_modulus for effect in fit.objective.explanation.effects)
-        if fit.aic - least >= decision.margin or not holds:
+        if fit.aic - least >= decision.margin or not fit.holds_modulus:
             return False
         if none:
             return fit.aic + EFFECT_MARGIN <= fits[NONE].aic

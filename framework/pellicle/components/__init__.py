@@ -45,7 +45,6 @@ from .indenter import HasContactRadius as HasContactRadius
 from .indenter import HasForceCurve as HasForceCurve
 from .indenter import HasLayerForceCurve as HasLayerForceCurve
 from .indenter import Indenter as Indenter
-from .indenter import IsShallowLimit as IsShallowLimit
 from .indenter import LayerForceCurve as LayerForceCurve
 from .indenter import profile_of as profile_of
 from .interaction import Interaction as Interaction

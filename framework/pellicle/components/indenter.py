@@ -98,7 +98,7 @@ class HasForceCurve(Protocol):
 
     @property
     def depth_limit(self) -> float:
-        """Largest depth [m] at which it is valid; infinite if unlimited, 0 if there is none."""
+        """Largest depth [m] at which the curve holds: infinite if at any, 0 if at none."""
         ...
 
     def force_curve(self, depth: Array, length: float) -> ForceCurve:
@@ -164,20 +164,6 @@ class HasLayerForceCurve(Protocol):
         ``depth`` [m] has shape (n,); ``length`` ≥ 0 is the elastocapillary length s = 2τ₀/E* [m],
         ``thickness`` > 0 that of the layer, h [m]; 0 ≤ ``poissons_ratio`` ≤ ½.
         """
-        ...
-
-
-@runtime_checkable
-class IsShallowLimit(Protocol):
-    """An indenter that approximates another shape at small depths."""
-
-    @property
-    def radius(self) -> float:
-        """Radius of curvature at the tip [m]; the depth must be small compared with it."""
-        ...
-
-    def whole_shape(self) -> HasForceCurve:
-        """Return the shape that it approximates."""
         ...
 
 

@@ -9,11 +9,15 @@ from pellicle_fit.effect import Array, Contact, Fitted, fitted
 
 from .shape import Shape, in_place
 
+_ERROR = 3e-3
+"""Error of the force of a worn sphere."""
+
 
 class WornTip(Shape, title="a worn tip"):
     """A paraboloid or a sphere whose tip is worn to a flat of radius b.
 
-    A sphere has the force of the worn paraboloid times its own over that of the whole one.
+    A worn sphere has the force of a worn paraboloid times that of a sphere over that of a
+    paraboloid at the same depth, which is right to 0.3 % up to b = 0.4 R.
     """
 
     type: Literal["worn_tip"] = "worn_tip"
@@ -27,7 +31,7 @@ class WornTip(Shape, title="a worn tip"):
         flat = self.flat_radius or None
         worn = in_place(contact, "paraboloid", radius=contact.tip_radius, flat_radius=flat)
         whole = in_place(contact, "paraboloid", radius=contact.tip_radius)
-        if contact.indenter == whole.indenter:
+        if getattr(contact.indenter, "type", "") == "paraboloid":
             return worn
 
         def area(depth: Array, length: float) -> Array:
@@ -35,4 +39,5 @@ class WornTip(Shape, title="a worn tip"):
             share = np.divide(round_, hertz, out=np.zeros_like(hertz), where=hertz > 0)
             return worn.area(depth, length) * share
 
-        return replace(worn, area=area, depth_limit=contact.depth_limit)
+        error = max(contact.error, _ERROR)
+        return replace(worn, area=area, depth_limit=contact.depth_limit, error=error)

@@ -11,7 +11,6 @@ import numpy as np
 
 from pellicle.units import decimal, readable
 from pellicle_fit.candidate import NONE
-from pellicle_fit.effect import Adds, Records
 from pellicle_fit.files.measurement import Note
 from pellicle_fit.intervals import CONFIDENCE
 from pellicle_fit.noise import Flaw
@@ -56,12 +55,7 @@ def numbers(fit: Fit, *, si: bool = False) -> str:
     """
     answer, estimates = fit.answer, fit.estimates()
     names = ["youngs_modulus" if "youngs_modulus" in estimates else "reduced_modulus"]
-    asked, chosen = answer.question.asked, answer.chosen.types
-    if asked is not None and asked.type_name in chosen:
-        names += asked.open
-    # A baseline is the instrument's.
-    kept = (effect for effect in answer.question.kept if not isinstance(effect, (Adds, Records)))
-    names += chain.from_iterable(effect.open for effect in kept)
+    names += [name for name in answer.question.wanted if name in answer.chosen.parameters]
     parts = [f"{words(name)} {in_figures(estimates[name], si=si)}" for name in names]
     calibration = calibration_of(fit)
     if answer.verdict is Verdict.UNDESCRIBED:

@@ -26,6 +26,9 @@ from pellicle.components import ContactRadius, ForceCurve, Indenter, LayerForceC
 from pellicle.errors import ConfigError, shown
 from pellicle.units import Length, Quantity
 
+_TINY = 1e-12
+"""Height of a tip that is lost, over the depth, below which no force shows it."""
+
 
 class Sphere(BodyOfRevolution):
     """Sphere with its exact profile up to its equator, or with a tip that is worn flat."""
@@ -136,18 +139,15 @@ class Paraboloid(BodyOfRevolution):
         return np.asarray(np.sqrt(np.maximum(x - flat, 0.0)) * np.sqrt(x + flat))
 
     def _half_space_curve(self, depth: Array, length: float) -> ForceCurve:
-        flat = self.flat_radius
-        if flat is None:
+        flat = self.flat_radius or 0.0
+        height = flat * (flat / self.radius)
+        if height <= _TINY * depth.max(initial=0.0):
             return paraboloid(self.radius, depth, length)
-        return stretched(_WORN, flat, flat**2 / self.radius, depth, length)
+        return stretched(_WORN, flat, height, depth, length)
 
     def _layer_curves(self) -> Profile | None:
         smooth = self.flat_radius is None
         return smooth_profile(self.radius, inf, self.abel_slope) if smooth else None
-
-    def whole_shape(self) -> Sphere:
-        """Return the sphere of the same radius."""
-        return Sphere(radius=self.radius, flat_radius=self.flat_radius)
 
 
 class Cone(BodyOfRevolution):
@@ -210,9 +210,9 @@ class Cone(BodyOfRevolution):
         return np.asarray(times * tip + np.arccos(self._blunt / beyond) / tan(self.half_angle))
 
     def _half_space_curve(self, depth: Array, length: float) -> ForceCurve:
-        if self.tip_radius is None:
+        height = self._blunt / tan(self.half_angle)
+        if height <= _TINY * depth.max(initial=0.0):
             return cone(self.half_angle, depth, length)
-        height = self._blunt**2 / self.tip_radius
         return stretched(_BLUNT, self._blunt, height, depth, length)
 
     def _layer_curves(self) -> Profile | None:

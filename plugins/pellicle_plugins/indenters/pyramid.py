@@ -10,8 +10,9 @@ import numpy as np
 from pydantic import Field
 
 from pellicle.arrays import Array
-from pellicle.axisymmetric import Interpolant, cone, stretched_spline
+from pellicle.axisymmetric import LEAST_DEPTH, Interpolant, cone, stretched_spline
 from pellicle.components import ForceCurve, Indenter
+from pellicle.errors import ConfigError
 from pellicle.units import Length, Quantity
 
 SCALE = 0.03
@@ -83,16 +84,17 @@ class Pyramid(Indenter):
 
         By similarity it is that of a cone times a function of sc/δ, from contacts on grids.
         """
-        touches = depth > 0
-        by_length = np.divide(self.slope, depth, out=np.zeros_like(depth), where=touches)
+        if self.tip_radius is not None:
+            raise ConfigError("a rounded pyramid has no known force curve", "indenter")
+        deep = np.where(depth > 0, np.maximum(depth, LEAST_DEPTH), 1.0)
+        by_length = self.slope / deep
         x = length * by_length
         ratio, rate = _ratio(self.sides)(x)
         factor, of_cone = np.exp(ratio), cone(atan(1 / self.slope), depth, length)
         force = of_cone.force * factor
-        by_depth = np.divide(-rate * x * force, depth, out=np.zeros_like(depth), where=touches)
         return ForceCurve(
             force,
-            of_cone.by_depth * factor + by_depth,
+            of_cone.by_depth * factor - rate * x * force / deep,
             of_cone.by_length * factor + rate * by_length * force,
         )
 

@@ -94,7 +94,7 @@ class AdhesionSolver(ScaledSolver):
 
     1. Shifting the edge of a contact costs little energy, so rounds alone would move it slowly,
        and the slower the longer the wave along the edge. The shift is estimated from the missed
-       tractions with the stiffness of a crack front, w|κ| for waves κ along it (Rice 1985).
+       tractions with the stiffness of a crack front, see `Front`.
     2. While the contact stays the same, rounds are linear, and their tractions are extrapolated
        (Anderson 1965).
     """

@@ -30,7 +30,8 @@ from .preconditioner import edges
 # c, for all kernels.
 STIFFNESS: Final = 1.25
 # ℓ over the mean extent of the contact, its area over its perimeter. As a whole a front has the
-# stiffness cw/ℓ: 5w/a on a disc of radius a, as a contact after Johnson et al. (1971) without load.
+# stiffness cw/ℓ: 5w/a on a disc of radius a, as an unloaded contact after Johnson et al. (1971) has
+# at a fixed depth.
 LONGEST: Final = 0.5
 # A front moves in a round by at most this many cells, or as far as estimated without the gain if
 # that is more, up to this share of the mean extent of the contact; beyond, the linear estimate says

@@ -79,10 +79,13 @@ def _tips() -> Iterator[Case]:
     length = 2 * _TENSION / _MODULUS
     tip = blunt.model_dump(exclude_none=True)
     force = _MODULUS * float(blunt.force_curve(at, length).force[0])
-    size, source = 2 * float(blunt.contact_radius(at, 0.0).radius[0]), "reciprocity"
+    size, source = (
+        2 * float(blunt.contact_radius(at, 0.0).radius[0]),
+        "reciprocity, after Shield 1967",
+    )
     yield from _cases("tensed blunt cone", source, tip, size, force, tension=_TENSION)
 
-    # His pressure is an approximate one.
+    # Bilodeau's pressure is an approximate one.
     for sides, share in ((3, 0.887), (4, 0.7453)):
         tip = {"type": "pyramid", "half_angle": angle, "sides": sides}
         force, size = share * _MODULUS * np.tan(angle) * _DEPTH**2, 4 * _DEPTH * np.tan(angle)

@@ -293,6 +293,16 @@ def test_noise_of_1_over_f_is_taken_so() -> None:
     assert np.ptp(ends_of(coloured.reduced_modulus)) > 2 * np.ptp(ends_of(white.reduced_modulus))
 
 
+def test_a_cone_s_modulus_is_not_that_of_the_solid() -> None:
+    """Its angle cannot be told, so that its modulus has no ends even where it is chosen."""
+    position = np.linspace(-0.3e-6, 1e-6, 300)
+    force = 1e3 * Cone(half_angle=1.0).force_curve(position, 0.0).force
+    force += 0.003 * force.max() * np.random.default_rng(2).standard_normal(300)
+    found = fit(position, force, rivals=["cone"])
+    assert found.answer.chosen.types == {"cone"}
+    assert found.reduced_modulus.low is found.reduced_modulus.high is None
+
+
 def test_relaxation_beside_a_tension_has_no_model_of_retraction() -> None:
     """Where no explanation describes both passes and that one was not tried, nothing is bounded."""
     (rows,) = fit_verdicts.rows_of("both", TOP)
@@ -304,6 +314,20 @@ def test_relaxation_beside_a_tension_has_no_model_of_retraction() -> None:
     assert found.verdict is Verdict.UNDESCRIBED
     assert found.answer.untried
     assert found.reduced_modulus.low is found.reduced_modulus.high is None
+
+
+@pytest.mark.parametrize(
+    "options", [{"thickness": "free", "poissons_ratio": 0.5}, {"model": ["brush"]}]
+)
+def test_of_what_no_model_describes_some_quantities_have_ends(options: Any) -> None:
+    """Those that were asked for, and no others; all of it can be said."""
+    position, force = curve()
+    force[position > 1e-6 + TOP / 2] *= 0.8
+    found = fit(position, force, baseline="offset", **options)
+    assert found.verdict is Verdict.UNDESCRIBED
+    assert "not to be quoted" in repr(found)
+    asked = set(found.answer.question.wanted) | {"reduced_modulus", "tension", "contact_point"}
+    assert found.to_dict()["parameters"].keys() == asked & found.answer.chosen.parameters.keys()
 
 
 @pytest.mark.slow

@@ -299,6 +299,7 @@ BOTH = np.append(DEPTH, DEPTH[-2::-1])
         (["adhesion", "worn_tip"], bead(), ""),
         (["adhesion", Softening()], bead(), "on a half-space"),
         (["adhesion", effect("size", size_error=0.1), "sphere"], bead(), ""),
+        (["adhesion", effect("size", size_error=0.1), "worn_tip"], bead(), ""),
         (["layer", "worn_tip"], bead(), "curve of this tip on a layer is not known"),
         (["drag", "layer"], bead(), "needs a contact radius"),
         (["drag", "worn_tip"], bead(), ""),

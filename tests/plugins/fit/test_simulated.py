@@ -158,6 +158,20 @@ def test_a_bonded_layer_is_an_effect(monkeypatch: pytest.MonkeyPatch) -> None:
     assert not solid({"type": "coated", "substrate": layer}).is_half_space
 
 
+def test_a_sharp_pyramid_is_known_and_a_rounded_one_simulated(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Whether an indenter has a force curve its depth limit tells."""
+    monkeypatch.setattr("pellicle_fit.problem.simulated_curve", lambda *_, **settings: "simulated")
+    depth = np.linspace(-1e-7, 3e-7, 40)
+    for tip_radius, is_known in ((None, True), ("20 nm", False)):
+        config = pl.FitConfig.merged(
+            indenter="pyramid", half_angle="70 degree", tip_radius=tip_radius
+        )
+        asked = problem(config, [*config.sources({"a": (depth, np.maximum(depth, 0) ** 2)})])
+        assert isinstance(asked.members[0].curve.indenter, str) is not is_known
+
+
 def test_what_counts_against_the_modulus_is_refused() -> None:
     """A bending stiffness has no meaning while the modulus is not known."""
     with pytest.raises(

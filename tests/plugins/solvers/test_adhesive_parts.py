@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.special import i0, k0
 
 from pellicle import Grid
+from pellicle_plugins.solvers import front
 from pellicle_plugins.solvers.anderson import Tried, extrapolated, is_convex
 from pellicle_plugins.solvers.front import STIFFNESS, potential, shifted_contact
 
@@ -32,15 +33,15 @@ def straight(points: int, waves: int) -> float:
     return float(moved.max() / (FORCE / stiffness))
 
 
-def ring(points: int, radius: float) -> float:
+def ring(points: int, radius: float, longest: float = LONGEST) -> float:
     """Return how far a circular front moves as a whole, over the closed form."""
     x, y = (axis - 0.5 for axis in np.meshgrid(*2 * [(np.arange(points) + 0.5) / points]))
     distance = np.hypot(x, y)
     # A hat of the width of two cells.
     push = FORCE * points * np.maximum(1 - np.abs(distance - radius) * points, 0.0)
-    moved = potential(push, WORK, LONGEST, grid_of(points))
+    moved = potential(push, WORK, longest, grid_of(points))
     on_front = np.abs(distance - radius) < 0.5 / points
-    ratio = radius / LONGEST
+    ratio = radius / longest
     expected = 2 * FORCE * radius * i0(ratio) * k0(ratio) / (STIFFNESS * WORK)
     return float(moved[on_front].mean() / expected)
 
@@ -51,6 +52,16 @@ def test_a_pushed_front_moves_by_its_stiffness(of: Any, argument: float) -> None
     errors = [abs(of(points, argument) - 1) for points in (64, 128, 256)]
     assert errors[-1] < 0.04
     assert errors[0] > 3 * errors[-1]
+
+
+def test_a_disc_resists_as_an_unloaded_one_after_johnson() -> None:
+    """With 5w/a for each length of its edge, at a fixed depth."""
+    radius = 0.25
+    longest = front.LONGEST * radius / 2
+    ratio = radius / longest
+    stiffness = front.STIFFNESS * WORK / (2 * radius * i0(ratio) * k0(ratio))
+    assert ring(256, radius, longest) == pytest.approx(1, abs=0.05)
+    assert stiffness == pytest.approx(5 * WORK / radius, rel=0.01)
 
 
 @pytest.mark.parametrize("shift", [-0.06, 0.03, 0.11])
