@@ -170,7 +170,8 @@ def fit_changes(old: Any, new: Any) -> Iterator[str]:
         # What is far behind is not sought to the end.
         if aic[name] - least < FAR and now["delta_aic"] > was["delta_aic"] + 0.05:
             yield f"{name}: ΔAIC {was['delta_aic']} → {now['delta_aic']}, above what it was"
-        yield from _parameters(name, was["parameters"], now["parameters"])
+        if name == old["chosen"]:
+            yield from _parameters(name, was["parameters"], now["parameters"])
     for name in ("verdict", "chosen", "tied"):
         if old[name] != new[name]:
             yield f"{name}: {old[name]} → {new[name]}"
