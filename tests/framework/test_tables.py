@@ -58,7 +58,7 @@ STUDY = RUN | {
 }
 STICKING_STUDY = STICKING | {
     "study": {
-        "vary": {"interaction.work_of_adhesion": ["0.5 mJ/m^2", "0.4 mJ/m^2"]},
+        "vary": {"interaction.work_of_adhesion": ["0.5 mJ/m^2", "0.35 mJ/m^2"]},
         "derived": {"twice": "2 * pull_off"},
     }
 }
