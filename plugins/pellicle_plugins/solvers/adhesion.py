@@ -7,7 +7,6 @@ from typing import Final
 
 import numpy as np
 
-from pellicle.analysis import perimeter
 from pellicle.arrays import Array, Mask
 from pellicle.contact import (
     Law,
@@ -20,7 +19,6 @@ from pellicle.contact import (
 from .adhesive_round import Round
 from .anderson import Tried, extrapolated, is_convex
 from .contact_cg import SIGN_CERTAINTY, inner_solve
-from .front import Front
 from .nested_grids import prolonged
 from .preconditioner import OnContact, Preconditioner
 from .scaling import ScaledSolver
@@ -137,7 +135,7 @@ class AdhesionSolver(ScaledSolver):
         wall = on_contact.transferred(wall + traction - following)
         wall[~contact] = 0.0
         after = self._closed(problem, on_contact, wall, following, state, changes)
-        front = perimeter(state.contact, problem.grid) / max(problem.grid.spacing)
+        front = state.front.length / max(problem.grid.spacing)
         rise = after.energy - state.energy
         if state.gain > _LEAST_GAIN and rise > _RISE * (front / state.gap.size):
             return replace(state, gain=max(0.5 * state.gain, _LEAST_GAIN))
@@ -291,8 +289,6 @@ def _with_shifted_front(state: Round, traction: Array, missed: Array) -> tuple[A
     problem, contact = state.problem, state.contact
     assert problem.law
     # On springs a front has no stiffness, and each cell its own minima: a shift would leave them.
-    if not state.on_contact.preconditioner.is_bed:
-        front = Front(problem, contact, state.gap, state.attraction.traction)
-        if front.length:
-            traction, contact = front.moved(traction, missed, state.gain)
+    if state.front.length and not state.on_contact.preconditioner.is_bed:
+        traction, contact = state.front.moved(traction, missed, state.gain)
     return np.asarray(np.clip(traction, -problem.law.strength(), 0.0)), contact

@@ -12,6 +12,7 @@ from pellicle.arrays import Array, Mask
 from pellicle.contact import Attraction, Problem, Progress, adhesive_scale
 
 from .anderson import Tried
+from .front import Front
 from .preconditioner import OnContact
 
 # Residual of a round that ended before every cell was on its side.
@@ -51,6 +52,11 @@ class Round:
     def missed(self) -> Array:
         """Traction that the law exerts minus `traction` [Pa]."""
         return self.attraction.traction - self.traction
+
+    @cached_property
+    def front(self) -> Front:
+        """The edge of the contact."""
+        return Front(self.problem, self.contact, self.gap, self.attraction.traction)
 
     @property
     def tried(self) -> Tried:

@@ -65,11 +65,10 @@ class Front:
         grid = self.problem.grid
         return np.count_nonzero(self.contact) * grid.cell_area / self.length
 
-    def shift(self, missed: Array, gain: float) -> Array:
+    def _shift(self, zone: Mask, missed: Array, gain: float) -> Array:
         """Return how far the front recedes, at each cell [m], times a factor and limited."""
         law, grid = self.problem.law, self.problem.grid
         assert law
-        zone = self._zone(missed)
         gap = np.clip(np.where(self.contact, 0.0, self.gap), 0.0, 2 * law.cutoff())
         push = np.where(zone, slope(gap, grid), 0.0) * missed
         estimate = potential(push, law.work_of_adhesion(), LONGEST * self.extent, grid)
@@ -81,8 +80,9 @@ class Front:
         """Return tractions [Pa] and contact after the front has moved by what is ``missed``."""
         from scipy.ndimage import distance_transform_edt
 
-        grid, contact, zone = self.problem.grid, self.contact, self._zone(missed)
-        wide, shift = max(edges(grid)), self.shift(missed, gain)
+        grid, contact = self.problem.grid, self.contact
+        zone = ((self.exerted < 0) | (missed != 0)) & ~contact
+        wide, shift = max(edges(grid)), self._shift(zone, missed, gain)
         steep = np.where(zone, slope(self.exerted, grid), 0.0)
         following = traction + steep * shift
         greatest = float(np.abs(shift).max(where=zone, initial=0.0))
@@ -99,10 +99,6 @@ class Front:
         moved = shifted_contact(contact, shift, 0.5 * wide, grid)
         moved &= np.isfinite(self.problem.profile)
         return following, moved
-
-    def _zone(self, missed: Array) -> Mask:
-        zone: Mask = ((self.exerted < 0) | (missed != 0)) & ~self.contact
-        return zone
 
 
 def potential(push: Array, work: float, longest: float, grid: Grid) -> Array:
