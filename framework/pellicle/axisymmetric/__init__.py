@@ -8,8 +8,9 @@ from .adhesive_contact import punch_pull_off as punch_pull_off
 from .arguments import positive as positive
 from .arguments import single as single
 from .body import BodyOfRevolution as BodyOfRevolution
-from .depth_curves import LEAST_DEPTH as LEAST_DEPTH
+from .depth_curves import spread as spread
 from .depth_curves import stretched as stretched
+from .depth_curves import touching as touching
 from .equation import kinks_of as kinks_of
 from .indentation import AxisymmetricContact as AxisymmetricContact
 from .indentation import indent as indent

@@ -30,6 +30,12 @@ _TINY = 1e-12
 """Height of a tip that is lost, over the depth, below which no force shows it."""
 
 
+def _root(x: Array, edge: float) -> Array:
+    """Return √(x² − b²) [m] at positions beyond an edge of radius b [m], 0 within it."""
+    # The difference of squares would cancel beside the edge.
+    return np.asarray(np.sqrt(np.maximum(x - edge, 0.0)) * np.sqrt(x + edge))
+
+
 class Sphere(BodyOfRevolution):
     """Sphere with its exact profile up to its equator, or with a tip that is worn flat."""
 
@@ -90,9 +96,7 @@ class Sphere(BodyOfRevolution):
         return np.arctanh(share) + rate / ((1 - u) * (1 + u))
 
     def _share(self, x: Array) -> Array:
-        flat = self.flat_radius or 0.0
-        root = np.sqrt(np.maximum(x - flat, 0.0)) * np.sqrt(x + flat)
-        return np.asarray(root / self.radius / self._height)
+        return _root(x, self.flat_radius or 0.0) / self.radius / self._height
 
     def _layer_curves(self) -> Profile | None:
         smooth = self.flat_radius is None
@@ -126,17 +130,13 @@ class Paraboloid(BodyOfRevolution):
 
     def abel_transform(self, x: Array) -> Array:
         """Return h(x) = (x/R) √(x² − b²) [m] for contact radii x [m]; see `HasAbelSlope`."""
-        return x * self._root(x) / self.radius
+        return x * _root(x, self.flat_radius or 0.0) / self.radius
 
     def abel_slope(self, x: Array) -> Array:
         """Return h'(x) for contact radii x [m]."""
-        root = self._root(x)
+        root = _root(x, self.flat_radius or 0.0)
         rate = np.divide(x**2, root, out=np.zeros_like(x), where=root > 0)
         return (root + rate) / self.radius
-
-    def _root(self, x: Array) -> Array:
-        flat = self.flat_radius or 0.0
-        return np.asarray(np.sqrt(np.maximum(x - flat, 0.0)) * np.sqrt(x + flat))
 
     def _half_space_curve(self, depth: Array, length: float) -> ForceCurve:
         flat = self.flat_radius or 0.0
@@ -205,8 +205,7 @@ class Cone(BodyOfRevolution):
         if self.tip_radius is None:
             return np.full_like(x, pi / 2 / tan(self.half_angle))
         beyond = np.maximum(x, self._blunt)
-        root = np.sqrt(beyond - self._blunt) * np.sqrt(beyond + self._blunt)
-        tip = (x - root) / self.tip_radius
+        tip = (x - _root(x, self._blunt)) / self.tip_radius
         return np.asarray(times * tip + np.arccos(self._blunt / beyond) / tan(self.half_angle))
 
     def _half_space_curve(self, depth: Array, length: float) -> ForceCurve:

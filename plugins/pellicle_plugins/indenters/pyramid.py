@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from pellicle.arrays import Array
-from pellicle.axisymmetric import LEAST_DEPTH, Interpolant, cone, stretched_spline
+from pellicle.axisymmetric import Interpolant, cone, spread, stretched_spline, touching
 from pellicle.components import ForceCurve, Indenter
 from pellicle.errors import ConfigError
 from pellicle.units import Length, Quantity
@@ -86,15 +86,16 @@ class Pyramid(Indenter):
         """
         if self.tip_radius is not None:
             raise ConfigError("a rounded pyramid has no known force curve", "indenter")
-        deep = np.where(depth > 0, np.maximum(depth, LEAST_DEPTH), 1.0)
-        by_length = self.slope / deep
+        touches, d = touching(depth)
+        by_length = self.slope / d
         x = length * by_length
         ratio, rate = _ratio(self.sides)(x)
-        factor, of_cone = np.exp(ratio), cone(atan(1 / self.slope), depth, length)
+        factor, of_cone = np.exp(ratio), cone(atan(1 / self.slope), d, length)
         force = of_cone.force * factor
-        return ForceCurve(
+        return spread(
+            touches,
             force,
-            of_cone.by_depth * factor - rate * x * force / deep,
+            of_cone.by_depth * factor - rate * x * force / d,
             of_cone.by_length * factor + rate * by_length * force,
         )
 

@@ -79,10 +79,8 @@ def _tips() -> Iterator[Case]:
     length = 2 * _TENSION / _MODULUS
     tip = blunt.model_dump(exclude_none=True)
     force = _MODULUS * float(blunt.force_curve(at, length).force[0])
-    size, source = (
-        2 * float(blunt.contact_radius(at, 0.0).radius[0]),
-        "reciprocity, after Shield 1967",
-    )
+    size = 2 * float(blunt.contact_radius(at, 0.0).radius[0])
+    source = "reciprocity, after Shield 1967"
     yield from _cases("tensed blunt cone", source, tip, size, force, tension=_TENSION)
 
     # Bilodeau's pressure is an approximate one.
