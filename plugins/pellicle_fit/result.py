@@ -176,6 +176,7 @@ class Fit:
     def _explanation(self, fit: Candidate) -> dict[str, Any]:
         """Return one of the explanations; quantities whose intervals were not sought lack ends."""
         answer = self.answer
+        bare = {name: {"value": e.value, "unit": e.unit} for name, e in fit.parameters.items()}
         return {
             "effects": sorted(fit.types),
             "words": words_of(fit),
@@ -183,12 +184,7 @@ class Fit:
             "delta_aic": fit.aic - answer.explanations[0].aic,
             "tied": fit in answer.tied,
             "holds_modulus": fit not in answer.not_held,
-            "parameters": {
-                name: vars(value)
-                if name in fit.sought
-                else {"value": value.value, "unit": value.unit}
-                for name, value in fit.parameters.items()
-            },
+            "parameters": bare | {name: vars(e) for name, e in fit.sought.items()},
         }
 
     def _curve(self, i: int, parameters: Mapping[str, Estimate]) -> dict[str, Any]:

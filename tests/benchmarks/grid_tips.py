@@ -9,7 +9,6 @@ intervals hold, and the CPU time of a fit beside that of a sphere.
 from __future__ import annotations
 
 import sys
-from itertools import pairwise
 from time import process_time
 from typing import Any
 
@@ -52,7 +51,8 @@ def on_grid(tip: dict[str, Any], tension: float, depth: float) -> float:
             "loading": {"depth": depth},
         }
         found.append(float(pl.run(run).dataset["force"][-1]))
-    return next(2 * fine - coarse for coarse, fine in pairwise(found))
+    coarse, fine = found
+    return 2 * fine - coarse
 
 
 def outcome(kind: str, random: np.random.Generator) -> tuple[bool, bool, float]:

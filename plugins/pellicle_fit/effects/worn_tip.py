@@ -30,9 +30,9 @@ class WornTip(Shape, title="a worn tip"):
         """Return the contact of the worn tip."""
         flat = self.flat_radius or None
         worn = in_place(contact, "paraboloid", radius=contact.tip_radius, flat_radius=flat)
-        whole = in_place(contact, "paraboloid", radius=contact.tip_radius)
         if getattr(contact.indenter, "type", "") == "paraboloid":
             return worn
+        whole = in_place(contact, "paraboloid", radius=contact.tip_radius)
 
         def area(depth: Array, length: float) -> Array:
             round_, hertz = contact.area(depth, length), whole.area(depth, length)
