@@ -148,7 +148,7 @@ class ActiveSet(ScaledSolver):
             if state.error <= _CLOSE * state.scale:
                 return state
         from_coarse = prolonged(self, problem)
-        pressure = first_guess(problem) if from_coarse is None else from_coarse
+        pressure = first_guess(problem) if from_coarse is None else from_coarse.wall
         state = _iterate(problem, preconditioner.on(pressure > 0), pressure)
         return state if from_coarse is None else _without_pits(problem, state)
 

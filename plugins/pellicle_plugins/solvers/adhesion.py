@@ -37,6 +37,8 @@ _FASTER_SAME: Final = 4.0
 # Rise of the energy in a round, over the work of adhesion of the cells along the front, above which
 # the fronts have moved too far: the round is made again with half the shift.
 _RISE: Final = 0.3
+# Rounds without progress after which it may not rise at all.
+_IDLE: Final = 2
 # Set changes after which the next round begins, whose tractions move the contact anyway. With 40 a
 # step on a rough surface takes half as many applications again; with 2 a smooth one does.
 _CHANGES: Final = 3
@@ -107,17 +109,17 @@ class AdhesionSolver(ScaledSolver):
         # Without the law, a depth closes cells only beyond the first touch.
         lowest = float(problem.profile.max())
         closes = problem.prescribed == "force" or problem.value > -lowest
-        # With the traction of the coarser grid too, the first step takes half as many applications,
-        # but may end in a state of the lattice of higher energy than that of a retraction: at
-        # N = 256 by .004 of the pull-off force.
-        pressure = prolonged(self, problem) if closes else None
-        if pressure is None:
+        coarse = prolonged(self, problem) if closes else None
+        if coarse:
+            pressure, contact = coarse.pressure, coarse.wall > 0
+        else:
             pressure = np.zeros(problem.grid.shape)
             if closes and problem.prescribed == "depth":
                 pressure = first_guess(replace(problem, law=None))
+            contact = pressure > 0
         # Cells of the undeformed surface that just touch the indenter are in contact.
         touches = problem.prescribed == "force" or problem.value == -lowest
-        contact = (pressure > 0) | (touches & (problem.profile == lowest))
+        contact |= touches & (problem.profile == lowest)
         u_minus_f = problem.operator(pressure) - problem.profile
         depth = problem.depth(u_minus_f[contact] if contact.any() else np.zeros(1))
         traction = problem.attraction(u_minus_f - depth, contact).traction
@@ -136,8 +138,12 @@ class AdhesionSolver(ScaledSolver):
         wall[~contact] = 0.0
         after = self._closed(problem, on_contact, wall, following, state, changes)
         front = state.front.length / max(problem.grid.spacing)
-        rise = after.energy - state.energy
-        if state.gain > _LEAST_GAIN and rise > _RISE * (front / state.gap.size):
+        has_risen = after.energy - state.energy > _RISE * (front / state.gap.size)
+        if state.settled and after.settled and after.progress.stagnant >= _IDLE:
+            # Between settled rounds it falls, unless a shift or an extrapolation went wrong.
+            is_less_closed = after.residual > state.residual
+            has_risen = is_less_closed and after.energy_if_closed > state.energy_if_closed
+        if state.gain > _LEAST_GAIN and has_risen:
             return replace(state, gain=max(0.5 * state.gain, _LEAST_GAIN))
         return replace(after, gain=_gain(state, after))
 

@@ -98,6 +98,14 @@ class Round:
         unit = law.work_of_adhesion() * self.gap.size
         return round((elastic + bound - load) / unit, 9)
 
+    @property
+    def energy_if_closed(self) -> float:
+        """The same after the wall has closed the gap on the contact, to second order in the gap."""
+        law = self.problem.law
+        assert law
+        work = float((self.wall * self.gap)[self.contact].sum())
+        return self.energy - work / (law.work_of_adhesion() * self.gap.size)
+
     @cached_property
     def scale(self) -> float:
         """Height to which errors of the gap are compared [m]."""

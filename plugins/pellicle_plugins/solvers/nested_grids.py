@@ -7,8 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from pellicle.arrays import Array
-from pellicle.contact import Problem
+from pellicle.contact import Problem, State
 from pellicle.errors import ConfigError
 from pellicle.surface import highest, prolong
 
@@ -21,8 +20,8 @@ _COARSE_TOLERANCE: Final = 1e-5
 _COARSEST: Final = 48
 
 
-def prolonged(solver: ScaledSolver, problem: Problem) -> Array | None:
-    """Return the wall pressure [Pa] of a coarser grid, by ``solver``, on that of ``problem``.
+def prolonged(solver: ScaledSolver, problem: Problem) -> State | None:
+    """Return the state of a coarser grid, by ``solver``, on the grid of ``problem``.
 
     None if the grid is coarse, its kernel needs it, or nothing is in contact on the coarser one.
     """
@@ -41,7 +40,10 @@ def prolonged(solver: ScaledSolver, problem: Problem) -> Array | None:
     tolerance = max(solver.tolerance, _COARSE_TOLERANCE)
     loose = solver.model_copy(update={"tolerance": tolerance})
     state = loose.solve(coarse, None, lambda iteration, residual_ratio: None).state
-    finer = prolong(state.wall, problem.grid.shape)
     # A coarse cell may extend beyond the rim of the indenter.
-    finer *= np.isfinite(problem.profile)
-    return finer if finer.any() else None
+    below = np.isfinite(problem.profile)
+    wall = prolong(state.wall, problem.grid.shape) * below
+    if not wall.any():
+        return None
+    pressure = wall if state.wall is state.pressure else prolong(state.pressure, wall.shape) * below
+    return State(pressure, wall, state.depth)

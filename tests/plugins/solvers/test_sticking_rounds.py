@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from math import pi
 from typing import Any
 
+import numpy as np
 import pytest
 import xarray as xr
 
 from pellicle_plugins.solvers import adhesion
-from tests.adhesive_paths import JKR, solved
+from tests.adhesive_paths import JKR, half_space, solved, wavy
 
 WITHOUT_ESTIMATE: dict[str, Any] = {**JKR, "estimate_error": False}
 
@@ -28,3 +30,21 @@ def test_rounds_whose_energy_rises_are_made_again(monkeypatch: pytest.MonkeyPatc
     assert refused["force"].values == pytest.approx(usual["force"].values, rel=1e-6)
     more = refused["operator_applications"] > usual["operator_applications"]
     assert more.all()
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::pellicle.errors.ConvergenceWarning")
+@pytest.mark.parametrize("length", [0.0, 0.05, 0.3])
+def test_lines_that_nearly_meet_converge(length: float) -> None:
+    """Wide line contacts on a sine, whose fronts went to and fro by a cell without end."""
+    pulls = pi * 0.1 * np.array([0.025, 0.15, 0.275, 0.4, 0.525, 0.4])
+    fractions = []
+    for points in (512, 1024):
+        path = wavy(
+            points, pulls, 0.1, 1e-3, quantity="mean_pressure", kernel=half_space(length),
+            interaction={"type": "jkr", "work_of_adhesion": 1e-3, "estimate_error": False},
+        )  # fmt: skip
+        assert path["converged"].all()
+        fractions.append(path["contact_fraction"].values)
+    assert (np.array(fractions) < 0.7).all()
+    np.testing.assert_allclose(*fractions, atol=0.01)
