@@ -88,23 +88,25 @@ class Round:
     @property
     def energy(self) -> float:
         """Energy over that of closed cells all over, to the digits that show an advance."""
-        law = self.problem.law
-        assert law
         bound = self.attraction.energy
         elastic = 0.5 * float(((self.wall + self.traction) * self.displacement).sum())
         load = 0.0
         if self.problem.prescribed == "force":
             load = self.depth * self.problem.value / self.problem.grid.cell_area
-        unit = law.work_of_adhesion() * self.gap.size
-        return round((elastic + bound - load) / unit, 9)
+        return round((elastic + bound - load) / self._energy_of_closed_cells, 9)
 
     @property
     def energy_if_closed(self) -> float:
         """The same after the wall has closed the gap on the contact, to second order in the gap."""
+        work = float((self.wall[self.contact] * self.gap[self.contact]).sum())
+        return self.energy - work / self._energy_of_closed_cells
+
+    @property
+    def _energy_of_closed_cells(self) -> float:
+        """Work of adhesion of all cells, over the area of one [J/m²]."""
         law = self.problem.law
         assert law
-        work = float((self.wall * self.gap)[self.contact].sum())
-        return self.energy - work / (law.work_of_adhesion() * self.gap.size)
+        return law.work_of_adhesion() * self.gap.size
 
     @cached_property
     def scale(self) -> float:

@@ -32,6 +32,19 @@ def test_rounds_whose_energy_rises_are_made_again(monkeypatch: pytest.MonkeyPatc
     assert more.all()
 
 
+@pytest.mark.filterwarnings("ignore::pellicle.errors.ConvergenceWarning")
+def test_energies_are_compared_beyond_the_rim_of_an_indenter(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Where there is no indenter, the gap is infinite."""
+    punch = {"type": "flat_punch", "radius": 1.0}
+    usual = solved(24, 1.0, [0.1], interaction=WITHOUT_ESTIMATE, indenter=punch)
+    monkeypatch.setattr(adhesion, "_IDLE", 0)
+    judged = solved(24, 1.0, [0.1], interaction=WITHOUT_ESTIMATE, indenter=punch)
+    assert judged["converged"].all()
+    assert judged["force"].values == pytest.approx(usual["force"].values, rel=1e-6)
+
+
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::pellicle.errors.ConvergenceWarning")
 @pytest.mark.parametrize("length", [0.0, 0.05, 0.3])
