@@ -37,7 +37,7 @@ _FASTER_SAME: Final = 4.0
 # Rise of the energy in a round, over the work of adhesion of the cells along the front, above which
 # the fronts have moved too far: the round is made again with half the shift.
 _RISE: Final = 0.3
-# Rounds without progress after which it may not rise at all.
+# Rounds without progress after which it may not rise at all with the residual.
 _IDLE: Final = 2
 # Set changes after which the next round begins, whose tractions move the contact anyway. With 40 a
 # step on a rough surface takes half as many applications again; with 2 a smooth one does.
@@ -137,13 +137,7 @@ class AdhesionSolver(ScaledSolver):
         wall = on_contact.transferred(wall + traction - following)
         wall[~contact] = 0.0
         after = self._closed(problem, on_contact, wall, following, state, changes)
-        front = state.front.length / max(problem.grid.spacing)
-        has_risen = after.energy - state.energy > _RISE * (front / state.gap.size)
-        if state.settled and after.settled and after.progress.stagnant >= _IDLE:
-            # Between settled rounds it falls, unless a shift or an extrapolation went wrong.
-            is_less_closed = after.residual > state.residual
-            has_risen = is_less_closed and after.energy_if_closed > state.energy_if_closed
-        if state.gain > _LEAST_GAIN and has_risen:
+        if state.gain > _LEAST_GAIN and _has_risen(state, after):
             return replace(state, gain=max(0.5 * state.gain, _LEAST_GAIN))
         return replace(after, gain=_gain(state, after))
 
@@ -259,6 +253,18 @@ def _finished(
     return replace(
         state, history=history, progress=before.progress.after(state.residual, state.energy)
     )
+
+
+def _has_risen(before: Round, after: Round) -> bool:
+    """Return whether the energy has risen, because a shift or an extrapolation went wrong.
+
+    That of a round which is not settled is not exact, and may rise a little.
+    """
+    if before.settled and after.settled and after.progress.stagnant >= _IDLE:
+        energy_has_risen = after.energy_if_closed > before.energy_if_closed
+        return energy_has_risen and after.residual > before.residual
+    front = before.front.length / max(before.problem.grid.spacing)
+    return after.energy - before.energy > _RISE * (front / before.gap.size)
 
 
 def _gain(before: Round, after: Round) -> float:

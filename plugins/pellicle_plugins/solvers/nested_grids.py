@@ -42,8 +42,10 @@ def prolonged(solver: ScaledSolver, problem: Problem) -> State | None:
     state = loose.solve(coarse, None, lambda iteration, residual_ratio: None).state
     # A coarse cell may extend beyond the rim of the indenter.
     below = np.isfinite(problem.profile)
-    wall = prolong(state.wall, problem.grid.shape) * below
-    if not wall.any():
-        return None
-    pressure = wall if state.wall is state.pressure else prolong(state.pressure, wall.shape) * below
-    return State(pressure, wall, state.depth)
+    wall = prolong(state.wall, problem.grid.shape)
+    wall *= below
+    pressure = wall
+    if state.pressure is not state.wall:
+        pressure = prolong(state.pressure, problem.grid.shape)
+        pressure *= below
+    return State(pressure, wall, state.depth) if wall.any() else None

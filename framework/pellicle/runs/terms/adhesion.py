@@ -22,9 +22,9 @@ from pellicle.contact.solution import State, Stop
 
 from . import Surroundings
 
-# Widths of two zones over that of the step, for the limit of no width, and the least tolerance to
-# which they are solved: it changes the limit by 6e-6 of its value, 5e-4 of its error.
+# Widths of two zones over that of the step, for the limit of no width.
 _WIDER: Final = (1.5, 3.0)
+# Least tolerance of both: it moves the limit by 6e-6 of its value, and by 5e-4 of its error.
 _LOOSE: Final = 1e-6
 # Weight of the force of the step beside those of wider zones, in which the place of the edge on the
 # cells changes forces by half as much.
@@ -105,7 +105,8 @@ def _force_limit(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> dict[s
         return {}
     if not equilibrium.contact.any():
         return {"force_extrapolated": equilibrium.force, "force_error": 0.0}
-    forces, wider = [equilibrium.force], equilibrium
+    forces = [equilibrium.force]
+    wider = equilibrium
     solver = run.solver.model_copy(update={"tolerance": max(_LOOSE, run.solver.tolerance)})
     for resolved in wider_laws:
         problem = replace(
