@@ -85,12 +85,13 @@ class Answer:
         """Return modulus (at the end of the loading) or tension over all that is tied.
 
         The interval is the least that contains theirs; without a lower end if one of them has none.
+        A tension that none of them has is held at 0 and has no ends: they do not bound it.
         """
         tied = [fit for fit in self.tied if fit not in self.not_held]
         if name == MODULUS:
             tied = [fit for fit in tied if fit.holds_modulus]
         found = [fit.estimates[name] for fit in tied if name in fit.estimates]
-        none = Estimate(0.0, 0.0, 0.0, "N/m", held=True)
+        none = Estimate(0.0, None, None, "N/m", held=True)
         own = self.chosen.parameters.get(name, none)
         if not found:
             return own if tied or own.held else replace(own, low=None, high=None)
