@@ -18,6 +18,8 @@ _DEEP, _LASTS = 0.02, 0.1
 """Distance of a dwell from the deepest row, over the range, and its least part of the loading."""
 _NEIGHBOURS = 4
 """Rows on each side over which forces are smoothed."""
+_CLEAR, _WAYS = 0.2, 3.0
+"""Part of the forces that is no noise, and the way that touches over that beyond it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,8 +127,8 @@ class Curve:
     def _groups(self, bins: int) -> list[NDArray[np.intp]]:
         """Return groups of neighbouring rows of each pass, at most ``bins`` for each.
 
-        They are even in rows and in the root of the force, of most tips nearly the depth: a long
-        path may touch in its last hundredth.
+        They are even in rows and, where force and position say that it touches, in the position: a
+        long path may touch in its last hundredth.
         """
         found = []
         for rows in self.passes:
@@ -134,11 +136,10 @@ class Curve:
                 found += [*rows[:, None]]
                 continue
             inward = rows[::-1] if self.moves_out[rows[0]] else rows
-            force = self.smoothed[inward]
-            # It grows before the largest force and, where a pass ends with a fall, after it.
-            way = np.maximum.accumulate(force) - np.maximum.accumulate(force[::-1])[::-1]
-            share = (way - way[0]) / (float(np.ptp(way)) or 1.0)
-            along = np.arange(rows.size) / rows.size + np.sqrt(share)
+            force, way = self.smoothed[inward], np.maximum.accumulate(self.position[inward])
+            clear = way[np.argmax(force > force.min() + _CLEAR * float(np.ptp(force)))]
+            near = np.maximum(way - way[-1] + _WAYS * (way[-1] - clear), 0.0)
+            along = np.arange(rows.size) / rows.size + near / (near[-1] or 1.0)
             ends = np.unique(np.searchsorted(along, np.arange(1, bins) * (2 / bins)))
             found += sorted(
                 (np.sort(part) for part in np.split(inward, ends) if part.size), key=min
