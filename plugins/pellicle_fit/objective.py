@@ -19,7 +19,7 @@ from .long_memory import differenced
 
 _STEP = 1e-6
 """Step of derivatives by differences, in coordinates of the order of 1."""
-_SEARCHES = (("dogbox", 60), ("trf", 400))
+_SEARCHES = (("dogbox", 12), ("trf", 400))
 """Optimisers in the order in which they are tried, and their largest numbers of steps."""
 _TOLERANCE, _ROUGHLY = 1e-8, 1e-4
 ROUGH = 20
