@@ -16,8 +16,6 @@ from .intervals import Estimate
 from .noise import Flaw, Judged, judged
 from .objective import MODULUS, Minimum, Objective
 
-ROWS = 400
-"""Means that stand for the rows of each pass, where the force has no jumps."""
 Types = frozenset[str]
 """Types of a set of effects."""
 NONE: Types = frozenset()

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .candidate import NONE, ROWS, Candidate, Types, best_of
+from .candidate import NONE, Candidate, Types, best_of
 from .curve import Curve
 from .effect import Adds, Effect, Records, Sizes, Solid
 from .explanation import Explanation
@@ -19,6 +19,9 @@ from .verdict import Fits
 Explanations = Mapping[Types, Explanation]
 _SAME = 0.01
 """Difference of χ² that decides nothing."""
+_ROWS, _FEW, _ROWS_OF_FEW = 400, 2, 12_000
+"""Means that stand for the rows of each pass, where the force has no jumps, and those of a few
+explanations."""
 _FAR = 40.0
 """Difference of AIC beyond which an explanation is not sought to the end."""
 
@@ -72,7 +75,9 @@ def comparison(
         Sizes.of_curve(curves[0]),
     )
     of = Objective(candidates[NONE], curves, noise, sizes, memory, sizes.time)
-    simple = _sought({types: candidates[types] for types in (NONE, word)}, word, {}, of)
+    rows = _ROWS if len(candidates) > _FEW else _ROWS_OF_FEW
+    means = tuple(curve.binned(rows) for curve in curves)
+    simple = _sought({types: candidates[types] for types in (NONE, word)}, word, {}, of, means)
     simple = at_common_noise(simple)
     best = best_of(simple.values())
     if not memory and any(found := tuple(judged.memory for judged in best.judgements)):
@@ -80,7 +85,7 @@ def comparison(
         if all(judged.describes for judged in best_of(fits.values()).judgements):
             return fits
     # Another noise only scales χ²; at last it is that of the best.
-    fits = _sought(candidates, word, simple, best.of_rows)
+    fits = _sought(candidates, word, simple, best.of_rows, means)
     fits = at_common_noise({types: _restarted(fit, fits) for types, fit in fits.items()})
     # The modulus of the end of the loading is that after the time since the best first touch.
     best = best_of(fits.values())
@@ -90,12 +95,14 @@ def comparison(
     return {types: fit.relaxed_for(time) for types, fit in fits.items()}
 
 
-def _sought(candidates: Explanations, word: Types, simple: Fits, of: Objective) -> Fits:
+def _sought(
+    candidates: Explanations, word: Types, simple: Fits, of: Objective, means: tuple[Curve, ...]
+) -> Fits:
     """Return explanations of all rows at their least χ², beside the simple ones if there are any.
 
     No mean stands for rows between which a force jumps, and none has their memory.
     """
-    fits, means = dict(simple), tuple(curve.binned(ROWS) for curve in of.curves)
+    fits = dict(simple)
     for types, explanation in candidates.items():
         if types in fits:
             continue
