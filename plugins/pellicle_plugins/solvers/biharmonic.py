@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-import scipy.sparse
 from numpy.typing import NDArray
 
 from pellicle.arrays import Mask
 from pellicle.contact import dilated
 from pellicle.surface import row_blocks, shared
+
+from .window import window
 
 Field = NDArray[np.float32]
 
@@ -28,20 +29,8 @@ _DAMPINGS: Final = tuple(
 # Cells are relaxed up to this many cells from the contact: beyond, interpolation is smooth enough,
 # and sweeps over all cells save no operator application.
 _NEAR: Final = 7
-# Share of the cells above which sweeps over all of them are faster than a matrix of those to relax.
-_DENSE: Final = 0.2
-
-
-def sweeps_near(free: Field | Mask, stretch: tuple[float, float]) -> Sweeps:
-    """Return Chebyshev sweeps that relax short waves beside a contact, and their transpose.
-
-    Both change a field in its place. ``free`` is how far each cell may move, 0 on the contact and 1
-    off it, periodic, of one or two axes; ``stretch`` is the aspect ratio, see `stretch_of`.
-    """
-    weight = np.where(dilated(free < 1, cells=_NEAR), free, np.float32(0))
-    if np.count_nonzero(weight) > _DENSE * weight.size:
-        return _DenseSweeps(weight, stretch)
-    return _SparseSweeps(weight, stretch)
+# Cells that Δ² reaches beyond those that are relaxed.
+_REACH: Final = 2
 
 
 def stretch_of(dx: float, dy: float) -> tuple[float, float]:
@@ -50,75 +39,30 @@ def stretch_of(dx: float, dy: float) -> tuple[float, float]:
     return 2 / (1 + ratio), 2 * ratio / (1 + ratio)
 
 
-class _SparseSweeps:
-    """Sweeps by a sparse matrix, on the cells of a ``weight`` above 0."""
+class Sweeps:
+    """Chebyshev sweeps that relax short waves beside a contact, and their transpose.
 
-    def __init__(self, weight: Field, stretch: tuple[float, float]) -> None:
-        stencil = _stencil(weight.ndim, stretch)
-        self._relaxed = np.flatnonzero(weight)
-        number = self._relaxed.size
-        place = np.unravel_index(self._relaxed, weight.shape)
-        neighbours = np.empty((number, len(stencil)), dtype=np.int64)
-        for column, offset in enumerate(stencil):
-            moved = tuple(p + o for p, o in zip(place, offset, strict=True))
-            neighbours[:, column] = np.ravel_multi_index(moved, weight.shape, mode="wrap")
-        reached = np.zeros(weight.size, dtype=bool)
-        reached[neighbours] = True
-        reached[self._relaxed] = False
-        # The cells to relax come first, then those that only their neighbours' change depends on.
-        self._cells = np.concatenate([self._relaxed, np.flatnonzero(reached)])
-        position = np.empty(weight.size, dtype=np.int32)
-        position[self._cells] = np.arange(self._cells.size, dtype=np.int32)
-        data = np.outer(weight.ravel()[self._relaxed], np.array(list(stencil.values()), np.float32))
-        starts = np.arange(number + 1, dtype=np.int32) * np.int32(len(stencil))
-        self._matrix = scipy.sparse.csr_array(
-            (data.ravel(), position[neighbours].ravel(), starts), shape=(number, self._cells.size)
-        )
+    Both change a field in its place. ``free`` is how far each cell may move, 0 on the contact and 1
+    off it, periodic, of one or two axes; ``stretch`` is the aspect ratio, see `stretch_of`.
+    """
+
+    def __init__(self, free: Field | Mask, stretch: tuple[float, float]) -> None:
+        weight = np.where(dilated(free < 1, cells=_NEAR), free, np.float32(0))
+        self._window = window(weight > 0, _REACH)
+        self._weight = np.asarray(weight[self._window])
+        self._stretch = stretch
 
     def apply(self, field: Field) -> None:
-        values = field.ravel()[self._cells]
-        relaxed = values[: self._relaxed.size]
+        part = field[self._window]
         for damping in _DAMPINGS:
-            relaxed -= damping * (self._matrix @ values)
-        field.ravel()[self._relaxed] = relaxed
+            _subtract_biharmonic(part, part, damping, self._stretch, self._weight)
+        field[self._window] = part
 
     def apply_transpose(self, field: Field) -> None:
-        values = field.ravel()[self._cells]
-        relaxed = values[: self._relaxed.size]
+        part = field[self._window]
         for damping in reversed(_DAMPINGS):
-            values -= self._matrix.T @ (damping * relaxed)
-        field.ravel()[self._cells] = values
-
-
-class _DenseSweeps:
-    """Sweeps over all cells, each of which moves in proportion to its ``weight``."""
-
-    def __init__(self, weight: Field, stretch: tuple[float, float]) -> None:
-        self._weight, self._stretch = weight, stretch
-
-    def apply(self, field: Field) -> None:
-        for damping in _DAMPINGS:
-            _subtract_biharmonic(field, field, damping, self._stretch, self._weight)
-
-    def apply_transpose(self, field: Field) -> None:
-        for damping in reversed(_DAMPINGS):
-            _subtract_biharmonic(field, self._weight * field, damping, self._stretch)
-
-
-Sweeps = _SparseSweeps | _DenseSweeps
-
-
-def _stencil(axes: int, stretch: tuple[float, float]) -> dict[tuple[int, ...], float]:
-    """Return the factors of h⁴ Δ² by the offset of the cell; its eigenvalues are at most 64."""
-    if axes == 1:
-        return {(-2,): 1, (-1,): -4, (0,): 6, (1,): -4, (2,): 1}
-    x, y = stretch
-    laplacian = {(0, 0): -4.0, (-1, 0): x, (1, 0): x, (0, -1): y, (0, 1): y}
-    stencil: dict[tuple[int, ...], float] = {}
-    for (i, j), a in laplacian.items():
-        for (k, m), b in laplacian.items():
-            stencil[i + k, j + m] = stencil.get((i + k, j + m), 0.0) + a * b
-    return stencil
+            _subtract_biharmonic(part, self._weight * part, damping, self._stretch)
+        field[self._window] = part
 
 
 def _subtract_biharmonic(

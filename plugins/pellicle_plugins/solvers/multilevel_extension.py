@@ -12,7 +12,7 @@ import numpy as np
 from pellicle.arrays import Mask
 from pellicle.surface import blocks, shared
 
-from .biharmonic import Field, Sweeps, sweeps_near, wrapped
+from .biharmonic import Field, Sweeps, wrapped
 
 Moments = tuple[Field, ...]
 
@@ -70,7 +70,7 @@ class Extension:
             loss = np.float32(2.0 ** (min(order, weight.ndim) - weight.ndim))
             coarse, share, free = _coarse_weights(weight, loss)
             shift = moments if bends(order) else None
-            sweeps = sweeps_near(free, stretch) if bends(order) else None
+            sweeps = Sweeps(free, stretch) if bends(order) else None
             self._levels.append(_Level(free, share, shift, sweeps))
             if any_bends:
                 moments = _coarse_moments(weight, moments, share)

@@ -106,7 +106,8 @@ class Preconditioner:
     @cached_property
     def grid_stiffness(self) -> CirculantStiffness:
         """K on the grid itself, as if the grid were periodic; see `relaxed`."""
-        return self._stiffness if self._plane == self._shape else self.stiffness(self._shape)
+        is_periodic = self._plane == self._shape
+        return self._stiffness if is_periodic else CirculantStiffness(self._operator, self._shape)
 
     def lift(self, on_contact: OnContact) -> Array:
         """Return a pressure on the cells of a contact, of sum 1, that nearly lifts it uniformly.
@@ -136,7 +137,8 @@ class Preconditioner:
 
     def stiffness(self, shape: tuple[int, int]) -> CirculantStiffness:
         """Return K on a periodic plane of as many cells of the grid's size."""
-        return CirculantStiffness(self._operator, shape)
+        known = self.grid_stiffness if shape == self._shape else None
+        return known or CirculantStiffness(self._operator, shape)
 
     def on(self, contact: Mask) -> OnContact:
         """Return Eᵀ K E on ``contact``, bool of the grid's shape."""

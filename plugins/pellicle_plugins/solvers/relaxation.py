@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-import scipy.fft
-from numpy.typing import NDArray
 
 from pellicle.arrays import Array, Mask
 from pellicle.contact import Problem
@@ -15,6 +13,7 @@ from pellicle.contact import Problem
 from .biharmonic import Field
 from .contact_cg import InnerSolution
 from .preconditioner import CirculantStiffness, OnContact
+from .window import window
 
 # Enough steps to relax waves of up to about fourteen cells; inner solves relax longer waves.
 _STEPS: Final = 80
@@ -23,8 +22,6 @@ _STEPS: Final = 80
 _MARGIN: Final = 48
 # Cells along the rim of the window that do not move.
 _RIM: Final = 2
-# Share of an axis above which a window along it is not worth its two transforms of the grid.
-_WHOLE: Final = 0.75
 # A brief relaxation compares contacts after this many steps.
 _CHECKED: Final = 10
 # It ends when at most this share of the cells that it has changed changed since the last check.
@@ -65,21 +62,17 @@ def relaxed(
     floor -= increment
     changed = contact.copy()
     changed.ravel()[solution.misclassified] ^= True
-    window = _window(contact | changed)
-    if window is None:
-        increment = _minimised(stiffness, floor, load, brief=brief)
-        load += stiffness(increment)
-    else:
-        increment.fill(0)
-        plane = on_contact.preconditioner.stiffness(floor[window].shape)
-        weight = np.float32(stiffness.greatest / plane.greatest)
-        rims = _rims(plane.shape, floor.shape)
-        moved = _minimised(plane, floor[window], weight * load[window], brief=brief, rims=rims)
-        increment[window] = moved
-        load += stiffness(increment)
-        outside = np.ones(load.shape, dtype=bool)
-        outside[window] = False
-        load[outside] = 0
+    part = window(contact | changed, _MARGIN)
+    plane = on_contact.preconditioner.stiffness(floor[part].shape)
+    weight = np.float32(stiffness.greatest / plane.greatest)
+    rims = _rims(plane.shape, floor.shape)
+    moved = _minimised(plane, floor[part], weight * load[part], brief=brief, rims=rims)
+    increment.fill(0)
+    increment[part] = moved
+    load += stiffness(increment)
+    outside = np.ones(load.shape, dtype=bool)
+    outside[part] = False
+    load[outside] = 0
     return increment <= floor, load.astype(np.float64) * size
 
 
@@ -89,7 +82,7 @@ def _minimised(
     load: Field,
     *,
     brief: bool,
-    rims: Sequence[tuple[slice, slice]] = (),
+    rims: Sequence[tuple[slice, slice]],
 ) -> Field:
     """Return the e ≥ ``floor`` that nearly minimises ½⟨e, K e⟩ + ⟨load, e⟩ and is 0 on ``rims``."""
     increment = np.zeros_like(floor)
@@ -115,27 +108,6 @@ def _minimised(
         change += increment
         ahead = change
     return increment
-
-
-def _window(cells: Mask) -> tuple[NDArray[np.int64], ...] | None:
-    """Return the index of a rectangle around ``cells`` on their periodic plane; None for all."""
-    rows, columns = (
-        _interval(np.flatnonzero(cells.any(axis=1 - axis)), cells.shape[axis]) for axis in (0, 1)
-    )
-    return None if (rows.size, columns.size) == cells.shape else np.ix_(rows, columns)
-
-
-def _interval(indices: NDArray[np.int64], number: int) -> NDArray[np.int64]:
-    """Return the indices of the shortest periodic interval around some, with a margin."""
-    steps = np.diff(indices, append=indices[0] + number)
-    widest = int(np.argmax(steps))
-    extent = number - int(steps[widest]) + 1
-    length = scipy.fft.next_fast_len(extent + 2 * _MARGIN, real=True)
-    if length > _WHOLE * number:
-        return np.arange(number)
-    start = int(indices[(widest + 1) % indices.size]) - (length - extent) // 2
-    interval: NDArray[np.int64] = (start + np.arange(length)) % number
-    return interval
 
 
 def _rims(shape: tuple[int, int], whole: tuple[int, ...]) -> list[tuple[slice, slice]]:

@@ -8,7 +8,7 @@ import pytest
 from pellicle import Problem
 from pellicle.arrays import Array, Mask
 from pellicle_plugins.kernels.skins import BendingSkin
-from pellicle_plugins.solvers import relaxation
+from pellicle_plugins.solvers import relaxation, window
 from pellicle_plugins.solvers.contact_cg import InnerSolution
 from pellicle_plugins.solvers.preconditioner import CirculantStiffness, Preconditioner
 from pellicle_plugins.solvers.relaxation import relaxed
@@ -156,7 +156,7 @@ def test_a_window_gives_the_contact_of_the_whole_grid(monkeypatch: pytest.Monkey
     problem, inner = plate(1.0, 1.0, shape), a_contact_at((0, 0), shape)
     contact = inner.pressure != 0
     windowed, forces = settle(problem, contact, inner)
-    monkeypatch.setattr(relaxation, "_WHOLE", 0.0)
+    monkeypatch.setattr(window, "_WHOLE", 0.0)
     whole, expected = settle(problem, contact, inner)
     assert (contact ^ whole).sum() > 30
     np.testing.assert_array_equal(windowed, whole)
