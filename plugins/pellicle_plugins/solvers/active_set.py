@@ -22,11 +22,11 @@ from pellicle.contact import (
 
 from .adhesion import AdhesionSolver, refusal_of
 from .adhesive_response import with_zone
+from .bending.few_cells import MOST_CELLS, solved_on_few_cells
+from .bending.relaxation import relaxed
 from .contact_cg import SIGN_CERTAINTY, STRICT_SIGN_CERTAINTY, InnerSolution, inner_solve
-from .few_cells import MOST_CELLS, solved_on_few_cells
 from .nested_grids import prolonged
 from .preconditioner import OnContact, Preconditioner
-from .relaxation import relaxed
 from .scaling import ScaledSolver
 
 # A start is used if its error is at most this share of the height range; correcting a worse one
@@ -44,9 +44,6 @@ _DEEPEST: Final = 0.5
 # A local relaxation that leaves a larger error than before, above this share of the height range,
 # is rejected.
 _DIVERGED: Final = 0.5
-# A local relaxation is brief if the misclassified cells have fallen to this share: it then only has
-# to sort out the last of them.
-_FEW: Final = 0.1
 # Outer iterations without progress after which contacts of few cells are treated as all others.
 _EXACT_STAGNATION: Final = 5
 # Outer iterations without progress after which the solve is abandoned.
@@ -155,18 +152,11 @@ class ActiveSet(ScaledSolver):
     def step(self, problem: Problem, state: _Iterate) -> _Iterate:
         """Return the iterate after one outer iteration."""
         goal = self.tolerance / 2 * state.scale
-        preconditioner, contact = state.on_contact.preconditioner, state.on_contact.contact
-        is_small = state.on_contact.cells.size <= MOST_CELLS
-        if state.bends and is_small and state.progress.stagnant < _EXACT_STAGNATION:
-            gap, _ = problem.gap(state.displacement, contact)
-            column = preconditioner.column
-            pressure = solved_on_few_cells(problem, column, contact, state.trial, gap, goal)
-            if pressure is not None:
-                on_contact = preconditioner.on(pressure > 0)
-                return _iterate(problem, on_contact, pressure, state.history, state)
-        relaxes = state.bends and state.may_relax
+        if state.bends and (after := _with_few_cells(problem, state, goal)):
+            return after
         # Loose solves are cheap as long as they leave fewer misclassified cells. With bending
         # stiffness they only prepare a local relaxation.
+        relaxes = state.bends and state.may_relax
         loose = state.history.makes_progress and (relaxes or not state.bends)
         inner = inner_solve(
             problem,
@@ -178,25 +168,14 @@ class ActiveSet(ScaledSolver):
             reduction=_REDUCTION if loose and relaxes else 0.0,
             u_minus_f=state.u_minus_f,
         )
-        history = state.history.after(contact, inner.misclassified.size)
+        history = state.history.after(state.on_contact.contact, inner.misclassified.size)
         if not inner.misclassified.size:
             if state.bends:
                 # The same contact again, with a smaller gap, is not a cycle.
                 history = ContactHistory(returns=state.history.returns)
             return _iterate(problem, state.on_contact, inner.pressure, history, state)
-        relaxes &= history.returns == 0 and len(history.contacts) <= _RELAXATION_STAGNATION
-        if relaxes and inner.pressure.any():
-            brief = inner.misclassified.size <= _FEW * state.history.fewest < np.inf
-            settled, forces = relaxed(problem, state.on_contact, inner, goal, brief=brief)
-            on_contact = preconditioner.on(settled)
-            trial = on_contact.transferred(forces)
-            if trial.sum() > 0:
-                after = _iterate(problem, on_contact, trial, history, state)
-                if after.error <= max(state.error, _DIVERGED * after.scale):
-                    return after
-                # The inner solve on the same contact is continued instead.
-                after = _iterate(problem, state.on_contact, inner.pressure, state.history, state)
-                return replace(after, may_relax=False)
+        if state.bends and (after := _relaxed(problem, state, inner, history, goal)):
+            return after
         on_contact = _changed(problem, state, inner, history)
         trial = on_contact.transferred(inner.pressure, out=inner.pressure)
         # This frees an array while the next displacement is computed.
@@ -256,6 +235,44 @@ class ActiveSet(ScaledSolver):
             return acting.change(opened) / unit
 
         return with_zone(operator, acting.zone, following, closing, goal) * unit
+
+
+def _with_few_cells(problem: Problem, state: _Iterate, goal: float) -> _Iterate | None:
+    """Return the iterate that is exact on a contact of few cells; None for all others."""
+    on_contact = state.on_contact
+    if on_contact.cells.size > MOST_CELLS or state.progress.stagnant >= _EXACT_STAGNATION:
+        return None
+    gap, _ = problem.gap(state.displacement, on_contact.contact)
+    column, contact = on_contact.preconditioner.column, on_contact.contact
+    pressure = solved_on_few_cells(problem, column, contact, state.trial, gap, goal)
+    if pressure is None:
+        return None
+    after = on_contact.preconditioner.on(pressure > 0)
+    return _iterate(problem, after, pressure, state.history, state)
+
+
+def _relaxed(
+    problem: Problem,
+    state: _Iterate,
+    inner: InnerSolution,
+    history: ContactHistory,
+    goal: float,
+) -> _Iterate | None:
+    """Return the iterate after local relaxation; None once that helps no more."""
+    ends = history.returns > 0 or len(history.contacts) > _RELAXATION_STAGNATION
+    if ends or not state.may_relax or not inner.pressure.any():
+        return None
+    settled, forces = relaxed(problem, state.on_contact, inner, goal)
+    on_contact = state.on_contact.preconditioner.on(settled)
+    trial = on_contact.transferred(forces)
+    if not trial.sum() > 0:
+        return None
+    after = _iterate(problem, on_contact, trial, history, state)
+    if after.error <= max(state.error, _DIVERGED * after.scale):
+        return after
+    # The inner solve on the same contact is continued instead.
+    after = _iterate(problem, state.on_contact, inner.pressure, state.history, state)
+    return replace(after, may_relax=False)
 
 
 def _without_pits(problem: Problem, state: _Iterate) -> _Iterate:

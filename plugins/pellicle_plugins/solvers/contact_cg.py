@@ -75,10 +75,21 @@ def inner_solve(
         penetrating = np.flatnonzero(-problem.profile < problem.depth(np.zeros(0)) - goal)
         return InnerSolution(nothing, nothing, 0.0, penetrating)
     iterate = _Iterate(problem, preconditioner, pressure, displacement, u_minus_f)
-    error = iterate.error
-    goal = max(goal, max(_MAX_REDUCTION, reduction) * error)
+    goal = max(goal, max(_MAX_REDUCTION, reduction) * iterate.error)
+    misclassified = _conjugated(iterate, goal, certainty)
+    if misclassified is None:
+        misclassified, _ = iterate.misclassified(max(iterate.error, goal))
+    # A start or a guess may be in Fortran order, for which ravel() returns a copy.
+    np.put(pressure, cells, iterate.pressure)
+    return InnerSolution(pressure, displacement, iterate.error, np.sort(misclassified))
+
+
+def _conjugated(iterate: _Iterate, goal: float, certainty: float) -> Cells | None:
+    """Go along conjugate directions to the goal, or until the misclassified cells are certain.
+
+    Return these; None at the goal, or where the error falls no more.
+    """
     least, stagnant, iteration = np.inf, 0, 0
-    misclassified: Cells | None = None
     direction = iterate.directions(iterate.residual)
     descent = dot(iterate.residual, direction)
     while descent > 0 and stagnant < _STAGNATION:
@@ -93,8 +104,7 @@ def inner_solve(
         if np.isfinite(certainty) and iteration >= _MIN_ITERATIONS:
             certain, uncertain = iterate.misclassified(goal, certainty, direction)
             if certain.size and uncertain <= _UNCERTAIN * certain.size:
-                misclassified = certain
-                break
+                return certain
         else:
             iterate.update_displacement()
         ascent = iterate.directions(iterate.residual)
@@ -104,11 +114,7 @@ def inner_solve(
         direction += ascent
         # On a large contact it is as large as the grid.
         del ascent
-    if misclassified is None:
-        misclassified, _ = iterate.misclassified(max(error, goal))
-    # A start or a guess may be in Fortran order, for which ravel() returns a copy.
-    np.put(pressure, cells, iterate.pressure)
-    return InnerSolution(pressure, displacement, error, np.sort(misclassified))
+    return None
 
 
 class _Iterate:

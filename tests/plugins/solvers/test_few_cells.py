@@ -11,7 +11,7 @@ from pellicle.contact import measure
 from pellicle_plugins.kernels.skins import BendingSkin
 from pellicle_plugins.solvers import active_set
 from pellicle_plugins.solvers.active_set import ActiveSet
-from pellicle_plugins.solvers.few_cells import solved_on_few_cells
+from pellicle_plugins.solvers.bending.few_cells import solved_on_few_cells
 from tests.plugins.solvers.problems import BOUNDARIES, Boundary, Prescribed, make, solve
 
 KERNEL = BendingSkin(reduced_modulus=1.0, bending=0.005)
@@ -29,7 +29,7 @@ def waves(x: Array, y: Array) -> Array:
 
 
 def rough_plate(
-    boundary: Boundary, prescribed: Prescribed, value: float, points: tuple[int, int] = (24, 20)
+    boundary: Boundary, prescribed: Prescribed, value: float, points: tuple[int, int] = (20, 18)
 ) -> Problem:
     """Return a plate, cells longer along x, that touches random waves with few cells."""
     return make(points, boundary, KERNEL, waves, prescribed, value, (1.5, 1.0))

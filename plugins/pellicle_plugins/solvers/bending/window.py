@@ -20,7 +20,7 @@ def window(cells: Mask, margin: int) -> tuple[NDArray[np.int64], ...] | Ellipsis
     axes = range(cells.ndim)
     lines = [cells.any(axis=tuple(other for other in axes if other != axis)) for axis in axes]
     parts = [_interval(np.flatnonzero(line), line.size, margin) for line in lines]
-    return ... if all(p.size == n for p, n in zip(parts, cells.shape)) else np.ix_(*parts)
+    return ... if tuple(part.size for part in parts) == cells.shape else np.ix_(*parts)
 
 
 def _interval(indices: NDArray[np.int64], number: int, margin: int) -> NDArray[np.int64]:

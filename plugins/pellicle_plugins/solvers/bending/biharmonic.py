@@ -53,12 +53,14 @@ class Sweeps:
         self._stretch = stretch
 
     def apply(self, field: Field) -> None:
+        """Relax a field."""
         part = field[self._window]
         for damping in _DAMPINGS:
             _subtract_biharmonic(part, part, damping, self._stretch, self._weight)
         field[self._window] = part
 
     def apply_transpose(self, field: Field) -> None:
+        """Change a field by the transpose."""
         part = field[self._window]
         for damping in reversed(_DAMPINGS):
             _subtract_biharmonic(part, self._weight * part, damping, self._stretch)

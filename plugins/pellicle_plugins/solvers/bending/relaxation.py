@@ -9,10 +9,10 @@ import numpy as np
 
 from pellicle.arrays import Array, Mask
 from pellicle.contact import Problem
+from pellicle_plugins.solvers.contact_cg import InnerSolution
+from pellicle_plugins.solvers.preconditioner import CirculantStiffness, OnContact
 
 from .biharmonic import Field
-from .contact_cg import InnerSolution
-from .preconditioner import CirculantStiffness, OnContact
 from .window import window
 
 # Enough steps to relax waves of up to about fourteen cells; inner solves relax longer waves.
@@ -22,19 +22,10 @@ _STEPS: Final = 80
 _MARGIN: Final = 48
 # Cells along the rim of the window that do not move.
 _RIM: Final = 2
-# A brief relaxation compares contacts after this many steps.
-_CHECKED: Final = 10
-# It ends when at most this share of the cells that it has changed changed since the last check.
-_SETTLED: Final = 0.02
 
 
 def relaxed(
-    problem: Problem,
-    on_contact: OnContact,
-    solution: InnerSolution,
-    margin: float,
-    *,
-    brief: bool = False,
+    problem: Problem, on_contact: OnContact, solution: InnerSolution, margin: float
 ) -> tuple[Mask, Array]:
     """Return the contact and the forces [Pa] after local relaxation of an inner solution.
 
@@ -48,8 +39,7 @@ def relaxed(
     contact.
 
     Only the cells in a window around the contact move. Forces outside it are left out: there they
-    come from the jump of the extension across the edges of a free domain. A ``brief`` relaxation
-    ends when the contact hardly changes any more.
+    come from the jump of the extension across the edges of a free domain.
     """
     stiffness, contact = on_contact.preconditioner.grid_stiffness, on_contact.contact
     gap, _ = problem.gap(solution.displacement, contact)
@@ -66,7 +56,7 @@ def relaxed(
     plane = on_contact.preconditioner.stiffness(floor[part].shape)
     weight = np.float32(stiffness.greatest / plane.greatest)
     rims = _rims(plane.shape, floor.shape)
-    moved = _minimised(plane, floor[part], weight * load[part], brief=brief, rims=rims)
+    moved = _minimised(plane, floor[part], weight * load[part], rims)
     increment.fill(0)
     increment[part] = moved
     load += stiffness(increment)
@@ -77,29 +67,18 @@ def relaxed(
 
 
 def _minimised(
-    stiffness: CirculantStiffness,
-    floor: Field,
-    load: Field,
-    *,
-    brief: bool,
-    rims: Sequence[tuple[slice, slice]],
+    stiffness: CirculantStiffness, floor: Field, load: Field, rims: Sequence[tuple[slice, slice]]
 ) -> Field:
     """Return the e ≥ ``floor`` that nearly minimises ½⟨e, K e⟩ + ⟨load, e⟩ and is 0 on ``rims``."""
     increment = np.zeros_like(floor)
     ahead, momentum = increment, 1.0
-    first = contact = increment <= floor
-    for number in range(1, _STEPS + 1):
+    for _ in range(_STEPS):
         step = stiffness(ahead)
         step += load
         np.subtract(ahead, step, out=step)
         for rim in rims:
             step[rim] = 0
         before, increment = increment, np.maximum(step, floor, out=step)
-        if brief and number % _CHECKED == 0:
-            last_contact, contact = contact, increment <= floor
-            settled = _SETTLED * np.count_nonzero(contact ^ first)
-            if np.count_nonzero(contact ^ last_contact) <= settled:
-                break
         change = increment - before
         if np.vdot(ahead - increment, change) > 0:
             momentum = 1.0
