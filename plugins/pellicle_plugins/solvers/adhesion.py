@@ -8,29 +8,22 @@ from typing import Final
 import numpy as np
 
 from pellicle.arrays import Array, Mask
-from pellicle.contact import (
-    Law,
-    Problem,
-    State,
-    Stop,
-    first_guess,
-)
+from pellicle.contact import Law, Problem, State, Stop, first_guess
 
 from .adhesive_round import Round
 from .anderson import Tried, extrapolated, is_convex
-from .contact_cg import SIGN_CERTAINTY, inner_solve
+from .contact_cg import SIGN_CERTAINTY, InnerSolution, inner_solve
 from .nested_grids import prolonged
 from .preconditioner import OnContact, Preconditioner
 from .scaling import ScaledSolver
 
-# The gap on the contact is closed to this share of the error of the tractions.
+# The gap on the contact is closed to this share of the error of the tractions, or of the tolerance.
 _CONTACT_SHARE: Final = 0.05
 # Rounds whose tractions are extrapolated.
 _MEMORY: Final = 8
-# Bounds of the factor on the shift of the fronts, and its growth in a round.
+# Bounds of the factor on the shift of the fronts; the latter is also its most growth in a round.
 _LEAST_GAIN: Final = 1 / 16
 _GREATEST_GAIN: Final = 2.0
-_FASTER: Final = 2.0
 # The greatest factor where the state is unstable, and its growth while the contact stays the same.
 _UNSTABLE_GAIN: Final = 256.0
 _FASTER_SAME: Final = 4.0
@@ -44,8 +37,6 @@ _IDLE: Final = 2
 _CHANGES: Final = 3
 # The same if the shift of the fronts has already changed the contact.
 _CHANGES_SHIFTED: Final = 2
-# Least gap on the contact to which a round closes it, over the tolerance.
-_FLOOR: Final = 0.05
 # Rounds without a smaller residual after which the solve is abandoned.
 _STAGNATION: Final = 60
 # Error that an inner solve leaves in the displacement, over the gap that it closes: its changes are
@@ -184,25 +175,10 @@ class AdhesionSolver(ScaledSolver):
                 return _finished(problem, released, nothing, nothing, nothing, before)
             wall = balanced
             displacement = problem.operator(wall + traction)
-            if not on_contact.cells.size:
-                gap = displacement - problem.profile - problem.depth(np.zeros(1))
-                misclassified = np.flatnonzero(gap < -goal)
-            else:
-                u_minus_f = displacement[contact] - problem.profile[contact]
-                opened = float(np.abs(u_minus_f - problem.depth(u_minus_f)).max())
-                inner = inner_solve(
-                    hard,
-                    on_contact,
-                    wall,
-                    displacement,
-                    goal,
-                    certainty=SIGN_CERTAINTY,
-                    u_minus_f=u_minus_f,
-                )
-                wall, displacement = inner.pressure, inner.displacement
-                misclassified = inner.misclassified
-                if not misclassified.size and inner.error > 1.01 * goal:
-                    continue
+            inner, opened = _inner(hard, on_contact, wall, displacement, goal)
+            wall, displacement, error, misclassified = inner
+            if not misclassified.size and error > 1.01 * goal:
+                continue
             if settled := not misclassified.size:
                 break
             contact = contact.copy()
@@ -225,7 +201,21 @@ class AdhesionSolver(ScaledSolver):
             return goal
         size = float(np.abs(before.missed).max(where=~before.contact, initial=0.0))
         goal = min(goal, _CONTACT_SHARE * size * law.cutoff() / law.strength())
-        return max(goal, _FLOOR * self.tolerance * before.scale)
+        return max(goal, _CONTACT_SHARE * self.tolerance * before.scale)
+
+
+def _inner(
+    hard: Problem, on_contact: OnContact, wall: Array, displacement: Array, goal: float
+) -> tuple[InnerSolution, float]:
+    """Return the inner solution under a displacement by wall and tractions, and the gap before."""
+    contact = on_contact.contact
+    if not on_contact.cells.size:
+        gap = displacement - hard.profile - hard.depth(np.zeros(1))
+        return InnerSolution(wall, displacement, 0.0, np.flatnonzero(gap < -goal)), 0.0
+    u_minus_f = displacement[contact] - hard.profile[contact]
+    opened = float(np.abs(u_minus_f - hard.depth(u_minus_f)).max())
+    start = (hard, on_contact, wall, displacement, goal)
+    return inner_solve(*start, certainty=SIGN_CERTAINTY, u_minus_f=u_minus_f), opened
 
 
 def _finished(
@@ -280,9 +270,11 @@ def _gain(before: Round, after: Round) -> float:
     if other >= one > 0:
         # Past a stable position the energy falls ever faster, however slowly at first.
         same = np.array_equal(before.contact, after.contact)
-        return min((_FASTER_SAME if same else _FASTER) * before.gain, _UNSTABLE_GAIN)
-    best = one / (one - other) if one > 0 else _FASTER
-    return float(np.clip(before.gain * np.clip(best, 0.5, _FASTER), _LEAST_GAIN, _GREATEST_GAIN))
+        return min((_FASTER_SAME if same else _GREATEST_GAIN) * before.gain, _UNSTABLE_GAIN)
+    best = one / (one - other) if one > 0 else _GREATEST_GAIN
+    return float(
+        np.clip(before.gain * np.clip(best, 0.5, _GREATEST_GAIN), _LEAST_GAIN, _GREATEST_GAIN)
+    )
 
 
 def _with_wall_force(problem: Problem, contact: Mask, wall: Array, traction: Array) -> Array | None:
