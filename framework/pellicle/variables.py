@@ -147,7 +147,7 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
         ("cycle_drift", "1", "gain of depth or force over that cycle, over its amplitude"),
     ),
     "effort": (
-        ("iterations", "1", "iterations of the solver", "count"),
+        ("iterations", "1", "iterations of the solver; with an interaction its rounds", "count"),
         ("operator_applications", "1", "applications of the operator on the finest grid", "count"),
         ("wall_time", "s", "time that the step took"),
     ),
