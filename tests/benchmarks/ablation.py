@@ -28,38 +28,32 @@ CONSTANTS: dict[ModuleType, tuple[str, ...]] = {
     front: ("STIFFNESS", "LONGEST", "_MOST_CELLS", "_MOST_SHARE", "_EXTENDED"),
     adhesive_round: ("_UNSETTLED",),
 }
-DOWN = np.linspace(0.1, 1.3, 7)
-PATH = [*DOWN, *DOWN[-2::-1], -0.2, -0.4]
+PATH = [*np.linspace(0.1, 1.3, 7), *np.linspace(1.1, 0.1, 6), -0.2, -0.4]
 
 
-def applications(points: int) -> tuple[float, float]:
+def applications(points: int) -> list[float]:
     """Return the mean applications of a step of closed contacts and of rough ones."""
     closed = [solved(points, length, PATH) for length in (0.0, 0.1, 1.0, 10.0)]
     rough = [rough_path(points, length) for length in (0.0, 0.1)]
-    first, second = (
-        float(np.mean([path["operator_applications"].values.mean() for path in paths]))
-        for paths in (closed, rough)
-    )
-    return first, second
+    each = ([path["operator_applications"].mean() for path in paths] for paths in (closed, rough))
+    return [float(np.mean(means)) for means in each]
 
 
 def main() -> None:
     """Print a row for each constant and factor."""
     points = int(sys.argv[1]) if len(sys.argv) > 1 else 128
     setattr(widths, "_WIDER", ())  # noqa: B010 - a constant of another module
-    closed, rough = applications(points)
+    base = applications(points)
     print_head("constant", "value", "closed", "rough")
-    print_row("none", "", f"{closed:.1f}", f"{rough:.1f}")
+    print_row("none", "", *(f"{mean:.1f}" for mean in base))
     for module, names in CONSTANTS.items():
         for name in names:
             value = getattr(module, name)
             for factor in (0.5, 2.0):
                 changed = type(value)(round(value * factor, 6))
                 setattr(module, name, changed)
-                here = (
-                    f"{100 * (now / then - 1):+.0f} %"
-                    for now, then in zip(applications(points), (closed, rough), strict=True)
-                )
+                pairs = zip(applications(points), base, strict=True)
+                here = (f"{100 * (now / then - 1):+.0f} %" for now, then in pairs)
                 print_row(name.strip("_"), changed, *here)
             setattr(module, name, value)
 
