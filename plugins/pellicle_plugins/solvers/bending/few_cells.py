@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from scipy.linalg import LinAlgError, cholesky, solve_triangular
 
 from pellicle.arrays import Array, Mask
 from pellicle.contact import Problem, dilated, with_force
@@ -35,6 +34,7 @@ def solved_on_few_cells(
     ``column`` is the displacement [m] of all cells under 1 Pa on the first one, ``trial`` a
     pressure of either sign [Pa] and ``gap`` its gap [m]; cells below −``margin`` [m] may join.
     """
+    from scipy.linalg import LinAlgError, cholesky, solve_triangular
     from scipy.optimize import nnls
 
     pressed = np.count_nonzero(contact & (trial > 0))
