@@ -23,7 +23,7 @@ from tests.adhesive_paths import rough_path, solved
 CONSTANTS: dict[ModuleType, tuple[str, ...]] = {
     adhesion: (
         *("_CONTACT_SHARE", "_MEMORY", "_CHANGES", "_CHANGES_SHIFTED", "_RISE", "_IDLE"),
-        *("_LEAST_GAIN", "_GREATEST_GAIN"),
+        *("_LEAST_GAIN", "_GREATEST_GAIN", "_UNSTABLE_GAIN", "_FASTER_SAME"),
     ),
     front: ("STIFFNESS", "LONGEST", "_MOST_CELLS", "_MOST_SHARE", "_EXTENDED"),
     adhesive_round: ("_UNSETTLED",),

@@ -24,6 +24,10 @@ _MEMORY: Final = 8
 # Bounds of the factor on the shift of the fronts; the latter is also its most growth in a round.
 _LEAST_GAIN: Final = 1 / 16
 _GREATEST_GAIN: Final = 2.0
+# The greatest factor where the state is unstable, and its growth while the contact stays the same:
+# with 2, of zones of one cell a round ends where the lattice holds the front.
+_UNSTABLE_GAIN: Final = 256.0
+_FASTER_SAME: Final = 4.0
 # Rise of the energy in a round, over the work of adhesion of the cells along the front, above which
 # the fronts have moved too far: the round is made again with half the shift.
 _RISE: Final = 0.3
@@ -266,7 +270,8 @@ def _gain(before: Round, after: Round) -> float:
     one, other = (float((step * part.missed).sum()) for part in (before, after))
     if other >= one > 0:
         # Past a stable position the energy falls ever faster, however slowly at first.
-        return _GREATEST_GAIN * before.gain
+        same = np.array_equal(before.contact, after.contact)
+        return min((_FASTER_SAME if same else _GREATEST_GAIN) * before.gain, _UNSTABLE_GAIN)
     best = one / (one - other) if one > 0 else _GREATEST_GAIN
     return float(
         np.clip(before.gain * np.clip(best, 0.5, _GREATEST_GAIN), _LEAST_GAIN, _GREATEST_GAIN)
