@@ -12,7 +12,7 @@ import numpy as np
 from pellicle.arrays import Mask
 from pellicle.surface import blocks, shared
 
-from .bending.biharmonic import Field, Sweeps, wrapped
+from .biharmonic import Field, Sweeps, wrapped
 
 Moments = tuple[Field, ...]
 

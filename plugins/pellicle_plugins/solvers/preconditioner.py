@@ -13,7 +13,7 @@ from pellicle import Grid
 from pellicle.arrays import Array, Cells, Mask
 from pellicle.surface import Operator, convolve
 
-from .bending.biharmonic import Field, stretch_of
+from .biharmonic import Field, stretch_of
 from .multilevel_extension import Extension, bends
 
 # Without a margin, contact at the edge of a free domain couples to the opposite edge.

@@ -8,7 +8,8 @@ import pytest
 from pellicle import Problem
 from pellicle.arrays import Array, Mask
 from pellicle_plugins.kernels.skins import BendingSkin
-from pellicle_plugins.solvers.bending import relaxation, window
+from pellicle_plugins.solvers import window
+from pellicle_plugins.solvers.bending import relaxation
 from pellicle_plugins.solvers.bending.relaxation import relaxed
 from pellicle_plugins.solvers.contact_cg import InnerSolution
 from pellicle_plugins.solvers.preconditioner import CirculantStiffness, Preconditioner

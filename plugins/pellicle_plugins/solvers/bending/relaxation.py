@@ -9,11 +9,10 @@ import numpy as np
 
 from pellicle.arrays import Array, Mask
 from pellicle.contact import Problem
+from pellicle_plugins.solvers.biharmonic import Field
 from pellicle_plugins.solvers.contact_cg import InnerSolution
 from pellicle_plugins.solvers.preconditioner import CirculantStiffness, OnContact
-
-from .biharmonic import Field
-from .window import window
+from pellicle_plugins.solvers.window import window
 
 # Enough steps to relax waves of up to about fourteen cells; inner solves relax longer waves.
 _STEPS: Final = 80
