@@ -152,7 +152,7 @@ class ActiveSet(ScaledSolver):
     def step(self, problem: Problem, state: _Iterate) -> _Iterate:
         """Return the iterate after one outer iteration."""
         goal = self.tolerance / 2 * state.scale
-        if state.bends and (after := _with_few_cells(problem, state, goal)):
+        if state.bends and (after := _of_few_cells(problem, state, goal)):
             return after
         # Loose solves are cheap as long as they leave fewer misclassified cells. With bending
         # stiffness they only prepare a local relaxation.
@@ -174,7 +174,7 @@ class ActiveSet(ScaledSolver):
                 # The same contact again, with a smaller gap, is not a cycle.
                 history = ContactHistory(returns=state.history.returns)
             return _iterate(problem, state.on_contact, inner.pressure, history, state)
-        if state.bends and (after := _relaxed(problem, state, inner, history, goal)):
+        if state.bends and (after := _after_relaxation(problem, state, inner, history, goal)):
             return after
         on_contact = _changed(problem, state, inner, history)
         trial = on_contact.transferred(inner.pressure, out=inner.pressure)
@@ -237,21 +237,20 @@ class ActiveSet(ScaledSolver):
         return with_zone(operator, acting.zone, following, closing, goal) * unit
 
 
-def _with_few_cells(problem: Problem, state: _Iterate, goal: float) -> _Iterate | None:
+def _of_few_cells(problem: Problem, state: _Iterate, goal: float) -> _Iterate | None:
     """Return the iterate that is exact on a contact of few cells; None for all others."""
-    on_contact = state.on_contact
-    if on_contact.cells.size > MOST_CELLS or state.progress.stagnant >= _EXACT_STAGNATION:
+    contact, preconditioner = state.on_contact.contact, state.on_contact.preconditioner
+    if state.on_contact.cells.size > MOST_CELLS or state.progress.stagnant >= _EXACT_STAGNATION:
         return None
-    gap, _ = problem.gap(state.displacement, on_contact.contact)
-    column, contact = on_contact.preconditioner.column, on_contact.contact
+    gap, _ = problem.gap(state.displacement, contact)
+    column = preconditioner.column
     pressure = solved_on_few_cells(problem, column, contact, state.trial, gap, goal)
     if pressure is None:
         return None
-    after = on_contact.preconditioner.on(pressure > 0)
-    return _iterate(problem, after, pressure, state.history, state)
+    return _iterate(problem, preconditioner.on(pressure > 0), pressure, state.history, state)
 
 
-def _relaxed(
+def _after_relaxation(
     problem: Problem,
     state: _Iterate,
     inner: InnerSolution,

@@ -137,8 +137,8 @@ class Preconditioner:
 
     def stiffness(self, shape: tuple[int, int]) -> CirculantStiffness:
         """Return K on a periodic plane of as many cells of the grid's size."""
-        known = self.grid_stiffness if shape == self._shape else None
-        return known or CirculantStiffness(self._operator, shape)
+        is_grid = shape == self._shape
+        return self.grid_stiffness if is_grid else CirculantStiffness(self._operator, shape)
 
     def on(self, contact: Mask) -> OnContact:
         """Return Eᵀ K E on ``contact``, bool of the grid's shape."""

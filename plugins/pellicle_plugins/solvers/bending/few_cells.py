@@ -47,12 +47,8 @@ def solved_on_few_cells(
         cells = np.sort(cells[np.argpartition(nearest, _MOST_CANDIDATES)[:_MOST_CANDIDATES]])
     unit, (i, j) = float(column[0, 0]), np.divmod(cells, trial.shape[1])
     matrix = column[np.abs(i[:, None] - i), np.abs(j[:, None] - j)] / unit
-    height, depth, added, steps = (
-        problem.profile.ravel()[cells] / unit,
-        problem.value / unit,
-        0.0,
-        1,
-    )
+    height, depth = problem.profile.ravel()[cells] / unit, problem.value / unit
+    added, steps = 0.0, 1
     if problem.prescribed == "force":
         total, added, steps = problem.value / problem.grid.cell_area, _ADDED, _STEPS
         depth = added * total
