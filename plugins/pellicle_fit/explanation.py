@@ -17,16 +17,15 @@ from .curve import Curve
 from .effect import Adds, Bends, Effect, Records, Responds, Sizes, Solid, Yields, quantities
 
 _Kind = TypeVar("_Kind", bound=Effect)
-_BALANCE = 1e-6
-"""Last step of Newton's method over the largest way; what is left is about its square."""
+_BALANCE, _HALVED = 1e-6, 1e-9
+"""Last step over the largest way: of Newton's method, which leaves about its square, and of
+halvings."""
 _DIFFERENCE = 1e-6
 """Step of slopes by √δ over the root of that way."""
-_AT_ONCE = 6
-"""Steps of Newton's method without a bracket."""
-_HALVINGS = 40
-"""How often the bracket of a balance is halved."""
-_WIDER, _NARROW = 12, 1e-4
-"""How often the bracket of a balance doubles, and its least width then over the largest way."""
+_LONGEST, _FAR = 4.0, 1e6
+"""Longest step, over the root of the depth or of the way, and the greatest root over the latter."""
+_STEPS = 80
+"""Most steps of a search for a balance, which halvings alone would end."""
 _NODES = 200
 """Nodes of the table from which searches for a balance start."""
 _SHALLOW = 1e-6
@@ -144,42 +143,34 @@ def balanced(
 ) -> Array:
     """Return the depth δ [m] at which δ + u(P(δ)) is that of the base, shape (n,).
 
-    The sum grows with δ, so that there is one root.  Newton's method finds it from a good start;
-    else it is bracketed by the base and the base less the give of the force there, or by what lies
-    beyond that where the give is negative.  If there is no root, it is a ConvergenceError.
+    The sum grows with δ, so that there is one root, which Newton's method finds from a good start;
+    a step that leaves what brackets it halves that.  If there is no root, it is a ConvergenceError.
     """
     scale = max(float(np.ptp(base)), 1e-300)
-    step, far = _DIFFERENCE * np.sqrt(scale), 2 * np.sqrt(scale)
+    step, far = np.sqrt(scale) * np.array([_DIFFERENCE, _FAR])
 
-    def excess(depth: Array) -> Array:
+    def excess(root: Array) -> Array:
+        depth = root * np.abs(root)
         return depth + give(pushed(depth)) - base
 
     # In √δ a toe that is infinitely soft at first touch has a slope.
     root = np.sign(start) * np.sqrt(np.abs(start))
-    for _ in range(_AT_ONCE):
-        beyond: Array = root + step
-        above = excess(root * np.abs(root))
-        slope = (excess(beyond * np.abs(beyond)) - above) / step
-        new: Array = np.clip(root - above / np.maximum(slope, 1e-6 * step), -far, far)
-        if np.max(np.abs(new * np.abs(new) - root * np.abs(root))) <= _BALANCE * scale:
-            return new * np.abs(new)
-        root = new
-    ends = base, base - give(pushed(base))
-    low, high = np.minimum(*ends), np.maximum(*ends)
-    for _ in range(_WIDER):
-        short, long = excess(high) < 0, excess(low) > 0
-        if not (short.any() or long.any()):
+    low, high = np.full(base.shape, -far), np.full(base.shape, far)
+    for _ in range(_STEPS):
+        above = excess(root)
+        low, high = np.where(above < 0, root, low), np.where(above > 0, root, high)
+        slope = (excess(root + step) - above) / step
+        longest = _LONGEST * np.maximum(np.abs(root), np.sqrt(scale))
+        new: Array = root - np.clip(above / np.maximum(slope, 1e-6 * step), -longest, longest)
+        left = (new < low) | (new > high)
+        new = np.where(left, (low + high) / 2, new)
+        moved = np.abs(new * np.abs(new) - root * np.abs(root))
+        if np.all(moved <= np.where(left, _HALVED, _BALANCE) * scale):
             break
-        # At first touch both ends are one, and a drag may hold the solid far below them.
-        width = np.maximum(high - low, _NARROW * scale)
-        high, low = np.where(short, high + width, high), np.where(long, low - width, low)
-    else:
+        root = new
+    if np.max(np.abs(new)) > 0.99 * far:
         raise ConvergenceError(
             "the forces of the cantilever and the solid do not balance; is the spring constant "
             "right?"
         )
-    for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        over = excess(middle) > 0
-        low, high = np.where(over, low, middle), np.where(over, middle, high)
-    return (low + high) / 2
+    return new * np.abs(new)

@@ -239,8 +239,12 @@ def test_a_wrong_spring_constant() -> None:
             effect("rough_toe", height=5e-8, toe_force=1e-11),
             lambda f: 5e-8 * np.log1p(np.cbrt(f / 1e-11)),
         ),
+        (
+            effect("rough_toe", height=1e-7, toe_force=1e-15),
+            lambda f: 1e-7 * np.log1p(np.cbrt(f / 1e-15)),
+        ),
     ],
-    ids=["compliance", "too small a sensitivity", "brush", "rough toe"],
+    ids=["compliance", "too small a sensitivity", "brush", "rough toe", "soft toe"],
 )
 def test_in_series(series: Effect, give: Callable[[Any], Any]) -> None:
     """The depth of the solid is what its own and the others' give leave, by bracketing."""
