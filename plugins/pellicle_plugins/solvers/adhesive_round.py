@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Final
 
 import numpy as np
 
@@ -14,9 +13,6 @@ from pellicle.contact import Attraction, Problem, Progress, adhesive_scale
 from .anderson import Tried
 from .front import Front
 from .preconditioner import OnContact
-
-# Residual of a round that ended before every cell was on its side.
-_UNSETTLED: Final = 1e-3
 
 
 @dataclass(frozen=True)
@@ -70,8 +66,8 @@ class Round:
 
     @cached_property
     def residual(self) -> float:
-        """The largest of gap, penetration, work of the wall and missed traction, each relative."""
-        if self.problem.prescribed == "force" and not self.contact.any():
+        """Largest of gap, penetration, work of the wall and missed traction; 1 if not settled."""
+        if not self.settled or (self.problem.prescribed == "force" and not self.contact.any()):
             return 1.0
         contact, gap = self.contact, self.gap
         closed = np.abs(gap[contact])
@@ -83,7 +79,7 @@ class Round:
         if magnitude:
             work = float((np.abs(self.wall[contact]) * closed).sum()) / magnitude / self.scale
             missed = float(np.abs(self.missed).sum()) / magnitude
-        return max(error / self.scale, missed, work, 0.0 if self.settled else _UNSETTLED)
+        return max(error / self.scale, missed, work)
 
     @property
     def energy(self) -> float:

@@ -24,12 +24,10 @@ class Tried(NamedTuple):
 def extrapolated(rounds: Sequence[Tried], contact: Mask) -> Tried:
     """Return the combination of rounds on one contact that misses least off it.
 
-    Its coefficients sum to 1.  It is the last round itself if that is the only one, or if the step
-    from it goes against the missed tractions, the direction of falling energy: to a saddle.
+    Its coefficients sum to 1.  It is the last round itself if the step from there goes against the
+    missed tractions, the direction of falling energy: to a saddle.
     """
     latest = rounds[-1]
-    if len(rounds) == 1:
-        return latest
     cells = np.flatnonzero(np.any([one.missed != 0 for one in rounds], axis=0) & ~contact)
     missed = np.array([one.missed.ravel()[cells] for one in rounds])
     weights, *_ = np.linalg.lstsq(np.diff(missed, axis=0).T, missed[-1], rcond=1e-10)

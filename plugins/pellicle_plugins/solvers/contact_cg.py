@@ -71,9 +71,8 @@ def inner_solve(
     """
     cells = preconditioner.cells
     if not cells.size:
-        nothing = np.zeros(problem.grid.shape)
-        penetrating = np.flatnonzero(-problem.profile < problem.depth(np.zeros(0)) - goal)
-        return InnerSolution(nothing, nothing, 0.0, penetrating)
+        gap = displacement - problem.profile - problem.depth(np.zeros(0))
+        return InnerSolution(pressure, displacement, 0.0, np.flatnonzero(gap < -goal))
     iterate = _Iterate(problem, preconditioner, pressure, displacement, u_minus_f)
     goal = max(goal, max(_MAX_REDUCTION, reduction) * iterate.error)
     misclassified = _conjugated(iterate, goal, certainty)

@@ -39,8 +39,6 @@ LONGEST: Final = 0.5
 # points on by thousands of cells.
 _MOST_CELLS: Final = 3.0
 _MOST_SHARE: Final = 0.3
-# Shift in cells above which the zone is continued to both sides.
-_EXTENDED: Final = 0.3
 
 
 @dataclass(frozen=True)
@@ -82,12 +80,10 @@ class Front:
 
         grid, contact = self.problem.grid, self.contact
         zone = ((self.exerted < 0) | (missed != 0)) & ~contact
-        wide, shift = max(edges(grid)), self._shift(zone, missed, gain)
+        shift = self._shift(zone, missed, gain)
         steep = np.where(zone, slope(self.exerted, grid), 0.0)
         following = traction + steep * shift
         greatest = float(np.abs(shift).max(where=zone, initial=0.0))
-        if greatest <= _EXTENDED * wide:
-            return following, contact
         # The slope of the zone is continued into the contact and beyond the zone.
         for inside, side in ((contact, -1.0), (~(contact | zone), 1.0)):
             distance, (i, j) = distance_transform_edt(
@@ -96,7 +92,7 @@ class Front:
             ring = inside & (distance <= greatest)
             i, j = i[ring], j[ring]
             following[ring] = traction[i, j] + steep[i, j] * (shift[i, j] + side * distance[ring])
-        moved = shifted_contact(contact, shift, 0.5 * wide, grid)
+        moved = shifted_contact(contact, shift, grid)
         moved &= np.isfinite(self.problem.profile)
         return following, moved
 
@@ -108,15 +104,16 @@ def potential(push: Array, work: float, longest: float, grid: Grid) -> Array:
     return np.asarray(scipy.fft.irfft2(scipy.fft.rfft2(push) / stiffness, s=grid.shape))
 
 
-def shifted_contact(contact: Mask, shift: Array, half: float, grid: Grid) -> Mask:
+def shifted_contact(contact: Mask, shift: Array, grid: Grid) -> Mask:
     """Return the contact after its edge has moved into it by ``shift`` [m], or out of it if < 0.
 
-    The edge lies ``half`` a cell [m] from the cells on both sides. A cell leaves if it has passed
-    the cell by as much, and joins as soon as it is reached: of a cell that joins too late the gap
-    closes, but one that leaves too late is pulled out by its wall pressure.
+    The edge lies half a cell from the cells on both sides. A cell leaves if it has passed the cell
+    by as much, and joins as soon as it is reached: of a cell that joins too late the gap closes,
+    but one that leaves too late is pulled out by its wall pressure.
     """
     from scipy.ndimage import distance_transform_edt
 
+    half = 0.5 * max(edges(grid))
     inside, outside = (
         distance_transform_edt(mask, sampling=grid.spacing) for mask in (contact, ~contact)
     )

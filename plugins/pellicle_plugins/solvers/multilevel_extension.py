@@ -64,7 +64,6 @@ class Extension:
         self._levels: list[_Level] = []
         # A line is squeezed to one axis.
         weight: Field | Mask = np.squeeze(known)
-        any_bends = any(map(bends, orders))
         moments: Moments | None = None
         for order in orders:
             loss = np.float32(2.0 ** (min(order, weight.ndim) - weight.ndim))
@@ -72,7 +71,7 @@ class Extension:
             shift = moments if bends(order) else None
             sweeps = Sweeps(free, stretch) if bends(order) else None
             self._levels.append(_Level(free, share, shift, sweeps))
-            if any_bends:
+            if any(map(bends, orders)):
                 moments = _coarse_moments(weight, moments, share)
             weight = coarse
 
@@ -286,20 +285,11 @@ def _refine(wide: Field, fine: Field) -> None:
 
 def _transposed_refine(fine: Field) -> Field:
     """Return the transpose of `_refine` on a periodic axis, the last, applied to ``fine``."""
-    even, odd = fine[..., 0::2].copy(), fine[..., 1::2].copy()
-    coarse = even + odd
+    even, odd = fine[..., 0::2], fine[..., 1::2]
+    coarse: Field = even + odd
     coarse *= _THREE
-    first, last, number = coarse[..., 0].copy(), coarse[..., -1].copy(), coarse.shape[-1]
-    # In one dimension as in `_refine`; the ends of the axis, which this mixes, are set afterwards.
-    flat = coarse.reshape(-1)
-    flat[:-1] += even.reshape(-1)[1:]
-    flat[1:] += odd.reshape(-1)[:-1]
-    coarse[..., -1] = last + even[..., 0]
-    if number > 1:
-        coarse[..., -1] += odd[..., -2]
-        first += even[..., 1]
-        coarse[..., 0] = first
-    coarse[..., 0] += odd[..., -1]
+    coarse += np.roll(even, -1, axis=-1)
+    coarse += np.roll(odd, 1, axis=-1)
     return coarse
 
 

@@ -79,6 +79,8 @@ class Preconditioner:
         else:
             self._plane = self._padded = _free_shape(grid)
         self._stiffness = CirculantStiffness(operator, self._plane)
+        self.stiffest = self._stiffness.greatest
+        """Stiffness of the stiffest wave [Pa/m]."""
         # How often the plane can be halved, leaving two or more whole cells per axis.
         levels, halved = 0, [n for n in self._padded if n > 1]
         while halved and all(n >= 4 and n % 2 == 0 for n in halved):
@@ -96,18 +98,7 @@ class Preconditioner:
         all_levels = self.bends and grid.boundary == "periodic"
         self._orders = orders[: levels if all_levels else min(levels, _halvings(grid.shape))]
         self._stretch = stretch_of(*edges(grid))
-        self._lift: tuple[Cells, Field] | None = None
-
-    @property
-    def stiffest(self) -> float:
-        """Stiffness of the stiffest wave [Pa/m]."""
-        return self._stiffness.greatest
-
-    @cached_property
-    def grid_stiffness(self) -> CirculantStiffness:
-        """K on the grid itself, as if the grid were periodic; see `relaxed`."""
-        is_periodic = self._plane == self._shape
-        return self._stiffness if is_periodic else CirculantStiffness(self._operator, self._shape)
+        self._lift = np.zeros(self._shape, dtype=np.float32)
 
     def lift(self, on_contact: OnContact) -> Array:
         """Return a pressure on the cells of a contact, of sum 1, that nearly lifts it uniformly.
@@ -116,16 +107,12 @@ class Preconditioner:
         its cells that remain bear nearly all of it.
         """
         cells = on_contact.cells
-        if self._lift:
-            field = np.zeros(self._shape, dtype=np.float32)
-            field.ravel()[self._lift[0]] = self._lift[1]
-            lift = field.ravel()[cells].astype(np.float64)
-            if (total := float(lift.sum())) >= _RETAINED:
-                lift /= total
-                return lift
-        lift = on_contact(np.ones(cells.size)).astype(np.float64)
-        lift /= float(lift.sum())
-        self._lift = cells, lift.astype(np.float32)
+        lift = self._lift.ravel()[cells].astype(np.float64)
+        if lift.sum() < _RETAINED:
+            lift = on_contact(np.ones(cells.size)).astype(np.float64)
+            self._lift = np.zeros(self._shape, dtype=np.float32)
+            np.put(self._lift, cells, lift / lift.sum())
+        lift /= lift.sum()
         return lift
 
     @cached_property
@@ -137,8 +124,9 @@ class Preconditioner:
 
     def stiffness(self, shape: tuple[int, int]) -> CirculantStiffness:
         """Return K on a periodic plane of as many cells of the grid's size."""
-        is_grid = shape == self._shape
-        return self.grid_stiffness if is_grid else CirculantStiffness(self._operator, shape)
+        return (
+            self._stiffness if shape == self._plane else CirculantStiffness(self._operator, shape)
+        )
 
     def on(self, contact: Mask) -> OnContact:
         """Return Eᵀ K E on ``contact``, bool of the grid's shape."""

@@ -50,8 +50,7 @@ GIVEN, ALONE = (
 NAN = Refused("slope(gap) has values that are NaN")
 LEFT = Refused("energy(gap) is", "J/m² at the cutoff of", "m; it has to be 0 there")
 NO_DERIVATIVE = Refused("traction(gap) is not −dγ/dg of energy(gap)")
-REPELS = Refused("does not attract", "has to be < 0 at a closed gap", error=ConfigError)
-STRONGEST = Refused("traction(gap) grows from", "has to be strongest", error=ConfigError)
+ATTRACTS_LATE = Refused("traction(gap) goes from", "most at a closed gap", error=ConfigError)
 BROKEN: dict[str, Any] = {
     "values_are_finite_and_of_their_gap_alone": [
         Broken("far", Refused("cutoff() is inf m"), cutoff=lambda f: np.inf),
@@ -88,12 +87,12 @@ BROKEN: dict[str, Any] = {
             resolved=lambda f, *given: f(*given) if given[1].shape[0] in (16, 256) else None,
         ),
         Broken(
-            *("strongest late", STRONGEST),
+            *("strongest late", ATTRACTS_LATE),
             energy=late_energy,
             traction=late_traction,
             slope=lambda f, gap: -6 * WORK / RANGE**2 * np.clip(1 - 2 * gap / RANGE, -1, None),
         ),
-        Broken("repels", REPELS, energy=opposite, traction=opposite, slope=opposite),
+        Broken("repels", ATTRACTS_LATE, energy=opposite, traction=opposite, slope=opposite),
     ],
 }
 SETTINGS = {"work_of_adhesion": WORK, "range": RANGE}

@@ -71,7 +71,7 @@ def test_a_shifted_disc_is_a_disc(shift: float) -> None:
     x, y = (axis - 0.5 for axis in grid.coordinates())
     x, y = x - x.mean(), y - y.mean()
     distance, cell = np.hypot(x, y), 1 / 128
-    moved = shifted_contact(distance < 0.25, np.full((128, 128), shift), 0.5 * cell, grid)
+    moved = shifted_contact(distance < 0.25, np.full((128, 128), shift), grid)
     assert moved[distance < 0.25 - shift - cell].all()
     assert not moved[distance > 0.25 - shift + cell].any()
 

@@ -40,7 +40,8 @@ def relaxed(
     Only the cells in a window around the contact move. Forces outside it are left out: there they
     come from the jump of the extension across the edges of a free domain.
     """
-    stiffness, contact = on_contact.preconditioner.grid_stiffness, on_contact.contact
+    contact = on_contact.contact
+    stiffness = on_contact.preconditioner.stiffness(contact.shape)
     gap, _ = problem.gap(solution.displacement, contact)
     gap[~contact] += margin
     size = float(np.abs(solution.pressure).max())
