@@ -3,7 +3,6 @@
 import sys
 import threading
 import time
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +10,7 @@ import cloudpickle
 
 from pellicle import ConfigError, Executor
 from pellicle.components import Say
+from tests.plugins.executors.jobs import Job, silence
 
 # Workers cannot import a module of a folder that is no package.
 cloudpickle.register_pickle_by_value(sys.modules[__name__])
@@ -18,20 +18,6 @@ cloudpickle.register_pickle_by_value(sys.modules[__name__])
 WAITING = 60
 """Tasks that take longer, all of them, than it takes to close an executor."""
 PATIENCE = 60.0
-
-
-@dataclass(frozen=True)
-class Job:
-    """A task with a folder for its traces."""
-
-    number: int
-    folder: Path
-    memory: int = 1
-
-    @property
-    def name(self) -> str:
-        """What messages call it."""
-        return f"job {self.number}"
 
 
 class FussyError(Exception):
@@ -64,7 +50,7 @@ def misbehave(job: Job, say: Say) -> Any:
 def test_whatever_tasks_do(executor: Executor, tmp_path: Path) -> None:
     """What is raised comes whole, and what cannot travel is said; closed early, the rest waits."""
     jobs = [Job(i, tmp_path) for i in range(4 + WAITING)]
-    outcomes: Any = executor.map(misbehave, jobs, lambda job, text: None)
+    outcomes: Any = executor.map(misbehave, jobs, silence)
     values: dict[int, Any] = {}
     for job, outcome in outcomes:
         values[job.number] = outcome

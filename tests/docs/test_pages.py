@@ -108,8 +108,3 @@ def test_links_lead_somewhere(page: Path) -> None:
         assert to.exists(), target
         if anchor:
             assert anchor in anchors(to), target
-
-
-def test_every_page_has_a_place() -> None:
-    """Each page of the table of ceilings exists."""
-    assert {page.stem for page in PAGES} == {*CEILINGS}

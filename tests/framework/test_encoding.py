@@ -15,38 +15,16 @@ from pellicle.files import read_text
 from pellicle.schema.from_file import read_toml
 from pellicle_fit.files.readers import read as read_curves
 
-RUN = """
-title = "Δτ₀ ≤ 3 µm² ☺"
-grid = { points = 8, size = "0.4 mm" }
-kernel = { type = "half_space", reduced_modulus = "10 kPa" }
-indenter = { type = "paraboloid", radius = "1 mm" }
-loading = { depth = "20 um" }
-"""
 CURVE = "position (µm),force (nN)\n0,0\n1,2\n2,5\n"
 HEIGHTS = "# heights, µm\n1 2\n3 4\n"
 CODE_PAGES = ("cp1252", "cp437", "ascii", "utf-8")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("encoding", ["cp1252", "ascii"])
-def test_commands_print_in_any_code_page(
-    encoding: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Signs that a code page lacks are replaced, and no command ends with an error for them."""
-    monkeypatch.chdir(tmp_path)
-    Path("a.toml").write_text(RUN, encoding="utf-8")
-    pl.run("a.toml", progress=False).save("a.h5")
-    for words in (
-        ["run", "a.toml", "--dry-run"],
-        ["run", "a.toml", "--quiet"],
-        ["show", "a.h5"],
-        ["plot", "a.h5"],
-        ["plugins"],
-        ["--help"],
-        ["run", "--help"],
-    ):
-        done = CliRunner(charset=encoding).invoke(app, words)
-        assert done.exit_code == 0, (words, done.exception, done.output)
+def test_what_a_code_page_lacks_is_replaced(encoding: str) -> None:
+    """Help ends without an error, and so does a message that has a name of other signs."""
+    for words in (["--help"], ["run", "--help"]):
+        assert CliRunner(charset=encoding).invoke(app, words).exit_code == 0
     refused = CliRunner(charset=encoding).invoke(app, ["run", "Δ接触.toml"])
     assert refused.exit_code == 2
     assert ".toml: No such file" in refused.stderr

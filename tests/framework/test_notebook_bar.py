@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from html import unescape
 from typing import Any
 
@@ -13,16 +12,9 @@ from rich.table import Table
 
 from pellicle.runs import bars, progress
 from pellicle.runs.progress import BatchProgress, ProgressMessage, RunProgress, status_line
+from tests.framework.test_progress import Job
 
 ipython = pytest.importorskip("IPython.display")
-
-
-@dataclass(frozen=True)
-class Job:
-    """A run by its name."""
-
-    name: str
-    memory: int = 1
 
 
 class Cell(list[str]):

@@ -324,7 +324,7 @@ def test_a_component_that_cannot_be_made_is_named(plugin: Plugin) -> None:
 def test_what_a_component_prints_is_not_in_the_json(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """`run --json` prints nothing else on standard output, whatever components print."""
+    """`run --json` prints nothing else, whatever components print, also without contact."""
     paraboloid: Any = registry().find("indenter", "paraboloid")
     profile = paraboloid.profile
 
@@ -335,8 +335,11 @@ def test_what_a_component_prints_is_not_in_the_json(
     monkeypatch.setattr(paraboloid, "profile", printing)
     file = tmp_path / "a.toml"
     file.write_text(SOFT_RUN.replace('"soft", scale', '"half_space", reduced_modulus'))
-    done = CliRunner().invoke(app, ["run", str(file), "-o", str(tmp_path), "--json"])
-    assert json.loads(done.stdout)["converged"] is True
+    words = ["run", str(file), "-o", str(tmp_path), "--json", "--set", "loading.depth=0"]
+    shown = json.loads(CliRunner().invoke(app, words).stdout)
+    assert shown["converged"] is True
+    assert shown["files"] == [str(tmp_path / "a.h5")]
+    assert shown["steps"][0]["mean_contact_pressure"] is None
 
 
 def test_a_broken_plugin_is_an_error_when_asked_for(plugin: Plugin) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import warnings
@@ -279,32 +280,18 @@ def test_a_study_is_not_loaded_as_a_result(tmp_path: Path) -> None:
             pl.load(path)
 
 
-@pytest.fixture
-def full_disk(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[int], None]]:
-    """Return a function that fills the disk after so many more files have been written."""
-
-    def fill_after(count: int) -> None:
-        left = [count]
-        plain = os.fsync
-
-        def fsync(descriptor: int) -> None:
-            left[0] -= 1
-            if left[0] < 0:
-                raise OSError(28, "No space left on device")
-            plain(descriptor)
-
-        monkeypatch.setattr("os.fsync", fsync)
-
-    return fill_after  # type: ignore[return-value]
-
-
 # From none to nearly all of the files that a study leaves.
 @pytest.mark.parametrize("files", [0, 3, 13])
-def test_full_disk(
-    files: int, tmp_path: Path, full_disk: Callable[[int], None], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_full_disk(files: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A disk that fills up ends the study with a message; what was finished is whole and counts."""
-    full_disk(files)
+    plain, written = os.fsync, itertools.count()
+
+    def fsync(descriptor: int) -> None:
+        if next(written) >= files:
+            raise OSError(28, "No space left on device")
+        plain(descriptor)
+
+    monkeypatch.setattr("os.fsync", fsync)
     with pytest.raises(pl.StorageError, match=r"study\..*No space left on device.*another folder"):
         carry_out(study(), tmp_path)
     before = len(Counting.solved)

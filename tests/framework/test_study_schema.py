@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from copy import deepcopy
 from pathlib import Path
 from typing import Any
@@ -34,12 +33,6 @@ def without(path: str) -> dict[str, Any]:
     table = deepcopy(RUN)
     del (table[tables[0]] if tables else table)[last]
     return table
-
-
-@pytest.mark.parametrize("path", sorted(STUDIES.glob("*.toml")), ids=lambda path: path.name)
-def test_accepts_the_studies_of_the_documentation(path: Path, schema: Draft202012Validator) -> None:
-    """Every file of docs/studies is valid, runs and studies alike."""
-    schema.validate(tomllib.loads(path.read_text(encoding="utf-8")))
 
 
 @pytest.mark.parametrize(

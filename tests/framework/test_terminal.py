@@ -122,15 +122,6 @@ def test_json_has_the_numbers_of_the_file(cli: Cli, folder: Path) -> None:
     assert (folder / "study" / runs[0]["file"]).exists()
 
 
-def test_run_prints_json(cli: Cli, folder: Path) -> None:
-    """`run --json` prints the result and nothing else, also of a run without contact."""
-    Path("b.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
-    done = cli("run", "b.toml", "--json", "--set", "loading.depth=0", "--threads", "1")
-    shown = json.loads(done.stdout)
-    assert shown["files"] == [str(Path("b/b.h5"))]
-    assert shown["steps"][0]["mean_contact_pressure"] is None
-
-
 @pytest.mark.slow
 def test_a_run_called_study_is_a_run(cli: Cli) -> None:
     """The result of study.toml has the name of a study's table, and is shown and drawn as it is."""
@@ -196,15 +187,6 @@ def test_what_cannot_be_printed_is_neither_a_fault_nor_a_verdict(
     assert capsys.readouterr().err == message
 
 
-def test_equal_statuses_are_one_line(cli: Cli) -> None:
-    """Steps that fail for one reason are named together; their number is not lost."""
-    Path("d.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
-    hasty = ["--set", "solver.max_iterations=2", "--set", "loading.depth=[1e-5, 1.5e-5, 2e-5]"]
-    done = cli("run", "d.toml", *hasty, "--threads", "1", code=1)
-    assert done.stderr.count("did not converge") == 1
-    assert "steps 1 to 3 did not converge: step 1: the surface misses" in done.stderr
-
-
 def test_validate_ends_with_what_it_covers() -> None:
     """A sentence counts the cases and names the kernels that none is about; powers are units."""
     case = Case("a", {"kernel": {"type": "winkler"}}, lambda _: 0.0, 2e-7, "m²", 1e-3, "Hertz 1882")
@@ -260,7 +242,10 @@ for words in json.loads(sys.argv[1]):
     except SystemExit as stop:
         assert stop.code == 0, (words, stop.code)
 """
-_WORDS = ["check c.toml", "explain tensed_membrane", "show a.h5", "show study"]
+_WORDS = [
+    *("plugins", "explain tensed_membrane", "check c.toml", "run b.toml --dry-run"),
+    *("show a.h5", "show study", "plot a.h5 -o drawn"),
+]
 
 
 @pytest.mark.slow

@@ -78,13 +78,6 @@ def test_the_registry_loads_no_more_than_components_need() -> None:
     assert public <= {"scipy.fft", "scipy.sparse", "scipy.special", "scipy.version"}
 
 
-@pytest.mark.parametrize("name", pellicle.__all__)
-def test_public_name_resolves(name: str) -> None:
-    """Each name that pellicle promises is there."""
-    assert getattr(pellicle, name) is not None
-    assert name in dir(pellicle)
-
-
 def test_unknown_name_is_an_attribute_error() -> None:
     """A name that does not exist fails as in any module."""
     with pytest.raises(AttributeError, match="nonsense"):

@@ -121,10 +121,10 @@ def python(
 ) -> Callable[..., str]:
     """Return a function that runs the interpreter of that environment, and what it prints."""
 
-    def run(*arguments: str) -> str:
+    def run(*arguments: str, **others: str) -> str:
         done = subprocess.run(
             [sys.executable, *arguments],
-            env=environment,
+            env=environment | others,
             cwd=tmp_path_factory.mktemp("empty"),
             capture_output=True,
             encoding="utf-8",
@@ -238,13 +238,6 @@ def test_a_kernel_runs_and_is_on_record(pellicle: Command, tmp_path: Path) -> No
     assert result.configuration["kernel"]["type"] == "power_law"
 
 
-def test_a_kernel_runs_on_a_free_boundary_too(pellicle: Command, tmp_path: Path) -> None:
-    """The same file with an isolated contact converges, compliance(q) being all there is."""
-    free = ["--set", "grid.boundary=free", "--set", "loading={ depth = '20 um' }"]
-    pellicle("run", GRADED, *free, "-o", str(tmp_path))
-    assert pl.load(tmp_path / "graded.h5").converged
-
-
 def test_a_membrane_known_by_its_symbol_has_the_reference_coefficients(
     python: Callable[..., str],
 ) -> None:
@@ -318,19 +311,10 @@ def test_a_prescription_runs_and_is_on_record(pellicle: Command, tmp_path: Path)
 
 
 @pytest.mark.slow
-def test_an_effect_is_weighed_when_it_is_named(
-    environment: dict[str, str], python: Callable[..., str]
-) -> None:
+def test_an_effect_is_weighed_when_it_is_named(python: Callable[..., str]) -> None:
     """Installed but not named it changes nothing; named it explains what the others do not."""
-    without = {**environment, "PELLICLE_DISABLE_PLUGINS": "1"}
-    bare = subprocess.run(
-        [sys.executable, "-c", ATTRACTED, "offset"],
-        env=without,
-        capture_output=True,
-        encoding="utf-8",
-        check=True,
-    )
-    answers = [json.loads(bare.stdout), json.loads(python("-c", ATTRACTED, "offset"))]
+    bare = python("-c", ATTRACTED, "offset", PELLICLE_DISABLE_PLUGINS="1")
+    answers = [json.loads(bare), json.loads(python("-c", ATTRACTED, "offset"))]
     for answer in answers:
         for passing in ("date", "wall_time"):
             answer.pop(passing, None)

@@ -35,16 +35,3 @@ def test_the_pressure_amplitude_of_a_sine_is_exact(
     assert float(step["contact_fraction"]) == 1.0
     assert 2 * np.mean(step["pressure"].values * wave) == pytest.approx(expected, rel=1e-10)
     assert float(step["mean_pressure"]) == pytest.approx(1.5 * expected, rel=1e-12)
-
-
-def test_the_operator_multiplies_each_wave_by_the_compliance() -> None:
-    """One application on a periodic grid is G(q) times the wave, whatever its direction."""
-    grid = pl.Grid(points=[32, 18], size=[2.0, 1.0], boundary="periodic")
-    kernel = pl.kernel("tensed_membrane", youngs_modulus=3.0, poissons_ratio=0.5, tension=0.2)
-    x, y = grid.coordinates()
-    for m, n in ((1, 0), (0, 1), (3, -2), (5, 4)):
-        qx, qy = 2 * np.pi * m / 2.0, 2 * np.pi * n / 1.0
-        wave = np.sin(qx * x + qy * y + 0.3)
-        u = pl.displacement(wave, kernel=kernel, grid=grid)
-        expected = kernel.compliance(np.array([np.hypot(qx, qy)]))[0] * wave
-        np.testing.assert_allclose(u, expected, atol=1e-14)

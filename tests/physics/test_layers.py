@@ -129,21 +129,6 @@ def test_a_thick_layer_on_a_free_boundary_is_a_half_space(base: str, nu: float) 
     )
 
 
-@pytest.mark.parametrize("tension", [1e-6, 1e-2, 10.0])
-def test_a_coated_half_space_on_a_free_boundary_is_a_tensed_membrane(tension: float) -> None:
-    """From its symbol alone it has the displacements of the closed form, to 1e-10."""
-    grid = pl.Grid(points=[32, 24], size=1e-3)
-    pressure = np.random.default_rng(0).uniform(size=grid.shape)
-    bare = {"type": "half_space", "reduced_modulus": 1e4}
-    coated = pl.kernel("coated", tension=tension, substrate=bare)
-    known = pl.kernel("tensed_membrane", reduced_modulus=1e4, tension=tension)
-    np.testing.assert_allclose(
-        pl.displacement(pressure, kernel=coated, grid=grid),
-        pl.displacement(pressure, kernel=known, grid=grid),
-        rtol=1e-10,
-    )
-
-
 @pytest.mark.parametrize(("nu", "slope"), [(0.3, 0.8806), (0.5, 1.1329)])
 def test_a_paraboloid_feels_a_distant_base_as_published(nu: float, slope: float) -> None:
     """F over that on the half-space grows as 1 + 2|α₀|χ/π, χ = √(Rδ)/h (Dimitriadis et al. 2002).

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from io import BytesIO
 from pathlib import Path
 
 import pytest
 
 import pellicle as pl
-from pellicle.results import storage
 from tests.framework.bad_input.command_line import Cli, says
 
 
@@ -30,23 +28,6 @@ def test_output_folder_that_cannot_be_written(
     assert Path("out").read_text(encoding="utf-8") == "in the way"
 
 
-def test_disk_that_fills_up(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A write that fails in a later step is no traceback and costs no earlier step."""
-    save, room = storage._save, [1]
-
-    def fail(content: BytesIO, path: Path) -> None:
-        if not room:
-            raise OSError(28, "No space left on device")
-        room.pop()
-        save(content, path)
-
-    monkeypatch.setattr(storage, "_save", fail)
-    outcome = cli("run", "start.toml", "-o", "out")
-    assert outcome.exit_code == 2
-    says(outcome.message, "out/start.h5: cannot be written (No space left on device)")
-    assert pl.load("out/start.h5").dataset.sizes["step"] == 1
-
-
 def test_result_of_another_configuration(cli: Cli) -> None:
     """A result is replaced by that of another configuration only when asked."""
     assert cli("run", "start.toml", "-o", "out").exit_code == 0
@@ -58,16 +39,6 @@ def test_result_of_another_configuration(cli: Cli) -> None:
     assert Path("out/start.h5").read_bytes() == before
     assert cli(*other, "--overwrite").exit_code == 0
     assert pl.load("out/start.h5").dataset["depth"].values == pytest.approx([5e-6])
-
-
-def test_junk_where_the_result_should_go(cli: Cli) -> None:
-    """A file that is no result is not replaced unasked."""
-    Path("out").mkdir()
-    Path("out/start.h5").write_text("someone's", encoding="utf-8")
-    outcome = cli("run", "start.toml", "-o", "out")
-    assert outcome.exit_code == 2
-    says(outcome.message, "out/start.h5: not a readable result file", "--overwrite")
-    assert Path("out/start.h5").read_text(encoding="utf-8") == "someone's"
 
 
 def test_figures_that_cannot_be_written(cli: Cli) -> None:

@@ -10,7 +10,6 @@ import time
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +22,7 @@ from dask import config as configuration
 import pellicle as pl
 from pellicle.components import Say
 from pellicle.plugins import registry
+from tests.plugins.executors.jobs import Job, silence
 
 # Workers cannot import a module of a folder that is no package.
 cloudpickle.register_pickle_by_value(sys.modules[__name__])
@@ -31,27 +31,9 @@ posix = pytest.mark.skipif(sys.platform == "win32", reason="has other signals")
 PATIENCE = 60.0
 
 
-@dataclass(frozen=True)
-class Job:
-    """A task with a folder for its traces."""
-
-    number: int
-    folder: Path = Path()
-    memory: int = 1
-
-    @property
-    def name(self) -> str:
-        """What messages call it."""
-        return f"job {self.number}"
-
-
 def dask(**fields: Any) -> pl.Executor:
     """Return the executor."""
     return registry().make(pl.Executor, {"type": "dask", **fields})
-
-
-def silence(job: Job, text: Any) -> None:
-    """Report to nobody."""
 
 
 def square(job: Job, say: Say) -> int:

@@ -6,7 +6,6 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ import pellicle as pl
 from pellicle import memory
 from pellicle.components import Say
 from pellicle.plugins import registry
+from tests.plugins.executors.jobs import Job, silence
 
 # Workers cannot import a module of a folder that is no package.
 cloudpickle.register_pickle_by_value(sys.modules[__name__])
@@ -27,27 +27,9 @@ GIGABYTE = 10**9
 PATIENCE = 60.0
 
 
-@dataclass(frozen=True)
-class Job:
-    """A task of some size."""
-
-    number: int
-    folder: Path = Path()
-    memory: int = GIGABYTE
-
-    @property
-    def name(self) -> str:
-        """What messages call it."""
-        return f"job {self.number}"
-
-
 def processes(**fields: Any) -> pl.Executor:
     """Return the executor."""
     return registry().make(pl.Executor, {"type": "processes", **fields})
-
-
-def silence(job: Job, text: Any) -> None:
-    """Report to nobody."""
 
 
 def until(happens: Callable[[], bool]) -> bool:
@@ -114,7 +96,7 @@ def room(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], None]:
 def test_no_more_at_once_than_fit(room: Callable[[float], None], tmp_path: Path) -> None:
     """Where three workers would be there and memory for two is, no three tasks meet."""
     room(2.5 * GIGABYTE)
-    jobs = [Job(i, tmp_path) for i in range(6)]
+    jobs = [Job(i, tmp_path, GIGABYTE) for i in range(6)]
     most = dict(processes(workers=3).map(count_company, jobs, silence))
     assert len(most) == 6
     assert set(most.values()) <= {1, 2}
@@ -123,7 +105,7 @@ def test_no_more_at_once_than_fit(room: Callable[[float], None], tmp_path: Path)
 def test_as_many_at_once_as_fit(room: Callable[[float], None], tmp_path: Path) -> None:
     """Where memory for two is, two meet: each waits for the other."""
     room(2.5 * GIGABYTE)
-    jobs = [Job(i, tmp_path) for i in range(2)]
+    jobs = [Job(i, tmp_path, GIGABYTE) for i in range(2)]
     assert all(met for _, met in processes(workers=3).map(meet_another, jobs, silence))
 
 
@@ -131,7 +113,7 @@ def test_memory_that_others_took_meanwhile(monkeypatch: pytest.MonkeyPatch, tmp_
     """What another program takes after the first task began is not there for the second."""
     answers = iter([4.0 * GIGABYTE, 1.0 * GIGABYTE])
     monkeypatch.setattr(memory, "available", lambda: next(answers, 1.5 * GIGABYTE))
-    jobs = [Job(i, tmp_path) for i in range(3)]
+    jobs = [Job(i, tmp_path, GIGABYTE) for i in range(3)]
     outcomes = dict(processes(workers=3).map(count_company, jobs, silence))
     assert outcomes == dict.fromkeys(jobs, 1)
 
@@ -141,7 +123,8 @@ def test_small_task_overtakes_one_that_must_wait(
 ) -> None:
     """A large task does not keep small ones waiting, and is carried out in the end, alone."""
     room(3 * GIGABYTE)
-    large, small = Job(0, tmp_path, int(2.5 * GIGABYTE)), [Job(i, tmp_path) for i in (1, 2)]
+    large = Job(0, tmp_path, int(2.5 * GIGABYTE))
+    small = [Job(i, tmp_path, GIGABYTE) for i in (1, 2)]
     outcomes = list(processes(workers=2).map(count_company, [small[0], large, small[1]], silence))
     assert outcomes[-1] == (large, 1)
     assert {job for job, _ in outcomes} == {large, *small}

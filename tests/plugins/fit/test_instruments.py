@@ -91,13 +91,6 @@ def test_damaged_file(tmp_path: Path, recording: instruments.Recording) -> None:
         read(path)
 
 
-def test_neither_text_nor_known(tmp_path: Path) -> None:
-    """A file that nothing can read is to be exported as a table."""
-    (tmp_path / "curve.spm").write_bytes(bytes(range(256)))
-    with pytest.raises(pl.StorageError, match="export it as a table"):
-        read(tmp_path / "curve.spm")
-
-
 @pytest.mark.parametrize("name", ["curve.jpk-force", "export.h5"])
 def test_without_the_extra(
     tmp_path: Path,

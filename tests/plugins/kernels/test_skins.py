@@ -164,12 +164,3 @@ def test_coated_takes_its_substrate_in_any_form() -> None:
     assert written["substrate"] == LAYER
     assert by_table == by_component == kernel_of(written)
     assert hash(by_table) == hash(pickle.loads(pickle.dumps(by_component)))
-
-
-def test_winkler_answers_where_it_is_pressed() -> None:
-    """Each cell of a bed of springs sinks by its own pressure over the stiffness."""
-    grid = pl.Grid(points=[12, 9], size=1e-3, boundary="periodic")
-    pressure = np.random.default_rng(0).uniform(size=grid.shape)
-    springs = pl.kernel("winkler", foundation="2 Pa/um")
-    result = pl.displacement(pressure, kernel=springs, grid=grid)
-    np.testing.assert_allclose(result, pressure / 2e6, rtol=1e-13)

@@ -22,7 +22,6 @@ import xarray as xr
 import pellicle as pl
 from pellicle.runs import steps
 from pellicle_plugins.outputs.step_figures import cross_section
-from tests.pictures import colourfulness
 from tests.plugins.outputs.shared import bead
 
 if TYPE_CHECKING:
@@ -112,14 +111,6 @@ def studied(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, xr.Dataset]
     study = {**RUN, "study": {"vary": VARY}}
     table = pl.run_study(study, folder, progress=False, threads=1)
     return folder / "study.html", table
-
-
-def test_title_is_shown_as_it_is(ran: tuple[Path, xr.Dataset]) -> None:
-    """Markup in it is none of the page's."""
-    page = Page(ran[0])
-    assert page.texts["h1"] == page.texts["title"] == [TITLE]
-    scripts = [attributes.get("class") for tag, attributes in page.tags if tag == "script"]
-    assert sorted(scripts, key=str) == [None, "by-frame", "maps"]
 
 
 def test_inputs_and_provenance(ran: tuple[Path, xr.Dataset]) -> None:
@@ -504,9 +495,6 @@ def test_browser_shows_a_run(browser: Chrome, ran: tuple[Path, xr.Dataset]) -> N
     assert profile.find_element(By.CSS_SELECTOR, "img").get_attribute("src") != of_first
     browser.find_element(By.CSS_SELECTOR, "input").click()
     assert errors(browser) == []
-    # The maps alone, of which half is pale, fill a good part of the window.
-    browser.execute_script("document.getElementById('maps').scrollIntoView()")
-    assert (colourfulness(BytesIO(browser.get_screenshot_as_png())) > 0.2).mean() > 0.05
 
 
 def test_browser_shows_a_study(browser: Chrome, studied: tuple[Path, xr.Dataset]) -> None:

@@ -55,14 +55,6 @@ def test_csv(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_names_of_files(tmp_path: Path) -> None:
-    """Every output writes files of the names that users know."""
-    pl.run(_run(EVERYTHING), directory=tmp_path, progress=False)
-    names = {path.name.removeprefix("two-steps") for path in tmp_path.iterdir()}
-    assert names == NAMES | FIGURES
-
-
-@pytest.mark.slow
 def test_names_of_files_of_a_study(tmp_path: Path) -> None:
     """The table and the figures lie in the folder of a study, what shows single runs in runs."""
     study = pl.Study(run=_run(EVERYTHING), vary={"indenter.radius": [1e-3, 2e-3]})
