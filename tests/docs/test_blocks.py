@@ -280,6 +280,14 @@ def reader(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Reader]:
     reader.forget()
 
 
+@pytest.mark.parametrize(
+    ("value", "like"), [("10.31 µm, 2", True), ("11.25 µm, 2", False), ("10.25 µm, 3", False)]
+)
+def test_outputs_are_compared(value: str, like: bool) -> None:
+    """Another machine prints other digits; another answer is another output."""
+    assert is_like("10.25 µm, 2", value) is like
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_page_runs(page: Path, reader: Reader) -> None:
@@ -294,6 +302,14 @@ def test_page_runs(page: Path, reader: Reader) -> None:
         except Exception as error:
             error.add_note(f"in the block at {block}")
             raise
+
+
+def test_readme_begins_with_the_two_set_up_commands() -> None:
+    """The first two blocks of the README are one shell line each; no other set-up is exempt."""
+    first, second, *rest = blocks(ROOT / "README.md")
+    assert [first.text.strip(), second.text.strip()] == EXEMPT
+    others = [*rest, *(block for page in PAGES[1:] for block in blocks(page))]
+    assert not [str(block) for block in others if block.language == "sh"]
 
 
 def test_study_of_the_readme_is_the_starter_file() -> None:
