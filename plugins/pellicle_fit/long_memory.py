@@ -6,6 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import next_fast_len
 from scipy.optimize import minimize_scalar
 from scipy.special import chdtrc
 
@@ -29,17 +30,18 @@ def differenced(rows: Array, exponent: float) -> Array:
     """
     size = rows.shape[0]
     weights = _weights(size, exponent)
-    spectrum = np.fft.rfft(rows, 2 * size, axis=0)
+    length = next_fast_len(2 * size, real=True)
+    spectrum = np.fft.rfft(rows, length, axis=0)
     shape = (-1, *(1,) * (rows.ndim - 1))
-    return np.fft.irfft(spectrum * weights.reshape(shape), 2 * size, axis=0)[:size]
+    return np.fft.irfft(spectrum * weights.reshape(shape), length, axis=0)[:size]
 
 
 @lru_cache(maxsize=8)
 def _weights(size: int, exponent: float) -> NDArray[np.complex128]:
-    """Return the transform of the coefficients of (1 − B)^d, padded to twice the size."""
+    """Return the transform of the coefficients of (1 − B)^d, padded to twice the size or more."""
     lags = np.arange(1, size)
     coefficients = np.cumprod(np.concatenate([[1.0], (lags - 1 - exponent) / lags]))
-    return np.fft.rfft(coefficients, 2 * size)
+    return np.fft.rfft(coefficients, next_fast_len(2 * size, real=True))
 
 
 def exponent_of(force: Array) -> float:
