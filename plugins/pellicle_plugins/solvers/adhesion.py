@@ -178,7 +178,8 @@ class AdhesionSolver(ScaledSolver):
         if state.residual > self.tolerance:
             return state
         # An inner solve changes the displacement in single precision.
-        displacement = problem.operator(wall + traction)
+        del state
+        displacement = problem.operator(wall + traction, out=displacement)
         return _finished(problem, on_contact, wall, traction, displacement, before, settled)
 
     def _goal(self, problem: Problem, before: Round | None) -> float:

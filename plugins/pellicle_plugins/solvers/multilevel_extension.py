@@ -159,15 +159,14 @@ def _coarse_moments(weight: Field | Mask, moments: Moments | None, share: Field)
 
     Cells of the finest level have no ``moments``: known values are at their centres.
     """
-    quarter, half = np.float32(0.25), np.float32(0.5)
     coarse = []
     for axis, number in enumerate(weight.shape):
         signs = np.ones(number, dtype=np.float32)
         signs[0::2] = -1
         signed = weight * (signs[:, None] if axis < weight.ndim - 1 else signs)
-        coarse.append(quarter * _sum_of_block(signed))
+        coarse.append(_QUARTER * _sum_of_block(signed))
     for axis, moment in enumerate(moments or ()):
-        coarse[axis] += half * _sum_of_block(moment)
+        coarse[axis] += np.float32(0.5) * _sum_of_block(moment)
     return tuple(share * moment for moment in coarse)
 
 

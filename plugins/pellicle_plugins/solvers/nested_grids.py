@@ -37,8 +37,7 @@ def prolonged(solver: ScaledSolver, problem: Problem) -> State | None:
             return None
         # The indenter touches less than half of every coarse cell.
         coarse = replace(coarse, profile=highest(problem.profile, coarse.grid.shape))
-    tolerance = max(solver.tolerance, _COARSE_TOLERANCE)
-    loose = solver.model_copy(update={"tolerance": tolerance})
+    loose = solver.model_copy(update={"tolerance": max(solver.tolerance, _COARSE_TOLERANCE)})
     state = loose.solve(coarse, None, lambda iteration, residual_ratio: None).state
     # A coarse cell may extend beyond the rim of the indenter.
     below = np.isfinite(problem.profile)
