@@ -25,7 +25,7 @@ _DIFFERENCE = 1e-6
 _LONGEST, _FAR = 4.0, 1e6
 """Longest step, over the root of the depth or of the way, and the greatest root over the latter."""
 _STEPS = 80
-"""Most steps of a search for a balance, which halvings alone would end."""
+"""Most steps of a search for a balance."""
 _NODES = 200
 """Nodes of the table from which searches for a balance start."""
 _SHALLOW = 1e-6
@@ -146,12 +146,14 @@ def balanced(
     The sum grows with δ, so that there is one root, which Newton's method finds from a good start;
     a step that leaves what brackets it halves that.  If there is no root, it is a ConvergenceError.
     """
-    scale = max(float(np.ptp(base)), 1e-300)
-    step, far = np.sqrt(scale) * np.array([_DIFFERENCE, _FAR])
+    way = np.sqrt(max(float(np.ptp(base)), 1e-300))
+    step, far = _DIFFERENCE * way, _FAR * way
+
+    def depth_of(root: Array) -> Array:
+        return root * np.abs(root)
 
     def excess(root: Array) -> Array:
-        depth = root * np.abs(root)
-        return depth + give(pushed(depth)) - base
+        return depth_of(root) + give(pushed(depth_of(root))) - base
 
     # In √δ a toe that is infinitely soft at first touch has a slope.
     root = np.sign(start) * np.sqrt(np.abs(start))
@@ -160,17 +162,16 @@ def balanced(
         above = excess(root)
         low, high = np.where(above < 0, root, low), np.where(above > 0, root, high)
         slope = (excess(root + step) - above) / step
-        longest = _LONGEST * np.maximum(np.abs(root), np.sqrt(scale))
+        longest = _LONGEST * np.maximum(np.abs(root), way)
         new: Array = root - np.clip(above / np.maximum(slope, 1e-6 * step), -longest, longest)
-        left = (new < low) | (new > high)
-        new = np.where(left, (low + high) / 2, new)
-        moved = np.abs(new * np.abs(new) - root * np.abs(root))
-        if np.all(moved <= np.where(left, _HALVED, _BALANCE) * scale):
-            break
+        is_out = (new < low) | (new > high)
+        new = np.where(is_out, (low + high) / 2, new)
+        change = np.abs(depth_of(new) - depth_of(root))
+        is_near = np.all(change <= np.where(is_out, _HALVED, _BALANCE) * way**2)
+        # Without a root halvings end at the end of the bracket.
+        if is_near and np.max(np.abs(new)) < 0.99 * far:
+            return depth_of(new)
         root = new
-    if np.max(np.abs(new)) > 0.99 * far:
-        raise ConvergenceError(
-            "the forces of the cantilever and the solid do not balance; is the spring constant "
-            "right?"
-        )
-    return new * np.abs(new)
+    raise ConvergenceError(
+        "the forces of the cantilever and the solid do not balance; is the spring constant right?"
+    )

@@ -28,20 +28,19 @@ def differenced(rows: Array, exponent: float) -> Array:
     Of noise whose power falls as f^(−2d) they are independent (Granger & Joyeux 1980; Hosking
     1981).  Before the first row they assume 0.
     """
-    size = rows.shape[0]
-    weights = _weights(size, exponent)
-    length = next_fast_len(2 * size, real=True)
+    length = next_fast_len(2 * len(rows), real=True)
     spectrum = np.fft.rfft(rows, length, axis=0)
     shape = (-1, *(1,) * (rows.ndim - 1))
-    return np.fft.irfft(spectrum * weights.reshape(shape), length, axis=0)[:size]
+    weights = _weights(length, exponent).reshape(shape)
+    return np.fft.irfft(spectrum * weights, length, axis=0)[: len(rows)]
 
 
 @lru_cache(maxsize=8)
-def _weights(size: int, exponent: float) -> NDArray[np.complex128]:
-    """Return the transform of the coefficients of (1 − B)^d, padded to twice the size or more."""
-    lags = np.arange(1, size)
+def _weights(length: int, exponent: float) -> NDArray[np.complex128]:
+    """Return the transform of the coefficients of (1 − B)^d for half of a length, padded to it."""
+    lags = np.arange(1, length // 2)
     coefficients = np.cumprod(np.concatenate([[1.0], (lags - 1 - exponent) / lags]))
-    return np.fft.rfft(coefficients, next_fast_len(2 * size, real=True))
+    return np.fft.rfft(coefficients, length)
 
 
 def exponent_of(force: Array) -> float:
