@@ -195,7 +195,7 @@ def solution_of(
         nothing = np.zeros(problem.grid.shape)
         lost = adheres and problem.prescribed == "force"
         stop = Stop.PULLED_OFF if lost else Stop.DONE
-        return Solution(State(nothing, nothing, problem.depth(np.zeros(1))), 0, stop)
+        return Solution(State(nothing, nothing, problem.depth(np.zeros(0))), 0, stop)
     view = replace(problem, profile=read_only(problem.profile))
     with errors_attributed_to(solver):
         value = solver.solve(view, None if start is None else _read_only_state(start), monitor)

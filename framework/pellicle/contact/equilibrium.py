@@ -228,8 +228,7 @@ def round_off(problem: Problem, pressure: Array) -> float:
     contact = pressure > 0
     displacement = problem.operator(pressure)
     rounded = float(np.abs(3 * problem.operator(pressure / 3) - displacement).max())
-    u_minus_f = displacement - problem.profile
-    depth = problem.depth(u_minus_f[contact] if contact.any() else np.zeros(1))
+    _, depth = problem.gap(displacement, contact)
     return rounded / problem.height_scale(contact, depth, float(pressure.sum()))
 
 

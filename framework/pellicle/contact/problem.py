@@ -110,9 +110,11 @@ class Problem:
         """Return z [m] given A p − f on the contact.
 
         Under force control it is the depth for which the mean gap in contact vanishes (Polonsky &
-        Keer 1999).
+        Keer 1999), 0 without contact.
         """
-        return self.value if self.prescribed == "depth" else float(u_minus_f.mean())
+        if self.prescribed == "depth":
+            return self.value
+        return float(u_minus_f.mean()) if u_minus_f.size else 0.0
 
     def gap(self, displacement: Array, contact: Mask) -> tuple[Array, float]:
         """Return the gap A p − z − f and z [m] given A p, by `depth` on the contact."""

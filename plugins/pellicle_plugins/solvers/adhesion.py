@@ -33,8 +33,8 @@ _FASTER_SAME: Final = 4.0
 _RISE: Final = 0.3
 # Rounds without progress after which it may not rise at all with the residual.
 _IDLE: Final = 2
-# Set changes after which the next round begins, whose tractions move the contact anyway. With 40 a
-# step on a rough surface takes half as many applications again; with 2 a smooth one does.
+# Set changes after which the next round begins, whose tractions move the contact anyway; a shift of
+# the fronts is one. With 2 a step on a rough surface takes half as many applications again.
 _CHANGES: Final = 3
 # Rounds without a smaller residual after which the solve is abandoned.
 _STAGNATION: Final = 60
@@ -98,9 +98,8 @@ class AdhesionSolver(ScaledSolver):
         # Cells of the undeformed surface that just touch the indenter are in contact.
         touches = problem.prescribed == "force" or problem.value == -lowest
         contact |= touches & (problem.profile == lowest)
-        u_minus_f = problem.operator(pressure) - problem.profile
-        depth = problem.depth(u_minus_f[contact] if contact.any() else np.zeros(1))
-        traction = problem.attraction(u_minus_f - depth, contact).traction
+        gap, _ = problem.gap(problem.operator(pressure), contact)
+        traction = problem.attraction(gap, contact).traction
         wall = np.where(contact, np.maximum(pressure - traction, 0.0), 0.0)
         return self._closed(problem, preconditioner.on(contact), wall, traction)
 
@@ -151,13 +150,12 @@ class AdhesionSolver(ScaledSolver):
         before: Round | None = None,
         changes: int = _CHANGES,
     ) -> Round:
-        """Return the round whose contact, after at most ``changes``, is closed under a traction."""
+        """Return the round that closes the contact under a traction, after ``changes`` at most."""
         goal, hard = self._goal(problem, before), replace(problem, law=None)
         contact = on_contact.contact
         settled = False
         for _ in range(changes):
-            transferred = on_contact.transferred(wall)
-            balanced = _with_wall_force(problem, contact, transferred, traction)
+            balanced = _with_wall_force(problem, contact, on_contact.transferred(wall), traction)
             if balanced is None:
                 nothing = np.zeros(problem.grid.shape)
                 released = on_contact.preconditioner.on(nothing > 0)
@@ -204,9 +202,7 @@ def _finished(
     settled: bool = True,
 ) -> Round:
     contact = on_contact.contact
-    gap = displacement - problem.profile
-    depth = problem.depth(gap[contact] if contact.any() else np.zeros(1))
-    gap -= depth
+    gap, depth = problem.gap(displacement, contact)
     acting = problem.attraction(gap, contact)
     state = Round(problem, on_contact, wall, traction, displacement, gap, depth, acting, settled)
     if before is None:

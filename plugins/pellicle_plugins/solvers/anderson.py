@@ -28,6 +28,8 @@ def extrapolated(rounds: Sequence[Tried], contact: Mask) -> Tried:
     missed tractions, the direction of falling energy: to a saddle.
     """
     latest = rounds[-1]
+    if len(rounds) == 1:
+        return latest
     cells = np.flatnonzero(np.any([one.missed != 0 for one in rounds], axis=0) & ~contact)
     missed = np.array([one.missed.ravel()[cells] for one in rounds])
     weights, *_ = np.linalg.lstsq(np.diff(missed, axis=0).T, missed[-1], rcond=1e-10)

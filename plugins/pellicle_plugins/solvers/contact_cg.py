@@ -71,7 +71,7 @@ def inner_solve(
     """
     cells = preconditioner.cells
     if not cells.size:
-        gap = displacement - problem.profile - problem.depth(np.zeros(0))
+        gap, _ = problem.gap(displacement, preconditioner.contact)
         return InnerSolution(pressure, displacement, 0.0, np.flatnonzero(gap < -goal))
     iterate = _Iterate(problem, preconditioner, pressure, displacement, u_minus_f)
     goal = max(goal, max(_MAX_REDUCTION, reduction) * iterate.error)

@@ -64,6 +64,7 @@ class Extension:
         self._levels: list[_Level] = []
         # A line is squeezed to one axis.
         weight: Field | Mask = np.squeeze(known)
+        any_bends = any(map(bends, orders))
         moments: Moments | None = None
         for order in orders:
             loss = np.float32(2.0 ** (min(order, weight.ndim) - weight.ndim))
@@ -71,7 +72,7 @@ class Extension:
             shift = moments if bends(order) else None
             sweeps = Sweeps(free, stretch) if bends(order) else None
             self._levels.append(_Level(free, share, shift, sweeps))
-            if any(map(bends, orders)):
+            if any_bends:
                 moments = _coarse_moments(weight, moments, share)
             weight = coarse
 

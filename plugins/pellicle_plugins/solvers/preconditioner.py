@@ -124,9 +124,8 @@ class Preconditioner:
 
     def stiffness(self, shape: tuple[int, int]) -> CirculantStiffness:
         """Return K on a periodic plane of as many cells of the grid's size."""
-        return (
-            self._stiffness if shape == self._plane else CirculantStiffness(self._operator, shape)
-        )
+        is_plane = shape == self._plane
+        return self._stiffness if is_plane else CirculantStiffness(self._operator, shape)
 
     def on(self, contact: Mask) -> OnContact:
         """Return Eᵀ K E on ``contact``, bool of the grid's shape."""

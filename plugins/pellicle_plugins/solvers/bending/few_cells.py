@@ -38,7 +38,7 @@ def solved_on_few_cells(
     from scipy.optimize import nnls
 
     pressed = np.count_nonzero(contact & (trial > 0))
-    if not 0 < pressed <= MOST_CELLS or 2 * pressed > trial.size:
+    if not pressed or 2 * pressed > trial.size:
         return None
     may_join = (dilated(contact, cells=_RINGS) | (gap < -margin)) & np.isfinite(problem.profile)
     cells = np.flatnonzero(may_join)
