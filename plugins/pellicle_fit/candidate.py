@@ -65,9 +65,16 @@ class Candidate:
 
     @property
     def contact_points(self) -> list[float]:
-        """Position of first touch on each curve [m]."""
-        at, curves = self.minimum.at, range(len(self.whole))
-        return [self.objective.known(at, i).solid.contact_point for i in curves]
+        """Position of the base at first touch on each curve [m]."""
+        at, curves = self.minimum.at, enumerate(self.whole)
+        known = ((self.objective.known(at, i), curve) for i, curve in curves)
+        return [float((curve.base - one.base_depth(curve))[0]) for one, curve in known]
+
+    @property
+    def depths(self) -> list[Array]:
+        """Depth of the tip [m] in each row of each curve, negative before contact."""
+        at, curves = self.minimum.at, enumerate(self.whole)
+        return [self.objective.known(at, i).depth(curve) for i, curve in curves]
 
     @cached_property
     def of_rows(self) -> Objective:
@@ -112,9 +119,9 @@ class Candidate:
         rows_of, found = zip(objective.curves, forces, objective.noise, by_curve, strict=True), []
         for i, (curve, force, noise, derivatives) in enumerate(rows_of):
             known = objective.known(at, i)
-            point, d = known.solid.contact_point, memory[i] if memory else 0.0
-            one = judged(curve, curve.force - force, derivatives * noise, curve.base - point, d)
-            if np.max(curve.position) - point > known.contact(curve).depth_limit:
+            depth, d = known.base_depth(curve), memory[i] if memory else 0.0
+            one = judged(curve, curve.force - force, derivatives * noise, depth, d)
+            if np.max(known.depth(curve)) > known.contact(curve).depth_limit:
                 one = one._replace(flaws=one.flaws | {Flaw.TOO_DEEP})
             found.append(one)
         return found

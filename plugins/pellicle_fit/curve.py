@@ -16,6 +16,8 @@ _BRIEFEST = 0.01
 """Least time in contact over that of the approach."""
 _DEEP, _LASTS = 0.02, 0.1
 """Distance of a dwell from the deepest row, over the range, and its least part of the loading."""
+_SHALLOW = 10
+"""One in how many rows is among the shallowest, whose force is taken for that without a load."""
 _NEIGHBOURS = 4
 """Rows on each side over which forces are smoothed."""
 _CLEAR, _WAYS = 0.2, 3.0
@@ -38,6 +40,8 @@ class Curve:
     """Whether a row is taken while the indenter moves out; by default, after the deepest row."""
     stiffness: float | None = None
     """Spring constant of the cantilever [N/m]; None if it is stiff or not known."""
+    fixed_touch: bool = False
+    """Whether the contact point is given: as a position that is read, which an offset shifts."""
     counts: Array | None = None
     """How many measured rows each row is the mean of; None if one."""
 
@@ -45,6 +49,12 @@ class Curve:
     def base(self) -> Array:
         """Position of the cantilever's base [m], which is exact where that of the tip is noisy."""
         return self.position + self.force / self.stiffness if self.stiffness else self.position
+
+    @cached_property
+    def free_force(self) -> float:
+        """Force where the base is shallowest [N], as before contact if any row is."""
+        count = max(self.force.size // _SHALLOW, 1)
+        return float(np.median(self.force[np.argpartition(self.base, count - 1)[:count]]))
 
     @property
     def clock(self) -> Array:

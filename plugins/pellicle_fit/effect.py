@@ -144,12 +144,14 @@ class Sizes(NamedTuple):
     time: float
     """Duration [s]; 1 without times."""
     rows: int
+    free_force: float = 0.0
+    """Force before contact [N]."""
 
     @classmethod
     def of_curve(cls, curve: Curve) -> Sizes:
         """Return those of a curve."""
         time = 1.0 if curve.time is None else float(curve.time[-1] - curve.time[0])
-        return cls(curve.span, curve.largest, time, curve.position.size)
+        return cls(curve.span, curve.largest, time, curve.position.size, curve.free_force)
 
     def of(self, unit: str) -> float:
         """Return the order of magnitude of a quantity with a unit."""
@@ -230,7 +232,7 @@ class Responds(Effect):
     """A force from the whole path; at most one in a set, and none is elastic."""
 
     balances: ClassVar[bool] = False
-    """Whether depths are those of the base, and it finds itself where a cantilever balances."""
+    """Whether depths and path are those of the base, and it finds where a cantilever balances."""
 
     @abstractmethod
     def response(self, contact: Contact, curve: Curve, path: Array, softness: float) -> Response:

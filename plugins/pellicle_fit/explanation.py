@@ -92,6 +92,26 @@ class Explanation:
         """Return the modulus after a time [s] over E*."""
         return next((effect.relaxed(time) for effect in self.of(Responds)), 1.0)
 
+    def free_force(self, curve: Curve) -> Array:
+        """Return the force [N] that is recorded in each row of a cantilever without a load."""
+        force = np.zeros_like(curve.force)
+        for effect in self.of(Records):
+            force = effect.recorded(force, curve)
+        return force
+
+    def depth(self, curve: Curve) -> Array:
+        """Return the depth of the tip [m] in each row, negative before contact."""
+        load = curve.force - self.free_force(curve)
+        return self.base_depth(curve) - load / (curve.stiffness or np.inf)
+
+    def base_depth(self, curve: Curve) -> Array:
+        """Return the depth of the base over that of first touch [m], in each row."""
+        touch = self.solid.contact_point
+        if curve.fixed_touch and curve.stiffness is not None:
+            nearest = int(np.argmin(np.abs(curve.position - touch)))
+            touch += float(self.free_force(curve)[nearest]) / curve.stiffness
+        return curve.base - touch
+
     def force(self, curve: Curve) -> Array:
         """Return the force [N] that is recorded in each row, of known quantities.
 
@@ -108,23 +128,24 @@ class Explanation:
 
     def _pushed(self, curve: Curve, softness: float) -> Array:
         """Return the true force [N] in each row; the softness is the cantilever's [m/N]."""
-        contact, depth = self.contact(curve), curve.base - self.solid.contact_point
-        adds, yields = self.of(Adds), self.of(Yields)
+        contact, depth = self.contact(curve), self.base_depth(curve)
+        adds, yields, responds = self.of(Adds), self.of(Yields), self.of(Responds)
+        balances = any(effect.balances for effect in responds)
 
         def give(force: Array) -> Array:
             return sum((effect.give(force) for effect in yields), start=softness * force)
 
         in_series = bool(softness or yields)
-        path = depth - give(curve.smoothed) if in_series else depth
+        path = depth
+        if in_series and responds and not balances:
+            path = depth - give(curve.smoothed - self.free_force(curve))
         if in_series:
             # A search may try contact points that no row reaches.
-            deepest = float(max(np.max(depth), np.max(path), _SHALLOW * curve.span))
+            deepest = max(float(np.max(np.maximum(depth, path))), _SHALLOW * curve.span)
             contact = contact.tabulated(min(_DEEPER * deepest, contact.depth_limit))
         response: Callable[[Array], Array] = contact.force
-        balances = False
-        for effect in self.of(Responds):
+        for effect in responds:
             response = effect.response(contact, curve, path, softness)
-            balances = effect.balances
 
         def pushed(depth: Array) -> Array:
             beside = (add.force(contact, curve, depth) for add in adds)

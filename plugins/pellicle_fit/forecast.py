@@ -97,8 +97,8 @@ def _foretold(truth: Candidate, guess: Candidate, other: Curve) -> tuple[Objecti
     It predicts the first curve again and another, which have no noise and touch at 0.
     """
     curve, known = truth.whole[0], truth.objective.known(truth.minimum.at, 0)
-    means, point = curve.binned(_ROWS), known.solid.contact_point
-    again = replace(means, position=means.base - point, stiffness=None)
+    means, (point, *_) = curve.binned(_ROWS), truth.contact_points
+    again = replace(means, position=means.base - point, stiffness=None, fixed_touch=False)
     # Each row of a forecast stands for as many as the curve has.
     counts = np.full(other.position.size, curve.passes[0].size / _ROWS)
     known = replace(known, solid=known.solid.model_copy(update={CONTACT_POINT: 0.0}))
@@ -120,6 +120,7 @@ def _predicted(known: Explanation, measurement: Curve, curve: Curve) -> Curve:
         tip = base - (force / stiffness if stiffness else 0.0)
         return replace(measurement, position=tip, force=force, stiffness=stiffness)
 
-    roughly = planned(curve.largest * np.maximum(base / np.max(base), 0.0))
+    free = known.free_force(planned(np.zeros_like(base)))
+    roughly = planned(free + curve.largest * np.maximum(base / np.max(base), 0.0))
     # A memory sees the path that its own force leaves.
     return planned(known.force(planned(known.force(roughly))))

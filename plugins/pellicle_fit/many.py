@@ -237,14 +237,14 @@ def _keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool
 def work(task: FitTask, say: Say) -> dict[str, Any]:
     """Fit a curve in a worker, and return JSON data of the fit, with what a population adds."""
     fit = task.problem.fit()
-    (member,), (force,) = fit.members, fit.forces()
+    (member,), (force,), (depth,) = fit.members, fit.forces(), fit.answer.chosen.depths
     measured, position = member.curve.force, member.curve.position
     scatter = measured - np.mean(measured)
     drawn = sketch(position=position, force=measured, fit=force)
     kept = {name: value for name, value in fit.to_dict().items() if name not in _OF_ALL}
     return kept | {
         "r_squared": 1 - float(np.sum((force - measured) ** 2) / np.sum(scatter**2)),
-        "indentation": float(np.max(position)) - fit.contact_point.value,
+        "indentation": float(np.max(depth)),
         "largest_force": float(np.max(force)),
         "sketch": {name: [float(f"{v:.5g}") for v in values] for name, values in drawn.items()},
     }

@@ -94,7 +94,7 @@ def judged(
     if memory:
         residuals, jacobian = differenced(residuals, memory), differenced(jacobian, memory)
     before = (depth < -_NEAR * curve.span) & curve.first_pass
-    least = max(_LEAST * float(np.max(np.abs(curve.force))), step / np.sqrt(12))
+    least = max(_LEAST * curve.largest, step / np.sqrt(12))
     if has_spikes(residuals, least):
         flaws.add(Flaw.SPIKES)
     if before.sum() < FEWEST:

@@ -125,8 +125,11 @@ class Objective:
             low = next((end for end in (q.at_least, q.above) if end is not None), -np.inf)
             high = next((end for end in (q.at_most, q.below) if end is not None), np.inf)
             if slot.name == CONTACT_POINT and slot.curve is not None:
-                z = self.curves[slot.curve].position
-                low, high = float(z.min() - _BEFORE * np.ptp(z)), float(z.max())
+                curve = self.curves[slot.curve]
+                # A free cantilever may be bent, if the force before contact is one.
+                bent = np.array([0.0, curve.free_force / (curve.stiffness or np.inf)])
+                low = float(curve.position.min() + bent.min() - _BEFORE * curve.span)
+                high = float(curve.position.max() + bent.max())
             elif q.log:
                 low, high = slot.scale / reach, slot.scale * reach
             low, high = known.get(slot.name, (low, high))

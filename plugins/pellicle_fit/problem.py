@@ -85,8 +85,9 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
         fix[CONTACT_POINT] = 0.0
     bodies, layers, ratio = _on_solid(config, indenters, measured, progress)
     members = []
+    touch = CONTACT_POINT in fix
     for source, one, body in zip(sources, measured, bodies, strict=True):
-        curve = Curve(one.position, one.force, body, one.time, one.unloading, one.stiffness)
+        curve = Curve(one.position, one.force, body, one.time, one.unloading, one.stiffness, touch)
         members.append(Member(source.name, curve, one, data_of(one, config)))
     model = _known(config.model, fix, ratio)
     # What is given leaves nothing to ask.

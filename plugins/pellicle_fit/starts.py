@@ -11,7 +11,7 @@ import numpy as np
 from pellicle.arrays import Array
 
 from .candidate import Candidate
-from .effect import powers
+from .effect import Records, powers
 from .objective import CONTACT_POINT, MODULUS, ROUGH, Objective, Slot
 
 _POINTS, _ROWS = 25, 120
@@ -52,7 +52,8 @@ def pooled(objective: Objective) -> list[Array]:
         return scanned(objective)
     each = []
     for curve, noise in zip(objective.curves, objective.noise, strict=True):
-        alone = replace(objective, curves=(curve,), noise=(noise,), memory=())
+        sizes = objective.sizes._replace(free_force=curve.free_force)
+        alone = replace(objective, curves=(curve,), noise=(noise,), sizes=sizes, memory=())
         minima = [alone.minimise(at, steps=ROUGH).at for at in scanned(alone)]
         each.append([{name: v for (name, _), v in alone.values(at).items()} for at in minima])
 
@@ -70,15 +71,17 @@ def scanned(objective: Objective) -> list[Array]:
     With all forces of an explanation its recorded force grows: at each point one factor is linear.
     """
     (curve,) = objective.curves
-    # Noisy positions are taken as they are.
-    tips = replace(objective, curves=(replace(curve, stiffness=None).binned(_ROWS),))
+    curve = curve.binned(_ROWS)
+    means = replace(objective, curves=(curve,))
     point, modulus = objective.index(CONTACT_POINT), objective.index(MODULUS)
-    last = curve.position.max() - _LAST * curve.span
-    points = np.linspace(curve.position.min(), last, _POINTS if point is not None else 1)
     found = []
-    for own in _own(tips):
-        trials = []
-        for z in points:
+    for own in _own(means):
+        # Noisy positions are taken as they are, where no force bends the cantilever.
+        shift = means.known(own, 0).free_force(curve) / (curve.stiffness or np.inf)
+        tip = replace(curve, position=curve.position + shift, stiffness=None)
+        last, trials = tip.position.max() - _LAST * tip.span, []
+        tips = replace(means, curves=(tip,))
+        for z in np.linspace(tip.position.min(), last, _POINTS if point is not None else 1):
             at = own.copy()
             if modulus is not None:
                 at[modulus] = 0.0
@@ -92,13 +95,15 @@ def scanned(objective: Objective) -> list[Array]:
 def _scaled(objective: Objective, at: Array) -> tuple[float, Array]:
     """Return the misfit [N²] of the best multiple of all forces, and its coordinates."""
     (curve,), (force,) = objective.curves, objective.forces(at)
-    measured, force = curve.weights * curve.force, curve.weights * force
+    free = objective.known(at, 0).free_force(curve)
+    measured, force = curve.weights * (curve.force - free), curve.weights * (force - free)
     norm = float(force @ force)
     factor = float(force @ measured) / norm if norm else 0.0
     if factor <= 0:
         # Where most of the measured force is negative, as far from 0 before contact.
         factor = curve.largest / (float(np.ptp(force)) or curve.largest)
     for k, slot in enumerate(objective.slots):
-        if powers(slot.quantity.unit)[0] == 1:
+        is_load = not isinstance(objective.explanation.parts[slot.part], Records)
+        if is_load and powers(slot.quantity.unit)[0] == 1:
             at[k] = at[k] + np.log(factor) if slot.quantity.log else at[k] * factor
     return float(np.sum((factor * force - measured) ** 2)), at

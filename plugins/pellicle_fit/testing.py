@@ -129,8 +129,8 @@ def check_effect(effect: Effect) -> None:
 
     Besides the rules of all components: it acts on one of the curves of the kit; without its cause,
     at 0 or at the limit of a quantity, the force is that without it; units are right; what it
-    returns is finite, of the right shape and a function of each row; contact and depths grow; jumps
-    are told; and searches start within its limits.
+    returns is finite, where nothing touches too, of the right shape and a function of each row;
+    contact and depths grow; jumps are told; and searches start within its limits.
     """
     check(effect, Effect, rules_of(__name__))
 
@@ -190,6 +190,16 @@ def returns_a_number_for_each_row(case: Case) -> str:
     far = np.abs(half.given(half.rows) - first[every]) > _LIMIT**2 * np.max(np.abs(first))
     differs = not isinstance(effect, Responds) and far.any()
     return "without every second row the others change" if differs else ""
+
+
+@_in_each_case
+def acts_where_no_row_touches(case: Case) -> str:
+    """With a contact point that no row reaches, as searches try them, its force is finite."""
+    for share in (0.0, 1e-3, 1.0, 10.0):
+        point = float(np.max(case.curve.base)) + share * case.curve.span
+        if not np.isfinite(case.force(case.effect, contact_point=point)).all():
+            return f"it is not, {share:g} ranges of the positions beyond the deepest row"
+    return ""
 
 
 @_in_each_case

@@ -15,6 +15,8 @@ _HIGHER = 10.0
 """How far above the first guess the other end is sought, in logarithms of the depth."""
 _DECADES = 7.0
 """How far below the largest contact the end is sought."""
+_SHALLOW = 1e-6
+"""Least depth down to which the branch is known, over the range of positions."""
 _PENALTY = 30.0
 """Slope of the force below the end of the branch, over the mean slope of the curve."""
 _RAMP = 4.0
@@ -60,7 +62,8 @@ class Adhesion(Responds):
         """Return the force as a function of the base over the contact point."""
         from scipy.interpolate import CubicSpline
 
-        deepest = float(np.max(path + softness * curve.smoothed))
+        # A search may try a contact point that no row reaches.
+        deepest = max(float(np.max(path)), _SHALLOW * curve.span)
         position, force = self._branch(contact, deepest, softness)
         end = position[0]
         root = np.sqrt(np.maximum(position - end, 0.0))

@@ -110,9 +110,10 @@ def plot(fit: Fit) -> Figure:
 def _curves(fit: Fit, rival: Candidate | None = None) -> Chart:
     """Return data and fits over the indentation, of several curves over its largest; residuals."""
     chosen, forces, count, series = fit.answer.chosen, fit.forces(), len(fit.members), []
+    depths = chosen.depths
     for number, (member, force) in enumerate(zip(fit.members, forces, strict=True)):
-        curve, known = member.curve, chosen.objective.known(chosen.minimum.at, number)
-        measured, turn = curve.position - known.solid.contact_point, int(curve.moves_out.argmax())
+        curve, turn = member.curve, int(member.curve.moves_out.argmax())
+        measured = depths[number]
         deepest, largest = (measured.max(), abs(curve.force).max()) if count > 1 else (1.0, 1.0)
         passes = Leg(slice(0, turn), "approach"), Leg(slice(turn, force.size), "retraction")
         legs = passes if len(curve.passes) > 1 else ()

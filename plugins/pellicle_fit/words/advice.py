@@ -41,17 +41,16 @@ def steps(answer: Answer, members: Sequence[Member], config: FitConfig) -> list[
 def _of_input(answer: Answer) -> Iterator[Step]:
     """Yield what is probably wrong with radius or units."""
     chosen = answer.chosen
-    touched = [*zip(chosen.whole, chosen.contact_points, strict=True)]
-    for curve, point in touched:
-        radius = getattr(curve.indenter, "radius", None)
-        depth = float(np.max(curve.position)) - point
+    depths = chosen.depths
+    for curve, of_rows in zip(chosen.whole, depths, strict=True):
+        radius, depth = getattr(curve.indenter, "radius", None), float(np.max(of_rows))
         if radius and not _DEPTHS[0] <= depth / radius <= _DEPTHS[1]:
             sizes = readable(depth, "m", 3), f"{depth / radius:.3g}", readable(radius, "m", 3)
             why = "the depth of {} is {} times the radius of {}".format(*sizes)
             yield Step("check radius and units", why)
             break
-    for curve, point in touched:
-        count = np.sum(curve.position < point)
+    for of_rows in depths:
+        count = np.sum(of_rows < 0)
         if CONTACT_POINT in chosen.estimates and count < FEWEST:
             why = f"only {count} rows lie before it, so that no check can contradict the fit"
             yield Step("begin curves before contact", why)

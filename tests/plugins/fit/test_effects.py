@@ -408,6 +408,12 @@ BROKEN: list[tuple[type[Effect], str, dict[str, Any], str]] = [
     (Softening, "depths_grow", {"contact": _area(lambda a, d: a * np.exp(-d / 1e-7))}, "forces at"),
     (Softening, "depths_grow", {"contact": _area(lambda a, d: a + 1e-14)}, "forces at"),
     (Soft, "depths_grow", {"give": lambda s, f: -100 * abs(s.soft) * f}, "from a depth of"),
+    (
+        Push,
+        "acts_where_no_row_touches",
+        {"force": lambda s, c, v, d: s.push * d / d[d > 0].max()},
+        "zero-size array",
+    ),
     (Push, "jumps_are_told", {"force": lambda s, c, v, d: s.push * (d > s.over / 10)}, "jumps by"),
     (Push, "what_it_says_is_valid", {"accuracy": lambda s, c, v, b: 2.0}, "accuracy() is not"),
 ]
