@@ -44,7 +44,7 @@ from .simulated.simulation import GRID_POINTS
 from .simulated.solid import solid
 
 DEFAULT_RIVALS: tuple[str | list[str], ...] = (
-    *(["offset", "slope"], ["offset", "drift"], "drag"),
+    *("offset", ["offset", "slope"], ["offset", "drift"], "drag"),
     *("power_law", "standard_linear", "adhesion"),
     *("layer", "sphere", "cone", "worn_tip", "stiff_surface", "softening"),
     *("brush", "compliance", "rough_toe"),
