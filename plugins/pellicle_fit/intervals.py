@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import permutations
 
 import numpy as np
 from scipy.optimize import brentq
@@ -46,6 +47,28 @@ class Estimate:
             return False
         low, high = sorted((abs(self.low), abs(self.high)))
         return self.low * self.high > 0 and high <= _WIDE * low
+
+
+def common_value(estimates: Sequence[Estimate]) -> float:
+    """Return the value that all estimates allow, or that is off the least in half-widths.
+
+    An open end allows every value on its side.
+    """
+
+    def furthest(value: float) -> float:
+        ends = ((e, e.high if value > e.value else e.low) for e in estimates)
+        off = (
+            0.0 if end is None else (value - e.value) / ((end - e.value) or np.inf)
+            for e, end in ends
+        )
+        return max(off)
+
+    values = [estimate.value for estimate in estimates]
+    for one, other in permutations(estimates, 2):
+        if one.high is not None and other.low is not None and one.value < other.value:
+            up, down = one.high - one.value, other.value - other.low
+            values.append((one.value * down + other.value * up) / ((up + down) or np.inf))
+    return min(values, key=furthest)
 
 
 class Better(Exception):  # noqa: N818 - not an error: the search continues from there

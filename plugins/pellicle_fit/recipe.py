@@ -15,7 +15,7 @@ from pellicle.errors import ConfigError
 from .candidate import Candidate, Types, best_of
 from .curve import Curve
 from .effect import Effect, Records, Responds, Solid
-from .intervals import Estimate, estimates, threshold_of
+from .intervals import Estimate, common_value, estimates, threshold_of
 from .noise import CHANCE, Judged
 from .objective import CONTACT_POINT, MODULUS
 from .rivals import Question, comparison
@@ -81,13 +81,26 @@ class Answer:
             if not word <= fit.types and abs(fit.aic - aic) < self.decision.margin
         ]
 
-    def over_tied(self, name: str) -> Estimate:
+    @property
+    def if_present(self) -> Mapping[str, Estimate]:
+        """Modulus and quantities of what is asked for if it were there, though there is no sign."""
+        if self.verdict is not Verdict.NO_SIGN or not self.question.word:
+            return {}
+        beside = next(fit for fit in self.tied if fit.types == self.question.word)
+        own = {name: beside.parameters[name] for name in self.question.wanted}
+        return {MODULUS: self.over_tied(MODULUS, self.tied)} | own
+
+    def over_tied(self, name: str, tied: Sequence[Candidate] = ()) -> Estimate:
         """Return modulus (at the end of the loading) or tension over all that is tied.
 
         The interval is the least that contains theirs; without a lower end if one of them has none.
-        A tension that none of them has is held at 0 and has no ends: they do not bound it.
+        The value is the one that all of them allow, or nearly.  A tension that none of them has is
+        held at 0 and has no ends: they do not bound it.  Where there is no sign of what is asked
+        for, the modulus is that without it.
         """
-        tied = [fit for fit in self.tied if fit not in self.not_held]
+        lacking = self.question.word if name == MODULUS and self.verdict is Verdict.NO_SIGN else ()
+        tied = tied or [fit for fit in self.tied if not lacking or not lacking <= fit.types]
+        tied = [fit for fit in tied if fit not in self.not_held]
         if name == MODULUS:
             tied = [fit for fit in tied if fit.holds_modulus]
         found = [fit.estimates[name] for fit in tied if name in fit.estimates]
@@ -99,7 +112,7 @@ class Answer:
         highs = [e.high for e in found if e.high is not None]
         low = min(lows) if len(lows) == len(tied) else None
         high = max(highs) if len(highs) == len(found) else None
-        return Estimate(own.value, low, high, found[0].unit)
+        return Estimate(common_value(found), low, high, found[0].unit)
 
 
 class Agreement(NamedTuple):
@@ -201,7 +214,7 @@ def answer(
     own = (MODULUS, TENSION, CONTACT_POINT, *question.wanted) if undescribed else ()
     rise, tied = np.inf if undescribed and untried else threshold, ties(fits, word, decided, chosen)
     for types in tied:
-        names = own if types == chosen else (MODULUS, TENSION)
+        names = own if types == chosen else (MODULUS, TENSION, *question.wanted)
         fits[types] = with_estimates(fits[types], rise, uncertainty, names)
     return Answer(
         tuple(sorted(fits.values(), key=lambda fit: fit.aic)),

@@ -62,11 +62,22 @@ class Fit:
     @property
     def youngs_modulus(self) -> Estimate | None:
         """E = (1 − ν²) E* [Pa], if Poisson's ratio was given."""
+        return self._youngs(self.reduced_modulus)
+
+    def _youngs(self, modulus: Estimate) -> Estimate | None:
         if self.poissons_ratio is None:
             return None
-        modulus, factor = self.reduced_modulus, 1 - self.poissons_ratio**2
+        factor = 1 - self.poissons_ratio**2
         low, high = (end and end * factor for end in (modulus.low, modulus.high))
         return replace(modulus, value=modulus.value * factor, low=low, high=high)
+
+    @property
+    def if_present(self) -> dict[str, Estimate]:
+        """Moduli and quantities of what was asked for, if it were there though there is no sign."""
+        found = dict(self.answer.if_present)
+        if found and (youngs := self._youngs(found[MODULUS])):
+            found["youngs_modulus"] = youngs
+        return found
 
     @property
     def tension(self) -> Estimate:
@@ -87,7 +98,7 @@ class Fit:
         found = {"reduced_modulus": self.reduced_modulus, "tension": self.tension}
         if youngs := self.youngs_modulus:
             found["youngs_modulus"] = youngs
-        return {**found, **self.answer.chosen.sought, **found}
+        return {**found, **self.answer.if_present, **self.answer.chosen.sought, **found}
 
     @property
     def verdict(self) -> Verdict:
@@ -146,9 +157,11 @@ class Fit:
         """Return the fit as JSON data."""
         answer, chosen = self.answer, self.answer.chosen
         own, asked = chosen.sought, ("reduced_modulus", "tension", "youngs_modulus")
+        parameters = {**answer.if_present, **own}
         return {
             **{name: vars(e) for name, e in self.estimates().items() if name in asked},
-            "parameters": {name: vars(estimate) for name, estimate in own.items()},
+            "parameters": {name: vars(estimate) for name, estimate in parameters.items()},
+            "if_present": {name: vars(estimate) for name, estimate in self.if_present.items()},
             "model": {"effects": sorted(chosen.types), "words": words_of(chosen)},
             "verdict": self.verdict.value,
             "comparison": self.comparison,

@@ -89,7 +89,7 @@ def leads(pair: Candidate, word: Types, fits: Fits) -> bool:
 
 def choice(fits: Fits, word: Types, decision: Decision) -> Types:
     """Return the explanation whose estimates count."""
-    known = {Verdict.NEEDED: decision.asked, Verdict.OTHER: decision.other, Verdict.NO_SIGN: word}
+    known = {Verdict.NEEDED: decision.asked, Verdict.OTHER: decision.other, Verdict.NO_SIGN: NONE}
     best = best_of(fits.values())
     nearest = word if fits[word].aic - best.aic < decision.margin else best.types
     return known.get(decision.verdict, nearest)
@@ -99,14 +99,14 @@ def ties(fits: Fits, word: Types, decision: Decision, chosen: Types) -> list[Typ
     """Return the explanations that the curves cannot tell from the best and that lend values.
 
     The best is one of those that the verdict weighs: a pair that is little better than its parts
-    does not push out what ties with them.  Where there is no sign of what is asked for, what lacks
-    it lends too.
+    does not push out what ties with them.  Where there is no sign of what is asked for, what has
+    it alone lends its bounds.
     """
     none = decision.verdict is Verdict.NO_SIGN
     least = min(fits[decision.asked].aic, fits[decision.other].aic)
 
     def lends(fit: Candidate) -> bool:
-        if fit.types == chosen or (none and not fit.types):
+        if fit.types == chosen or (none and fit.types == word):
             return True
         if fit.aic - least >= decision.margin or not fit.holds_modulus:
             return False

@@ -45,7 +45,17 @@ def story(fit: Fit, *, si: bool = False) -> list[str]:
     """Return numbers, verdict, what it leaves out and what to do next; a line each."""
     step = [f"next: {fit.advice}"] if fit.advice else []
     caveat = [NOT_WEIGHED] if fit.answer.tension_needed else []
-    return [numbers(fit, si=si), verdict(fit.answer), *caveat, *step]
+    return [numbers(fit, si=si), verdict(fit.answer), *_if_present(fit, si), *caveat, *step]
+
+
+def _if_present(fit: Fit, si: bool) -> Iterator[str]:
+    """Yield what is known of what was asked for, and the modulus beside it, if it were there."""
+    if found := fit.if_present:
+        asked = fit.answer.question.asked
+        hidden = {"reduced_modulus"} if "youngs_modulus" in found else set()
+        ordered = sorted(found, key=lambda name: name.endswith("_modulus"))
+        parts = (f"{words(n)} {in_figures(found[n], si=si)}" for n in ordered if n not in hidden)
+        yield f"if {in_words([asked] if asked else [])} were there: {', '.join(parts)}"
 
 
 def numbers(fit: Fit, *, si: bool = False) -> str:

@@ -9,10 +9,13 @@ import fit_verdicts
 import numpy as np
 import pytest
 from fit_verdicts import NOISE, TOP, outcome, pink, truth_of
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 import pellicle as pl
 from pellicle_fit.candidate import Candidate
+from pellicle_fit.intervals import Estimate, common_value
 from pellicle_fit.noise import Flaw
 from pellicle_fit.verdict import Verdict, decision
 from pellicle_plugins.indenters.of_revolution import Cone, FlatPunch, Paraboloid, Sphere
@@ -130,7 +133,7 @@ def test_a_punch_cannot_tell_modulus_and_tension_apart() -> None:
     force = force + 0.005 * force.max() * np.random.default_rng(3).standard_normal(300)
     found = fit(depth, force, indenter=punch)
     assert found.tension.low is None
-    assert found.reduced_modulus.low is None
+    assert found.if_present["reduced_modulus"].low is None
     known = fit(depth, force, indenter=punch, fix={"tension": 8e3 * 2e-6 / 2})
     assert known.reduced_modulus.value == pytest.approx(8e3, rel=0.01)
 
@@ -228,6 +231,49 @@ def test_verdicts_on_known_solids(kind: str, protocol: str, verdict: str) -> Non
     assert found["tension"]
 
 
+def test_without_a_sign_the_modulus_is_that_without_what_was_asked_for() -> None:
+    """The interval that a tension would make wider stands beside it, in words and as data."""
+    rows = curve(0.0, noise=0.02)
+    beside, alone = fit(*rows), fit(*rows, model=[])
+    assert beside.verdict is Verdict.NO_SIGN
+    quoted, plain = (
+        np.array([e.value, *ends_of(e)]) for e in (beside.reduced_modulus, alone.reduced_modulus)
+    )
+    assert quoted == pytest.approx(plain, rel=1e-4)
+    wide = beside.if_present["reduced_modulus"]
+    assert ends_of(wide)[0] < quoted[1] - 0.1 * (quoted[2] - quoted[1])
+    assert "if tension were there: tension < " in repr(beside)
+    data = beside.to_dict()
+    assert data["if_present"]["reduced_modulus"]["low"] == wide.low
+    assert data["parameters"]["tension"]["high"] == beside.tension.high
+    assert not alone.if_present
+
+
+@settings(derandomize=True)
+@given(
+    st.lists(
+        st.tuples(*[st.floats(-1.0, 1.0), *[st.none() | st.floats(0.01, 1.0)] * 2]),
+        min_size=1,
+        max_size=6,
+    )
+)
+def test_a_common_value_lies_in_all_intervals_that_share_one(
+    triples: list[tuple[float, float | None, float | None]],
+) -> None:
+    """Of explanations that tie the value is one that all allow, whichever comes first."""
+    every = [
+        Estimate(v, None if low is None else v - low, None if high is None else v + high, "Pa")
+        for v, low, high in triples
+    ]
+    value = common_value(every)
+    low = max([-np.inf, *(e.low for e in every if e.low is not None)])
+    high = min([np.inf, *(e.high for e in every if e.high is not None)])
+    values = [e.value for e in every]
+    assert min(values) <= value <= max(values)
+    if low <= high:
+        assert low - 1e-9 <= value <= high + 1e-9
+
+
 def test_ties_widen_the_interval() -> None:
     """An approach cannot tell a tension from a solid that relaxes; E* is that of both."""
     known = truth_of("tension", np.random.default_rng(5))
@@ -239,6 +285,9 @@ def test_ties_widen_the_interval() -> None:
     assert beside.verdict is Verdict.CANNOT_TELL
     assert len(beside.answer.tied) > 1
     assert ends_of(beside.reduced_modulus)[1] > ends_of(alone.reduced_modulus)[1]
+    moduli = [fit.estimates["reduced_modulus"] for fit in beside.answer.tied]
+    low, high = (max(e.low or 0 for e in moduli), min(e.high or np.inf for e in moduli))
+    assert low > high or low <= beside.reduced_modulus.value <= high
 
 
 @pytest.mark.parametrize(("name", "share"), [("spring_constant", 0.1), ("radius", 0.1)])
