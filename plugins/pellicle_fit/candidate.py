@@ -86,6 +86,17 @@ class Candidate:
         """χ² of all rows."""
         return self.of_rows.chi_squared(self.minimum.at)
 
+    @property
+    def without_memory(self) -> Candidate:
+        """The same with noise that counts as white."""
+        return replace(self, objective=replace(self.objective, memory=()))
+
+    def chi_squared_of(self, widened: Sequence[float]) -> float:
+        """Return χ² of all rows at noise that was widened by a factor in each curve, as it was."""
+        terms = self.of_rows.terms(self.minimum.at)
+        factors = [*widened, *[1.0] * (len(terms) - len(widened))]
+        return sum(float(f**2 * np.sum(t**2)) for f, t in zip(factors, terms, strict=True))
+
     def forces(self) -> list[Array]:
         """Return the force [N] at all rows of each curve."""
         return self.of_rows.forces(self.minimum.at)

@@ -66,9 +66,17 @@ class Judged(NamedTuple):
     """The noise of a curve, widened where an explanation fails, and the flaws."""
 
     noise: Noise
+    """As it is weighed: what is correlated or follows a pattern counts as more of it."""
     flaws: frozenset[Flaw]
+    deviation: float
+    """Standard deviation of what is left [N], before contact or, if it exceeds that, in it."""
     memory: float = 0.0
     """Exponent d of correlated noise that was taken as white; 0 if it is not of that kind."""
+
+    @property
+    def widened(self) -> float:
+        """The noise that is weighed over the deviation of what is left."""
+        return self.noise.deviation / self.deviation
 
     @property
     def describes(self) -> bool:
@@ -100,10 +108,12 @@ def judged(
     if before.sum() < FEWEST:
         left = max(residuals.size - jacobian.shape[1], 1)
         noise = Noise(max(float(np.sqrt(np.sum(residuals**2) / left)), least), left)
-        return Judged(noise, frozenset(flaws))
+        return Judged(noise, frozenset(flaws), noise.deviation)
     # Towards contact, on a retraction too.
     rows = np.flatnonzero(before)[:: -1 if curve.moves_out[before][0] else 1]
-    found, noise, far = _before_contact(residuals[rows], curve.base[rows], least)
+    found, white, noise = _before_contact(residuals[rows], curve.base[rows], least)
+    far = noise if Flaw.SLOW in found else neighbour_noise(residuals[rows], least)
+    deviation = white.deviation
     flaws |= found
     if step > _COARSE * neighbour_noise(residuals[rows]).deviation:
         flaws.add(Flaw.STEPS)
@@ -113,6 +123,7 @@ def judged(
     if scatter.exceeds(noise):
         flaws.add(Flaw.MISFIT)
         noise = Noise(scatter.deviation, min(noise.freedom, free))
+        deviation = scatter.deviation
     bins = np.digitize(depth / depth.max(), _DEPTHS)
     # A second pass has bins of its own.
     bins += (len(_DEPTHS) + 1) * (curve.moves_out & curve.first_pass[0])
@@ -123,11 +134,12 @@ def judged(
     elif sums and Flaw.SLOW in flaws:
         noise = max(noise, usual, sums)
     slow = Flaw.SLOW in flaws and Flaw.DIP not in flaws and not memory
-    return Judged(noise, frozenset(flaws), exponent_of(residuals[before]) if slow else 0.0)
+    exponent = exponent_of(residuals[before]) if slow else 0.0
+    return Judged(noise, frozenset(flaws), deviation, exponent)
 
 
 def _before_contact(force: Array, base: Array, least: float) -> tuple[set[Flaw], Noise, Noise]:
-    """Return flaws before contact, the noise there, and that of sums over bins if it is slow.
+    """Return flaws before contact, the noise of rows, and as it is weighed: of sums if it is slow.
 
     An explanation describes the rows before contact too: what is left is to have no mean, no slope
     and no dip.
@@ -143,7 +155,7 @@ def _before_contact(force: Array, base: Array, least: float) -> tuple[set[Flaw],
     far = slice(0, max(force.size - 2 * window, force.size // 4) if dips else force.size)
     rest = (force - line @ np.linalg.lstsq(line[far], force[far], rcond=None)[0])[far]
     freedom = max(rest.size - 2, 1)
-    noise = Noise(max(float(np.sqrt(np.sum(rest**2) / freedom)), least), freedom)
+    noise = white = Noise(max(float(np.sqrt(np.sum(rest**2) / freedom)), least), freedom)
     sums = binned(rest, line[far], np.arange(rest.size) * _BINS // rest.size, _BINS)
     if sums and sums.exceeds(independent):
         flaws.add(Flaw.SLOW)
@@ -156,7 +168,7 @@ def _before_contact(force: Array, base: Array, least: float) -> tuple[set[Flaw],
         flaws.add(Flaw.DRIFT)
     elif abs(unit[:, 0] @ force[far]) > limit_of_line:
         flaws.add(Flaw.OFFSET)
-    return flaws, noise, noise if Flaw.SLOW in flaws else independent
+    return flaws, white, noise
 
 
 def _dip(force: Array, trend: Array) -> tuple[float, int]:

@@ -81,6 +81,10 @@ class Answer:
             if not word <= fit.types and abs(fit.aic - aic) < self.decision.margin
         ]
 
+    def chi_squared(self, fit: Candidate) -> float:
+        """Return χ² of an explanation at the noise that is told, which is not widened."""
+        return fit.chi_squared_of([judged.widened for judged in self.judgements])
+
     @property
     def if_present(self) -> Mapping[str, Estimate]:
         """Modulus and quantities of what is asked for if it were there, though there is no sign."""

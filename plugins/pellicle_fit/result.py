@@ -147,7 +147,7 @@ class Fit:
     @property
     def chi_squared(self) -> float:
         """Sum of squared residuals over the noise, of the chosen explanation."""
-        return self.answer.chosen.chi_squared
+        return self.answer.chi_squared(self.answer.chosen)
 
     def forces(self) -> list[Array]:
         """Return the force [N] of the chosen explanation at the rows of each curve."""
@@ -193,7 +193,7 @@ class Fit:
         return {
             "effects": sorted(fit.types),
             "words": words_of(fit),
-            "chi_squared": fit.chi_squared,
+            "chi_squared": answer.chi_squared(fit),
             "delta_aic": fit.aic - answer.explanations[0].aic,
             "tied": fit in answer.tied,
             "holds_modulus": fit not in answer.not_held,
@@ -208,7 +208,8 @@ class Fit:
             "name": member.name,
             "indenter": described(member.curve.indenter),
             "points": member.curve.position.size,
-            "noise": {"value": judged.noise.deviation, "unit": "N"},
+            "noise": {"value": judged.deviation, "unit": "N"},
+            "noise_weighed": {"value": judged.noise.deviation, "unit": "N"},
             "failed_checks": [
                 {"code": code, "message": text} for code, text in judged.failed_checks.items()
             ],

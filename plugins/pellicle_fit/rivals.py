@@ -82,8 +82,13 @@ def comparison(
     best = best_of(simple.values())
     if not memory and any(found := tuple(judged.memory for judged in best.judgements)):
         fits = comparison(word, candidates, curves, found)
-        if all(judged.describes for judged in best_of(fits.values()).judgements):
+        best = best_of(fits.values())
+        # What a wrong explanation leaves before contact may look like noise with a memory.
+        if all(judged.describes for judged in best.judgements) and any(
+            judged.memory for judged in best.without_memory.judgements
+        ):
             return fits
+        best = best_of(simple.values())
     # Another noise only scales χ²; at last it is that of the best.
     fits = _sought(candidates, word, simple, best.of_rows, means)
     fits = at_common_noise({types: _restarted(fit, fits) for types, fit in fits.items()})

@@ -127,7 +127,7 @@ def _curves(fit: Fit, rival: Candidate | None = None) -> Chart:
             given = (curve.force - modelled) / curve.stiffness if curve.stiffness else 0.0
             depth, legend = (measured + given) / deepest, fill(name, _LETTERS)
             look = Look(hue, 0 if legs else hue)
-            left = (curve.force - modelled) / chosen.objective.noise[number]
+            left = (curve.force - modelled) / fit.answer.judgements[number].deviation
             series.append(Series(depth, modelled / largest, legend=legend, look=look, legs=legs))
             series.append(Series(x, left, look=dots._replace(hue=hue), legs=legs, panel=1))
     drawn = np.concatenate([one.y for one in series if one.panel == 0])

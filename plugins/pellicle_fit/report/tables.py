@@ -43,7 +43,7 @@ def explanations(fit: Fit, *, si: bool = False) -> Table:
     answer, compared = fit.answer, fit.answer.explanations
     columns = [
         Column("explanation", [words_of(one) for one in compared]),
-        Column("χ²", [one.chi_squared for one in compared], digits=5),
+        Column("χ²", [answer.chi_squared(one) for one in compared], digits=5),
         Column("ΔAIC", [one.aic - compared[0].aic for one in compared], digits=3),
         Column("tied", ["yes" if one in answer.tied else "" for one in compared]),
     ]
@@ -70,7 +70,7 @@ def curves(fit: Fit, *, si: bool = False) -> Table:
         *([Column("radius", radii, "m")] if any(radii) else []),
         Column(f"contact point [{unit.unit}]", points),
         Column("points", [member.curve.position.size for member in members]),
-        Column("noise", [judged.noise.deviation for judged in judgements], "N", digits=3),
+        Column("noise", [judged.deviation for judged in judgements], "N", digits=3),
         Column("failed checks", checks),
     ]
     caption = "The curves, each with its own contact point and noise."

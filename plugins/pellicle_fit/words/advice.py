@@ -68,11 +68,11 @@ def _of_input(answer: Answer) -> Iterator[Step]:
 def _of_options(answer: Answer, members: Sequence[Member], config: FitConfig) -> Iterator[Step]:
     """Yield what another option of the fit would mend."""
     flaws = {flaw for one in answer.judgements for flaw in one.flaws}
-    if Flaw.OFFSET in flaws and config.baseline == "none":
-        yield Step("add --baseline offset", "the force before contact is not 0")
     types = answer.chosen.objective.explanation.types
     if (Flaw.DRIFT in flaws or "slope" in types) and config.baseline != "slope":
         yield Step("add --baseline slope", "the force before contact has a slope")
+    elif (Flaw.OFFSET in flaws or "offset" in types) and config.baseline == "none":
+        yield Step("add --baseline offset", "the force before contact is not 0")
     if Flaw.DIP in flaws and not {"adhesion"} & types.union(*answer.excused):
         yield Step("ask with --model adhesion", "the force dips before contact")
     if Flaw.SPIKES in flaws:

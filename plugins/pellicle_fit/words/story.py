@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellicle.units import decimal, readable
-from pellicle_fit.candidate import NONE
+from pellicle_fit.candidate import NONE, Candidate
 from pellicle_fit.files.measurement import Note
 from pellicle_fit.intervals import CONFIDENCE
 from pellicle_fit.noise import Flaw
@@ -105,19 +105,24 @@ def verdict(answer: Answer) -> str:
             nearest = f"; the nearest is {other}" if answer.decision.other else ""
             return f"{subject} is needed{pair}: nothing else tried fits as well{nearest}"
         case Verdict.CANNOT_TELL:
-            tied = [words_of(fit) for fit in answer.tied_without]
-            names = listed(tied, "or", _RIVALS)
+            names = _named(answer.tied_without)
             return f"{curves} cannot tell {words_of(fits[asked])} from {names}"
         case Verdict.OTHER:
             alike = [fit for fit in answer.explanations if fit in answer.tied]
             better = [fit for fit in alike if not (word <= fit.types if word else not fit.types)]
-            by = f"described better by {listed([*map(words_of, better)], 'or', _RIVALS)}"
+            by = f"described better by {_named(better)}"
             if word:
                 return f"{subject} is not needed; {by}"
             return f"{curves} {'show' if several else 'shows'} more than {subject}; {by}"
     if not word and len(fits) == 1:
         return f"{subject} was compared with nothing"
     return f"no sign of {subject if word else f'more than {subject}'}"
+
+
+def _named(fits: Sequence[Candidate]) -> str:
+    """Return explanations in words, but for those that only add to another of them."""
+    simplest = [fit for fit in fits if not any(other.types < fit.types for other in fits)]
+    return listed([*map(words_of, simplest)], "or", _RIVALS)
 
 
 def agreement(answer: Answer, names: Sequence[str]) -> str:

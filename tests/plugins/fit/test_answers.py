@@ -15,6 +15,7 @@ from scipy.optimize import minimize
 
 import pellicle as pl
 from pellicle_fit.candidate import Candidate
+from pellicle_fit.config import DEFAULT_RIVALS
 from pellicle_fit.intervals import Estimate, common_value
 from pellicle_fit.noise import Flaw
 from pellicle_fit.verdict import Verdict, decision
@@ -394,3 +395,33 @@ def test_work_of_adhesion_is_held() -> None:
             holds(found.estimates()["work_of_adhesion"], work),
         ]
     assert sum(held) >= 17
+
+
+@pytest.mark.parametrize("kind", ["power law", "standard linear"])
+@pytest.mark.parametrize("rivals", [[], ["power_law"], ["standard_linear"]])
+def test_noise_and_checks_say_the_same(kind: str, rivals: list[str]) -> None:
+    """Of a solid that relaxes, on both passes: what is told is what is left, or a check fails."""
+    random = np.random.default_rng(1)
+    (rows,), known = fit_verdicts.rows_of("both", TOP), truth_of(kind, random)
+    force = known.force(rows)
+    noise = 0.004 * force.max()
+    measured = force + noise * random.standard_normal(force.size)
+    time = rows.time - rows.time[0]
+    found = fit(rows.depth, measured, time=time, rivals=rivals, segment="both")
+    left = measured - found.forces()[0]
+    told = found.to_dict()["curves"][0]["noise"]["value"]
+    assert 0.5 < np.std(left) / told < 1.3
+    assert found.chi_squared / left.size == pytest.approx(np.mean(left**2) / told**2, rel=1e-6)
+    is_right = rivals == [kind.replace(" ", "_")]
+    assert (found.verdict is Verdict.UNDESCRIBED) != is_right
+    assert bool(flaws(found)) != is_right
+
+
+def test_an_offset_is_told_as_an_offset() -> None:
+    """Not as a baseline with a slope, which bends it as well; the next step says what it is."""
+    position, force = curve()
+    rivals = [one for one in DEFAULT_RIVALS if "offset" in one]
+    found = fit(position, force + 0.2 * force.max(), rivals=rivals)
+    assert found.answer.chosen.types == {"offset"}
+    assert found.comparison.endswith("described better by an offset")
+    assert found.advice.startswith("add --baseline offset")
