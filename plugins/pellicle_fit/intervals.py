@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import permutations
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
@@ -30,6 +31,7 @@ class Estimate:
     """A quantity of a fit: its value in SI and the ends of its 95 % interval."""
 
     value: float
+    """NaN if no value is within the intervals of all explanations that tie."""
     low: float | None
     """None if the curve determines no lower end (a tension may then be 0)."""
     high: float | None
@@ -43,14 +45,23 @@ class Estimate:
 
         Of a wider interval the best value is one of many, and is not quoted.
         """
-        if self.held or self.low is None or self.high is None:
+        if self.held or self.low is None or self.high is None or np.isnan(self.value):
             return False
         low, high = sorted((abs(self.low), abs(self.high)))
         return self.low * self.high > 0 and high <= _WIDE * low
 
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as JSON data, in which a value that is not quoted is null."""
+        return vars(self) | ({"value": None} if np.isnan(self.value) else {})
+
+    @classmethod
+    def of_dict(cls, data: Mapping[str, Any]) -> Estimate:
+        """Return the estimate of which `to_dict` returned the data."""
+        return cls(**{**data, "value": np.nan if data["value"] is None else data["value"]})
+
 
 def common_value(estimates: Sequence[Estimate]) -> float:
-    """Return the value that all estimates allow, or that is off the least in half-widths.
+    """Return the value that all estimates allow, at least half-widths from theirs; NaN if none is.
 
     An open end allows every value on its side.
     """
@@ -68,7 +79,8 @@ def common_value(estimates: Sequence[Estimate]) -> float:
         if one.high is not None and other.low is not None and one.value < other.value:
             up, down = one.high - one.value, other.value - other.low
             values.append((one.value * down + other.value * up) / ((up + down) or np.inf))
-    return min(values, key=furthest)
+    value = min(values, key=furthest)
+    return value if furthest(value) <= 1 else np.nan
 
 
 class Better(Exception):  # noqa: N818 - not an error: the search continues from there

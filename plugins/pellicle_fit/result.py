@@ -159,9 +159,9 @@ class Fit:
         own, asked = chosen.sought, ("reduced_modulus", "tension", "youngs_modulus")
         parameters = {**answer.if_present, **own}
         return {
-            **{name: vars(e) for name, e in self.estimates().items() if name in asked},
-            "parameters": {name: vars(estimate) for name, estimate in parameters.items()},
-            "if_present": {name: vars(estimate) for name, estimate in self.if_present.items()},
+            **{name: e.to_dict() for name, e in self.estimates().items() if name in asked},
+            "parameters": {name: estimate.to_dict() for name, estimate in parameters.items()},
+            "if_present": {name: estimate.to_dict() for name, estimate in self.if_present.items()},
             "model": {"effects": sorted(chosen.types), "words": words_of(chosen)},
             "verdict": self.verdict.value,
             "comparison": self.comparison,
@@ -197,7 +197,7 @@ class Fit:
             "delta_aic": fit.aic - answer.explanations[0].aic,
             "tied": fit in answer.tied,
             "holds_modulus": fit not in answer.not_held,
-            "parameters": bare | {name: vars(e) for name, e in fit.sought.items()},
+            "parameters": bare | {name: e.to_dict() for name, e in fit.sought.items()},
         }
 
     def _curve(self, i: int, parameters: Mapping[str, Estimate]) -> dict[str, Any]:
@@ -214,7 +214,11 @@ class Fit:
                 {"code": code, "message": text} for code, text in judged.failed_checks.items()
             ],
             "messages": list(member.measured.messages),
-            **{s.name: vars(parameters[s.full_name]) for s in slots if s.full_name in parameters},
+            **{
+                s.name: parameters[s.full_name].to_dict()
+                for s in slots
+                if s.full_name in parameters
+            },
             "data": member.data,
         }
 

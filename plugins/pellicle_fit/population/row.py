@@ -77,7 +77,7 @@ class Row:
         headline = {name: fit[name] for name in OVER_TIED if name in fit}
         # Modulus and tension come first.
         parameters = {**headline, **fit["parameters"], **headline}
-        self.estimates = {name: Estimate(**entry) for name, entry in parameters.items()}
+        self.estimates = {name: Estimate.of_dict(entry) for name, entry in parameters.items()}
 
     @property
     def is_fitted(self) -> bool:

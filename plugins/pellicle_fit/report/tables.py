@@ -28,7 +28,8 @@ def estimates(fit: Fit, *, si: bool = False) -> Table:
     for name, estimate in fit.estimates().items():
         if not (several and name in of_one) and (estimate.value or not estimate.held):
             unit = _unit(fit, name, si)
-            value, ends = unit.number(estimate.value), interval(estimate, unit)
+            value = "" if np.isnan(estimate.value) else unit.number(estimate.value)
+            ends = interval(estimate, unit)
             rows.append((words(name), value, ends, unit.unit))
     caption = (
         f"The quantities of the model that was chosen, {words_of(fit.answer.chosen)}; intervals of "

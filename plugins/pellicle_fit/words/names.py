@@ -70,7 +70,8 @@ def unit_of_one(estimate: Estimate, *, si: bool = False) -> Scale:
     """Return the unit for the value and the ends of an estimate, as `unit_of` does."""
     ends = [end for end in (estimate.low, estimate.high) if end is not None]
     # The value of an interval that is open to one side is not shown.
-    values = ends if len(ends) == 1 or not estimate.value else [estimate.value]
+    is_quoted = estimate.value and not np.isnan(estimate.value)
+    values = [estimate.value] if is_quoted and len(ends) != 1 else ends or [0.0]
     return unit_of(values, estimate.unit, si=si)
 
 
