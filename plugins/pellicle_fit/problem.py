@@ -93,9 +93,12 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
     # What is given leaves nothing to ask.
     given = [effect for effect in model if quantities(type(effect)) and not effect.open]
     baseline = [_effect(name) for name in _BASELINES[config.baseline]]
+    # A curve that was made by the polynomial in common use is no sign of a tension.
+    of_layers = [layer.model_dump(exclude={"type"}, exclude_none=True) for layer in layers]
+    forms = [[_effect("dimitriadis", **fields)] for fields in of_layers if config.rivals]
     question = {
         "model": [effect for effect in model if effect not in given],
-        "rivals": [r for rival in config.rivals if (r := _known(rival, fix, ratio))],
+        "rivals": [r for rival in (*config.rivals, *forms) if (r := _known(rival, fix, ratio))],
         "kept": [*given, *baseline, *layers],
         "fix": {name: fix[name] for name in quantities(Solid).keys() & fix.keys()},
         "uncertainty": [

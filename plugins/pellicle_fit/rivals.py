@@ -58,7 +58,9 @@ class Question:
                 taken = kept | {effect.type_name for effect in side}
                 own = side + tuple(e for e in rival if e.type_name not in taken)
                 types = frozenset(effect.type_name for effect in own)
-                found.setdefault(types, Explanation(self.solid, self.kept + own))
+                # What derives from an effect that is kept is another form of it, in its place.
+                other = tuple(k for k in self.kept if not any(isinstance(e, type(k)) for e in own))
+                found.setdefault(types, Explanation(self.solid, other + own))
         return found
 
 

@@ -107,3 +107,22 @@ def test_bad_options(options: dict[str, Any], words: str) -> None:
     with pytest.raises(pl.ConfigError) as caught:
         pl.fit(*curve(), **{name: value for name, value in given.items() if value is not None})
     assert words in str(caught.value)
+
+
+@pytest.mark.parametrize("thickness", [THICK, 6e-6])
+def test_the_polynomial_in_common_use_is_no_tension(thickness: float) -> None:
+    """A curve made by it, which is up to 6 % below the exact one, is told as what it is."""
+    depth = np.linspace(-0.4e-6, 0.8e-6, 300)
+    deep = np.maximum(depth, 0.0)
+    share = np.sqrt(RADIUS * deep) / thickness
+    terms = 1 + 1.133 * share + 1.283 * share**2 + 0.769 * share**3 + 0.0975 * share**4
+    force = 4 / 3 * TRUE_MODULUS * np.sqrt(RADIUS) * deep**1.5 * terms
+    noise = 0.002 * force.max() * np.random.default_rng(3).standard_normal(depth.size)
+    options = {**BEAD, "indenter": "paraboloid", "thickness": thickness}
+    found = pl.fit(depth, force + noise, rivals=["drag"], **options)
+    assert found.verdict is Verdict.OTHER
+    assert found.answer.chosen.types == {"dimitriadis"}
+    assert holds(found.reduced_modulus, TRUE_MODULUS)
+    alone = pl.fit(depth, force + noise, rivals=[], **options)
+    assert alone.tension_needed
+    assert not holds(alone.reduced_modulus, TRUE_MODULUS)
