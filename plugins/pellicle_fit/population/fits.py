@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .row import ENDS, OVER_TIED, SHOWN, Row, units
+from .row import ENDS, OVER_TIED, SHOWN, Row, counted, units
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -93,28 +93,27 @@ def _cells(row: Row) -> dict[str, Any]:
 def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
     """Return a line for each parameter and group that has an accepted curve, then for all curves.
 
-    Of all ``curves`` of a group ``n`` are accepted. Those whose intervals are ``open``, or too wide
-    to quote a value, change no quartile; where all are, quartiles are NaN. Parameters that
-    were fixed have no line.
+    Of all ``curves`` of a group ``n`` are accepted. Quartiles are of the best values of all of
+    these, of which ``open`` have an interval with an open end, or one too wide to quote the value.
+    Parameters that were fixed have no line.
     """
     import pandas as pd
 
     fitted = [
-        (name, row.group, e.unit, e.value if row.determines(name) else np.nan, row.outlier)
+        (name, row.group, e.unit, e.value, not e.is_narrow, row.outlier)
         for name in dict.fromkeys((*OVER_TIED, *SHOWN))
-        for row in rows
-        if row.accepted and (e := row.estimates.get(name)) is not None and not e.held
+        for row, e in counted(rows, name).items()
     ]
-    frame = pd.DataFrame(fitted, columns=["parameter", "group", "unit", "value", "outlier"])
+    columns = "parameter", "group", "unit", "value", "open", "outlier"
+    frame = pd.DataFrame(fitted, columns=columns)
     curves, lines = Counter(row.group for row in rows), []
     for name, whole in frame.groupby("parameter", sort=False):
         groups = whole.groupby("group", sort=False) if len(curves) > 1 else ()
         parts = [(label(group), curves[group], part) for group, part in groups]
         for group, count, part in (*parts, ("all", len(rows), whole)):
-            values = part["value"]
             line = {"group": group, "parameter": name, "unit": part["unit"].iloc[0]}
-            line |= {"curves": count, "n": len(part), "open": int(values.isna().sum())}
-            quartiles = values.quantile([0, 0.25, 0.5, 0.75, 1]).tolist()
+            line |= {"curves": count, "n": len(part), "open": int(part["open"].sum())}
+            quartiles = part["value"].quantile([0, 0.25, 0.5, 0.75, 1]).tolist()
             line["outliers"] = int(part["outlier"].sum())
             lines.append(line | dict(zip(QUARTILES, quartiles, strict=True)))
     return lines

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -84,11 +85,6 @@ class Row:
         """Whether there is a fit."""
         return self.status == FITTED
 
-    def determines(self, name: str) -> bool:
-        """Return whether a quantity was fitted, and its interval is narrow enough to quote it."""
-        found = self.estimates.get(name)
-        return found is not None and found.is_narrow
-
     def values(self) -> dict[str, float]:
         """Return all numbers in SI by name, ends of intervals too; NaN is an open end, or none."""
         if not self.fit:
@@ -121,6 +117,16 @@ class Row:
             row["site"] = {"map": self.map, **self.site._asdict()}
         judgement = {"accepted": self.accepted, "reason": self.reason, "outlier": self.outlier}
         return row | judgement | self.fit
+
+
+def counted(rows: Iterable[Row], name: str) -> dict[Row, Estimate]:
+    """Return the estimate of a quantity of each accepted row that has one.
+
+    Intervals of any width count: without the open ones, the stiffest curves would be chosen.  A
+    quantity that was given for all curves has none.
+    """
+    found = {row: e for row in rows if row.accepted and (e := row.estimates.get(name)) is not None}
+    return {} if all(e.held for e in found.values()) else found
 
 
 def units() -> dict[str, str]:

@@ -45,8 +45,8 @@ def panels(fit: Fit | ManyFits) -> dict[str, Drawing]:
     if isinstance(fit, Fit):
         return {caption: figure_of(beside) for caption, beside in charts(fit).items()}
     of_bars = "Filled, accepted curves; hollow, rejected ones; bars to 0 or a triangle are open."
-    closed = "Accepted curves with closed intervals, by group; dotted, the median."
-    beside = {of_bars: bars(fit.rows), closed: distributions(fit.rows)}
+    accepted = "Best values of all accepted curves, by group; dotted, the median."
+    beside = {of_bars: bars(fit.rows), accepted: distributions(fit.rows)}
     found: dict[str, Drawing] = {caption: figure_of(of) for caption, of in beside.items() if of}
     for name, images in fit.maps.items():
         title = Path(name).name

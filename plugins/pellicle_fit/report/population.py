@@ -17,7 +17,7 @@ from pellicle.units import axis_unit
 from pellicle_fit.objective import MODULUS
 from pellicle_fit.population.fits import ManyFits, label
 from pellicle_fit.population.images import CONTACT_HEIGHT
-from pellicle_fit.population.row import SHOWN, Row
+from pellicle_fit.population.row import SHOWN, Row, counted
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.words.names import words
 
@@ -77,15 +77,14 @@ def bars(rows: Sequence[Row]) -> list[Chart]:
 
 
 def distributions(rows: Sequence[Row]) -> list[Chart]:
-    """Return histograms of E* and τ₀ of the accepted curves, where intervals are closed."""
-    rows, charts = [row for row in rows if row.accepted], list[Chart]()
-    groups = list(dict.fromkeys(label(row.group) for row in rows))
+    """Return histograms of E* and τ₀ of the accepted curves."""
+    charts = list[Chart]()
+    groups = list(dict.fromkeys(label(row.group) for row in rows if row.accepted))
     for name, unit in _DRAWN.items():
-        closed = [row for row in rows if row.determines(name)]
-        values = np.array([row.estimates[name].value for row in closed])
-        if closed:
+        if found := counted(rows, name):
+            values = np.array([e.value for e in found.values()])
             is_wide = name == MODULUS and bool(values.max() > _DECADE * values.min())
-            kinds = np.array([groups.index(label(row.group)) for row in closed])
+            kinds = np.array([groups.index(label(row.group)) for row in found])
             # One legend is enough.
             legends = groups if len(groups) > 1 and not charts else [""] * len(groups)
             charts.append(_histogram(Axis(words(name), unit, log=is_wide), values, kinds, legends))
