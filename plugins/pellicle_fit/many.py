@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import pickle
 from collections.abc import Iterable, Sequence
 from contextlib import nullcontext, suppress
@@ -19,8 +18,8 @@ import numpy as np
 from pellicle import registry, results
 from pellicle.batch import BatchProgress, locked, mapped
 from pellicle.components import Component, Executor, HasForceCurve, Indenter, Say
-from pellicle.errors import ConfigError, PellicleError
-from pellicle.files import atomic_write, check_writable, write_json
+from pellicle.errors import ConfigError, PellicleError, StorageError
+from pellicle.files import atomic_write, check_writable, is_file, write_json
 
 from .config import FitConfig, described
 from .files.measurement import Measurement
@@ -30,6 +29,8 @@ from .population.images import force_maps
 from .population.judgement import Names, group_of, judge
 from .population.row import FAILED, Row, sketch
 from .problem import Problem, components_of, data_of, problem, record_of
+from .sealed import read_sealed, write_sealed
+from .words.names import listed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,6 +45,8 @@ _OF_ALL = {"configuration", "versions", "date", "wall_time"}
 """What the JSON of a population has once."""
 _BYTES_PER_POINT = 2000
 """Memory of a fit, approximately."""
+_NAMED = 10
+"""Most kept files that are named because they were changed."""
 _BATCH = 500
 """Curves that are in memory at once."""
 
@@ -176,6 +179,9 @@ def fit_sources(
                 mapped(config.executor, work, tasks, dict, _keep, bar)
         notes = judge(fits.rows, config.accept, rejected)
         fits.maps, of_maps = force_maps(fits.rows)
+        if fits.refitted:
+            names = listed(fits.refitted, most=_NAMED)
+            notes.append(f"not as pellicle kept it in {_JOURNAL}, and fitted again: {names}")
         fits.notes = [*notes, *of_maps]
         if directory is not None:
             tables = _write(fits, config, began, directory)
@@ -204,8 +210,7 @@ def _task(
         if directory is not None:
             identity = _identity(config, indenter, source.curve)
             path = directory / _JOURNAL / f"{identity[:16]}.json"
-            with suppress(OSError, ValueError):
-                earlier = json.loads(path.read_text(encoding="utf-8"))
+            if is_file(path) and (earlier := _earlier(path, fits)):
                 # The file may have another name now.
                 earlier["curves"][0] |= {"name": source.name, "data": data_of(source.curve, config)}
                 row.keep(earlier)
@@ -222,6 +227,15 @@ def _task(
     return FitTask(row.name, memory, row, ready, path)
 
 
+def _earlier(path: Path, fits: ManyFits) -> dict[str, Any] | None:
+    """Return a fit that an earlier call kept; a file that is none is noted, and fitted again."""
+    try:
+        return read_sealed(path)
+    except StorageError:
+        fits.refitted.append(path.name)
+        return None
+
+
 def _keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool]:
     """Keep what came of a fit in its row and its file; return the status, and whether it failed."""
     row = task.row
@@ -229,7 +243,7 @@ def _keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool
         row.status = _failure(outcome, row.name)
     else:
         if task.path is not None:
-            write_json(outcome, task.path)
+            write_sealed(outcome, task.path)
         row.keep(outcome)
     return row.status, not row.is_fitted
 

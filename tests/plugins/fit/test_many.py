@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 import pellicle as pl
 from pellicle.components import AnyTask, Executor, Outcome, Report, Say
 from pellicle.plugins import Registry
+from pellicle_fit.many import fit_sources
+from pellicle_fit.population.fits import ManyFits
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 Array = NDArray[np.float64]
@@ -99,6 +101,41 @@ def test_what_is_done_is_kept(cli: Cli, tmp_path: Path) -> None:
     assert "2 of 3 fits were done before" in again.output
     assert "done before" not in cli(*common, "--baseline", "offset").output
     assert len(list(Path("out/curves").iterdir())) == 6
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        *(b"", b"{}", b"[]", b"3", b"null", b"{", b"\xff\xfe" * 9, b"[" * 100_000),
+        (b'"points": 60', b'"points": "x"'),
+        (b'"points": 60', b'"points": 61'),
+        (b'"curves"', b'"curve"'),
+        (b'"sketch"', b'"picture"'),
+    ],
+)
+def test_a_kept_fit_that_was_changed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, damage: bytes | tuple[bytes, bytes]
+) -> None:
+    """A file that is no fit, or not the one that was kept, is named, and its curve fitted again."""
+    monkeypatch.setattr("pellicle_fit.report.population.save_population", lambda *_: ())
+    config = pl.FitConfig.merged(**BEAD, rivals=(), fix={"tension": 0})
+
+    def fits() -> ManyFits:
+        return fit_sources(config, config.sources({"a": curve(1)}), tmp_path, progress=False)
+
+    first = fits()
+    (path,) = (tmp_path / "curves").glob("*.json")
+    kept = path.read_bytes()
+    assert json.loads(kept)["reduced_modulus"] == first.rows[0].fit["reduced_modulus"]
+    path.write_bytes(damage if isinstance(damage, bytes) else kept.replace(*damage))
+    assert path.read_bytes() != kept
+    again = fits()
+    assert again.rows[0].to_dict() == first.rows[0].to_dict()
+    assert again.resumed == 0
+    note = f"not as pellicle kept it in curves, and fitted again: {path.name}"
+    assert again.notes == [*first.notes, note]
+    assert path.read_bytes() == kept
+    assert (fits().resumed, fits().notes) == (1, first.notes)
 
 
 def test_a_row_is_that_of_the_chosen_explanation() -> None:
