@@ -12,13 +12,14 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import typer
 
 from .errors import ConfigError, PellicleError, PluginError
-from .hookspecs import manager_of
+from .hookspecs import Written, manager_of
 from .origins import COMMAND, DISABLE, GROUP, REMEDY, Broken, Origin, claimed_by, in_order, isolated
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ class Command:
 
     function: Callable[..., None]
     file: str = ""
+    written: str = ""
 
     def __post_init__(self) -> None:
         if not callable(self.function):
@@ -109,6 +111,17 @@ def errors_attributed_to(name: str) -> Iterator[None]:
         if not (origin := Origin.of(commands()[name][0])).is_own:
             error.add_note(f"command {name!r} of {origin} failed")
         raise
+
+
+@contextmanager
+def written_by(name: str, path: Path) -> Iterator[Written | None]:
+    """Yield what a command wrote at a path; None if no usable command of that name shows it."""
+    command = load_command(name) if name in commands() else None
+    if not isinstance(command, Command) or not command.written:
+        yield None
+        return
+    with errors_attributed_to(name):
+        yield EntryPoint("written", command.written, GROUP).load()(path)
 
 
 def file_models() -> Mapping[str, type[BaseModel] | Broken]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 import pluggy
@@ -17,10 +18,20 @@ hookspec = pluggy.HookspecMarker(GROUP)
 hookimpl = pluggy.HookimplMarker(GROUP)
 
 
+class Written(Protocol):
+    """What a command wrote, as ``pellicle show`` and ``pellicle plot`` call it."""
+
+    def show(self, *, si: bool, json: bool) -> None:
+        """Print its tables, in SI units if ``si``, or all of it as JSON."""
+
+    def plot(self, directory: Path, formats: Sequence[str]) -> Iterable[Path]:
+        """Write its figures to a folder in some formats, and return their paths."""
+
+
 class RegisterCommand(Protocol):
     """Registers the command of an entry point ``command.NAME``."""
 
-    def __call__(self, function: Callable[..., None], *, file: str = "") -> None:
+    def __call__(self, function: Callable[..., None], *, file: str = "", written: str = "") -> None:
         """Register a command.
 
         Parameters
@@ -31,6 +42,11 @@ class RegisterCommand(Protocol):
         file
             ``"package.module:Model"``, the model of the TOML file that the command takes. Folders
             ``examples/NAME/`` of the package hold examples of it for ``pellicle new --example``.
+        written
+            ``"package.module:function"``, which takes the path of a table that the command wrote
+            by ``pellicle.results.write`` with NAME as its attribute ``command``, and returns an
+            object with the methods ``show(*, si, json)``, which prints it, and ``plot(directory,
+            formats)``, which draws it and returns files: `show` and `plot` of pellicle call them.
         """
 
 

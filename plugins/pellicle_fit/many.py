@@ -19,7 +19,7 @@ from pellicle import registry, results
 from pellicle.batch import BatchProgress, locked, mapped
 from pellicle.components import Component, Executor, HasForceCurve, Indenter, Say
 from pellicle.errors import ConfigError, PellicleError, StorageError
-from pellicle.files import atomic_write, check_writable, is_file, write_json
+from pellicle.files import atomic_write, check_writable, is_file
 
 from .config import FitConfig, described
 from .files.measurement import Measurement
@@ -27,7 +27,7 @@ from .files.sources import Curves, Source
 from .population.fits import ManyFits, summary, table
 from .population.images import force_maps
 from .population.judgement import Names, group_of, judge
-from .population.row import FAILED, Row, sketch
+from .population.row import FAILED, Row, as_json, sketch
 from .problem import Problem, components_of, data_of, problem, record_of
 from .sealed import read_sealed, write_sealed
 from .words.names import listed
@@ -260,7 +260,7 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
         "r_squared": 1 - float(np.sum((force - measured) ** 2) / np.sum(scatter**2)),
         "indentation": float(np.max(position)) - fit.contact_point.value,
         "largest_force": float(np.max(force)),
-        "sketch": {name: [float(f"{v:.5g}") for v in values] for name, values in drawn.items()},
+        "sketch": as_json(drawn),
     }
 
 
@@ -304,4 +304,7 @@ def _write(fits: ManyFits, config: FitConfig, began: float, directory: Path) -> 
         with atomic_write(path) as part:
             content.to_csv(part, index=False, na_rep="nan")
     whole = fits.to_dict() | {"configuration": fits.configuration} | record
-    return hdf5, text, groups, write_json(whole, directory / "fits.json")
+    # What is drawn again has no other source.
+    for one, row in zip(whole["curves"], fits.rows, strict=True):
+        one["sketch"] = as_json(row.sketch)
+    return hdf5, text, groups, write_sealed(whole, directory / "fits.json")

@@ -33,7 +33,10 @@ def read_sealed(path: Path) -> dict[str, Any]:
         raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
     text = b"{" + rest
     if head != _head(text):
-        raise StorageError(f"{path}: was changed after pellicle wrote it, or is damaged")
+        raise StorageError(
+            f"{path}: was changed after pellicle wrote it, or is damaged; restore it from a copy, "
+            "or fit it again"
+        )
     value: dict[str, Any] = json.loads(text)
     return value
 

@@ -7,19 +7,28 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
 import typer
 import xarray as xr
 
+from pellicle.commands import written_by
 from pellicle.files import for_document
+from pellicle.hookspecs import Written
+from pellicle.results import storage
 from pellicle.results.result import Result
 from pellicle.results.runs import axes_of, progress_of, runs_of
 from pellicle.show import sentences, tables
 from pellicle.variables import CAVEATS
 
 from .printing import NOT_CONVERGED, echo, print_json, print_table, print_warning
+
+
+def written(file: Path) -> AbstractContextManager[Written | None]:
+    """Return a context of what a command of a plugin wrote; of None for a result."""
+    return written_by(str(storage.attributes(file, "any").get("command", "")), file)
 
 
 def print_origin(data: xr.Dataset) -> None:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from .printing import NOT_CONVERGED, echo
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def show(
@@ -23,14 +26,21 @@ def show(
         bool, typer.Option("--json", help="Print the result as JSON, in SI units.")
     ] = False,
 ) -> None:
-    """Print the steps of a result, or the runs of a study, and its origin."""
-    from pellicle.results.result import Result, load
+    """Print steps of a result or runs of a study, and its origin; or what a command wrote."""
+    from pellicle.results.result import Result, file_of_run, load
     from pellicle.show import sentences
     from pellicle.studies.runner import is_table, read
 
-    from .results import exit_by_outcome, print_origin, print_outcome_json, print_tables
+    from .results import exit_by_outcome, print_origin, print_outcome_json, print_tables, written
 
-    outcome = read(results)[0] if is_table(results) else load(results)
+    if is_table(results):
+        outcome: Result | xr.Dataset = read(results)[0]
+    else:
+        with written(file_of_run(results)) as of_command:
+            if of_command:
+                of_command.show(si=si, json=json)
+                return
+        outcome = load(results)
     if json:
         print_outcome_json(outcome)
     else:

@@ -47,6 +47,11 @@ def sketch(**columns: ArrayLike) -> dict[str, Array]:
     return {name: values[rows].astype("f4") for name, values in arrays.items()}
 
 
+def as_json(drawn: dict[str, Array]) -> dict[str, list[float]]:
+    """Return a sketch as JSON data."""
+    return {name: [float(f"{v:.5g}") for v in values] for name, values in drawn.items()}
+
+
 @dataclass(eq=False)
 class Row:
     """One curve of a population."""
@@ -109,6 +114,18 @@ class Row:
     def failed_checks(self) -> list[str]:
         """Codes of the checks that its residuals fail."""
         return [check["code"] for check in self.curve.get("failed_checks", ())]
+
+    @classmethod
+    def of_dict(cls, data: dict[str, Any]) -> Row:
+        """Return the row of which `to_dict` returned the data, with its sketch if they hold one."""
+        own = {name: data[name] for name in ("group", "status", "accepted", "reason", "outlier")}
+        row = cls(data["curve"], **own)
+        if site := data.get("site"):
+            row.map, row.site = site["map"], Site(site["x"], site["y"])
+        if row.is_fitted:
+            row.keep({k: v for k, v in data.items() if k not in {"curve", "site", *own}})
+        row.sketch = sketch(**data["sketch"]) if data.get("sketch") else {}
+        return row
 
     def to_dict(self) -> dict[str, Any]:
         """Return the row as JSON data, without the sketch."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 import weakref
 from collections.abc import Callable, Iterator
 from itertools import product
@@ -277,9 +278,17 @@ def test_files(cli: Cli, tmp_path: Path) -> None:
     page = Path("out/fits.html").read_text(encoding="utf-8")
     for words in ("slipped", "quartiles", "Each curve with its fit"):
         assert words in page
-    refusal = CliRunner().invoke(app, ["show", "out/fits.h5"])
-    assert refusal.exit_code == 2
-    assert "a table that pellicle fit wrote" in refusal.stderr
+    # The folder shows what was printed, and draws what was drawn.
+    printed = cli(*arguments[:-5], *rules[:-1], "--set", "accept=reduced_modulus < 15 kPa", code=1)
+    table_of = CliRunner().invoke(app, ["show", "out"])
+    assert (table_of.exit_code, table_of.stdout) == (1, printed.stdout.partition("4 of 5 fits")[0])
+    assert table_of.stdout.count("\n") > 10
+    drawn = CliRunner().invoke(app, ["plot", "out/fits.h5", "-o", "again", "--format", "svg"])
+    assert drawn.exit_code == 0, drawn.output
+    lines = (Path(folder, "fits.svg").read_text(encoding="utf-8") for folder in ("out", "again"))
+    first, again = (re.findall(r' d="([^"]+)"', text) for text in lines)
+    assert first == again != []
+    assert Path("again/fits-curves.pdf").is_file()
     # Another choice costs no fit.
     notes = cli(*arguments, "--set", "accept=r_squared > 2", code=1).stderr
     assert "none of 5 curves was accepted" in notes
