@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from .errors import ConfigError, PellicleError, PluginError
-from .hookspecs import Written, manager_of
+from .hookspecs import manager_of
 from .origins import COMMAND, DISABLE, GROUP, REMEDY, Broken, Origin, claimed_by, in_order, isolated
 
 if TYPE_CHECKING:
@@ -114,8 +114,11 @@ def errors_attributed_to(name: str) -> Iterator[None]:
 
 
 @contextmanager
-def written_by(name: str, path: Path) -> Iterator[Written | None]:
-    """Yield what a command wrote at a path; None if no usable command of that name shows it."""
+def written_by(name: str, path: Path) -> Iterator[Any]:
+    """Yield what shows a table that a command wrote; None if no usable command of that name does.
+
+    Its methods are those that `hookspecs.RegisterCommand` asks for.
+    """
     command = load_command(name) if name in commands() else None
     if not isinstance(command, Command) or not command.written:
         yield None

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Sequence
-from pathlib import Path
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Protocol
 
 import pluggy
@@ -16,16 +15,6 @@ if TYPE_CHECKING:
 
 hookspec = pluggy.HookspecMarker(GROUP)
 hookimpl = pluggy.HookimplMarker(GROUP)
-
-
-class Written(Protocol):
-    """What a command wrote, as ``pellicle show`` and ``pellicle plot`` call it."""
-
-    def show(self, *, si: bool, json: bool) -> None:
-        """Print its tables, in SI units if ``si``, or all of it as JSON."""
-
-    def plot(self, directory: Path, formats: Sequence[str]) -> Iterable[Path]:
-        """Write its figures to a folder in some formats, and return their paths."""
 
 
 class RegisterCommand(Protocol):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import pickle
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
 from importlib.metadata import version
@@ -21,9 +21,11 @@ from pellicle.components import Component, Executor, HasForceCurve, Indenter, Sa
 from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.files import atomic_write, check_writable, is_file
 
+from .calibration import common_errors
 from .config import FitConfig, described
 from .files.measurement import Measurement
 from .files.sources import Curves, Source
+from .objective import MODULUS
 from .population.fits import ManyFits, summary, table
 from .population.images import force_maps
 from .population.judgement import Names, group_of, judge
@@ -31,6 +33,7 @@ from .population.row import FAILED, Row, as_json, sketch
 from .problem import Problem, components_of, data_of, problem, record_of
 from .sealed import read_sealed, write_sealed
 from .words.names import listed
+from .words.story import calibration_of, shares
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -63,6 +66,8 @@ class FitTask:
     problem: Problem
     path: Path | None
     """File that keeps the fit."""
+    common: Mapping[Any, float]
+    """Uncertainty that all curves share, which stands beside medians and in no interval."""
 
 
 def fit_many(
@@ -206,9 +211,11 @@ def _task(
         row.map, row.site = source.map, source.curve.site
         with suppress(TypeError, ValueError):
             row.sketch = sketch(position=source.curve.position, force=source.curve.force)
-        path = None
+        path, fields = None, source.fields.keys()
+        own = {*fields, *(["radius"] if "diameter" in fields else [])}
+        common = {name: x for name, x in config.uncertainty.items() if name not in own}
         if directory is not None:
-            identity = _identity(config, indenter, source.curve)
+            identity = _identity(config, indenter, source.curve, [*common])
             path = directory / _JOURNAL / f"{identity[:16]}.json"
             if is_file(path) and (earlier := _earlier(path, fits)):
                 # The file may have another name now.
@@ -216,6 +223,8 @@ def _task(
                 row.keep(earlier)
                 fits.resumed += 1
                 return None
+        weighed = {n: x for n, x in config.uncertainty.items() if n not in common}
+        config = config.model_copy(update={"uncertainty": weighed})
         ready = problem(config, [source], progress=progress)
     except PellicleError as error:
         row.status = _failure(error, row.name)
@@ -224,7 +233,7 @@ def _task(
     serial = registry().make(Executor, {"type": "serial"})
     ready = replace(ready, config=config.model_copy(update={"executor": serial}))
     memory = _BYTES_PER_POINT * ready.members[0].curve.force.size
-    return FitTask(row.name, memory, row, ready, path)
+    return FitTask(row.name, memory, row, ready, path, common)
 
 
 def _earlier(path: Path, fits: ManyFits) -> dict[str, Any] | None:
@@ -256,6 +265,16 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
     scatter = measured - np.mean(measured)
     drawn = sketch(position=position, force=measured, fit=force)
     kept = {name: value for name, value in fit.to_dict().items() if name not in _OF_ALL}
+    if task.common:
+        beside = f"common error, beside the medians alone: {shares(task.common)}"
+        kept["calibration"] = (
+            f"{calibration_of(fit)}; {beside}" if fit.config.uncertainty else beside
+        )
+        moved = kept["common_errors"] = common_errors(fit.answer.chosen, task.common)
+        if fit.poissons_ratio is not None:
+            factor = 1 - fit.poissons_ratio**2
+            of_modulus = moved.get(MODULUS, {}).items()
+            moved["youngs_modulus"] = {name: factor * error for name, error in of_modulus}
     return kept | {
         "r_squared": 1 - float(np.sum((force - measured) ** 2) / np.sum(scatter**2)),
         "indentation": float(np.max(position)) - fit.contact_point.value,
@@ -264,10 +283,22 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
     }
 
 
-def _identity(config: FitConfig, indenter: Indenter | HasForceCurve, curve: Measurement) -> str:
+def _identity(
+    config: FitConfig,
+    indenter: Indenter | HasForceCurve,
+    curve: Measurement,
+    common: Sequence[str],
+) -> str:
     """Return a hash that is equal for fits with equal results."""
     options = config.model_dump(mode="json", exclude=_WITHOUT_EFFECT, fallback=str)
-    of_curve = described(indenter), curve.is_depth, curve.stiffness, curve.speed, curve.messages
+    of_curve = (
+        described(indenter),
+        curve.is_depth,
+        curve.stiffness,
+        curve.speed,
+        curve.messages,
+        common,
+    )
     plugins = registry().versions(components_of(config) - {type(config.executor)})
     versions = version("pellicle"), sorted(plugins.items())
     digest = hashlib.sha256(repr((versions, options, of_curve)).encode())

@@ -16,7 +16,6 @@ import xarray as xr
 
 from pellicle.commands import written_by
 from pellicle.files import for_document
-from pellicle.hookspecs import Written
 from pellicle.results import storage
 from pellicle.results.result import Result
 from pellicle.results.runs import axes_of, progress_of, runs_of
@@ -26,8 +25,8 @@ from pellicle.variables import CAVEATS
 from .printing import NOT_CONVERGED, echo, print_json, print_table, print_warning
 
 
-def written(file: Path) -> AbstractContextManager[Written | None]:
-    """Return a context of what a command of a plugin wrote; of None for a result."""
+def written(file: Path) -> AbstractContextManager[Any]:
+    """Return a context of what shows the table of a command of a plugin; of None for a result."""
     return written_by(str(storage.attributes(file, "any").get("command", "")), file)
 
 

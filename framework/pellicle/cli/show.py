@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from .printing import NOT_CONVERGED, echo
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def show(
@@ -33,14 +30,12 @@ def show(
 
     from .results import exit_by_outcome, print_origin, print_outcome_json, print_tables, written
 
-    if is_table(results):
-        outcome: Result | xr.Dataset = read(results)[0]
-    else:
+    if not (is_study := is_table(results)):
         with written(file_of_run(results)) as of_command:
             if of_command:
                 of_command.show(si=si, json=json)
                 return
-        outcome = load(results)
+    outcome = read(results)[0] if is_study else load(results)
     if json:
         print_outcome_json(outcome)
     else:

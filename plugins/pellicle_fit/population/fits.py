@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from pellicle_fit.intervals import threshold_of
 
 from .row import ENDS, OVER_TIED, SHOWN, Row, counted, units
 
@@ -97,16 +99,17 @@ def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
 
     Of all ``curves`` of a group ``n`` are accepted. Quartiles are of the best values of all of
     these, of which ``open`` have an interval with an open end, or one too wide to quote the value.
-    Parameters that were fixed have no line.
+    Parameters that were fixed have no line.  Where curves share an error of the calibration, there
+    is a ``common_error``.
     """
     import pandas as pd
 
     fitted = [
-        (name, row.group, e.unit, e.value, not e.is_narrow, row.outlier)
+        (name, row.group, e.unit, e.value, not e.is_narrow, row.outlier, row)
         for name in dict.fromkeys((*OVER_TIED, *SHOWN))
         for row, e in counted(rows, name).items()
     ]
-    columns = "parameter", "group", "unit", "value", "open", "outlier"
+    columns = "parameter", "group", "unit", "value", "open", "outlier", "row"
     frame = pd.DataFrame(fitted, columns=columns)
     curves, lines = Counter(row.group for row in rows), []
     for name, whole in frame.groupby("parameter", sort=False):
@@ -117,8 +120,21 @@ def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
             line |= {"curves": count, "n": len(part), "open": int(part["open"].sum())}
             quartiles = part["value"].quantile([0, 0.25, 0.5, 0.75, 1]).tolist()
             line["outliers"] = int(part["outlier"].sum())
-            lines.append(line | dict(zip(QUARTILES, quartiles, strict=True)))
+            line |= zip(QUARTILES, quartiles, strict=True)
+            lines.append(line | common_error(part["row"], name))
     return lines
+
+
+def common_error(rows: Iterable[Row], name: str) -> dict[str, float]:
+    """Return the ``common_error`` of the median of a quantity, nothing if no curve has one.
+
+    It is half of a 95 % interval [SI]: by so much the calibration that curves share may move all.
+    """
+    import pandas as pd
+
+    moved = pd.DataFrame([row.fit.get("common_errors", {}).get(name, {}) for row in rows])
+    deviation = float(np.sqrt((moved.fillna(0.0).median() ** 2).sum()))
+    return {"common_error": threshold_of(np.inf) ** 0.5 * deviation} if moved.size else {}
 
 
 def label(group: str) -> str:

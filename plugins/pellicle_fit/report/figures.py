@@ -44,8 +44,11 @@ def panels(fit: Fit | ManyFits) -> dict[str, Drawing]:
     """Return what fills the figures of a fit or of many fits, and their sizes, by caption."""
     if isinstance(fit, Fit):
         return {caption: figure_of(beside) for caption, beside in charts(fit).items()}
-    of_bars = "Filled, accepted curves; hollow, rejected ones; bars to 0 or a triangle are open."
-    accepted = "Best values of all accepted curves, by group; dotted, the median."
+    is_held = any("common_errors" in row.fit for row in fit.rows)
+    held = " Bars hold the calibration." if is_held else ""
+    of_bars = f"Filled, accepted curves; hollow, rejected; bars to 0 or a triangle are open.{held}"
+    accepted = "Best values of all accepted curves, by group; dotted, the median"
+    accepted += " and the 95 % that the common error of the calibration leaves it." if held else "."
     beside = {of_bars: bars(fit.rows), accepted: distributions(fit.rows)}
     found: dict[str, Drawing] = {caption: figure_of(of) for caption, of in beside.items() if of}
     for name, images in fit.maps.items():

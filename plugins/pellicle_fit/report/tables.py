@@ -105,14 +105,17 @@ def rows(of: Sequence[Row], *, si: bool = False) -> Table:
 
 def groups(of: Sequence[Row], *, si: bool = False) -> Table:
     """Return a row for each parameter of each group of curves."""
-    cells = []
-    for part in summary(of):
+    parts, cells = summary(of), []
+    heads = ["group", "parameter", "accepted", "open", "outliers", "median", "quartiles"]
+    if has_error := any("common_error" in part for part in parts):
+        heads.append("common error")
+    for part in parts:
         unit = _usual(of, part["parameter"], si)
         low, median, high = (unit.number(part[name]) for name in QUARTILES[1:4])
         counts = f"{part['n']} of {part['curves']}", str(part["open"]), str(part["outliers"])
         named = part["group"], f"{words(part['parameter'])} [{unit.unit}]"
-        cells.append((*named, *counts, median, f"{low} to {high}"))
-    heads = "group", "parameter", "accepted", "open", "outliers", "median", "quartiles"
+        error = [f"± {unit.number(part.get('common_error', 0.0), FEW)}"] if has_error else []
+        cells.append((*named, *counts, median, f"{low} to {high}", *error))
     return Table.of_rows(
         heads, cells, "All accepted curves; open, those whose interval is open or wide."
     )

@@ -19,6 +19,7 @@ from pellicle_fit.report.likelihood_map import likelihood_map
 from pellicle_fit.report.page import save_report
 from pellicle_fit.report.population import bars
 from pellicle_fit.words.story import story
+from tests.plugins.fit.conftest import ends_of
 from tests.plugins.fit.test_many import BEAD, MODULUS, RADIUS, curve
 from tests.plugins.fit.test_population import row
 
@@ -94,6 +95,16 @@ def test_bars_and_units() -> None:
     heads = [column.read()[0] for column in tables.rows(rows).columns]
     assert heads[:3] == ["curve", "verdict", "reduced modulus [kPa]"]
     assert tables.groups(rows).columns[1].values[0] == "reduced modulus [kPa]"
+
+
+def test_the_map_weighs_the_calibration_as_the_headline_does() -> None:
+    """The edge of 95 % of the pair reaches beyond the ends of either alone."""
+    fit = pl.fit(*curve(1), **BEAD, rivals=(), uncertainty={"spring_constant": "10 %"})
+    _, edge, _ = charts(fit)[[*charts(fit)][-1]][0].series
+    for estimate, along in ((fit.reduced_modulus, edge.x), (fit.tension, edge.y)):
+        low, high = ends_of(estimate)
+        assert low < 0.85 * estimate.value
+        assert along.min() < low < high < along.max()
 
 
 def test_likelihood_map(single: pl.Fit) -> None:
