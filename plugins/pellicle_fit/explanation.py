@@ -92,6 +92,13 @@ class Explanation:
         """Return the modulus after a time [s] over E*."""
         return next((effect.relaxed(time) for effect in self.of(Responds)), 1.0)
 
+    def baseline(self, curve: Curve) -> Array:
+        """Return the force [N] that is recorded in each row without a load."""
+        force = np.zeros(curve.position.shape)
+        for effect in self.of(Records):
+            force = effect.recorded(force, curve)
+        return force
+
     def force(self, curve: Curve) -> Array:
         """Return the force [N] that is recorded in each row, of known quantities.
 

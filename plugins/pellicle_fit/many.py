@@ -320,6 +320,8 @@ def _write(fits: ManyFits, config: FitConfig, began: float, directory: Path) -> 
     """Write the tables of the curves and of the groups, and return their paths."""
     import pandas as pd
 
+    from .report.paper_table import save_tables
+
     record = record_of(config, [row.curve["data"] for row in fits.rows if row.is_fitted], began)
     attributes = {
         "configuration": config.to_json(),
@@ -338,4 +340,5 @@ def _write(fits: ManyFits, config: FitConfig, began: float, directory: Path) -> 
     # What is drawn again has no other source.
     for one, row in zip(whole["curves"], fits.rows, strict=True):
         one["sketch"] = as_json(row.sketch)
-    return hdf5, text, groups, write_sealed(whole, directory / "fits.json")
+    paper = save_tables(fits.rows, directory / "fits-table")
+    return hdf5, text, groups, *paper, write_sealed(whole, directory / "fits.json")
