@@ -12,7 +12,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from importlib.metadata import EntryPoint, entry_points
-from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -111,20 +110,6 @@ def errors_attributed_to(name: str) -> Iterator[None]:
         if not (origin := Origin.of(commands()[name][0])).is_own:
             error.add_note(f"command {name!r} of {origin} failed")
         raise
-
-
-@contextmanager
-def written_by(name: str, path: Path) -> Iterator[Any]:
-    """Yield what shows a table that a command wrote; None if no usable command of that name does.
-
-    Its methods are those that `hookspecs.RegisterCommand` asks for.
-    """
-    command = load_command(name) if name in commands() else None
-    if not isinstance(command, Command) or not command.written:
-        yield None
-        return
-    with errors_attributed_to(name):
-        yield EntryPoint("written", command.written, GROUP).load()(path)
 
 
 def file_models() -> Mapping[str, type[BaseModel] | Broken]:

@@ -32,7 +32,6 @@ from .population.judgement import Names, group_of, judge
 from .population.row import FAILED, Row, as_json, sketch
 from .problem import Problem, components_of, data_of, problem, record_of
 from .sealed import read_sealed, write_sealed
-from .words.names import listed
 from .words.story import calibration_of, shares
 
 if TYPE_CHECKING:
@@ -48,8 +47,6 @@ _OF_ALL = {"configuration", "versions", "date", "wall_time"}
 """What the JSON of a population has once."""
 _BYTES_PER_POINT = 2000
 """Memory of a fit, approximately."""
-_NAMED = 10
-"""Most kept files that are named because they were changed."""
 _BATCH = 500
 """Curves that are in memory at once."""
 
@@ -184,10 +181,7 @@ def fit_sources(
                 mapped(config.executor, work, tasks, dict, _keep, bar)
         notes = judge(fits.rows, config.accept, rejected)
         fits.maps, of_maps = force_maps(fits.rows)
-        if fits.refitted:
-            names = listed(fits.refitted, most=_NAMED)
-            notes.append(f"not as pellicle kept it in {_JOURNAL}, and fitted again: {names}")
-        fits.notes = [*notes, *of_maps]
+        fits.notes += [*notes, *of_maps]
         if directory is not None:
             tables = _write(fits, config, began, directory)
             fits.files = (*tables, *save_population(fits, directory, formats))
@@ -217,7 +211,7 @@ def _task(
         if directory is not None:
             identity = _identity(config, indenter, source.curve, [*common])
             path = directory / _JOURNAL / f"{identity[:16]}.json"
-            if is_file(path) and (earlier := _earlier(path, fits)):
+            if is_file(path) and (earlier := _earlier(path, row, fits)):
                 # The file may have another name now.
                 earlier["curves"][0] |= {"name": source.name, "data": data_of(source.curve, config)}
                 row.keep(earlier)
@@ -236,12 +230,12 @@ def _task(
     return FitTask(row.name, memory, row, ready, path, common)
 
 
-def _earlier(path: Path, fits: ManyFits) -> dict[str, Any] | None:
-    """Return a fit that an earlier call kept; a file that is none is noted, and fitted again."""
+def _earlier(path: Path, row: Row, fits: ManyFits) -> dict[str, Any] | None:
+    """Return the fit of a row that was kept; of a file that is not that there is a note."""
     try:
         return read_sealed(path)
     except StorageError:
-        fits.refitted.append(path.name)
+        fits.notes.append(f"{path} is not the fit that pellicle kept: {row.name} is fitted again")
         return None
 
 
@@ -266,15 +260,13 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
     drawn = sketch(position=position, force=measured, fit=force)
     kept = {name: value for name, value in fit.to_dict().items() if name not in _OF_ALL}
     if task.common:
+        own = [calibration_of(fit)] if fit.config.uncertainty else []
         beside = f"common error, beside the medians alone: {shares(task.common)}"
-        kept["calibration"] = (
-            f"{calibration_of(fit)}; {beside}" if fit.config.uncertainty else beside
-        )
+        kept["calibration"] = "; ".join([*own, beside])
         moved = kept["common_errors"] = common_errors(fit.answer.chosen, task.common)
-        if fit.poissons_ratio is not None:
-            factor = 1 - fit.poissons_ratio**2
-            of_modulus = moved.get(MODULUS, {}).items()
-            moved["youngs_modulus"] = {name: factor * error for name, error in of_modulus}
+        if MODULUS in moved and (ratio := fit.poissons_ratio) is not None:
+            of_youngs = {name: (1 - ratio**2) * error for name, error in moved[MODULUS].items()}
+            moved["youngs_modulus"] = of_youngs
     return kept | {
         "r_squared": 1 - float(np.sum((force - measured) ** 2) / np.sum(scatter**2)),
         "indentation": float(np.max(position)) - fit.contact_point.value,
@@ -284,24 +276,14 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
 
 
 def _identity(
-    config: FitConfig,
-    indenter: Indenter | HasForceCurve,
-    curve: Measurement,
-    common: Sequence[str],
+    config: FitConfig, indenter: Indenter | HasForceCurve, curve: Measurement, common: Sequence[str]
 ) -> str:
     """Return a hash that is equal for fits with equal results."""
     options = config.model_dump(mode="json", exclude=_WITHOUT_EFFECT, fallback=str)
-    of_curve = (
-        described(indenter),
-        curve.is_depth,
-        curve.stiffness,
-        curve.speed,
-        curve.messages,
-        common,
-    )
+    of_curve = described(indenter), curve.is_depth, curve.stiffness, curve.speed, curve.messages
     plugins = registry().versions(components_of(config) - {type(config.executor)})
     versions = version("pellicle"), sorted(plugins.items())
-    digest = hashlib.sha256(repr((versions, options, of_curve)).encode())
+    digest = hashlib.sha256(repr((versions, options, common, of_curve)).encode())
     if not isinstance(indenter, Component):
         digest.update(pickle.dumps(indenter))
     for values in (curve.position, curve.force, *([] if curve.time is None else [curve.time])):

@@ -6,16 +6,18 @@ Commands import it when they are called: unlike them it imports what it needs at
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any
 
 import typer
 import xarray as xr
 
-from pellicle.commands import written_by
+from pellicle.commands import Command, commands, errors_attributed_to, load_command
 from pellicle.files import for_document
+from pellicle.origins import GROUP
 from pellicle.results import storage
 from pellicle.results.result import Result
 from pellicle.results.runs import axes_of, progress_of, runs_of
@@ -25,9 +27,16 @@ from pellicle.variables import CAVEATS
 from .printing import NOT_CONVERGED, echo, print_json, print_table, print_warning
 
 
-def written(file: Path) -> AbstractContextManager[Any]:
-    """Return a context of what shows the table of a command of a plugin; of None for a result."""
-    return written_by(str(storage.attributes(file, "any").get("command", "")), file)
+@contextmanager
+def written(file: Path) -> Iterator[Any]:
+    """Yield what shows the table of a command, as `RegisterCommand` says; None for a result."""
+    name = str(storage.attributes(file, "any").get("command", ""))
+    command = load_command(name) if name in commands() else None
+    if not isinstance(command, Command) or not command.written:
+        yield None
+        return
+    with errors_attributed_to(name):
+        yield EntryPoint(name, command.written, GROUP).load()(file)
 
 
 def print_origin(data: xr.Dataset) -> None:

@@ -31,10 +31,8 @@ class ManyFits:
     files: tuple[Path, ...] = ()
     resumed: int = 0
     """Number of fits that an earlier call had finished."""
-    refitted: list[str] = field(default_factory=list)
-    """Files of such fits that were changed since, so that their curves were fitted again."""
     notes: list[str] = field(default_factory=list)
-    """Notes on the population: rejected curves, outliers, lists with wrong names."""
+    """Notes on the population: changed files, rejected curves, lists with wrong names."""
     maps: dict[str, xr.Dataset] = field(default_factory=dict)
     """Images of each force map, by its file."""
     configuration: dict[str, Any] = field(default_factory=dict)

@@ -137,8 +137,8 @@ def test_a_kept_fit_that_was_changed(
     again = fits()
     assert again.rows[0].to_dict() == first.rows[0].to_dict()
     assert again.resumed == 0
-    note = f"not as pellicle kept it in curves, and fitted again: {path.name}"
-    assert again.notes == [*first.notes, note]
+    note = f"{path} is not the fit that pellicle kept: a is fitted again"
+    assert again.notes == [note, *first.notes]
     assert path.read_bytes() == kept
     assert (fits().resumed, fits().notes) == (1, first.notes)
 
