@@ -31,6 +31,7 @@ class Command:
 
     function: Callable[..., None]
     file: str = ""
+    written: str = ""
 
     def __post_init__(self) -> None:
         if not callable(self.function):

@@ -20,7 +20,7 @@ hookimpl = pluggy.HookimplMarker(GROUP)
 class RegisterCommand(Protocol):
     """Registers the command of an entry point ``command.NAME``."""
 
-    def __call__(self, function: Callable[..., None], *, file: str = "") -> None:
+    def __call__(self, function: Callable[..., None], *, file: str = "", written: str = "") -> None:
         """Register a command.
 
         Parameters
@@ -31,6 +31,11 @@ class RegisterCommand(Protocol):
         file
             ``"package.module:Model"``, the model of the TOML file that the command takes. Folders
             ``examples/NAME/`` of the package hold examples of it for ``pellicle new --example``.
+        written
+            ``"package.module:function"``, which takes the path of a table that the command wrote
+            by ``pellicle.results.write`` with NAME as its attribute ``command``, and returns an
+            object with the methods ``show(*, si, json)``, which prints it, and ``plot(directory,
+            formats)``, which draws it and returns files: `show` and `plot` of pellicle call them.
         """
 
 

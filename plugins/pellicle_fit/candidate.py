@@ -11,7 +11,7 @@ import numpy as np
 from pellicle.arrays import Array
 
 from .curve import Curve
-from .effect import quantities
+from .effect import Effect, quantities
 from .intervals import Estimate
 from .noise import Flaw, Judged, judged
 from .objective import MODULUS, Minimum, Objective
@@ -33,11 +33,21 @@ class Candidate:
     """The curves with all their rows."""
     estimates: Mapping[str, Estimate] = field(default_factory=dict)
     """Those whose ends were sought: of the chosen explanation all, unless no model describes."""
+    weighed: tuple[Objective, Minimum] | None = None
+    """χ² by which these were sought, and its minimum, where the calibration is weighed."""
 
     @cached_property
     def aic(self) -> float:
         """Akaike's criterion, less a constant of the curves."""
         return self.objective.criterion(self.chi_squared)
+
+    def beside(self, errors: Sequence[Effect]) -> tuple[Objective, Array]:
+        """Return χ² with effects that are weighed as errors of the calibration, and where it is."""
+        known = self.objective.explanation
+        explanation = replace(known, effects=(*known.effects, *errors))
+        objective = replace(self.objective, explanation=explanation)
+        at = objective.at_values(self.objective.values(self.minimum.at))
+        return objective, np.where(np.isnan(at), 0.0, at)
 
     @property
     def parameters(self) -> dict[str, Estimate]:

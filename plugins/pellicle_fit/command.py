@@ -12,7 +12,7 @@ import typer
 from typer import Option
 
 import pellicle as pl
-from pellicle.cli import NOT_CONVERGED, Format, echo, print_json
+from pellicle.cli import Format, echo, print_json
 from pellicle.files import write_json
 
 Text = str | None
@@ -89,6 +89,7 @@ def fit(
     from pellicle_fit.print_fits import print_fit, print_fits
     from pellicle_fit.report.figures import save_figure
     from pellicle_fit.report.page import save_report
+    from pellicle_fit.stored import exit_by_fits
 
     curves = [*(files or ())]
     is_first = bool(curves) and curves[0].suffix.lower() in (".toml", ".json")
@@ -133,15 +134,14 @@ def fit(
         echo(f"{many.resumed} of {len(many.rows)} fits were done before")
     for path in () if quiet else written:
         echo(f"wrote {path}")
-    if failed := sum(not row.is_fitted for row in many.rows):
-        echo(f"{failed} of {len(many.rows)} curves could not be fitted", err=True)
-        raise typer.Exit(NOT_CONVERGED)
+    exit_by_fits(many)
 
 
 @pl.hookimpl
 def register_commands(register: pl.RegisterCommand) -> None:
     """Register the command."""
-    register(fit, file="pellicle_fit.config:FitConfig")
+    written = "pellicle_fit.stored:StoredFits"
+    register(fit, file="pellicle_fit.config:FitConfig", written=written)
 
 
 def _fit(

@@ -50,8 +50,6 @@ DEFAULT_RIVALS: tuple[str | list[str], ...] = (
     *("brush", "compliance", "rough_toe"),
 )
 """What bends a curve as a tension does, and is compared unless a configuration says otherwise."""
-UNCERTAIN = {"spring_constant": "spring", "sensitivity": "sensitivity", "radius": "size"}
-"""What may be known to an uncertainty, and the effect whose error that is."""
 
 
 def _component(value: object) -> object:

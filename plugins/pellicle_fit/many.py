@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import pickle
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
 from importlib.metadata import version
@@ -19,17 +18,21 @@ import numpy as np
 from pellicle import registry, results
 from pellicle.batch import BatchProgress, locked, mapped
 from pellicle.components import Component, Executor, HasForceCurve, Indenter, Say
-from pellicle.errors import ConfigError, PellicleError
-from pellicle.files import atomic_write, check_writable, write_json
+from pellicle.errors import ConfigError, PellicleError, StorageError
+from pellicle.files import atomic_write, check_writable, is_file
 
+from .calibration import common_errors
 from .config import FitConfig, described
 from .files.measurement import Measurement
 from .files.sources import Curves, Source
+from .objective import MODULUS
 from .population.fits import ManyFits, summary, table
 from .population.images import force_maps
 from .population.judgement import Names, group_of, judge
-from .population.row import FAILED, Row, sketch
+from .population.row import FAILED, Row, as_json, sketch
 from .problem import Problem, components_of, data_of, problem, record_of
+from .sealed import read_sealed, write_sealed
+from .words.story import calibration_of, shares
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -60,6 +63,8 @@ class FitTask:
     problem: Problem
     path: Path | None
     """File that keeps the fit."""
+    common: Mapping[Any, float]
+    """Uncertainty that all curves share, which stands beside medians and in no interval."""
 
 
 def fit_many(
@@ -176,7 +181,7 @@ def fit_sources(
                 mapped(config.executor, work, tasks, dict, _keep, bar)
         notes = judge(fits.rows, config.accept, rejected)
         fits.maps, of_maps = force_maps(fits.rows)
-        fits.notes = [*notes, *of_maps]
+        fits.notes += [*notes, *of_maps]
         if directory is not None:
             tables = _write(fits, config, began, directory)
             fits.files = (*tables, *save_population(fits, directory, formats))
@@ -200,17 +205,20 @@ def _task(
         row.map, row.site = source.map, source.curve.site
         with suppress(TypeError, ValueError):
             row.sketch = sketch(position=source.curve.position, force=source.curve.force)
-        path = None
+        path, fields = None, source.fields.keys()
+        own = {*fields, *(["radius"] if "diameter" in fields else [])}
+        common = {name: x for name, x in config.uncertainty.items() if name not in own}
         if directory is not None:
-            identity = _identity(config, indenter, source.curve)
+            identity = _identity(config, indenter, source.curve, [*common])
             path = directory / _JOURNAL / f"{identity[:16]}.json"
-            with suppress(OSError, ValueError):
-                earlier = json.loads(path.read_text(encoding="utf-8"))
+            if is_file(path) and (earlier := _earlier(path, row, fits)):
                 # The file may have another name now.
                 earlier["curves"][0] |= {"name": source.name, "data": data_of(source.curve, config)}
                 row.keep(earlier)
                 fits.resumed += 1
                 return None
+        weighed = {n: x for n, x in config.uncertainty.items() if n not in common}
+        config = config.model_copy(update={"uncertainty": weighed})
         ready = problem(config, [source], progress=progress)
     except PellicleError as error:
         row.status = _failure(error, row.name)
@@ -219,7 +227,16 @@ def _task(
     serial = registry().make(Executor, {"type": "serial"})
     ready = replace(ready, config=config.model_copy(update={"executor": serial}))
     memory = _BYTES_PER_POINT * ready.members[0].curve.force.size
-    return FitTask(row.name, memory, row, ready, path)
+    return FitTask(row.name, memory, row, ready, path, common)
+
+
+def _earlier(path: Path, row: Row, fits: ManyFits) -> dict[str, Any] | None:
+    """Return the fit of a row that was kept; of a file that is not that there is a note."""
+    try:
+        return read_sealed(path)
+    except StorageError:
+        fits.notes.append(f"{path} is not the fit that pellicle kept: {row.name} is fitted again")
+        return None
 
 
 def _keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool]:
@@ -229,7 +246,7 @@ def _keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool
         row.status = _failure(outcome, row.name)
     else:
         if task.path is not None:
-            write_json(outcome, task.path)
+            write_sealed(outcome, task.path)
         row.keep(outcome)
     return row.status, not row.is_fitted
 
@@ -242,21 +259,31 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
     scatter = measured - np.mean(measured)
     drawn = sketch(position=position, force=measured, fit=force)
     kept = {name: value for name, value in fit.to_dict().items() if name not in _OF_ALL}
+    if task.common:
+        own = [calibration_of(fit)] if fit.config.uncertainty else []
+        beside = f"common error, beside the medians alone: {shares(task.common)}"
+        kept["calibration"] = "; ".join([*own, beside])
+        moved = kept["common_errors"] = common_errors(fit.answer.chosen, task.common)
+        if MODULUS in moved and (ratio := fit.poissons_ratio) is not None:
+            of_youngs = {name: (1 - ratio**2) * error for name, error in moved[MODULUS].items()}
+            moved["youngs_modulus"] = of_youngs
     return kept | {
         "r_squared": 1 - float(np.sum((force - measured) ** 2) / np.sum(scatter**2)),
         "indentation": float(np.max(depth)),
         "largest_force": float(np.max(force)),
-        "sketch": {name: [float(f"{v:.5g}") for v in values] for name, values in drawn.items()},
+        "sketch": as_json(drawn),
     }
 
 
-def _identity(config: FitConfig, indenter: Indenter | HasForceCurve, curve: Measurement) -> str:
+def _identity(
+    config: FitConfig, indenter: Indenter | HasForceCurve, curve: Measurement, common: Sequence[str]
+) -> str:
     """Return a hash that is equal for fits with equal results."""
     options = config.model_dump(mode="json", exclude=_WITHOUT_EFFECT, fallback=str)
     of_curve = described(indenter), curve.is_depth, curve.stiffness, curve.speed, curve.messages
     plugins = registry().versions(components_of(config) - {type(config.executor)})
     versions = version("pellicle"), sorted(plugins.items())
-    digest = hashlib.sha256(repr((versions, options, of_curve)).encode())
+    digest = hashlib.sha256(repr((versions, options, common, of_curve)).encode())
     if not isinstance(indenter, Component):
         digest.update(pickle.dumps(indenter))
     for values in (curve.position, curve.force, *([] if curve.time is None else [curve.time])):
@@ -275,6 +302,8 @@ def _write(fits: ManyFits, config: FitConfig, began: float, directory: Path) -> 
     """Write the tables of the curves and of the groups, and return their paths."""
     import pandas as pd
 
+    from .report.paper_table import save_tables
+
     record = record_of(config, [row.curve["data"] for row in fits.rows if row.is_fitted], began)
     attributes = {
         "configuration": config.to_json(),
@@ -290,4 +319,8 @@ def _write(fits: ManyFits, config: FitConfig, began: float, directory: Path) -> 
         with atomic_write(path) as part:
             content.to_csv(part, index=False, na_rep="nan")
     whole = fits.to_dict() | {"configuration": fits.configuration} | record
-    return hdf5, text, groups, write_json(whole, directory / "fits.json")
+    # What is drawn again has no other source.
+    for one, row in zip(whole["curves"], fits.rows, strict=True):
+        one["sketch"] = as_json(row.sketch)
+    paper = save_tables(fits.rows, directory / "fits-table")
+    return hdf5, text, groups, *paper, write_sealed(whole, directory / "fits.json")

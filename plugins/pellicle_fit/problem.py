@@ -17,7 +17,8 @@ from pellicle.components import Component, HasForceCurve, HasLayerForceCurve, In
 from pellicle.errors import ConfigError, PellicleError
 from pellicle.schema import walk
 
-from .config import UNCERTAIN, FitConfig
+from .calibration import errors
+from .config import FitConfig
 from .curve import Curve
 from .effect import Effect, Solid, quantities
 from .files.cleaning import clean
@@ -101,10 +102,7 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
         "rivals": [r for rival in (*config.rivals, *forms) if (r := _known(rival, fix, ratio))],
         "kept": [*given, *baseline, *layers],
         "fix": {name: fix[name] for name in quantities(Solid).keys() & fix.keys()},
-        "uncertainty": [
-            _effect(UNCERTAIN[of], **{f"{UNCERTAIN[of]}_error": {"value": 0.0, "deviation": share}})
-            for of, share in config.uncertainty.items()
-        ],
+        "uncertainty": errors(config.uncertainty),
     }
     return Problem(config, tuple(members), question, ratio, began)
 

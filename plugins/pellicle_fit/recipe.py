@@ -244,10 +244,9 @@ def with_estimates(
         for i, (curve, noise) in enumerate(zip(objective.curves, objective.noise, strict=True))
     )
     if extra:
-        known = objective.explanation
-        objective = replace(objective, explanation=replace(known, effects=(*known.effects, *extra)))
-        at = objective.at_values(fit.objective.values(minimum.at))
-        minimum = objective.minimise(np.where(np.isnan(at), 0.0, at))
+        objective, at = fit.beside(extra)
+        minimum = objective.minimise(at)
     minimum, found = estimates(objective, minimum, threshold * max(1.0, accuracy) ** 2, names)
-    fit = replace(fit, estimates=found)
-    return fit if extra else replace(fit, minimum=minimum)
+    if extra:
+        return replace(fit, estimates=found, weighed=(objective, minimum))
+    return replace(fit, estimates=found, minimum=minimum)

@@ -8,9 +8,10 @@ from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
+import xarray as xr
 from typer.testing import CliRunner, Result
 
-from pellicle import commands
+from pellicle import commands, results
 from pellicle.cli.app import app
 from pellicle.origins import GROUP
 from tests.installed import entry_point
@@ -121,6 +122,40 @@ def test_a_model_that_is_missing_breaks_what_asks_for_it(install: Install) -> No
     assert broken["entry_point"] == "command.hello"
     Path("a.toml").write_text("kernel = 1\nnonsense = 2\n", encoding="utf-8")
     assert "nonsense: is not a field here" in call("run", "a.toml", code=2).stderr
+
+
+WRITTEN = """
+class Table:
+    def __init__(self, path):
+        self.path = path
+    def show(self, *, si, json):
+        echo(f"{self.path.name}, {si}, {json}")
+    def plot(self, directory, formats):
+        return [directory / f"a.{format}" for format in formats]
+"""
+
+
+def test_what_a_command_wrote_is_shown(install: Install) -> None:
+    """The command shows and draws its table; where it cannot, that is told as before."""
+    columns = xr.Dataset({"a": ("x", [1.0])})
+    for command in ("hello", "nobody"):
+        attributes = {"command": command, "configuration": "{}", "versions": ""}
+        results.write(columns.assign_attrs(attributes), Path(command) / "table.h5")
+    install(WRITTEN + registers("hello, written=f'{__name__}:Table'"))
+    assert call("show", "hello", "--si").stdout == "table.h5, True, False\n"
+    drawn = call("plot", "hello/table.h5", "--format", "svg", "--format", "pdf").stdout
+    assert drawn.splitlines() == [f"wrote {Path('hello') / name}" for name in ("a.svg", "a.pdf")]
+    for word in ("show", "plot"):
+        assert "a table that pellicle nobody wrote" in call(word, "nobody", code=2).stderr
+
+
+@pytest.mark.parametrize("more", ["del Table.show", "Table.__init__ = None", "del Table"])
+def test_a_command_that_cannot_show_what_it_wrote_is_named(install: Install, more: str) -> None:
+    """It is no fault of pellicle."""
+    attributes = {"command": "hello", "configuration": "{}", "versions": ""}
+    results.write(xr.Dataset({"a": ("x", [1.0])}, attrs=attributes), Path("table.h5"))
+    install(f"{WRITTEN}{more}\n" + registers("hello, written=f'{__name__}:Table'"))
+    assert "error: command 'hello' of greetings 1.5" in call("show", "table.h5", code=2).stderr
 
 
 def test_of_two_claimants_none_is_used(install: Install) -> None:

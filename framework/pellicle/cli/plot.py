@@ -23,7 +23,8 @@ def plot(
     results: Annotated[
         Path,
         typer.Argument(
-            metavar="RESULTS", help="Folder of a run or study, result file (.h5) or study.h5."
+            metavar="RESULTS",
+            help="Folder of a run, a study or another command; result (.h5) or study.h5.",
         ),
     ],
     directory: Annotated[
@@ -35,12 +36,14 @@ def plot(
         typer.Option("--format", metavar="FORMAT", help="png, svg or pdf; repeat for several."),
     ] = None,
 ) -> None:
-    """Draw the figures of a result or of a study."""
+    """Draw the figures of a result, of a study, or of what another command wrote."""
     from pellicle import registry
     from pellicle.components import Output
     from pellicle.results.result import file_of_run, load
     from pellicle.results.runs import StoredRuns
     from pellicle.studies.runner import is_table, read
+
+    from .results import written
 
     chosen = [str(format_) for format_ in formats or [Format.PNG]]
     output = registry().make(Output, {"type": "figures", "formats": chosen})
@@ -49,6 +52,11 @@ def plot(
         runs, name = StoredRuns.of_study(table, folder), "study"
     else:
         file = file_of_run(results)
+        with written(file) as of_command:
+            if of_command:
+                for path in of_command.plot(directory or file.parent, chosen):
+                    echo(f"wrote {path}")
+                return
         runs, folder, name = StoredRuns.of_run(load(file).dataset), file.parent, file.stem
     for path in output.write(runs, (directory or folder) / name):
         echo(f"wrote {path}")

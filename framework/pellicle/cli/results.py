@@ -6,20 +6,37 @@ Commands import it when they are called: unlike them it imports what it needs at
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any
 
 import typer
 import xarray as xr
 
+from pellicle.commands import Command, commands, errors_attributed_to, load_command
 from pellicle.files import for_document
+from pellicle.origins import GROUP
+from pellicle.results import storage
 from pellicle.results.result import Result
 from pellicle.results.runs import axes_of, progress_of, runs_of
 from pellicle.show import sentences, tables
 from pellicle.variables import CAVEATS
 
 from .printing import NOT_CONVERGED, echo, print_json, print_table, print_warning
+
+
+@contextmanager
+def written(file: Path) -> Iterator[Any]:
+    """Yield what shows the table of a command, as `RegisterCommand` says; None for a result."""
+    name = str(storage.attributes(file, "any").get("command", ""))
+    command = load_command(name) if name in commands() else None
+    if not isinstance(command, Command) or not command.written:
+        yield None
+        return
+    with errors_attributed_to(name):
+        yield EntryPoint(name, command.written, GROUP).load()(file)
 
 
 def print_origin(data: xr.Dataset) -> None:

@@ -23,14 +23,19 @@ def show(
         bool, typer.Option("--json", help="Print the result as JSON, in SI units.")
     ] = False,
 ) -> None:
-    """Print the steps of a result, or the runs of a study, and its origin."""
-    from pellicle.results.result import Result, load
+    """Print steps of a result or runs of a study, and its origin; or what a command wrote."""
+    from pellicle.results.result import Result, file_of_run, load
     from pellicle.show import sentences
     from pellicle.studies.runner import is_table, read
 
-    from .results import exit_by_outcome, print_origin, print_outcome_json, print_tables
+    from .results import exit_by_outcome, print_origin, print_outcome_json, print_tables, written
 
-    outcome = read(results)[0] if is_table(results) else load(results)
+    if not (is_study := is_table(results)):
+        with written(file_of_run(results)) as of_command:
+            if of_command:
+                of_command.show(si=si, json=json)
+                return
+    outcome = read(results)[0] if is_study else load(results)
     if json:
         print_outcome_json(outcome)
     else:

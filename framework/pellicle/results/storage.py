@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     import h5py
     import xarray as xr
 
+_Kind = Literal["result", "table", "any"]
 SCHEMA_VERSION = 3
 """Version of the layout, in the attribute ``schema_version`` of every file."""
 REPLACING = (
@@ -101,9 +102,9 @@ def read(path: Path, without: Collection[str] = ()) -> xr.Dataset:
             return joined(steps)
 
 
-def attributes(path: Path) -> dict[str, Any]:
+def attributes(path: Path, kind: _Kind = "result") -> dict[str, Any]:
     """Return the attributes of a result file without reading its steps."""
-    with opened(path) as file:
+    with opened(path, kind) as file:
         return _attributes_of(file)
 
 
@@ -205,8 +206,8 @@ def _extend(file: h5py.File, values: Mapping[str, Any]) -> None:
 
 
 @contextmanager
-def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[h5py.File]:
-    """Yield the HDF5 file of a result or of the table of a study, for reading."""
+def opened(path: Path, kind: _Kind = "result") -> Iterator[h5py.File]:
+    """Yield the HDF5 file of a result, of the table of a study or of a command, for reading."""
     if not is_file(path):
         reason = "no such file; give a result file (.h5) that pellicle wrote"
         if is_folder(path):

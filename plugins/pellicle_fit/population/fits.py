@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .row import ENDS, OVER_TIED, SHOWN, Row, units
+from pellicle_fit.intervals import threshold_of
+
+from .row import ENDS, OVER_TIED, SHOWN, Row, counted, units
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,7 +32,7 @@ class ManyFits:
     resumed: int = 0
     """Number of fits that an earlier call had finished."""
     notes: list[str] = field(default_factory=list)
-    """Notes on the population: rejected curves, outliers, lists with wrong names."""
+    """Notes on the population: changed files, rejected curves, lists with wrong names."""
     maps: dict[str, xr.Dataset] = field(default_factory=dict)
     """Images of each force map, by its file."""
     configuration: dict[str, Any] = field(default_factory=dict)
@@ -93,31 +95,44 @@ def _cells(row: Row) -> dict[str, Any]:
 def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
     """Return a line for each parameter and group that has an accepted curve, then for all curves.
 
-    Of all ``curves`` of a group ``n`` are accepted. Those whose intervals are ``open``, or too wide
-    to quote a value, change no quartile; where all are, quartiles are NaN. Parameters that
-    were fixed have no line.
+    Of all ``curves`` of a group ``n`` are accepted. Quartiles are of the best values of all of
+    these, of which ``open`` have an interval with an open end, or one too wide to quote the value.
+    Parameters that were fixed have no line.  Where curves share an error of the calibration, there
+    is a ``common_error``.
     """
     import pandas as pd
 
     fitted = [
-        (name, row.group, e.unit, e.value if row.determines(name) else np.nan, row.outlier)
+        (name, row.group, e.unit, e.value, not e.is_narrow, row.outlier, row)
         for name in dict.fromkeys((*OVER_TIED, *SHOWN))
-        for row in rows
-        if row.accepted and (e := row.estimates.get(name)) is not None and not e.held
+        for row, e in counted(rows, name).items()
     ]
-    frame = pd.DataFrame(fitted, columns=["parameter", "group", "unit", "value", "outlier"])
+    columns = "parameter", "group", "unit", "value", "open", "outlier", "row"
+    frame = pd.DataFrame(fitted, columns=columns)
     curves, lines = Counter(row.group for row in rows), []
     for name, whole in frame.groupby("parameter", sort=False):
         groups = whole.groupby("group", sort=False) if len(curves) > 1 else ()
         parts = [(label(group), curves[group], part) for group, part in groups]
         for group, count, part in (*parts, ("all", len(rows), whole)):
-            values = part["value"]
             line = {"group": group, "parameter": name, "unit": part["unit"].iloc[0]}
-            line |= {"curves": count, "n": len(part), "open": int(values.isna().sum())}
-            quartiles = values.quantile([0, 0.25, 0.5, 0.75, 1]).tolist()
+            line |= {"curves": count, "n": len(part), "open": int(part["open"].sum())}
+            quartiles = part["value"].quantile([0, 0.25, 0.5, 0.75, 1]).tolist()
             line["outliers"] = int(part["outlier"].sum())
-            lines.append(line | dict(zip(QUARTILES, quartiles, strict=True)))
+            line |= zip(QUARTILES, quartiles, strict=True)
+            lines.append(line | common_error(part["row"], name))
     return lines
+
+
+def common_error(rows: Iterable[Row], name: str) -> dict[str, float]:
+    """Return the ``common_error`` of the median of a quantity, nothing if no curve has one.
+
+    It is half of a 95 % interval [SI]: by so much the calibration that curves share may move all.
+    """
+    import pandas as pd
+
+    moved = pd.DataFrame([row.fit.get("common_errors", {}).get(name, {}) for row in rows])
+    deviation = float(np.sqrt((moved.fillna(0.0).median() ** 2).sum()))
+    return {"common_error": threshold_of(np.inf) ** 0.5 * deviation} if moved.size else {}
 
 
 def label(group: str) -> str:

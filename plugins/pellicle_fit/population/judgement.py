@@ -17,7 +17,7 @@ from pellicle.units import one, readable, split
 from pellicle_fit.objective import MODULUS
 from pellicle_fit.verdict import Verdict
 
-from .row import Row, units
+from .row import Row, counted, units
 
 _SIGNS: dict[str, Callable[[float, float], bool]] = {
     "<=": operator.le,
@@ -156,21 +156,21 @@ def judge(rows: Sequence[Row], rules: Sequence[str], rejected: Names | None) -> 
 def outliers(rows: Sequence[Row]) -> list[Row]:
     """Return the rows whose log E* is further from the median than 3.5 robust deviations.
 
-    The median is that of the group; rows that do not determine it are left out, and one whose
-    interval holds it does not stand out.
+    The median is that of the group; a row whose interval holds it does not stand out.
     The deviation is 1.4826 times the median absolute deviation, which some of the outliers
     themselves do not change (Iglewicz and Hoaglin, 1993).
     """
     import pandas as pd
 
-    rows = [row for row in rows if row.determines(MODULUS)]
-    found = [row.estimates[MODULUS] for row in rows]
-    known = np.array([(e.value, e.low, e.high) for e in found], dtype=float).reshape(-1, 3)
-    logarithms, low, high = (pd.Series(column) for column in np.log(known).T)
-    groups = pd.Series([row.group for row in rows], dtype=object)
+    found = counted(rows, MODULUS)
+    known = [(e.value, e.low or 0.0, np.inf if e.high is None else e.high) for e in found.values()]
+    with np.errstate(divide="ignore"):
+        values = np.log(np.reshape(known, (-1, 3)))
+    logarithms, low, high = (pd.Series(column) for column in values.T)
+    groups = pd.Series([row.group for row in found], dtype=object)
     medians = logarithms.groupby(groups).transform("median")
     distances = (logarithms - medians).abs()
     limits = _LIMIT * _NORMAL * distances.groupby(groups).transform("median")
     sizes = logarithms.groupby(groups).transform("size")
     far = (distances > limits) & ((medians < low) | (medians > high))
-    return list(compress(rows, far & (limits > 0) & (sizes >= _FEWEST)))
+    return list(compress(found, far & (limits > 0) & (sizes >= _FEWEST)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -46,6 +47,11 @@ def sketch(**columns: ArrayLike) -> dict[str, Array]:
     return {name: values[rows].astype("f4") for name, values in arrays.items()}
 
 
+def as_json(drawn: dict[str, Array]) -> dict[str, list[float]]:
+    """Return a sketch as JSON data."""
+    return {name: [float(f"{v:.5g}") for v in values] for name, values in drawn.items()}
+
+
 @dataclass(eq=False)
 class Row:
     """One curve of a population."""
@@ -84,11 +90,6 @@ class Row:
         """Whether there is a fit."""
         return self.status == FITTED
 
-    def determines(self, name: str) -> bool:
-        """Return whether a quantity was fitted, and its interval is narrow enough to quote it."""
-        found = self.estimates.get(name)
-        return found is not None and found.is_narrow
-
     def values(self) -> dict[str, float]:
         """Return all numbers in SI by name, ends of intervals too; NaN is an open end, or none."""
         if not self.fit:
@@ -114,6 +115,18 @@ class Row:
         """Codes of the checks that its residuals fail."""
         return [check["code"] for check in self.curve.get("failed_checks", ())]
 
+    @classmethod
+    def of_dict(cls, data: dict[str, Any]) -> Row:
+        """Return the row of which `to_dict` returned the data, with its sketch if they hold one."""
+        own = {name: data[name] for name in ("group", "status", "accepted", "reason", "outlier")}
+        row = cls(data["curve"], **own)
+        if site := data.get("site"):
+            row.map, row.site = site["map"], Site(site["x"], site["y"])
+        if row.is_fitted:
+            row.keep({k: v for k, v in data.items() if k not in {"curve", "site", *own}})
+        row.sketch = sketch(**data["sketch"]) if data.get("sketch") else {}
+        return row
+
     def to_dict(self) -> dict[str, Any]:
         """Return the row as JSON data, without the sketch."""
         row: dict[str, Any] = {"curve": self.name, "status": self.status, "group": self.group}
@@ -121,6 +134,16 @@ class Row:
             row["site"] = {"map": self.map, **self.site._asdict()}
         judgement = {"accepted": self.accepted, "reason": self.reason, "outlier": self.outlier}
         return row | judgement | self.fit
+
+
+def counted(rows: Iterable[Row], name: str) -> dict[Row, Estimate]:
+    """Return the estimate of a quantity of each accepted row that has one.
+
+    Intervals of any width count: without the open ones, the stiffest curves would be chosen.  A
+    quantity that was given for all curves has none.
+    """
+    found = {row: e for row in rows if row.accepted and (e := row.estimates.get(name)) is not None}
+    return {} if all(e.held for e in found.values()) else found
 
 
 def units() -> dict[str, str]:

@@ -20,23 +20,38 @@ if TYPE_CHECKING:
 PAGE = 8.27, 11.69
 """Width and height of a page [inch]."""
 _ACROSS, _DOWN = 4, 7
-_LETTERS = 38
+"""Most curves across and down a page."""
+_LETTERS, _SIZE, _LARGEST = 38, 4.5, 9.0
+"""Letters across a narrowest frame, their size, and the greatest size [pt]."""
 _COLOURS = {"accepted": "0.6", "outlier": "C1", "rejected": "C3", "not fitted": "0.2"}
 """Colours of the frames."""
-_DOTS: dict[str, Any] = {"color": "0.6", "ms": 1.6, "mew": 0.35}
+_DOTS: dict[str, Any] = {"color": "0.6", "mew": 0.35}
 
 
 def sheets(rows: Sequence[Row]) -> list[Callable[[Figure], None]]:
     """Return functions that draw the pages of the contact sheet of all curves."""
-    size = _ACROSS * _DOWN
-    pages = [rows[start : start + size] for start in range(0, len(rows), size)]
-    return [partial(_page, page, f"page {k} of {len(pages)}") for k, page in enumerate(pages, 1)]
+    count = -(-len(rows) // (_ACROSS * _DOWN))
+    pages = [rows[k * len(rows) // count : (k + 1) * len(rows) // count] for k in range(count)]
+    return [partial(_page, page, f"page {k} of {count}") for k, page in enumerate(pages, 1)]
+
+
+def grid(count: int) -> tuple[int, int]:
+    """Return how many frames down and across fill a page: few are empty, and none is slim."""
+
+    def cost(shape: tuple[int, int]) -> float:
+        down, across = shape
+        slim = PAGE[0] / across / (PAGE[1] / down) / (PAGE[0] / _ACROSS / (PAGE[1] / _DOWN))
+        return abs(float(np.log(slim))) + (down * across - count) / count
+
+    shapes = [(-(-count // across), across) for across in range(1, _ACROSS + 1)]
+    return min((shape for shape in shapes if shape[0] <= _DOWN), key=cost)
 
 
 def _page(rows: Sequence[Row], caption: str, figure: Figure) -> None:
-    cells = figure.subplots(_DOWN, _ACROSS).ravel()
+    down, across = grid(len(rows))
+    cells = figure.subplots(down, across, squeeze=False).ravel()
     for row, axes in zip(rows, cells, strict=False):
-        _curve(row, axes)
+        _curve(row, axes, _ACROSS / across)
     for axes in cells[len(rows) :]:
         axes.set_axis_off()
     colours = "accepted: grey, stands out: orange, rejected: red, not fitted: black"
@@ -44,12 +59,17 @@ def _page(rows: Sequence[Row], caption: str, figure: Figure) -> None:
     figure.suptitle(f"{title}each curve, {colours}", fontsize=5)
 
 
-def _curve(row: Row, axes: Axes) -> None:
-    """Draw a curve with its fit in a frame, with its name, its numbers and why it is rejected."""
+def _curve(row: Row, axes: Axes, width: float) -> None:
+    """Draw a curve with its fit in a frame, with its name, its numbers and why it is rejected.
+
+    The width is that of the frame over the narrowest.
+    """
+    size = min(_SIZE * width, _LARGEST)
+    letters = int(_LETTERS * width * _SIZE / size)
     state = "accepted" if row.accepted else "rejected" if row.is_fitted else "not fitted"
     axes.spines[:].set_color(_COLOURS["outlier" if row.outlier else state])
     axes.set(xticks=[], yticks=[])
-    texts = [row.name[-_LETTERS:], row.reason[:_LETTERS]]
+    texts = [row.name[-letters:], row.reason[:letters]]
     if row.is_fitted:
         shown = ((row.estimates.get(name), symbol) for name, symbol in SHOWN.items())
         named = [
@@ -59,12 +79,12 @@ def _curve(row: Row, axes: Axes) -> None:
         texts[1:1] = [", ".join(named), f"R² {row.fit['r_squared']:.4f}, χ²/n {ratio}"]
     # A name may hold dollars, which are formulas to matplotlib.
     words = for_document("\n".join(filter(None, texts))).replace("$", r"\$")
-    axes.set_title(words, loc="left", fontsize=4.5, in_layout=False)
+    axes.set_title(words, loc="left", fontsize=size, in_layout=False)
     if row.sketch and row.sketch["position"].size:
         z, force = row.sketch["position"], row.sketch["force"]
-        axes.plot(z, force, "o", mfc="0.6" if row.accepted else "none", **_DOTS)
+        axes.plot(z, force, "o", mfc="0.6" if row.accepted else "none", ms=0.36 * size, **_DOTS)
         if "fit" in row.sketch:
             axes.plot(z, row.sketch["fit"], "C0", linewidth=0.7)
         ranges = readable(float(np.ptp(z)), "m", 3), readable(float(np.ptp(force)), "N", 3)
         inside: dict[str, Any] = {"transform": axes.transAxes, "va": "top", "color": "0.4"}
-        axes.text(0.04, 0.95, "\n".join(ranges), fontsize=4.5, **inside)
+        axes.text(0.04, 0.95, "\n".join(ranges), fontsize=size, **inside)

@@ -44,9 +44,12 @@ def panels(fit: Fit | ManyFits) -> dict[str, Drawing]:
     """Return what fills the figures of a fit or of many fits, and their sizes, by caption."""
     if isinstance(fit, Fit):
         return {caption: figure_of(beside) for caption, beside in charts(fit).items()}
-    of_bars = "Filled, accepted curves; hollow, rejected ones; bars to 0 or a triangle are open."
-    closed = "Accepted curves with closed intervals, by group; dotted, the median."
-    beside = {of_bars: bars(fit.rows), closed: distributions(fit.rows)}
+    is_held = any("common_errors" in row.fit for row in fit.rows)
+    held = " Bars hold the calibration." if is_held else ""
+    of_bars = f"Filled, accepted curves; hollow, rejected; bars to 0 or a triangle are open.{held}"
+    accepted = "Best values of all accepted curves, by group; dotted, the median"
+    accepted += " and the 95 % that the common error of the calibration leaves it." if held else "."
+    beside = {of_bars: bars(fit.rows), accepted: distributions(fit.rows)}
     found: dict[str, Drawing] = {caption: figure_of(of) for caption, of in beside.items() if of}
     for name, images in fit.maps.items():
         title = Path(name).name
@@ -110,16 +113,18 @@ def plot(fit: Fit) -> Figure:
 def _curves(fit: Fit, rival: Candidate | None = None) -> Chart:
     """Return data and fits over the indentation, of several curves over its largest; residuals."""
     chosen, forces, count, series = fit.answer.chosen, fit.forces(), len(fit.members), []
-    depths = chosen.depths
+    subtracted, depths = False, chosen.depths
     for number, (member, force) in enumerate(zip(fit.members, forces, strict=True)):
-        curve, turn = member.curve, int(member.curve.moves_out.argmax())
+        curve, known = member.curve, chosen.objective.known(chosen.minimum.at, number)
+        baseline, turn = known.free_force(curve), int(curve.moves_out.argmax())
+        subtracted, data = subtracted or bool(baseline.any()), curve.force - baseline
         measured = depths[number]
-        deepest, largest = (measured.max(), abs(curve.force).max()) if count > 1 else (1.0, 1.0)
+        deepest, largest = (measured.max(), abs(data).max()) if count > 1 else (1.0, 1.0)
         passes = Leg(slice(0, turn), "approach"), Leg(slice(turn, force.size), "retraction")
         legs = passes if len(curve.passes) > 1 else ()
-        x, data = measured / deepest, "data" if number == 0 else ""
+        x, legend = measured / deepest, "data" if number == 0 else ""
         dots = Look(None, None, 0, filled=False if legs else None)
-        series.append(Series(x, curve.force / largest, legend=data, look=dots, legs=legs))
+        series.append(Series(x, data / largest, legend=legend, look=dots, legs=legs))
         own = member.name * (count <= _LEGEND_CURVES) if count > 1 else f"fit: {words_of(chosen)}"
         models = [(words_of(rival), 1, rival.forces()[0])] if rival else []
         for name, hue, modelled in [*models, (own, number, force)]:
@@ -128,12 +133,14 @@ def _curves(fit: Fit, rival: Candidate | None = None) -> Chart:
             depth, legend = (measured + given) / deepest, fill(name, _LETTERS)
             look = Look(hue, 0 if legs else hue)
             left = (curve.force - modelled) / fit.answer.judgements[number].deviation
-            series.append(Series(depth, modelled / largest, legend=legend, look=look, legs=legs))
+            y = (modelled - baseline) / largest
+            series.append(Series(depth, y, legend=legend, look=look, legs=legs))
             series.append(Series(x, left, look=dots._replace(hue=hue), legs=legs, panel=1))
     drawn = np.concatenate([one.y for one in series if one.panel == 0])
     # It ends where the legend may begin.
     series.append(guide([0.0, 0.0], [drawn.min(), drawn.max() / 3], "contact point"))
-    across, up = Axis("indentation", "m"), Axis("force", "N")
+    less = " less its baseline" if subtracted else ""
+    across, up = Axis("indentation", "m"), Axis(f"force{less}", "N")
     if count > 1:
-        across, up = Axis("indentation / largest indentation"), Axis("force / largest force")
+        across, up = Axis("indentation / largest indentation"), Axis(f"force{less} / largest force")
     return Chart(across, [up, _RESIDUALS], series, hues=max(count, 2), heights=(3, 1))

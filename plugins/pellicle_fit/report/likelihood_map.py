@@ -26,9 +26,10 @@ def likelihood_map(explained: Candidate, widened: float) -> Chart:
     """Return the edges of what describes curves, with all but modulus and tension sought.
 
     At each modulus χ² is a parabola of the tension, whose width is that to first order: the rest
-    moves as this makes χ² least. Δχ² at the edges is ``widened`` for curves that do not agree.
+    moves as this makes χ² least, as do errors of the calibration that are weighed. Δχ² at the edges
+    is ``widened`` for curves that do not agree.
     """
-    objective, best = explained.objective, explained.minimum
+    objective, best = explained.weighed or (explained.objective, explained.minimum)
     names = [slot.name for slot in objective.slots]
     e, t = names.index(MODULUS), names.index(TENSION)
     rest = [k for k in range(len(names)) if k not in (e, t)]

@@ -15,9 +15,9 @@ from pellicle.results import header
 from pellicle.show import figure_of, save_figure, save_pages
 from pellicle.units import axis_unit
 from pellicle_fit.objective import MODULUS
-from pellicle_fit.population.fits import ManyFits, label
+from pellicle_fit.population.fits import ManyFits, common_error, label
 from pellicle_fit.population.images import CONTACT_HEIGHT
-from pellicle_fit.population.row import SHOWN, Row
+from pellicle_fit.population.row import SHOWN, Row, counted
 from pellicle_fit.recipe import TENSION
 from pellicle_fit.words.names import words
 
@@ -77,23 +77,28 @@ def bars(rows: Sequence[Row]) -> list[Chart]:
 
 
 def distributions(rows: Sequence[Row]) -> list[Chart]:
-    """Return histograms of E* and τ₀ of the accepted curves, where intervals are closed."""
-    rows, charts = [row for row in rows if row.accepted], list[Chart]()
-    groups = list(dict.fromkeys(label(row.group) for row in rows))
+    """Return histograms of E* and τ₀ of the accepted curves."""
+    charts = list[Chart]()
+    groups = list(dict.fromkeys(label(row.group) for row in rows if row.accepted))
     for name, unit in _DRAWN.items():
-        closed = [row for row in rows if row.determines(name)]
-        values = np.array([row.estimates[name].value for row in closed])
-        if closed:
+        if found := counted(rows, name):
+            values = np.array([e.value for e in found.values()])
             is_wide = name == MODULUS and bool(values.max() > _DECADE * values.min())
-            kinds = np.array([groups.index(label(row.group)) for row in closed])
+            kinds = np.array([groups.index(label(row.group)) for row in found])
             # One legend is enough.
             legends = groups if len(groups) > 1 and not charts else [""] * len(groups)
-            charts.append(_histogram(Axis(words(name), unit, log=is_wide), values, kinds, legends))
+            error, axis = common_error(found, name), Axis(words(name), unit, log=is_wide)
+            charts.append(_histogram(axis, values, kinds, legends, *error.values()))
     return charts
 
 
-def _histogram(axis: Axis, values: Array, kinds: Array, legends: Sequence[str]) -> Chart:
-    """Return how many values lie in each bin, those of each kind on top of the others."""
+def _histogram(
+    axis: Axis, values: Array, kinds: Array, legends: Sequence[str], error: float = 0.0
+) -> Chart:
+    """Return how many values lie in each bin, those of each kind on top of the others.
+
+    A bar across the median is of the error that all have in common.
+    """
     low, high = float(values.min()), float(values.max())
     number = int(np.clip(np.sqrt(values.size) * 2, *_BINS)) + 1
     high = high if high > low else low + (abs(low) or 1.0)
@@ -105,9 +110,13 @@ def _histogram(axis: Axis, values: Array, kinds: Array, legends: Sequence[str]) 
         ends = {"low": floor, "high": top}
         series.append(Series(np.repeat(edges, 2), top, legend=legend, look=Look(kind), **ends))
         floor = top
-    median = guide([float(np.median(values))] * 2, [0.0, floor.max()])
+    median, height = float(np.median(values)), floor.max()
+    guides = [guide([median] * 2, [0.0, height])]
+    if error:
+        reach = [max(median - error, 0.1 * median), median + error]
+        guides = [guide(reach, [1.05 * height] * 2, "95 % of the common error"), *guides]
     # In the order of the stack, from the top, so that no outline hides one below it.
-    return Chart(axis, [Axis("curves")], [*series[::-1], median], hues=len(legends))
+    return Chart(axis, [Axis("curves")], [*series[::-1], *guides], hues=len(legends))
 
 
 def map_figure(

@@ -106,16 +106,20 @@ def rows(of: Sequence[Row], *, si: bool = False) -> Table:
 
 def groups(of: Sequence[Row], *, si: bool = False) -> Table:
     """Return a row for each parameter of each group of curves."""
-    cells = []
-    for part in summary(of):
+    parts, cells = summary(of), []
+    heads = ["group", "parameter", "accepted", "open", "outliers", "median", "quartiles"]
+    if has_error := any("common_error" in part for part in parts):
+        heads.append("common error")
+    for part in parts:
         unit = _usual(of, part["parameter"], si)
         low, median, high = (unit.number(part[name]) for name in QUARTILES[1:4])
         counts = f"{part['n']} of {part['curves']}", str(part["open"]), str(part["outliers"])
         named = part["group"], f"{words(part['parameter'])} [{unit.unit}]"
-        ends = (median, f"{low} to {high}") if part["open"] < part["n"] else ("not determined", "")
-        cells.append((*named, *counts, *ends))
-    heads = "group", "parameter", "accepted", "open", "outliers", "median", "quartiles"
-    return Table.of_rows(heads, cells, "The accepted curves.")
+        error = [f"± {unit.number(part.get('common_error', 0.0), FEW)}"] if has_error else []
+        cells.append((*named, *counts, median, f"{low} to {high}", *error))
+    return Table.of_rows(
+        heads, cells, "All accepted curves; open, those whose interval is open or wide."
+    )
 
 
 def _unit(fit: Fit, name: str, si: bool) -> Scale:
@@ -128,12 +132,10 @@ def _unit(fit: Fit, name: str, si: bool) -> Scale:
 
 
 def _usual(of: Sequence[Row], name: str, si: bool) -> Scale:
-    """Return the unit of a quantity in all tables of curves: that of the median of those held."""
-    found = {row: e for row in of if (e := row.estimates.get(name)) is not None}
-    closed = [e.value for row, e in found.items() if row.determines(name)]
-    values = closed or [e.value for e in found.values() if e.value] or [0.0]
-    unit = next((e.unit for e in found.values()), "")
-    return unit_of([float(np.median(values))], unit, si=si)
+    """Return the unit of a quantity in all tables of curves: that of the median upper end."""
+    found = [e for row in of if (e := row.estimates.get(name)) is not None]
+    values = [size for e in found if (size := e.high or e.value)] or [0.0]
+    return unit_of([float(np.median(values))], found[0].unit if found else "", si=si)
 
 
 def _quantity(

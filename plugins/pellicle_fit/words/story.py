@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
@@ -75,10 +75,13 @@ def numbers(fit: Fit, *, si: bool = False) -> str:
 
 def calibration_of(fit: Fit) -> str:
     """Return to which uncertainties the calibration is known: exactly, if there are none."""
-    known = [
-        f"{words(name)} to {100 * share:.3g} %" for name, share in fit.config.uncertainty.items()
-    ]
-    return f"calibration weighed: {listed(known)}" if known else "calibration taken as exact"
+    known = shares(fit.config.uncertainty)
+    return f"calibration weighed: {known}" if known else "calibration taken as exact"
+
+
+def shares(uncertainty: Mapping[Any, float]) -> str:
+    """Return an uncertainty in words."""
+    return listed([f"{words(name)} to {100 * x:.3g} %" for name, x in uncertainty.items()])
 
 
 def verdict(answer: Answer) -> str:

@@ -17,7 +17,14 @@ from numpy.typing import NDArray
 import pellicle as pl
 from pellicle.components import AnyTask, Executor, Outcome, Report, Say
 from pellicle.plugins import Registry
+from pellicle_fit.many import fit_sources
+from pellicle_fit.population.fits import ManyFits, summary
+from pellicle_fit.population.row import Row
+from pellicle_fit.report.population import distributions
+from pellicle_fit.report.tables import groups
+from pellicle_fit.words.population import sentences_of_population
 from pellicle_plugins.indenters.of_revolution import Paraboloid
+from tests.plugins.fit.conftest import ends_of
 
 Array = NDArray[np.float64]
 MODULUS, LENGTH, RADIUS = 5e3, 3e-6, 10e-6
@@ -99,6 +106,81 @@ def test_what_is_done_is_kept(cli: Cli, tmp_path: Path) -> None:
     assert "2 of 3 fits were done before" in again.output
     assert "done before" not in cli(*common, "--baseline", "offset").output
     assert len(list(Path("out/curves").iterdir())) == 6
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        *(b"", b"{}", b"[]", b"3", b"null", b"{", b"\xff\xfe" * 9, b"[" * 100_000),
+        (b'"points": 60', b'"points": "x"'),
+        (b'"points": 60', b'"points": 61'),
+        (b'"curves"', b'"curve"'),
+        (b'"sketch"', b'"picture"'),
+    ],
+)
+def test_a_kept_fit_that_was_changed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, damage: bytes | tuple[bytes, bytes]
+) -> None:
+    """A file that is no fit, or not the one that was kept, is named, and its curve fitted again."""
+    monkeypatch.setattr("pellicle_fit.report.population.save_population", lambda *_: ())
+    config = pl.FitConfig.merged(**BEAD, rivals=(), fix={"tension": 0})
+
+    def fits() -> ManyFits:
+        return fit_sources(config, config.sources({"a": curve(1)}), tmp_path, progress=False)
+
+    first = fits()
+    (path,) = (tmp_path / "curves").glob("*.json")
+    kept = path.read_bytes()
+    assert json.loads(kept)["reduced_modulus"] == first.rows[0].fit["reduced_modulus"]
+    path.write_bytes(damage if isinstance(damage, bytes) else kept.replace(*damage))
+    assert path.read_bytes() != kept
+    again = fits()
+    assert again.rows[0].to_dict() == first.rows[0].to_dict()
+    assert again.resumed == 0
+    note = f"{path} is not the fit that pellicle kept: a is fitted again"
+    assert again.notes == [note, *first.notes]
+    assert path.read_bytes() == kept
+    assert (fits().resumed, fits().notes) == (1, first.notes)
+
+
+@pytest.mark.parametrize(
+    ("uncertainty", "options", "share"),
+    [
+        ({"spring_constant": 0.1}, {}, 0.1),
+        ({"spring_constant": "35 %"}, {}, 0.35),
+        ({"radius": 0.1}, {}, 0.05),
+        ({"spring_constant": 0.1, "radius": 0.1}, {}, np.hypot(0.1, 0.05)),
+        ({"spring_constant": 0.1, "radius": 0.1}, {"radius": [RADIUS] * 2}, 0.1),
+        ({"radius": 0.1}, {"diameter": [2 * RADIUS] * 2}, 0.0),
+    ],
+)
+def test_an_error_that_curves_share_stands_beside_the_median(
+    uncertainty: dict[str, Any], options: dict[str, Any], share: float
+) -> None:
+    """F ∝ k E* R^½: only what each file has of its own is in its interval, as in that of a fit."""
+    bead: Any = Paraboloid(radius=RADIUS)
+    position = curve(0)[0]
+    force = MODULUS * bead.force_curve(position - 1e-6, 0.0).force
+    noise = 0.005 * force.max() * np.random.default_rng(0).standard_normal((2, force.size))
+    curves = {f"{n}": (position, force + one) for n, one in enumerate(noise)}
+    hertz: dict[str, Any] = BEAD | {"rivals": (), "fix": {"tension": 0}}
+
+    def fits(**more: Any) -> list[Row]:
+        config = pl.FitConfig.merged(**(hertz | more))
+        return fit_sources(config, config.sources(curves), None, progress=False).rows
+
+    exact, weighed = fits(), fits(uncertainty=uncertainty, **options)
+    for one, other in zip(exact, weighed, strict=True):
+        known, found = (row.estimates["reduced_modulus"] for row in (one, other))
+        assert found.value == pytest.approx(known.value, rel=1e-6)
+        assert ends_of(found)[1] > 1.05 * ends_of(known)[1] if options else found == known
+    (line,) = summary(weighed)
+    expected = 1.96 * share * line["median"]
+    assert line.get("common_error", 0.0) == pytest.approx(expected, rel=1e-3)
+    assert ("beside the medians" in sentences_of_population(weighed)[-1]) == (share > 0)
+    assert (groups(weighed).columns[-1].read()[0] == "common error") == (share > 0)
+    guides = [one.legend for one in distributions(weighed)[0].series if one.legend]
+    assert guides == ["95 % of the common error"] * bool(share)
 
 
 def test_a_row_is_that_of_the_chosen_explanation() -> None:

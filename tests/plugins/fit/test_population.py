@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 import weakref
 from collections.abc import Callable, Iterator
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from click.testing import Result
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 from typer.testing import CliRunner
 
@@ -24,7 +28,8 @@ from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.files.sources import Source
 from pellicle_fit.intervals import Estimate
 from pellicle_fit.many import fit_sources
-from pellicle_fit.population.fits import summary
+from pellicle_fit.objective import MODULUS
+from pellicle_fit.population.fits import QUARTILES, summary
 from pellicle_fit.population.judgement import (
     Names,
     Rule,
@@ -35,7 +40,6 @@ from pellicle_fit.population.judgement import (
 from pellicle_fit.population.row import Row
 from pellicle_fit.report.contact_sheet import sheets
 from pellicle_fit.report.population import distributions
-from pellicle_fit.report.tables import groups
 from pellicle_fit.words.names import quoted, unit_of
 from pellicle_fit.words.population import sentences_of_population
 from tests.plugins.fit.test_many import BEAD, HERTZ, OPTIONS, curve, save
@@ -44,18 +48,32 @@ Cli = Callable[..., Result]
 FIXED = (*OPTIONS, "--fix", "tension=0")
 
 
-def estimate(value: float, unit: str = "Pa", *, is_open: bool = False) -> dict[str, Any]:
+CLOSED = (0.9, 1.1)
+ENDS = (CLOSED, (None, 1.1), (0.9, None), (None, None), (0.3, 4.0))
+"""Ends of intervals over the value: closed, open below, above and to both sides, wide."""
+Ends = tuple[float | None, float | None]
+
+
+def estimate(value: float, unit: str = "Pa", ends: Ends = CLOSED) -> dict[str, Any]:
     """Return JSON data of an estimate."""
-    high = None if is_open else 1.1 * value
-    return {"value": value, "low": 0.9 * value, "high": high, "unit": unit, "held": False}
+    low, high = (None if end is None else end * value for end in ends)
+    return {"value": value, "low": low, "high": high, "unit": unit, "held": False}
 
 
-def row(name: str, modulus: float | None = 1e3, *, is_open: bool = False, group: str = "") -> Row:
+def row(
+    name: str,
+    modulus: float | None = 1e3,
+    *,
+    is_open: bool = False,
+    group: str = "",
+    **others: dict[str, Any],
+) -> Row:
     """Return the row of a curve; without a modulus it could not be fitted."""
     if modulus is None:
         return Row(name, group, status="failed: no contact")
     curve = {"points": 50, "noise": {"value": 1e-9, "unit": "N"}, "failed_checks": [], "data": {}}
-    parameters = {"reduced_modulus": estimate(modulus, is_open=is_open)}
+    ends = (0.9, None) if is_open else CLOSED
+    parameters = {"reduced_modulus": estimate(modulus, ends=ends), **others}
     numbers = {"r_squared": 0.99, "chi_squared": 50.0, "indentation": 1e-6, "largest_force": 1e-8}
     model = {"effects": [], "words": "no effect"}
     fit = {"parameters": parameters, "curves": [curve], "messages": [], "model": model}
@@ -145,18 +163,56 @@ def test_outliers_are_kept() -> None:
     assert not outliers([row("a", v) for v in (1e3, 1.01e3, 0.99e3, 1e6)])
 
 
-def test_open_intervals_have_no_median() -> None:
-    """Their values are some of many: they are counted, and change no statistics."""
-    rows = [row(f"{k}", modulus) for k, modulus in enumerate((1e3, 1.1e3, 1.2e3, 1.3e3, 1.4e3))]
-    rows += [row(f"open {k}", 1e6, is_open=True) for k in range(5)]
-    judge(rows, [], None)
-    assert not any(r.outlier for r in rows)
-    (part,) = summary(rows)
-    assert [part[k] for k in ("n", "open", "median", "maximum")] == [10, 5, 1.2e3, 1.4e3]
-    (part,) = summary(rows[5:])
-    assert (part["n"], part["open"], np.isnan(part["median"])) == (5, 5, True)
-    assert groups(rows[5:]).columns[-2].values == ("not determined",)
-    assert distributions(rows)[0].series[-1].x.tolist() == [1.2e3, 1.2e3]
+@settings(max_examples=100, deadline=None, derandomize=True)
+@given(
+    st.lists(
+        st.tuples(
+            st.floats(1e2, 1e5),
+            st.sampled_from(ENDS),
+            st.floats(1e-4, 1e-2),
+            st.sampled_from((*ENDS, "none")),
+            st.sampled_from(("soft", "stiff", "")),
+            st.sampled_from(("accepted", "accepted", "rejected", "failed")),
+        ),
+        min_size=1,
+        max_size=30,
+    )
+)
+def test_statistics_are_of_all_accepted_curves(curves: list[tuple[Any, ...]]) -> None:
+    """No end of an interval chooses curves: quartiles and histograms are those of all values.
+
+    A curve without a tension, such as one that something else describes better, has one of 0.
+    """
+    rows, table = list[Row](), list[dict[str, Any]]()
+    for k, (modulus, ends, tension, of_tension, group, state) in enumerate(curves):
+        bare = of_tension == "none"
+        skin = estimate(tension, "N/m", CLOSED if bare else of_tension)
+        skin |= {"value": 0.0, "low": None, "high": None, "held": True} if bare else {}
+        rows.append(row(f"{k}", None if state == "failed" else modulus, group=group, tension=skin))
+        if state != "failed":
+            rows[-1].fit["r_squared"] = 0.9 if state == "rejected" else 0.99
+            rows[-1].estimates[MODULUS] = Estimate(**estimate(modulus, ends=ends))
+        if state == "accepted":
+            known = {MODULUS: modulus, "tension": skin["value"], "bare": bare}
+            is_open = {MODULUS: ends != CLOSED, "tension": of_tension != CLOSED}
+            table.append({"group": group or "no group", "values": known, "open": is_open})
+    judge(rows, ["r_squared > 0.95"], None)
+    has_skin = not all(line["values"]["bare"] for line in table)
+    names = [MODULUS, *["tension"] * has_skin] if table else []
+    groups = {line["group"] for line in table} if len({r.group for r in rows}) > 1 else set()
+    parts = {(part["group"], part["parameter"]): part for part in summary(rows)}
+    assert parts.keys() == set(product([*groups, *["all"] * bool(table)], names))
+    for (group, name), part in parts.items():
+        mine = [line for line in table if group in ("all", line["group"])]
+        values = [line["values"][name] for line in mine]
+        assert (part["n"], part["open"]) == (len(mine), sum(line["open"][name] for line in mine))
+        quartiles = np.quantile(values, [0, 0.25, 0.5, 0.75, 1])
+        assert [part[q] for q in QUARTILES] == pytest.approx(quartiles, rel=1e-12)
+    for name, chart in zip(names, distributions(rows), strict=True):
+        *stacks, median = chart.series
+        assert median.x == pytest.approx([parts["all", name]["median"]] * 2)
+        # A bin begins, and ends, with a step of the outline.
+        assert stacks[0].y[1::2].sum() == len(table)
 
 
 def test_a_value_is_quoted_where_its_interval_determines_it() -> None:
@@ -222,9 +278,17 @@ def test_files(cli: Cli, tmp_path: Path) -> None:
     page = Path("out/fits.html").read_text(encoding="utf-8")
     for words in ("slipped", "quartiles", "Each curve with its fit"):
         assert words in page
-    refusal = CliRunner().invoke(app, ["show", "out/fits.h5"])
-    assert refusal.exit_code == 2
-    assert "a table that pellicle fit wrote" in refusal.stderr
+    # The folder shows what was printed, and draws what was drawn.
+    printed = cli(*arguments[:-5], *rules[:-1], "--set", "accept=reduced_modulus < 15 kPa", code=1)
+    table_of = CliRunner().invoke(app, ["show", "out"])
+    assert (table_of.exit_code, table_of.stdout) == (1, printed.stdout.partition("4 of 5 fits")[0])
+    assert table_of.stdout.count("\n") > 10
+    drawn = CliRunner().invoke(app, ["plot", "out/fits.h5", "-o", "again", "--format", "svg"])
+    assert drawn.exit_code == 0, drawn.output
+    lines = (Path(folder, "fits.svg").read_text(encoding="utf-8") for folder in ("out", "again"))
+    first, again = (re.findall(r' d="([^"]+)"', text) for text in lines)
+    assert first == again != []
+    assert Path("again/fits-curves.pdf").is_file()
     # Another choice costs no fit.
     notes = cli(*arguments, "--set", "accept=r_squared > 2", code=1).stderr
     assert "none of 5 curves was accepted" in notes

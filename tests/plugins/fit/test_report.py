@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import re
 from html import unescape
 from pathlib import Path
@@ -14,13 +15,16 @@ import pytest
 import pellicle as pl
 from pellicle_fit.population.judgement import judge
 from pellicle_fit.report import tables
+from pellicle_fit.report.contact_sheet import grid, sheets
 from pellicle_fit.report.figures import charts, panels, save_figure
 from pellicle_fit.report.likelihood_map import likelihood_map
 from pellicle_fit.report.page import save_report
+from pellicle_fit.report.paper_table import save_tables
 from pellicle_fit.report.population import bars
 from pellicle_fit.words.story import story
+from tests.plugins.fit.conftest import ends_of
 from tests.plugins.fit.test_many import BEAD, MODULUS, RADIUS, curve
-from tests.plugins.fit.test_population import row
+from tests.plugins.fit.test_population import estimate, row
 
 
 @pytest.fixture(scope="module")
@@ -84,6 +88,63 @@ def test_figure_of_both_passes() -> None:
     assert {*contact.x} == {0.0}
 
 
+@pytest.mark.parametrize("stiffness", [None, 0.05])
+def test_the_figure_subtracts_the_baseline(stiffness: float | None) -> None:
+    """Force and indentation are those of the solid: an offset has bent no cantilever."""
+    depth, force = curve(1)
+    wrong = force + 0.3 * force.max()
+    position = depth - 0.3 * force.max() / stiffness if stiffness else depth
+    options: dict[str, Any] = {"baseline": "offset", "fix": {"tension": 0}, "rivals": ()}
+    fit = pl.fit(position, wrong, **BEAD, **options, spring_constant=stiffness)
+    ((chart,),) = charts(fit).values()
+    data, fitted = chart.series[0], chart.series[1]
+    before = depth < 0.7e-6
+    assert abs(data.y[before].mean()) < 0.01 * force.max()
+    assert abs(fitted.y[before]).max() < 1e-6 * force.max()
+    np.testing.assert_allclose(np.ptp(data.x), np.ptp(depth), rtol=1e-9)
+    assert abs(data.x - (depth - 1e-6)).max() < 0.3e-6
+    assert chart.y[0].words == "force less its baseline"
+
+
+def test_pages_are_filled() -> None:
+    """A page has at most 4 frames across and 7 down, of which few are empty."""
+    for count in range(1, 29):
+        down, across = grid(count)
+        assert across <= 4
+        assert down <= 7
+        assert 0.75 * down * across <= count <= down * across
+    assert (grid(1), grid(2), grid(28)) == ((1, 1), (2, 1), (7, 4))
+    assert [len(sheets([row("a")] * count)) for count in (28, 29, 57)] == [1, 2, 3]
+
+
+def test_table_for_a_paper(tmp_path: Path) -> None:
+    """It has kPa and mN/m in all three formats; a value that cannot be quoted has its interval."""
+    none = estimate(0.0, "N/m") | {"low": None, "high": None, "held": True}
+    rows = [
+        row("a_1|%.csv", 2e3, tension=estimate(3e-3, "N/m")),
+        row("b.csv", 2e6, is_open=True, tension=estimate(3e-6, "N/m", (None, 1.1))),
+        row("c.csv", 2.5, tension=none),
+        row("d.csv", None),
+    ]
+    judge(rows, [], None)
+    files = save_tables(rows, tmp_path / "t")
+    assert [file.name for file in files] == ["t.csv", "t.md", "t.tex"]
+    head, *lines = csv.reader(files[0].read_text(encoding="utf-8").splitlines())
+    assert head == ["curve", "verdict", "E* [kPa]", "95 % interval [kPa]", "tension [mN/m]",
+                    "95 % interval [mN/m]", "n"]  # fmt: skip
+    assert lines == [
+        ["a_1|%.csv", "no sign of tension", "2.00", "1.80 to 2.20", "3.00", "2.70 to 3.30", "50"],
+        ["b.csv", "no sign of tension", "", "> 1800", "", "< 0.0033", "50"],
+        ["c.csv", "no sign of tension", "0.00250", "0.00225 to 0.00275", "", "", "50"],
+        ["d.csv", "not accepted: failed: no contact", "", "", "", "", ""],
+    ]
+    marked, typeset = (file.read_text(encoding="utf-8") for file in files[1:])
+    assert "| a_1\\|%.csv | no sign of tension | 2.00 | 1.80 to 2.20 |" in marked
+    assert "a\\_1|\\%.csv & no sign of tension & 2.00 & 1.80 to 2.20 &" in typeset
+    assert "& $<$ 0.0033 & 50" in typeset
+    assert marked.count("\n") == len(rows) + 2
+
+
 def test_bars_and_units() -> None:
     """Marks of rejected curves are hollow; one curve gives no other unit to the table."""
     rows = [row(f"{k}", modulus) for k, modulus in enumerate((1e3, 1.1e3, 1.2e3, 5e6))]
@@ -94,6 +155,16 @@ def test_bars_and_units() -> None:
     heads = [column.read()[0] for column in tables.rows(rows).columns]
     assert heads[:3] == ["curve", "verdict", "reduced modulus [kPa]"]
     assert tables.groups(rows).columns[1].values[0] == "reduced modulus [kPa]"
+
+
+def test_the_map_weighs_the_calibration_as_the_headline_does() -> None:
+    """The edge of 95 % of the pair reaches beyond the ends of either alone."""
+    fit = pl.fit(*curve(1), **BEAD, rivals=(), uncertainty={"spring_constant": "10 %"})
+    _, edge, _ = charts(fit)[[*charts(fit)][-1]][0].series
+    for found, along in ((fit.reduced_modulus, edge.x), (fit.tension, edge.y)):
+        low, high = ends_of(found)
+        assert low < 0.85 * found.value
+        assert along.min() < low < high < along.max()
 
 
 def test_likelihood_map(single: pl.Fit) -> None:

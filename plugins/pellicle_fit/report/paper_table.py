@@ -1,0 +1,50 @@
+"""The table of many curves for a paper, in kPa and mN/m: CSV, Markdown and LaTeX."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from pellicle.files import atomic_write, for_document
+from pellicle.units import Scale
+from pellicle_fit.population.row import Row
+from pellicle_fit.words.names import FEW, quoted
+
+_KILOPASCAL, _MILLINEWTON = Scale(1e-3, "kPa"), Scale(1e3, "mN/m")
+
+
+def save_tables(rows: Sequence[Row], stem: Path) -> list[Path]:
+    """Write ``stem.csv``, ``stem.md`` and ``stem.tex``, a line for each curve, and return them.
+
+    The modulus is Young's where it is known; ``n`` is the number of points.  A value whose interval
+    is open or wide is left out.
+    """
+    import pandas as pd
+
+    has_youngs = any("youngs_modulus" in row.estimates for row in rows)
+    modulus = ("E", "youngs_modulus") if has_youngs else ("E*", "reduced_modulus")
+    lines = []
+    for row in rows:
+        verdict = row.verdict if row.accepted else f"not accepted: {row.reason}"
+        line = {"curve": for_document(row.name), "verdict": verdict}
+        for unit, head, name in ((_KILOPASCAL, *modulus), (_MILLINEWTON, "tension", "tension")):
+            e = row.estimates.get(name)
+            known = quoted(e, unit, FEW) if e and (e.value or not e.held) else ""
+            value, _, ends = known.rpartition(" (")
+            line[f"{head} [{unit.unit}]"] = value
+            line[f"95 % interval [{unit.unit}]"] = ends.removesuffix(")")
+        lines.append(line | {"n": str(row.curve.get("points", ""))})
+    frame = pd.DataFrame(lines)
+    cells = [[*frame], ["---"] * frame.shape[1], *frame.to_numpy().tolist()]
+    marked = (" | ".join(cell.replace("|", "\\|") for cell in line) for line in cells)
+    latex = frame.to_latex(index=False, escape=True, column_format="llrlrlr")
+    texts = {
+        ".csv": frame.to_csv(index=False, lineterminator="\n"),
+        ".md": "".join(f"| {line} |\n" for line in marked),
+        # In the usual font encoding these are other characters.
+        ".tex": latex.replace("<", "$<$").replace(">", "$>$"),
+    }
+    for ending, text in texts.items():
+        with atomic_write(stem.with_suffix(ending)) as part:
+            part.write_bytes(text.encode())
+    return [stem.with_suffix(ending) for ending in texts]
