@@ -254,7 +254,8 @@ def _keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool
 def work(task: FitTask, say: Say) -> dict[str, Any]:
     """Fit a curve in a worker, and return JSON data of the fit, with what a population adds."""
     fit = task.problem.fit()
-    (member,), (force,), (depth,) = fit.members, fit.forces(), fit.answer.chosen.depths
+    chosen, (member,), (force,) = fit.answer.chosen, fit.members, fit.forces()
+    load = force - chosen.objective.known(chosen.minimum.at, 0).free_force(member.curve)
     measured, position = member.curve.force, member.curve.position
     scatter = measured - np.mean(measured)
     drawn = sketch(position=position, force=measured, fit=force)
@@ -269,8 +270,8 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
             moved["youngs_modulus"] = of_youngs
     return kept | {
         "r_squared": 1 - float(np.sum((force - measured) ** 2) / np.sum(scatter**2)),
-        "indentation": float(np.max(depth)),
-        "largest_force": float(np.max(force)),
+        "indentation": float(np.max(chosen.depths[0])),
+        "largest_force": float(np.max(load)),
         "sketch": as_json(drawn),
     }
 

@@ -69,6 +69,7 @@ class Rule:
     def objection(self, row: Row) -> str:
         """Return why a fit breaks the rule; empty if it does not."""
         known = row.values()
+        known |= {name: e.value for name in row.estimates if (e := row.best(name))}
         numbers = {name: known.get(name, np.nan) for name in sorted(self._units)}
         sides = [float(evaluate(s, numbers) if isinstance(s, str) else s) for s in self._sides]
         pairs = zip(sides[:-1], self._signs, sides[1:], strict=True)

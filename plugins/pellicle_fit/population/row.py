@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -104,6 +104,15 @@ class Row:
         } | {name: known.get(name) for name in NUMBERS}
         return {name: np.nan if value is None else float(value) for name, value in found.items()}
 
+    def best(self, name: str) -> Estimate | None:
+        """Return an estimate; of explanations that share no value, with that of the chosen one."""
+        found = self.estimates.get(name)
+        if found is None or not np.isnan(found.value):
+            return found
+        of = "reduced_modulus" if name == "youngs_modulus" else name
+        ratio = self.curve["data"]["poissons_ratio"] if of != name else 0.0
+        return replace(found, value=(1 - ratio**2) * self.fit["parameters"][of]["value"])
+
     @property
     def verdict(self) -> str:
         """What is said of the curve, as far as it fits a table; empty without a fit."""
@@ -142,7 +151,7 @@ def counted(rows: Iterable[Row], name: str) -> dict[Row, Estimate]:
     Intervals of any width count: without the open ones, the stiffest curves would be chosen.  A
     quantity that was given for all curves has none.
     """
-    found = {row: e for row in rows if row.accepted and (e := row.estimates.get(name)) is not None}
+    found = {row: e for row in rows if row.accepted and (e := row.best(name)) is not None}
     return {} if all(e.held for e in found.values()) else found
 
 

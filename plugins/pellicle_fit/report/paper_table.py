@@ -8,7 +8,7 @@ from pathlib import Path
 from pellicle.files import atomic_write, for_document
 from pellicle.units import Scale
 from pellicle_fit.population.row import Row
-from pellicle_fit.words.names import FEW, quoted
+from pellicle_fit.words.names import FEW, value_and_ends
 
 _KILOPASCAL, _MILLINEWTON = Scale(1e-3, "kPa"), Scale(1e3, "mN/m")
 
@@ -29,10 +29,10 @@ def save_tables(rows: Sequence[Row], stem: Path) -> list[Path]:
         line = {"curve": for_document(row.name), "verdict": verdict}
         for unit, head, name in ((_KILOPASCAL, *modulus), (_MILLINEWTON, "tension", "tension")):
             e = row.estimates.get(name)
-            known = quoted(e, unit, FEW) if e and (e.value or not e.held) else ""
-            value, _, ends = known.rpartition(" (")
+            is_known = e is not None and (e.value or not e.held)
+            value, ends = value_and_ends(e, unit, FEW) if e and is_known else ("", "")
             line[f"{head} [{unit.unit}]"] = value
-            line[f"95 % interval [{unit.unit}]"] = ends.removesuffix(")")
+            line[f"95 % interval [{unit.unit}]"] = ends
         lines.append(line | {"n": str(row.curve.get("points", ""))})
     frame = pd.DataFrame(lines)
     cells = [[*frame], ["---"] * frame.shape[1], *frame.to_numpy().tolist()]

@@ -64,7 +64,7 @@ def bars(rows: Sequence[Row]) -> list[Chart]:
         # An open end is None, which becomes NaN.
         x, accepted, values, low, high = np.array(fitted, dtype=float).T
         opened, panel = np.isnan(high), len(axes)
-        high[opened] = _OPEN_TOP * max(values.max(), np.nanmax([*high, 0.0]))
+        high[opened] = _OPEN_TOP * np.nanmax([*values, *high, 0.0])
         ends = np.column_stack([np.nan_to_num(low), high, np.full(x.size, np.nan)])
         series.append(Series(np.repeat(x, 3), ends.ravel(), panel=panel))
         for filled, of in ((True, accepted > 0), (False, accepted == 0)):

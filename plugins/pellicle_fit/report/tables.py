@@ -134,7 +134,7 @@ def _unit(fit: Fit, name: str, si: bool) -> Scale:
 def _usual(of: Sequence[Row], name: str, si: bool) -> Scale:
     """Return the unit of a quantity in all tables of curves: that of the median upper end."""
     found = [e for row in of if (e := row.estimates.get(name)) is not None]
-    values = [size for e in found if (size := e.high or e.value)] or [0.0]
+    values = [size for e in found if (size := e.high or np.nan_to_num(e.value))] or [0.0]
     return unit_of([float(np.median(values))], found[0].unit if found else "", si=si)
 
 

@@ -86,18 +86,26 @@ def interval(estimate: Estimate, unit: Scale, digits: int = DIGITS) -> str:
     return f"> {low}" if high is None else f"{low} to {high}"
 
 
-def quoted(estimate: Estimate, unit: Scale, digits: int, shown_unit: str = "") -> str:
-    """Return an estimate with its interval, ``5.0 mN/m (4.8 to 5.2)``; of a wide one the ends."""
+def value_and_ends(estimate: Estimate, unit: Scale, digits: int) -> tuple[str, str]:
+    """Return value and interval of an estimate in a unit; no value of an open or a wide one."""
     low, high, value = estimate.low, estimate.high, estimate.value * unit.factor
     if estimate.is_narrow and abs(value) >= _SMALL and low is not None and high is not None:
         # As many decimals for all three, so that none seems to be another.
         places = max(digits - 1 - int(np.floor(np.log10(abs(value)))), 0)
         texts = (f"{number * unit.factor:.{places}f}" for number in (low, high))
-        return f"{value:.{places}f}{shown_unit} ({' to '.join(texts)})"
-    ends = interval(estimate, unit, digits)
-    if estimate.held or estimate.is_narrow:
-        return f"{unit.number(estimate.value, digits)}{shown_unit} ({ends})"
-    return "not determined" if low is None and high is None else f"{ends}{shown_unit}"
+        return f"{value:.{places}f}", " to ".join(texts)
+    is_told = estimate.held or estimate.is_narrow
+    told = unit.number(estimate.value, digits) if is_told else ""
+    return told, interval(estimate, unit, digits)
+
+
+def quoted(estimate: Estimate, unit: Scale, digits: int, shown_unit: str = "") -> str:
+    """Return an estimate with its interval, ``5.0 mN/m (4.8 to 5.2)``; of a wide one the ends."""
+    value, ends = value_and_ends(estimate, unit, digits)
+    if value:
+        return f"{value}{shown_unit} ({ends})"
+    is_open = estimate.low is None and estimate.high is None
+    return "not determined" if is_open else f"{ends}{shown_unit}"
 
 
 def in_figures(estimate: Estimate, *, si: bool = False) -> str:
