@@ -23,6 +23,8 @@ _SIGNIFICANT = 4.0
 """Standard errors that the rise of the force must exceed."""
 _TURN = 0.5
 """Share of the largest motion by which a pass moves at least."""
+_LARGEST = 1e30
+"""Largest size of what is measured, in SI; its inverse bounds how little it varies."""
 _BLOCKS, _BLOCK_ROWS = 50, 4
 """Parts of a pass in which a pause is sought, and their least number of rows."""
 _SLOW, _FAST_QUANTILE = 0.1, 0.9
@@ -60,9 +62,12 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
     messages, finite = [*curve.messages], np.isfinite(z) & np.isfinite(f)
     if missing := int(np.sum(~finite)):
         messages.append(Note(f"{missing} of {z.size} rows hold no finite number and were left out"))
+    for name, values, unit in (("position", z, "m"), ("force", f, "N"), ("time", t, "s")):
+        if values is not None:
+            _check_size(name, values, unit)
     z, f, t = z[finite], f[finite], None if t is None else t[finite]
     _check_count(z.size, "the curve")
-    if t is not None and not (np.all(np.diff(t) >= 0) and 0 < np.ptp(t) < np.inf):
+    if t is not None and not (np.isfinite(t).all() and np.all(np.diff(t) >= 0) and np.ptp(t)):
         reason = "falls, stands still or has a row without a number"
         messages.append(f"the time {reason}, so the curve is taken as one without time")
         t = None
@@ -97,7 +102,7 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
 
 
 def _array(values: ArrayLike, name: str) -> Array:
-    with suppress(TypeError, ValueError):
+    with suppress(TypeError, ValueError, OverflowError), np.errstate(over="ignore"):
         if not np.iscomplexobj(values) and (array := np.asarray(values, dtype=float)).ndim == 1:
             return array
     raise ConfigError(
@@ -108,6 +113,24 @@ def _array(values: ArrayLike, name: str) -> Array:
 def _check_count(count: int, which: str) -> None:
     if count < _FEWEST:
         raise ConfigError(f"{which} has {count} points; a fit needs at least {_FEWEST}", "position")
+
+
+def _check_size(name: str, values: Array, unit: str) -> None:
+    """Raise if finite values are too large, or differ too little, for their squares."""
+    known = values[np.isfinite(values)]
+    row = int(np.argmax(np.where(np.isfinite(values), np.abs(values), 0.0)))
+    if np.max(np.abs(known), initial=0.0) > _LARGEST:
+        what = f"is {values[row]:g} {unit} in row {row + 1}"
+    elif known.size and 0 < np.ptp(known) < 1 / _LARGEST:
+        what = f"varies by {np.ptp(known):g} {unit}"
+    else:
+        return
+    least = f"that vary by {1 / _LARGEST:g} {unit} or more"
+    raise ConfigError(
+        f"{what}; a fit needs values up to {_LARGEST:g} {unit} {least}: check the unit, and "
+        "faulty rows",
+        name,
+    )
 
 
 def _check_rise(z: Array, f: Array) -> None:

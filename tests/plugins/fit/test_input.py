@@ -142,6 +142,11 @@ BAD: list[tuple[str, Callable[[Array, Array], tuple[Array, Array]]]] = [
     ("one curve at a time", lambda z, f: (np.tile(z, (2, 1)), f)),
     ("a list of real numbers", lambda z, f: (z, 1j * f)),  # type: ignore[list-item, return-value]
     ("has 299 values and position 300", lambda z, f: (z, f[1:])),
+    ("position: is 4e.294 m in row 300; a fit needs values up to", lambda z, f: (1e300 * z, f)),
+    ("position: varies by 4e-306 m; a fit needs", lambda z, f: (1e-300 * z, f)),
+    ("force: is -1e.31 N in row 8", lambda z, f: (z, np.where(np.arange(z.size) == 7, -1e31, f))),
+    ("force: varies by .*e-167 N.*check the unit", lambda z, f: (z, 1e-160 * f)),
+    ("not a list of real numbers", lambda z, f: ([10**400] * 300, f)),  # type: ignore[list-item, return-value]
 ]
 
 
