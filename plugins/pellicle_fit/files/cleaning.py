@@ -79,6 +79,10 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
         number = number[order]
         messages.append(Note("the rows were put in order of time"))
     z, f, t = z[number], f[number], None if t is None else t[number]
+    pause = None
+    if curve.pause is not None:
+        pause = np.asarray(curve.pause)[number]
+        _check_count(int(np.sum(~pause)), "the curve without its pauses")
     if t is not None and not (np.isfinite(t).all() and np.all(np.diff(t) >= 0) and np.ptp(t)):
         reason = "falls, stands still or has a row without a number"
         messages.append(f"the time {reason}, so the curve is taken as one without time")
@@ -89,9 +93,13 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
     _check_rise(base, f)
     if t is None and curve.speed is not None:
         t = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(base)))]) / curve.speed
-    found = passes(base)
+    found = passes(base, pause)
     first, last, unloading = _rows(base, found, segment)
     rows = np.arange(first, last + 1)
+    if pause is not None and segment != "both":
+        rows = rows[~pause[rows]]
+    elif pause is not None and len(found) > 1:
+        unloading = found[1].first
     if left := z.size - rows.size:
         which = "both passes" if segment == "both" else f"the {segment}"
         place, names = np.sort(number), []
@@ -123,6 +131,7 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
         messages=tuple(messages),
         left_out=(int(later.min()) + 1, int(later.max()) + 1) if is_later else None,
         unloading=rows >= unloading,
+        pause=None if pause is None else pause[rows],
     )
 
 

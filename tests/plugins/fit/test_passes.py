@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import chain
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +16,8 @@ from numpy.typing import NDArray
 import pellicle as pl
 from pellicle_fit.files.cleaning import clean, passes
 from pellicle_fit.files.measurement import Measurement, Segment
+from pellicle_fit.files.readers import read
+from tests.plugins.fit import instruments
 
 Array = NDArray[np.float64]
 SPRING, STEP = 0.05, 1e-8
@@ -128,3 +131,27 @@ def test_a_time_that_begins_anew_orders_nothing() -> None:
     assert approach.time is None
     assert np.array_equal(approach.force, curve.force[:300])
     assert [text for text in approach.messages if "as one without time" in text]
+
+
+CREEP = {"extend": 300, "constant-force pause": 200, "retract": 60}
+RELAXATION = {"first pause": 100, "extend": 300, "constant-height pause": 200, "retract": 60}
+
+
+@pytest.mark.parametrize("segments", [CREEP, RELAXATION], ids=["creep", "relaxation"])
+@pytest.mark.parametrize("name", ["export.h5", "export.tab", "curve.jpk-force"])
+def test_stated_pauses_are_cut_off(tmp_path: Path, name: str, segments: dict[str, int]) -> None:
+    """A pause in which the base goes on as fast as a fifth of the approach is no part of it."""
+    before, rest = segments.get("first pause", 0), 0.2 * ("constant-force pause" in segments)
+    parts = np.zeros(before), np.ones(300), np.full(200, rest), -np.ones(60)
+    base = STEP * np.cumsum(np.concatenate(parts))
+    curve = measured(base, before + 300, 200)
+    height, force = -base, np.asarray(curve.force)
+    recording = instruments.Recording(height, force, SPRING, segments=segments)
+    instruments.WRITERS[name](tmp_path / name, recording)
+    (reader,) = read(tmp_path / name).values()
+    assert clean(reader()).force == pytest.approx(force[before : before + 300], abs=1e-15)
+    assert clean(reader(), "retract").force == pytest.approx(force[-60:], abs=1e-15)
+    both = clean(reader(), "both")
+    assert both.force.size == force.size - before
+    assert both.unloading is not None
+    assert both.unloading.sum() == 60
