@@ -29,8 +29,8 @@ _CYCLE, _MODULATED = 1 / 3, 0.1
 """Share of the range by which a curve that has turned twice moves, and a pass back, if told."""
 _JUMP, _NEAR = 1.5, 20
 """Step between two segments over the largest tenth of all; rows over those from turn to pause."""
-_LEAP, _LEAPS = 0.25, 3
-"""Step over the range that is a leap, and how many are in rows that time puts in order."""
+_LEAP, _OUT_OF_ORDER, _LEAPS = 0.25, 0.5, 3
+"""Steps over the range that are few in rows that time orders, and in any; and how many are few."""
 _LARGEST = 1e30
 """Largest size of what is measured, in SI; its inverse bounds how little it varies."""
 _BLOCKS, _BLOCK_ROWS = 50, 4
@@ -252,7 +252,7 @@ def passes(base: Array, pause: Mask | None = None) -> list[Pass]:
     # A base at rest differs by rounding, since the deflection was subtracted.
     base = np.round((base[rows] - base.min()) / (np.ptp(base[rows]) or 1.0), 9)
     steps = np.abs(np.diff(base))
-    jumps = np.flatnonzero(steps > _JUMP * np.quantile(steps, _FAST_QUANTILE)).tolist()
+    jumps = {*np.flatnonzero(steps > _JUMP * np.quantile(steps, _FAST_QUANTILE)).tolist()}
     gaps = np.flatnonzero(np.diff(rows) > 1).tolist()
     ends, starts = [], [0]
     for turn in _turns(base):
@@ -284,6 +284,9 @@ def _turns(base: Array) -> list[int]:
     noise and from all that was taken: a motion that turns again and again is modulated.
     """
     span = float(np.ptp(base))
+    leaps = np.flatnonzero(np.abs(np.diff(base)) > _OUT_OF_ORDER * span)
+    if leaps.size > _LEAPS:
+        return [int(row) for row in leaps]
     for count in _MEDIANS:
         size = max(base.size // count, 1)
         path = np.median(
