@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from pellicle.arrays import Mask
 from pellicle.errors import PellicleError, StorageError
 from pellicle.units import Quantity
 
@@ -27,6 +28,9 @@ _CALIBRATION = {"spring constant": "spring_constant", "sensitivity": "sensitivit
 """What files may hold, and its name here."""
 _PLACES = {"tip position": "position", "height (measured)": "height", "height (piezo)": "height"}
 """Names of places in files, and their roles."""
+
+_PAUSES = {3: (1,), 4: (0, 2)}
+"""Places of the pauses among the segments of creep and of stress relaxation, by their number."""
 
 
 def read_instrument(path: Path, calibration: Calibration) -> Readers:
@@ -85,7 +89,20 @@ def _curve(path: Path, recording: Mapping[str, Any], speed: float | None) -> Mea
             raise MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in lacks})
         curve, site = from_columns(columns, own), _site(metadata)
     origin = curve.origin._replace(sensitivity=metadata.get("sensitivity"), library="afmformats")
-    return replace(curve, origin=origin, site=site)
+    return replace(curve, origin=origin, site=site, pause=_pause(data, metadata))
+
+
+def _pause(data: Mapping[str, Any], metadata: Mapping[str, Any]) -> Mask | None:
+    """Return which rows are of a pause; afmformats numbers segments and does not name them."""
+    if "segment" not in data:
+        return None
+    segment = np.asarray(data["segment"])
+    place = np.cumsum(np.append(False, segment[1:] != segment[:-1]))
+    count = int(place[-1]) + 1
+    pauses = _PAUSES.get(count, ()) if len({*segment.tolist()}) == count else ()
+    if count == 2 and "duration intermediate" in metadata:
+        pauses = (int("duration approach" in metadata),)
+    return np.isin(place, pauses) if pauses else None
 
 
 def _site(metadata: Mapping[str, Any]) -> Site | None:

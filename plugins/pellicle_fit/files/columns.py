@@ -123,6 +123,7 @@ def lacking(columns: Columns, calibration: Calibration) -> list[str]:
     return lacks
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
     """Return the curve that columns hold, of which nothing is `lacking`.
 

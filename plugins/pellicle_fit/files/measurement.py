@@ -64,6 +64,8 @@ class Measurement:
     """Where on the sample it was measured, if it belongs to a force map."""
     origin: Origin = field(default_factory=Origin)
     """Its file, with the hash, the columns and the calibration."""
+    pause: Mask | None = None
+    """Which rows are of a pause, if the file states its segments."""
     left_out: tuple[int, int] | None = None
     """First and last row of a retraction that was left out of a fit of the approach, from 1."""
     unloading: Mask | None = None

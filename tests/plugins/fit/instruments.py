@@ -6,8 +6,8 @@ Each writer takes a `Recording`, what a microscope sees of an approach and a ret
 from __future__ import annotations
 
 import zipfile
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -26,16 +26,29 @@ class Recording:
     sensitivity: float = 50e-9
     place: tuple[float | str, float | str] | None = None
     """Where on the sample it was measured [m]."""
+    segments: Mapping[str, int] = field(default_factory=dict)
+    """Number of rows by the style of each segment; empty for halves that extend and retract."""
+
+    @property
+    def styles(self) -> tuple[str, ...]:
+        """What the cantilever does in each segment."""
+        return (*self.segments,) or ("extend", "retract")
 
     @property
     def segment(self) -> NDArray[np.uint8]:
-        """0 on approach, 1 on retract."""
-        return (np.arange(self.force.size) >= self.force.size // 2).astype(np.uint8)
+        """Number of the segment of each row, from 0."""
+        half = self.force.size // 2
+        sizes = (*self.segments.values(),) or (half, self.force.size - half)
+        return np.repeat(np.arange(len(sizes), dtype=np.uint8), sizes)
 
     @property
     def volts(self) -> Array:
         """Signal of the detector."""
         return self.force / self.spring_constant / self.sensitivity
+
+
+_MODES = {2: "force-distance", 3: "creep-compliance", 4: "stress-relaxation"}
+"""What is measured, by the number of segments."""
 
 
 def record(position: Array, force: Array, noise: Array, spring_constant: float) -> Recording:
@@ -74,7 +87,7 @@ def _exported(path: Path, recording: Recording, number: int):  # type: ignore[no
         "segment": recording.segment,
     }
     metadata = {
-        "imaging mode": "force-distance",
+        "imaging mode": _MODES[len(recording.styles)],
         "spring constant": recording.spring_constant,
         "enum": number,
         "path": path,
@@ -97,7 +110,7 @@ def jpk(path: Path, *recordings: Recording) -> None:
                 archive.writestr(folder, "")
             archive.writestr(f"{folder}header.properties", general)
             archive.writestr(f"{folder}segments/", "")
-            for segment, style in enumerate(("extend", "retract")):
+            for segment, style in enumerate(recording.styles):
                 inner = f"{folder}segments/{segment}/"
                 rows = recording.segment == segment
                 archive.writestr(inner, "")
@@ -124,7 +137,8 @@ def _jpk_header(recording: Recording, rows: NDArray[np.bool_], style: str, numbe
         "force-segment-header.approach-id=1",
         "force-segment-header.time-stamp=2026-01-02 10:11:12 +0000",
         f"force-scan-map.header.position-index={number}",
-        f"{settings}.style={style}",
+        f"{settings}.style={style.split()[-1]}",
+        f"{settings}.segment-settings.type={style.replace(' ', '-')}",
         f"{settings}.feedback-mode.name=contact",
         f"{settings}.segment-settings.duration=1.0",
         f"{settings}.segment-settings.z-start=1e-5",

@@ -129,6 +129,7 @@ def test_wrong_radius_is_noticed(indenter: str) -> None:
     assert fit.advice.startswith("check radius and units")
 
 
+SHUFFLED = np.random.default_rng(0).permutation(300)
 BAD: list[tuple[str, Callable[[Array, Array], tuple[Array, Array]]]] = [
     ("this is a retract", lambda z, f: (z[::-1], f[::-1])),
     ("negative stiffness", lambda z, f: (z, -f)),
@@ -137,11 +138,17 @@ BAD: list[tuple[str, Callable[[Array, Array], tuple[Array, Array]]]] = [
     ("no contact in the curve", lambda z, f: (z, 0 * f)),
     ("give a curve that moves", lambda z, f: (np.full_like(z, 1e-6), f)),
     ("several curves", lambda z, f: (np.tile(z, 3), np.tile(f, 3))),
+    ("rows out of order", lambda z, f: (z[SHUFFLED], f[SHUFFLED])),
     ("at least 8", lambda z, f: (z[-5:], f[-5:])),
     ("at least 8", lambda z, f: (z, np.nan * f)),
     ("one curve at a time", lambda z, f: (np.tile(z, (2, 1)), f)),
     ("a list of real numbers", lambda z, f: (z, 1j * f)),  # type: ignore[list-item, return-value]
     ("has 299 values and position 300", lambda z, f: (z, f[1:])),
+    ("position: is 4e.294 m in row 300; a fit needs values up to", lambda z, f: (1e300 * z, f)),
+    ("position: varies by 4e-306 m; a fit needs", lambda z, f: (1e-300 * z, f)),
+    ("force: is -1e.31 N in row 8", lambda z, f: (z, np.where(np.arange(z.size) == 7, -1e31, f))),
+    ("force: varies by .*e-167 N.*check the unit", lambda z, f: (z, 1e-160 * f)),
+    ("not a list of real numbers", lambda z, f: ([10**400] * 300, f)),  # type: ignore[list-item, return-value]
 ]
 
 
