@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
@@ -35,7 +36,7 @@ def read(path: Path, calibration: Calibration | None = None) -> Readers:
     """Return functions that read the curves of a file, and raise what this one does.
 
     The columns of the calibration name those of a table, and the arrays of an HDF5 or MATLAB file.
-    What is no such file is read by afmformats.
+    Files of instruments are read by afmformats, and so are three columns without names.
     """
     calibration = calibration or Calibration()
     suffix, mapped = path.suffix.lower(), calibration.columns or {}
@@ -52,9 +53,11 @@ def read(path: Path, calibration: Calibration | None = None) -> Readers:
             f"export it as a table (a sheet as CSV) with a header such as {EXAMPLE!r}"
         ) from None
     if suffix in TEXT and not mapped and not is_curve(tables[""].keys()):
-        is_nameless = suffix == ".txt" and [head.text for head in heads] == [""] * 3
-        if is_nameless or afm.is_instrument(path):
+        if afm.is_instrument(path):
             return afm.read_instrument(path, calibration)
+        if suffix == ".txt" and [head.text for head in heads] == [""] * 3:
+            with suppress(StorageError):
+                return afm.read_instrument(path, calibration)
     names = [name for head in heads if (name := head.name.lower()) in NAMES]
     found = {role for columns in tables.values() for role in columns}
     wanted = mapped or dict(zip(names, names, strict=True))

@@ -131,7 +131,7 @@ def _header(
             return number, found
     if data[0] in heads:
         return data[0], heads[data[0]]
-    comments = (number for number in alike if number < data[0] and ":" not in lines[number])
+    comments = (n for n in alike if n < data[0] and ":" not in _EXPORT.sub(r"\2", lines[n]))
     return data[0] - 1, alike.get(next(comments, -1), [])
 
 

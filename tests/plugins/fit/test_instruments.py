@@ -130,6 +130,9 @@ def test_nova(tmp_path: Path, recording: instruments.Recording, sensitivity: str
         assert isinstance(source.curve, Measurement)
         assert is_curve(clean(source.curve), *SEEN)
         assert [text for text in source.curve.messages if "three columns without names" in text]
+    (tmp_path / "commas.txt").write_text(path.read_text().replace("\t", ","))
+    with pytest.raises(pl.ConfigError, match="has '1', '2', '3'; missing: a position"):
+        read(tmp_path / "commas.txt", Calibration(sensitivity=sensitivity, **options))[""]()
     # As a table whose columns are given it is the same, from the deepest row on.
     config = pl.FitConfig.merged(config, columns="1 = height nm, 2 = deflection nA")
     (source,) = config.sources()
@@ -144,7 +147,7 @@ NAMED = {
 }
 
 
-@pytest.mark.parametrize("mark", ["", "# "])
+@pytest.mark.parametrize("mark", ["", "# ", "# columns: "])
 @pytest.mark.parametrize("header", NAMED)
 def test_a_table_with_names_is_no_instruments(tmp_path: Path, header: str, mark: str) -> None:
     """Of three columns that have names or units, it is asked which they are."""
