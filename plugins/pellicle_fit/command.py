@@ -59,7 +59,8 @@ def fit(
         Text,
         Option(
             help='What columns are, by name, number or path: "Z = extension nm, Defl = deflection '
-            'nm". Roles: position, depth, height, extension; force, deflection; time.'
+            'nm"; without units that the file has. Roles: position, depth, height, extension; '
+            "force, deflection; time."
         ),
     ] = None,
     pool: Annotated[bool, Option("--pool", help="Fit one solid to all curves.")] = False,

@@ -293,7 +293,9 @@ def _identity(
 
 
 def _failure(error: Exception, name: str) -> str:
-    text = str(error).removeprefix(f"{name}: ").replace(":\n  ", ": ")
+    file, _, label = name.rpartition(":")
+    text = str(error).removeprefix(f"{name}: ").removeprefix(f"{file}: ")
+    text = text.removeprefix(f"curve {label}: ").replace(":\n  ", ": ")
     reason = "; ".join(text.splitlines()) or "no reason given"
     kind = "" if isinstance(error, PellicleError) else f"{type(error).__name__}: "
     return f"{FAILED}{kind}{reason}"

@@ -30,8 +30,11 @@ from pellicle_fit.files.readers import SUFFIXES
 from pellicle_fit.files.sources import gather
 
 RADIUS, RATIO = 10e-6, 0.5
-CALIBRATION = Calibration(spring_constant=0.05, sensitivity=50e-9)
-"""Of files in volts; it cancels in the comparison."""
+CALIBRATIONS = [
+    Calibration(),
+    *(Calibration(spring_constant=0.05, sensitivity=one) for one in (None, 50e-9, "50 nm/nA")),
+]
+"""Those tried in turn, of files in newtons, volts and amperes; they cancel in the comparison."""
 STARTS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
 """Points of contact from which nanite searches, over the range of positions."""
 RESTARTS = 10
@@ -143,7 +146,7 @@ def outcome(curve: Measurement | PellicleError) -> Outcome:
 
 def curves_of(path: Path) -> dict[str, Measurement | PellicleError]:
     """Return the curves of a file, with a calibration if it holds none."""
-    for calibration in (Calibration(), CALIBRATION):
+    for calibration in CALIBRATIONS:
         sources = gather(path, calibration, {})
         curves = {source.name: source.curve for source in sources}
         if any(isinstance(curve, Measurement) for curve in curves.values()):

@@ -2,61 +2,157 @@
 
 from __future__ import annotations
 
+import warnings
+import zipfile
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from functools import partial
 from importlib.util import find_spec
+from io import TextIOWrapper
+from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from pellicle.arrays import Mask
-from pellicle.errors import PellicleError, StorageError
+from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.units import Quantity
 
-from .columns import UNITS, Calibration, Column, from_columns, lacking
+from .columns import UNITS, Calibration, Column, check_signal, from_columns, lacking, recalibrated
 from .measurement import Measurement, Readers, Site
 from .missing import OPTIONS, MissingInputError
 
 _JPK = (".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series")
 SUFFIXES = (*_JPK, ".ibw", ".tab", ".zip")
 """Suffixes that only instrument files have; .h5, .csv and .txt may be an instrument's too."""
+_HDF5 = (".h5", ".hdf5")
+_WORKSHOP = b"Force-Distance Curve"
+_MARKS = {".csv": _WORKSHOP, ".txt": b"Device:\tChiaro", ".tab": b"# BEGIN METADATA"}
+"""What stands at the beginning of an instrument's text."""
+_BEGINNING = 1 << 16
+"""Size of the beginning of a file [bytes]."""
 INSTALL = "such files are read by afmformats: install it with pip install 'pellicle[afm]'"
 _CALIBRATION = {"spring constant": "spring_constant", "sensitivity": "sensitivity"}
 """What files may hold, and its name here."""
 _PLACES = {"tip position": "position", "height (measured)": "height", "height (piezo)": "height"}
 """Names of places in files, and their roles."""
+_NT_MDT = (
+    "three columns without names are taken for height [nm] and deflection [nA] on approach and "
+    "retraction, as NT-MDT's Nova exports them; if they are not, say what they are with --columns"
+)
+
+
+def is_instrument(path: Path) -> bool:
+    """Return whether a file is known to be an instrument's, from its suffix or from its content."""
+    suffix = path.suffix.lower()
+    with suppress(OSError):
+        if suffix in _HDF5:
+            return bool(_exports(path))
+        if suffix in _MARKS:
+            with path.open("rb") as file:
+                return _MARKS[suffix] in file.read(_BEGINNING)
+    return suffix in SUFFIXES and suffix not in _MARKS
+
 
 _PAUSES = {3: (1,), 4: (0, 2)}
 """Places of the pauses among the segments of creep and of stress relaxation, by their number."""
 
 
 def read_instrument(path: Path, calibration: Calibration) -> Readers:
-    """Return what reads each curve, by its number, one at a time."""
+    """Return what reads each curve, by its number, one at a time.
+
+    A text that is not `is_instrument` is read as an export of NT-MDT's Nova.
+    """
     if find_spec("afmformats") is None:
         raise StorageError(f"{path}: is the file of an instrument; {INSTALL}")
-    from afmformats.formats import get_recipe
-
-    given = {words: getattr(calibration, name) for words, name in _CALIBRATION.items()}
-    override = {words: value for words, value in given.items() if value is not None}
     if not path.is_file():
         raise StorageError(f"{path}: cannot be read (no such file)")
-    with _errors(path):
-        recordings = get_recipe(path).loader(path, meta_override=override)
-        # HDF5 lists curve 10 before curve 2.
-        recordings = sorted(recordings, key=lambda recording: recording["metadata"]["enum"])
-    return {
-        "" if len(recordings) == 1 else str(recording["metadata"]["enum"]): partial(
-            _curve, path, recording, calibration.speed
-        )
-        for recording in recordings
-    }
+    is_nt_mdt = path.suffix.lower() == ".txt" and not is_instrument(path)
+    with _errors(path, is_nt_mdt):
+        recordings = _calibrated(path, calibration, is_nt_mdt)
+        if not recordings:
+            raise ValueError("no curve")
+    readers: dict[str, partial[Measurement]] = {}
+    # HDF5 lists curve 10 before curve 2, and the curves of an archive may share a number.
+    numbers = [str(recording["metadata"]["enum"]) for recording in recordings]
+    pairs = zip(numbers, recordings, strict=True)
+    for number, recording in sorted(pairs, key=lambda pair: (len(pair[0]), pair[0])):
+        others = (f"{number} ({copy})" for copy in count(2))
+        label = next(label for label in chain([number], others) if label not in readers)
+        curve = partial(_curve, path, recording, calibration, is_nt_mdt)
+        readers[label if len(recordings) > 1 else ""] = curve
+    return readers
+
+
+def _calibrated(path: Path, given: Calibration, is_nt_mdt: bool) -> list[Mapping[str, Any]]:
+    """Return the recordings in a file, with what it lacks of the calibration that is given.
+
+    The loaders of makers differ in what they do with a spring constant that they do not need.
+    """
+    from afmformats.errors import MissingMetaDataError
+
+    known = {words: getattr(given, name) for words, name in _CALIBRATION.items()}
+    # What JPK stores is the signal of the detector, and how it was converted.
+    used = {"sensitivity"} if path.suffix.lower() in _JPK else set()
+
+    def load() -> list[Mapping[str, Any]]:
+        values = {words: known[words] for words in used if known[words] is not None}
+        return _recordings(path, values, is_nt_mdt)
+
+    with warnings.catch_warnings():
+        # Of a curve on its own and one of a map, each is read as the other.
+        warnings.filterwarnings("ignore", "Expected '.*' curve")
+        try:
+            recordings = load()
+        except MissingMetaDataError as error:
+            used |= {*error.meta_keys}
+            recordings = load()
+    if given.sensitivity is not None and "sensitivity" not in used:
+        text = "is not used: the file holds forces, not the signal of a detector; leave it out"
+        raise ConfigError(text, "sensitivity")
+    if given.sensitivity is not None:
+        check_signal(given.sensitivity, "A" if is_nt_mdt else "V")
+    return recordings
+
+
+def _recordings(path: Path, values: dict[str, float], is_nt_mdt: bool) -> list[Mapping[str, Any]]:
+    """Return data and metadata of each curve in a file, as afmformats reads them."""
+    from afmformats import formats
+    from afmformats.formats.fmt_workshop.ws_single import load_csv
+
+    suffix = path.suffix.lower()
+    if suffix in _HDF5:
+        reader = formats.fmt_hdf5.H5DictReader
+        groups = _exports(path).items()
+        return [{"data": reader(path, g), "metadata": own | {"enum": g}} for g, own in groups]
+    if suffix == ".zip":
+        # The loader of archives fails for places on a line, and warns of 10 before 2.
+        with zipfile.ZipFile(path) as archive:
+            names = [n for n in archive.namelist() if _WORKSHOP in archive.open(n).read(_BEGINNING)]
+            texts = (TextIOWrapper(archive.open(name), "utf-8") for name in sorted(names))
+            return [one for text in texts for one in load_csv(text, None, values)]
+    recipes = formats.formats_by_suffix[suffix]
+    recipe = formats.recipe_ntmdt_txt if is_nt_mdt else formats.recipe_chiaro_txt
+    loader = recipe["loader"] if suffix == ".txt" else recipes[0].loader
+    return list(loader(path, meta_override=values))
+
+
+def _exports(path: Path) -> dict[str, dict[str, Any]]:
+    """Return the attributes of the groups in which afmformats exported curves, by their names."""
+    import h5py
+
+    with h5py.File(path) as file:
+        # A link may lead nowhere.
+        nodes = [(name, file.get(name)) for name in file]
+        groups = ((n, of) for n, of in nodes if isinstance(of, h5py.Group) and "force" in of)
+        is_export = str(file.attrs.get("software")) == "afmformats"
+        return {name: dict(group.attrs) for name, group in groups if is_export}
 
 
 @contextmanager
-def _errors(path: Path) -> Iterator[None]:
+def _errors(path: Path, is_nt_mdt: bool) -> Iterator[None]:
     """Raise the errors of afmformats, some of which are not Exceptions, as those of the file."""
     from afmformats import errors, meta
 
@@ -65,15 +161,20 @@ def _errors(path: Path) -> Iterator[None]:
     except PellicleError:
         raise
     except errors.MissingMetaDataError as error:
-        names = [_CALIBRATION.get(word, word) for word in error.meta_keys]
-        raise MissingInputError(f"{path}: ", {n: OPTIONS.get(n, "") for n in names}) from None
+        calibration = _CALIBRATION | ({"sensitivity": "sensitivity [nm/nA]"} if is_nt_mdt else {})
+        names = [calibration.get(word, word) for word in error.meta_keys]
+        where = f"{path}: {_NT_MDT}; " if is_nt_mdt else f"{path}: "
+        raise MissingInputError(where, {n: OPTIONS.get(n, "") for n in names}) from None
     except (Exception, errors.AFMFileFormatError, meta.MetaDataMissingError) as error:
         reason = " ".join(str(error).split()) or type(error).__name__
-        raise StorageError(f"{path}: afmformats cannot read it ({reason})") from None
+        advice = "export each curve as a table or as text"
+        raise StorageError(f"{path}: afmformats cannot read it ({reason}); {advice}") from None
 
 
-def _curve(path: Path, recording: Mapping[str, Any], speed: float | None) -> Measurement:
-    with _errors(path):
+def _curve(
+    path: Path, recording: Mapping[str, Any], given: Calibration, is_nt_mdt: bool
+) -> Measurement:
+    with _errors(path, is_nt_mdt):
         data, metadata = recording["data"], recording["metadata"]
         place = next((name for name in _PLACES if name in data), "")
         names = {_PLACES.get(place, ""): place, "force": "force", "time": "time"}
@@ -84,12 +185,15 @@ def _curve(path: Path, recording: Mapping[str, Any], speed: float | None) -> Mea
         }
         if tip := columns.get("position"):
             columns["position"] = tip._replace(values=-tip.values)
-        own = Calibration(spring_constant=metadata.get("spring constant"), speed=speed)
+        constant = metadata.get("spring constant", given.spring_constant)
+        own = Calibration(spring_constant=constant, speed=given.speed)
         if lacks := lacking(columns, own):
             raise MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in lacks})
         curve, site = from_columns(columns, own), _site(metadata)
     origin = curve.origin._replace(sensitivity=metadata.get("sensitivity"), library="afmformats")
-    return replace(curve, origin=origin, site=site, pause=_pause(data, metadata))
+    messages, pause = (_NT_MDT,) if is_nt_mdt else (), _pause(data, metadata)
+    curve = replace(curve, origin=origin, site=site, messages=messages, pause=pause)
+    return recalibrated(curve, given, is_own=True)
 
 
 def _pause(data: Mapping[str, Any], metadata: Mapping[str, Any]) -> Mask | None:

@@ -5,18 +5,21 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Mapping, Set
 from contextlib import suppress
+from dataclasses import replace
 from functools import cache
+from numbers import Real
+from pathlib import Path
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, PlainSerializer
 
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError, shown
 from pellicle.schema import Model, nearest
-from pellicle.units import Quantity
+from pellicle.units import Quantity, readable
 
-from .measurement import Measurement, Origin
+from .measurement import Measurement, Note, Origin
 
 EXAMPLE = "position [um],force [nN]"
 _OF_TIP, _OF_BASE = ("position", "depth"), ("height", "extension")
@@ -25,7 +28,7 @@ _SIGNALS = ("force", "deflection")
 """Names of columns of which one gives the force."""
 NAMES = (*_OF_TIP, *_OF_BASE, *_SIGNALS, "time")
 """Names of the columns that are read."""
-UNITS = {"force": "N", "deflection": "mV", "time": "s"}
+UNITS = {"force": "N", "deflection": "mVA", "time": "s"}
 """SI units, each a letter, of columns that are not lengths."""
 
 
@@ -57,14 +60,38 @@ def column_map(value: object) -> dict[str, str] | None:
     return dict(found[role] for role in NAMES if role in found)
 
 
+class PerAmpere(float):
+    """A sensitivity of a detector whose signal is a current [m/A]; as text, with its unit."""
+
+    def __str__(self) -> str:
+        return f"{float(self)!r} m/A"
+
+
+class _Sensitivity(Quantity):
+    """A deflection over a signal in volts or, if its text says so, in amperes."""
+
+    def __call__(self, value: object) -> float:
+        if not isinstance(value, (Real, PerAmpere)):
+            with suppress(ValueError):
+                return PerAmpere(Quantity("m/A", above=0)(value))
+        return value if isinstance(value, PerAmpere) else super().__call__(value)
+
+
 class Calibration(Model):
     """Converts the signal of a cantilever to force and deflection; None if not given."""
 
     spring_constant: Annotated[float, Quantity("N/m", above=0)] | None = Field(
-        None, description="of the cantilever, to subtract its bending"
+        None,
+        description="of the cantilever, to subtract its bending; it replaces that of a file, and "
+        "scales the force",
     )
-    sensitivity: Annotated[float, Quantity("m/V", above=0)] | None = Field(
-        None, description="deflection of the cantilever over the signal of its detector"
+    sensitivity: Annotated[
+        Annotated[float, _Sensitivity("m/V", above=0)] | None,
+        PlainSerializer(lambda v: str(v) if isinstance(v, PerAmpere) else v, when_used="json"),
+    ] = Field(
+        None,
+        description="deflection of the cantilever over the signal of its detector; of one in "
+        "amperes as a text, such as 60 nm/nA",
     )
     speed: Annotated[float, Quantity("m/s", above=0)] | None = Field(
         None, description="constant speed of the base, where a file holds no time"
@@ -75,7 +102,7 @@ class Calibration(Model):
     ] = Field(
         None,
         description="roles of columns by name, by number or by path in the file: "
-        '{ "Z" = "extension nm", "Defl" = "deflection nm" }',
+        '{ "Z" = "extension nm", "Defl" = "deflection nm" }; a unit that the file has is left out',
     )
 
 
@@ -91,6 +118,20 @@ class Column(NamedTuple):
     def is_called(self, name: str) -> bool:
         """Return whether a user who writes ``name`` may mean this column."""
         return plain(name).lower() in (self.text.lower(), self.name.lower())
+
+    def unit_beside(self, given: str, path: Path) -> str:
+        """Return a unit that is ``given`` for the column, or else its own.
+
+        One that contradicts its own is a ConfigError.
+        """
+        si = si_unit(self.unit)
+        factors = {si_unit(u) == si and Quantity(si)(f"1 {u}") for u in (given, self.unit) if si}
+        if given and len(factors) > 1:
+            raise ConfigError(
+                f"{path}: column {self.name!r} is in {self.unit} by its header, and {given} was "
+                "given for it; leave the unit out of columns, or correct the header"
+            )
+        return given or self.unit
 
 
 Columns = Mapping[str, Column]
@@ -118,8 +159,9 @@ def lacking(columns: Columns, calibration: Calibration) -> list[str]:
     if calibration.spring_constant is None and (bends or signals == ["deflection"]):
         lacks.append("spring_constant")
     deflection = si_unit(columns["deflection"].unit) if "deflection" in signals else "N"
-    if calibration.sensitivity is None and deflection in ("V", ""):
-        lacks.append("sensitivity" if deflection else "sensitivity if it is in volts")
+    if calibration.sensitivity is None and deflection in ("V", "A", ""):
+        of = {"": "sensitivity if it is in volts", "A": "sensitivity [nm/nA]"}
+        lacks.append(of.get(deflection, "sensitivity"))
     return lacks
 
 
@@ -127,16 +169,20 @@ def lacking(columns: Columns, calibration: Calibration) -> list[str]:
 def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
     """Return the curve that columns hold, of which nothing is `lacking`.
 
-    Force is ``force``, or the spring constant times ``deflection``, which may be in volts if the
-    sensitivity is known.  Position is ``position`` or ``depth``, or else that of the cantilever's
-    base, ``extension`` or minus ``height``, less the deflection.
+    Force is ``force``, or the spring constant times ``deflection``, which may be in volts or
+    amperes if the sensitivity is known.  Position is ``position`` or ``depth``, or else that of the
+    cantilever's base, ``extension`` or minus ``height``, less the deflection.
     """
+    used = []
 
     def si(name: str) -> Array:
-        column = columns[name]
+        column, sensitivity = columns[name], calibration.sensitivity
         unit = si_unit(column.unit)
         factor = Quantity(unit)(f"1 {column.unit}")
-        factor *= (calibration.sensitivity or 1.0) if unit == "V" else 1.0
+        if unit in ("V", "A") and sensitivity is not None:
+            check_signal(sensitivity, unit)
+            used.append(sensitivity)
+            factor *= sensitivity
         return column.values * factor
 
     sizes = {column.name: column.values.size for column in columns.values()}
@@ -158,15 +204,47 @@ def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
         speed=calibration.speed,
         origin=Origin(
             columns={role: f"{c.name} [{c.unit}]" for role, c in columns.items()},
-            sensitivity=calibration.sensitivity,
+            sensitivity=used[0] if used else None,
         ),
     )
 
 
+def check_signal(sensitivity: float, unit: str) -> None:
+    """Raise unless a sensitivity is that of a signal in volts or in amperes, as its ``unit`` is."""
+    if isinstance(sensitivity, PerAmpere) != (unit == "A"):
+        of, needed = ("amperes", "nm/V") if unit == "V" else ("volts", "nm/nA")
+        raise ConfigError(
+            f"is that of a signal in {of}, and this one is in {unit}; give it in {needed}",
+            "sensitivity",
+        )
+
+
+def recalibrated(curve: Measurement, given: Calibration, *, is_own: bool) -> Measurement:
+    """Return a curve with the spring constant that is ``given`` in place of that of its file.
+
+    The deflection, and so the position, is as it was: the force is scaled.  A sensitivity that is
+    given and was not used is a warning or, where the calibration is the file's own, a ConfigError.
+    """
+    new, old = given.spring_constant, curve.stiffness
+    if given.sensitivity is not None and curve.origin.sensitivity is None:
+        text = "is not used: no signal that is read is in volts or amperes"
+        if is_own:
+            raise ConfigError(f"{text}; leave it out", "sensitivity")
+        curve = replace(curve, messages=(*curve.messages, f"the sensitivity {text}"))
+    if new is None or old is None or new == old:
+        return curve
+    text = (
+        f"spring constant {readable(new, 'N/m')} in place of the file's {readable(old, 'N/m')}: "
+        f"the force is scaled by {new / old:.4g}"
+    )
+    messages = *curve.messages, Note(text)
+    return replace(curve, force=curve.force * (new / old), stiffness=new, messages=messages)
+
+
 @cache
 def si_unit(unit: str) -> str:
-    """Return the SI unit of a length, force, voltage or time; empty for anything else."""
-    for si in "mNVs" if unit else "":
+    """Return the SI unit of a length, force, voltage, current or time; empty for anything else."""
+    for si in "mNVAs" if unit else "":
         with suppress(ValueError):
             Quantity(si)(f"1 {unit}")
             return si

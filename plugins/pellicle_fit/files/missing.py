@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from pellicle.errors import ConfigError, shown
 
-from .columns import NAMES, UNITS, Calibration, Column, Columns, lacking, si_unit
+from .columns import NAMES, UNITS, Calibration, Column, Columns, lacking, plain, si_unit
 
 OPTIONS = {
     "spring_constant": '--spring-constant "… N/m"',
     "sensitivity": '--sensitivity "… nm/V"',
+    "sensitivity if it is in volts": '--sensitivity "… nm/V"',
+    "sensitivity [nm/nA]": '--sensitivity "… nm/nA"',
     "radius": '--radius "… um"',
     "half_angle": '--half-angle "… degree"',
 }
@@ -28,9 +31,11 @@ _ROLES = {
     "height": r"height|piezo|ramp|sensor|snsr|exten|position|distance|displacement|(^|[\W_])z",
 }
 """Words in names of columns, and the roles that they suggest; the first that fits counts."""
-_BY_UNIT = {"N": "force", "V": "deflection", "s": "time"}
+_BY_UNIT = {"N": "force", "V": "deflection", "A": "deflection", "s": "time"}
 _OF_BASE = re.compile("height|piezo|ramp|sensor|snsr|exten")
 """Words for the place of a cantilever's base, also beside a force."""
+_IN_SECONDS = re.compile(r"[\W_](m|u|µ)?s(ec)?$")
+"""A name that ends with a unit of time."""
 _UNSAFE = re.compile(r'[,="$`\\]|^$')
 """What would have to be quoted on a command line."""
 
@@ -60,7 +65,12 @@ def missing_in(
     """
     lacks = [*(f"one column {name!r}" for name in wrong), *lacking(columns, calibration)]
     options: dict[str, str] = {}
-    if of_columns := [lack for lack in lacks if lack.split()[0] not in OPTIONS]:
+    if of_columns := [lack for lack in lacks if lack not in OPTIONS]:
+        if len(heads) > SHOWN and not any(head.text for head in heads):
+            raise ConfigError(
+                f"{where} has {len(heads)} columns without names, as a matrix of heights has; if "
+                "it is a curve, choose columns by their numbers (--columns on the command line)"
+            )
         typed = {text.split()[0]: name for name, text in (calibration.columns or {}).items()}
         known = {role: c._replace(name=typed.get(role, c.name)) for role, c in columns.items()}
         roles = guessed(heads, known)
@@ -71,7 +81,7 @@ def missing_in(
         )
         options = dict.fromkeys(of_columns, f'--columns "{text}"')
         lacks = lacking(roles, calibration)
-    options |= {lack: OPTIONS[lack.split()[0]] for lack in lacks if lack.split()[0] in OPTIONS}
+    options |= {lack: OPTIONS[lack] for lack in lacks if lack in OPTIONS}
     names = [shown(head.text or head.name) for head in heads[:SHOWN]]
     names += ["…"] if len(heads) > SHOWN else []
     return MissingInputError(f"{where} has {', '.join(names) or 'no columns'}; ", options)
@@ -83,8 +93,9 @@ def guessed(heads: Sequence[Column], known: Columns) -> dict[str, Column]:
     Those that are ``known`` come first.
     """
     columns = [(role, column.name, column) for role, column in known.items()]
+    called = Counter(text for h in heads for text in {h.name.lower(), h.text.lower()})
     for index, head in enumerate(heads):
-        names = (t for t in (head.name, head.text) if sum(h.is_called(t) for h in heads) == 1)
+        names = (t for t in (head.name, head.text) if called[plain(t).lower()] == 1)
         name = next((text for text in names if not _UNSAFE.search(text)), str(index + 1))
         words = (role for role, of in _ROLES.items() if re.search(of, head.name.lower()))
         columns.append((next(words, _BY_UNIT.get(si_unit(head.unit), "")), name, head))
@@ -92,9 +103,12 @@ def guessed(heads: Sequence[Column], known: Columns) -> dict[str, Column]:
     for role, name, head in columns:
         is_signal = role in ("force", "deflection")
         kind = "signal" if is_signal else role if role in ("", "time") else "place"
-        allowed = "mNV" if is_signal else UNITS.get(role, "m")
+        allowed = "mNVA" if is_signal else UNITS.get(role, "m")
         units = [head.unit, *reversed(re.split(r"[\W_]+", head.name))]
         unit = next((u for u in units if si_unit(u) in [*allowed]), "")
+        contradicts = si_unit(head.unit) or _IN_SECONDS.search(head.name.lower())
+        if not unit and contradicts:
+            continue
         if unit and is_signal:
             # Instruments call a signal in any unit a deflection.
             role = "force" if si_unit(unit) == "N" else "deflection"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from glob import glob, has_magic
@@ -19,7 +20,7 @@ from pellicle.units import Quantity
 from .columns import Calibration
 from .measurement import Measurement, Readers, Site
 from .readers import SUFFIXES, TEXT, read
-from .text_table import FILE, read_cells
+from .text_table import FILE, read_list
 
 PLACE = ("x", "y")
 """Columns of a table of files: where on the sample a curve was measured."""
@@ -55,7 +56,7 @@ def gather(
     Each list in ``per_file`` has one value for each file.  In a table that lists files, the columns
     x and y are the place on the sample.
     """
-    for file, fields, table in _listed(curves, per_file):
+    for file, fields, table in _listed(curves, per_file, calibration.columns or {}):
         site: Site | None = None
         readers: Readers = {}
         origin: dict[str, Any] = {}
@@ -91,7 +92,7 @@ def gather(
 
 
 def _listed(
-    curves: Curves, per_file: Mapping[str, Sequence[Any]]
+    curves: Curves, per_file: Mapping[str, Sequence[Any]], mapped: Mapping[str, str]
 ) -> Iterator[tuple[Any, dict[str, Any], Any]]:
     """Yield files, or the names of arrays, each with its fields and the table that lists it."""
     files: list[tuple[Any, dict[str, str], Any]]
@@ -99,7 +100,8 @@ def _listed(
         files = [(name, {}, name) for name in curves]
     else:
         paths = [curves] if isinstance(curves, (str, Path)) else curves
-        files = [file for text in paths for path in expanded(text) for file in _files(path)]
+        found = [path for text in paths for path in expanded(text)]
+        files = [file for path in found for file in _files(path, mapped)]
     if not files:
         raise ConfigError("holds no curve; give files, or a folder of them", "curves")
     for name, values in per_file.items():
@@ -124,10 +126,11 @@ def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
     return sorted(Path(folder, file) for file in files)
 
 
-def _files(path: Path) -> list[tuple[Path, dict[str, str], Path]]:
+def _files(path: Path, mapped: Mapping[str, str]) -> list[tuple[Path, dict[str, str], Path]]:
     """Return the files that a path stands for, each with its fields in a list of files, and that.
 
-    A list is a table with a header such as ``file,radius [um]``; its empty cells are left out.
+    A list is a table with a header such as ``file,radius [um]``, one of whose files exists, or all
+    of whose files have the suffix of a curve; its empty cells are left out.
     """
     if path.is_dir():
         files = [file for file in sorted(path.glob("[!.]*")) if file.suffix.lower() in SUFFIXES]
@@ -135,17 +138,17 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str], Path]]:
             raise ConfigError(f"{path}: holds no file of a known kind ({', '.join(SUFFIXES)})")
         return [(file, {}, file) for file in files]
     is_table = path.suffix.lower() in TEXT and path.is_file()
-    heads, rows, _ = read_cells(path) if is_table else ([], [], "")
-    if all(head.name.lower() != FILE for head in heads):
+    rows = read_list(path, mapped) if is_table else []
+    files = [path.parent / name for row in rows if (name := row.pop(FILE, ""))]
+    is_list = bool(files) and all(file.suffix.lower() in SUFFIXES for file in files)
+    # What is no name may be too long for one.
+    with suppress(OSError, ValueError):
+        is_list = is_list or any(file.is_file() for file in files)
+    if not is_list:
         return [(path, {}, path)]
-    listed: list[tuple[Path, dict[str, str], Path]] = []
-    for row in rows:
-        pairs = zip(heads, map(str.strip, row), strict=False)
-        fields = {head.name.lower(): f"{c} {head.unit}".strip() for head, c in pairs if c}
-        if FILE not in fields:
-            raise ConfigError(f"{path}: has a row without a file; name one in each row")
-        listed.append((path.parent / fields.pop(FILE), fields, path))
-    return listed
+    if len(files) < len(rows):
+        raise ConfigError(f"{path}: has a row without a file; name one in each row")
+    return [(file, fields, path) for file, fields in zip(files, rows, strict=True)]
 
 
 def read_curves(path: str | Path, **calibration: Any) -> dict[str, Measurement]:

@@ -14,7 +14,7 @@ from pellicle.arrays import Array
 from pellicle.errors import ConfigError, StorageError
 from pellicle.files import read_text
 
-from .columns import EXAMPLE, NAMES, Column, Columns, is_curve, plain, si_unit
+from .columns import EXAMPLE, NAMES, Calibration, Column, Columns, is_curve, plain, si_unit
 from .missing import UNKNOWN, guessed
 
 FILE = "file"
@@ -28,46 +28,84 @@ _GROUPED = re.compile(rf"{_WHOLE.pattern}(?:,\d{{3}})+")
 _COMMENT = ("#", "%")
 _PREAMBLE = 200
 """Lines in which a header is sought."""
+_EXPORT = re.compile(r"[#%]\s*(columns|units):(.*)")
+"""A comment of JPK's text exports with the names of the columns, or with their units."""
+_PAIR = re.compile(
+    r"([^:=;,\t\[(]+?)\s*(?:[\[(]([^\])]*)[\])])?[\s:=;,]+([-+]?[\d.,]+(?:[eE][-+]?\d+)?)\s*"
+    r"([^\s\"';,]*)"
+)
+"""Name, unit, value and, in place of the first, unit of a constant in a line above a table."""
+_CONSTANTS = {
+    **dict.fromkeys(("k", "springconstant", "cantileverspringconstant"), "spring_constant"),
+    **dict.fromkeys(("sensitivity", "deflectionsensitivity", "invols"), "sensitivity"),
+}
+"""Constants that are read, by their letters."""
 
 
-def read_cells(
-    path: Path, mapped: Mapping[str, str] | None = None
-) -> tuple[list[Column], list[list[str]], str]:
-    """Return heads and rows of cells of a table, and what separates them; empty if it is no text.
-
-    A row of units may follow the header, and the columns of a table without one have numbers.  The
-    rows are as long as the heads or longer.
-    """
+def _lines(path: Path) -> tuple[list[str], list[int]]:
+    """Return the lines of a text, and the numbers of those without comments."""
     try:
         text = read_text(path)
     except OSError as error:
         raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except ValueError:
-        return [], [], ""
+    except ValueError as error:
+        raise csv.Error from error
     lines = [line for line in text.splitlines() if line.strip()]
     data = [number for number, line in enumerate(lines) if not line.startswith(_COMMENT)]
     if not data:
         raise ConfigError(f"{path}: is empty; give a table with the header {EXAMPLE!r}")
-    # A cell that is longer than any number is no text.
+    return lines, data
+
+
+def read_list(path: Path, mapped: Mapping[str, str]) -> list[dict[str, str]]:
+    """Return the fields of each row of a table with a column ``file``; none of another table.
+
+    Each row below its header is as long, and has no number in that column.  One that has the
+    columns of a curve, or ``mapped`` ones, is another table.
+    """
     with suppress(csv.Error):
-        header, heads = _header(lines, data, mapped or {})
-        below = [lines[number] for number in data if number > header]
-        # The heads may be separated by other signs than the numbers, and a first row be short.
-        separator = next((s for s in map(_separator, below[:3]) if s != " "), " ")
-        rows = _split(below, separator)
-        # The rows of a list of files may have no number either.
-        is_list = FILE in [head.name.lower() for head in heads]
-        if rows and not is_list and not any(map(_is_number, rows[0])):
-            units = [plain(cell).strip("[]()") for cell in rows.pop(0)]
-            units += [""] * len(heads)
-            heads = [
-                head._replace(unit=head.unit or (unit if si_unit(unit) else ""))
-                for head, unit in zip(heads, units, strict=False)
-            ]
-        width = max(map(len, rows[:1]), default=0)
-        heads += [Column("", str(index + 1), "") for index in range(len(heads), width)]
-        return heads, [row + [""] * (len(heads) - len(row)) for row in rows], separator
-    return [], [], ""
+        lines, data = _lines(path)
+        for number, heads in _candidates(lines, data).items():
+            names = [head.name.lower() for head in heads]
+            is_other = is_curve({*names}) or any(h.is_called(n) for n in mapped for h in heads)
+            if is_other or FILE not in names:
+                continue
+            rows, separator = _rows(lines, data, number)
+            if separator == " " and len(heads) == 1:
+                rows = [[" ".join(row)] for row in rows]
+            place = names.index(FILE)
+            if rows and all(len(r) >= len(heads) and not _is_number(r[place]) for r in rows):
+                cells = [zip(heads, map(str.strip, row), strict=False) for row in rows]
+                return [{h.name.lower(): f"{c} {h.unit}".strip() for h, c in r if c} for r in cells]
+    return []
+
+
+def _rows(lines: Sequence[str], data: Sequence[int], header: int) -> tuple[list[list[str]], str]:
+    """Return the cells of the rows below a header, and what separates them."""
+    below = [lines[number] for number in data if number > header]
+    # The heads may be separated by other signs than the numbers, and a first row be short.
+    separator = next((s for s in map(_separator, below[:3]) if s != " "), " ")
+    return _split(below, separator), separator
+
+
+def _with_units(heads: Sequence[Column], units: Sequence[str]) -> list[Column]:
+    """Return columns with the units of a row, where they have none."""
+    units = [unit if si_unit(unit) else "" for unit in units] + [""] * len(heads)
+    return [h._replace(unit=h.unit or unit) for h, unit in zip(heads, units, strict=False)]
+
+
+def _constants(lines: Sequence[str], is_export: bool) -> dict[str, float]:
+    """Return the constants that lines state with their units; JPK's export has them in SI."""
+    found: dict[str, set[float]] = {}
+    for match in filter(None, (_PAIR.match(plain(text[:200]).lstrip('#%\\*" ')) for text in lines)):
+        key, unit, number, other = match.groups(default="")
+        name, unit = _CONSTANTS.get(re.sub("[^a-z]", "", key.lower())), unit or other
+        with suppress(ValueError):
+            number = number.replace(",", ".")
+            value = float(number) if is_export and not unit else f"{number} {unit}"
+            if name:
+                found.setdefault(name, set()).add(getattr(Calibration(**{name: value}), name))
+    return {name: values.pop() for name, values in found.items() if len(values) == 1}
 
 
 def _header(
@@ -75,30 +113,44 @@ def _header(
 ) -> tuple[int, list[Column]]:
     """Return the number of the line above the rows, and its heads.
 
-    It is the first line that has the ``mapped`` columns or, without them, those of a curve or of a
-    list of files, or may have them, or the last such comment above it; else the first line.
+    It is the first line that has the ``mapped`` columns or, without them, those of a curve, or may
+    have them, or the last such comment above it; else the first line or, if that is a row, a
+    comment with as many words.
     """
-    likely = (*data[:_PREAMBLE], *reversed(range(data[0])))
-    heads = {number: _heads(lines[number]) for number in likely}
+    heads = _candidates(lines, data)
     wanted = [name for name in mapped if not name.isdecimal()]
     for number, found in heads.items():
         names = {head.name.lower() for head in found}
-        is_known = not mapped and (is_curve(names) or FILE in names)
+        is_known = not mapped and is_curve(names)
         if is_known or (wanted and all(any(h.is_called(name) for h in found) for name in wanted)):
             return number, found
     width = len(_heads(lines[data[-1]]))
-    for number, found in () if mapped else heads.items():
-        known = len(found) == width and guessed(found, {}).values()
-        if known and all(column.name != UNKNOWN for column in known):
+    alike = {number: found for number, found in heads.items() if len(found) == width}
+    for number, found in () if mapped else alike.items():
+        if all(column.name != UNKNOWN for column in guessed(found, {}).values()):
             return number, found
-    first = heads[data[0]]
-    are_numbers = all(_is_number(head.text) for head in first if head.text)
-    return (data[0] - 1, []) if are_numbers else (data[0], first)
+    if data[0] in heads:
+        return data[0], heads[data[0]]
+    comments = (n for n in alike if n < data[0] and ":" not in _EXPORT.sub(r"\2", lines[n]))
+    return data[0] - 1, alike.get(next(comments, -1), [])
+
+
+def _candidates(lines: Sequence[str], data: Sequence[int]) -> dict[int, list[Column]]:
+    """Return what the lines may name that may be a header, by the numbers of the lines.
+
+    Those of an export that says so come first, then the first lines, then comments upwards.
+    """
+    above = [*reversed(range(data[0]))]
+    exported = [n for n in above if (match := _EXPORT.match(lines[n])) and match[1] == "columns"]
+    likely = [*exported, *data[:_PREAMBLE]]
+    cells = {number: re.split(r"[\s;,]+", lines[number].strip()) for number in [*likely, *above]}
+    return {n: _heads(lines[n]) for n in cells if not all(map(_is_number, filter(None, cells[n])))}
 
 
 def _heads(line: str) -> list[Column]:
-    # JPK writes "columns:" before the names.
-    line = re.sub(r"^\s*columns:", "", line.lstrip("".join(_COMMENT)))
+    if match := _EXPORT.match(line):
+        line = match[2]
+    line = line.lstrip("".join(_COMMENT))
     separator = _separator(line)
     cells = _WORD.findall(line) if separator == " " else _split([line], separator)[0]
     heads = []
@@ -130,9 +182,29 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-def read_table(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns], list[Column]]:
-    """Return columns of the curve of a table, known or ``mapped``, if it is text; and all heads."""
-    heads, rows, separator = read_cells(path, mapped)
+def read_table(
+    path: Path, mapped: Mapping[str, str]
+) -> tuple[dict[str, Columns], list[Column], dict[str, float]]:
+    """Return columns of the curve of a table, all heads, and constants that the lines above state.
+
+    The columns are those with known names, or ``mapped`` ones, or those of JPK's text export.  A
+    row of units may follow the header, and the columns of a table without one have numbers.  What
+    is no text, or has a cell that is longer than any number, is a csv.Error.
+    """
+    lines, data = _lines(path)
+    header, heads = _header(lines, data, mapped)
+    rows, separator = _rows(lines, data, header)
+    if rows and not any(map(_is_number, rows[0])):
+        heads = _with_units(heads, [plain(cell).strip("[]()") for cell in rows.pop(0)])
+    stated = [lines[n] for n in sorted({*range(data[-1])} - {n for n in data if n >= header})]
+    exported: dict[str, list[str]] = {}
+    for match in filter(None, map(_EXPORT.match, stated)):
+        if exported.setdefault(match[1], cells := match[2].split()) != cells:
+            raise ConfigError(f"{path}: its segments differ in {match[1]}; export one at a time")
+    heads, is_export = _with_units(heads, exported.get("units", [])), len(exported) == 2
+    width = max(map(len, rows[:1]), default=0)
+    heads += [Column("", str(index + 1), "") for index in range(len(heads), width)]
+    rows = [row + [""] * (len(heads) - len(row)) for row in rows]
     names = [head.name.lower() for head in heads]
     if not mapped and separator == "," and is_curve({*names}):
         named = sum(bool(head.text) for head in heads)
@@ -144,8 +216,14 @@ def read_table(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns
                     "semicolons, tabs or decimal points, or choose columns by their numbers "
                     "(--columns on the command line)"
                 )
+    known = mapped or {name: name for name in names if name in NAMES}
+    if is_export and not mapped:
+        # The position of the tip is that of a height, and time, unlike seriesTime, begins anew.
+        roles = guessed([head for head in heads if "tip" not in head.name.lower()], {})
+        if "height" in roles:
+            known = {c.name: role for role, c in roles.items() if c.name != UNKNOWN}
     columns = {}
-    for name, text in (mapped or {name: name for name in names if name in NAMES}).items():
+    for name, text in known.items():
         matches = [index for index, head in enumerate(heads) if head.is_called(name)]
         if not matches and name.isdecimal() and 1 <= int(name) <= len(heads):
             matches = [int(name) - 1]
@@ -153,8 +231,11 @@ def read_table(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns
             role, _, unit = text.partition(" ")
             head, texts = heads[matches[0]], [row[matches[0]].strip() for row in rows]
             values = _numbers(texts, separator, f"{path}: column {head.name}")
-            columns[role] = head._replace(unit=unit or head.unit, values=values)
-    return ({"": columns} if heads else {}), heads
+            # Heads that are doubled do not tell which column is which.
+            is_doubled = sum(other.text == head.text for other in heads) > 1
+            unit = unit if unit and is_doubled else head.unit_beside(unit, path)
+            columns[role] = head._replace(unit=unit, values=values)
+    return {"": columns}, heads, _constants(stated, is_export)
 
 
 def _numbers(cells: list[str], separator: str, column: str) -> Array:

@@ -12,14 +12,16 @@ from typing import Any
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.errors import StorageError
+from pellicle.errors import ConfigError, StorageError
 from pellicle.schema import read_mat
 
 from .columns import NAMES, Column, Columns
 from .missing import SHOWN
 
 
-def read_tree(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns], list[Column]]:
+def read_tree(
+    path: Path, mapped: Mapping[str, str]
+) -> tuple[dict[str, Columns], list[Column], dict[str, float]]:
     """Return the columns of each curve of an HDF5 or a MATLAB file by its label, and all heads.
 
     Without ``mapped`` columns, they are arrays of one axis with the names of columns, at its root
@@ -32,7 +34,9 @@ def read_tree(path: Path, mapped: Mapping[str, str]) -> tuple[dict[str, Columns]
         with nullcontext(read_mat(path)) if is_matlab else h5py.File(path) as root:
             arrays = dict(_arrays(root if is_matlab else root["/"]))
             heads = [Column(name, name, _unit(arrays[name])) for name in islice(arrays, SHOWN + 1)]
-            return _curves(arrays, mapped, is_matlab=is_matlab), heads
+            return _curves(path, arrays, mapped, is_matlab=is_matlab), heads, {}
+    except ConfigError:
+        raise
     except (OSError, RuntimeError, ValueError) as error:
         reason = getattr(error, "strerror", "") or error
         kind = "a MATLAB" if is_matlab else "an HDF5"
@@ -57,7 +61,7 @@ def _unit(array: Any) -> str:
 
 
 def _curves(
-    arrays: Mapping[str, Any], mapped: Mapping[str, str], *, is_matlab: bool
+    file: Path, arrays: Mapping[str, Any], mapped: Mapping[str, str], *, is_matlab: bool
 ) -> dict[str, Columns]:
     """Return the arrays whose paths are ``mapped``, by the labels of their curves.
 
@@ -83,7 +87,8 @@ def _curves(
                 rows = {",".join(map(str, i)): values[i] for i in np.ndindex(values.shape[:-1])}
             for row, numbers in rows.items():
                 label = "/".join(filter(None, (*match.groups(), row)))
-                labelled[label] = Column(pattern, pattern, unit or _unit(array), numbers)
+                head = Column(pattern, pattern, _unit(array), numbers)
+                labelled[label] = head._replace(unit=head.unit_beside(unit, file))
     labels = dict.fromkeys(label for own in channels.values() for label in own if label)
     # An array that all curves share, such as the time, has no label.
     return {

@@ -97,7 +97,7 @@ def _exported(path: Path, recording: Recording, number: int):  # type: ignore[no
     return AFMForceDistance(data, metadata)
 
 
-def jpk(path: Path, *recordings: Recording) -> None:
+def jpk(path: Path, *recordings: Recording, styles: Sequence[str] = ()) -> None:
     """Write a JPK archive: properties, and channels of big-endian integers; several make a map."""
     with zipfile.ZipFile(path, "w") as archive:
         general = "file-format-version=0.5\n"
@@ -110,7 +110,7 @@ def jpk(path: Path, *recordings: Recording) -> None:
                 archive.writestr(folder, "")
             archive.writestr(f"{folder}header.properties", general)
             archive.writestr(f"{folder}segments/", "")
-            for segment, style in enumerate(recording.styles):
+            for segment, style in enumerate(styles or recording.styles):
                 inner = f"{folder}segments/{segment}/"
                 rows = recording.segment == segment
                 archive.writestr(inner, "")
@@ -202,11 +202,110 @@ def workshop(path: Path, recording: Recording) -> None:
     path.write_text("\n".join(lines), encoding="utf-8")
 
 
+def chiaro(path: Path, recording: Recording) -> None:
+    """Write a table of an Optics11 Chiaro, which has the position of the tip."""
+    bending = recording.force / recording.spring_constant
+    piezo = -recording.height
+    rows = np.column_stack(
+        [
+            1e-3 * np.arange(piezo.size),
+            1e6 * recording.force,
+            1e9 * np.clip(piezo - bending, 0, None),
+            1e9 * bending,
+            1e9 * piezo,
+            0 * piezo,
+        ]
+    )
+    lines = [
+        "Date\t12/05/2025\tTime\t11:20:38\tStatus\tOK",
+        "Piezo position (nm) (Measured)\t-10.3",
+        f"k (N/m)\t{recording.spring_constant}",
+        "Device:\tChiaro",
+        "Software version: V3.5.0",
+        "Max load (µN)\t0.050",
+        "Piezo speed  (µm/s)\t7.000",
+        "Time (s)\tLoad (uN)\tIndentation (nm)\tCantilever (nm)\tPiezo (nm)\tAuxiliary",
+        *("\t".join(f"{value:.10g}" for value in row) for row in rows),
+    ]
+    path.write_text("\n".join(lines) + "\n", encoding="latin-1")
+
+
+def jpk_text(path: Path, recording: Recording, signal: str = "N", heights: str = "height") -> None:
+    """Write JPK's text export with a signal in N, m or V; the last of ``heights`` is right."""
+    bending = recording.force / recording.spring_constant
+    values = {"N": recording.force, "m": bending, "V": recording.volts}[signal]
+    time, blocks = np.arange(values.size) * 1e-3, []
+    for segment, name in enumerate(("extend", "retract")):
+        rows = recording.segment == segment
+        columns = [0 * time] * heights.count(" ") + [recording.height, values, time]
+        blocks += [
+            f"# segmentIndex: {segment}",
+            f"# segment: {name}",
+            f"# columns: {heights} vDeflection seriesTime time",
+            f"# sensitivity: {recording.sensitivity}",
+            f"# springConstant: {recording.spring_constant}",
+            f"# units: {'m ' * len(heights.split())}{signal} s s",
+            "#",
+            *(
+                " ".join(f"{value:.10e}" for value in (*row, row[-1] - time[rows][0]))
+                for row in np.column_stack(columns)[rows]
+            ),
+            "",
+        ]
+    path.write_text("\n".join(blocks), encoding="utf-8")
+
+
+def stated(path: Path, recording: Recording) -> None:
+    """Write a plain table below a line that states the spring constant."""
+    rows = np.column_stack([-1e6 * recording.height, 1e9 * recording.force])
+    header = f"Spring constant (pN/nm): {1e3 * recording.spring_constant}\nheight [um],force [nN]"
+    rows[:, 0] *= -1
+    np.savetxt(path, rows, delimiter=",", header=header, fmt="%.12g")
+
+
+def archive(
+    path: Path, recordings: Sequence[Recording], columns: int = 4, points: Sequence[int] = ()
+) -> None:
+    """Write a zip of AFM Workshop, in newtons, of places on a grid; and what else may be in one."""
+    with zipfile.ZipFile(path, "w") as zipped:
+        zipped.writestr("readme.txt", "What the numbers mean, and who measured them")
+        zipped.writestr("__MACOSX/._pt1.csv", b"\0\5\26\7")
+        for number, recording in enumerate(recordings):
+            half = recording.force.size // 2
+            nm, nn = -1e9 * recording.height, 1e9 * recording.force
+            lines = [
+                "Force-Distance Curve",
+                "Date:\tWednesday, August 1, 2018",
+                "Time:\t1:07:47 PM",
+                f"Mode:\t{'Single' if points else 'Mapping'}",
+                f"Point:\t{points[number] if points else number + 1}",
+                f"X, um:\t{number % columns}",
+                f"Y, um:\t{number // columns}",
+                "Extend Z-Sense(nm),Extend Force(nN),Retract Z-Sense(nm),Retract Force(nN)",
+                *(
+                    ",".join(f"{value:.10g}" for value in row)
+                    for row in zip(nm[:half], nn[:half], nm[half:], nn[half:], strict=True)
+                ),
+            ]
+            zipped.writestr(f"pt{number + 1}.csv", "\n".join(lines))
+
+
+def nova(path: Path, recording: Recording, sensitivity: float) -> None:
+    """Write an export of NT-MDT's Nova: height [nm] and the signals [nA] on the way in and out."""
+    half = recording.force.size // 2
+    signal = 1e9 * recording.force / recording.spring_constant / sensitivity
+    rows = [1e9 * recording.height[:half], signal[:half], signal[half:][::-1]]
+    np.savetxt(path, np.column_stack(rows)[::-1], delimiter="\t", fmt="%.10g")
+
+
 WRITERS: dict[str, Callable[[Path, Recording], None]] = {
     "export.h5": hdf5,
     "export.tab": tab,
     "curve.jpk-force": jpk,
     "workshop.csv": workshop,
+    "chiaro.txt": chiaro,
+    "export.txt": jpk_text,
+    "stated.csv": stated,
 }
 """Files of one curve."""
 MAPS: dict[str, Callable[[Path, Sequence[Recording]], None]] = {

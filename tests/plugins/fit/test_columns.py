@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 import h5py
@@ -115,6 +118,155 @@ def test_list_of_files_without_numbers(tmp_path: Path) -> None:
         (tmp_path / f"{name}.csv").write_text(f"position [um],force [nN]\n{rows()}")
     (tmp_path / "list.csv").write_text("file,day\na.csv,Monday\nb.csv,Tuesday\n")
     assert [Path(name).stem for name in pl.read_curves(tmp_path / "list.csv")] == ["a", "b"]
+
+
+PREAMBLES = (
+    "File Name: bead1",
+    "File\tbead1.dat",
+    "File\tsound.txt",
+    '"\\*Force file list"',
+    "Source,file,7",
+    "file",
+    "file,day\nsound.txt,Monday",
+)
+
+
+@pytest.mark.parametrize("columns", [None, "position = position, force = force nN"])
+@pytest.mark.parametrize("preamble", PREAMBLES)
+def test_a_preamble_with_the_word_file(tmp_path: Path, preamble: str, columns: str | None) -> None:
+    """It makes no list of files of the table below it, alone or in a folder, whatever it names."""
+    for name, line in (("a.txt", preamble), ("sound.txt", "Filename: bead1")):
+        text = f"{line}\nOperator: nobody\nposition [um]\tforce [nN]\n{rows(chr(9))}"
+        (tmp_path / name).write_text(text)
+    for path, count in ((tmp_path / "a.txt", 1), (tmp_path, 2)):
+        read_curves = pl.read_curves(path, columns=columns)
+        assert [*map(is_the_curve, read_curves.values())] == [True] * count
+
+
+def test_lists_of_files(tmp_path: Path) -> None:
+    """What is missing is named; a table of curves is none, and neither is one with columns."""
+    (tmp_path / "a b.csv").write_text(f"position [um],force [nN]\n{rows()}")
+    (tmp_path / "list.csv").write_text("# of Monday\nfile\na b.csv\n")
+    assert [Path(name).stem for name in pl.read_curves(tmp_path / "list.csv")] == ["a b"]
+    (tmp_path / "list.csv").write_text("file,radius [um]\nlost.csv,5\nmislaid.csv,5\n")
+    with pytest.raises(pl.ConfigError, match=r"lost.csv: cannot be read(.|\n)*mislaid.csv: cannot"):
+        pl.read_curves(tmp_path / "list.csv")
+    path, header = tmp_path / "z.txt", "file,position [um],force [nN]"
+    path.write_text("\n".join([header, *(f"a b.csv,{row}" for row in rows().split())]))
+    for text, columns in (
+        (header, None),
+        (header, "position = position, force = force"),
+        ("file,Z [um],F [nN]", "Z = position, F = force"),
+    ):
+        path.write_text(path.read_text().replace(header, text))
+        (curve,) = pl.read_curves(path, columns=columns).values()
+        assert is_the_curve(curve)
+    (tmp_path / "a b.csv").write_text(rows())
+    (tmp_path / "list.csv").write_text("file,day\na b.csv,Monday\n")
+    (curve,) = pl.read_curves(tmp_path / "list.csv", columns=BY_NUMBER).values()
+    assert is_the_curve(curve)
+
+
+STATED = (
+    "# Spring constant: 0.05 N/m",
+    "Spring Constant (pN/nm);50",
+    "cantilever spring constant [N/m] = 0,05",
+    "# spring_constant: 5e-2 N/m\n# Deflection sensitivity (nm/V): 100",
+    "% k 0.05 nN/nm\n% InvOLS: 100 nm/V",
+)
+
+
+@pytest.mark.parametrize("preamble", STATED)
+def test_constants_above_a_table(tmp_path: Path, preamble: str) -> None:
+    """Lines above a table state them with their units; without a unit they are not believed."""
+    path, volts = tmp_path / "a.csv", "nm/V" in preamble
+    signal = F / 5 if volts else 20 * F
+    lines = [f"{z + 20e-3 * f}\t{d}" for z, f, d in zip(Z, F, signal, strict=True)]
+    table = f"extension [um]\tdeflection [{'V' if volts else 'nm'}]\n" + "\n".join(lines)
+    path.write_text(f"{preamble}\n{table}")
+    assert is_the_curve(curves(path)[""])
+    (changed,) = curves(path, spring_constant="0.1 N/m").values()
+    np.testing.assert_allclose(changed.position, 1e-6 * Z)
+    np.testing.assert_allclose(changed.force, 2e-9 * F)
+    path.write_text(f"# spring constant: 0.05\n# sensitivity: 100\n{table}")
+    with pytest.raises(pl.ConfigError, match="missing: spring_constant"):
+        curves(path)
+
+
+def test_a_unit_that_contradicts_the_header(tmp_path: Path) -> None:
+    """It is refused, in tables and in trees; one that is the same, or left out, is not."""
+    path = tmp_path / "a.csv"
+    path.write_text(f"Z [um],F [nN]\n{rows()}")
+    for same in ("Z = position um, F = force nN", "Z = position µm, F = force"):
+        assert is_the_curve(curves(path, same)[""])
+    for wrong in ("Z = position nm, F = force", "Z = position um, F = deflection mV"):
+        with pytest.raises(pl.ConfigError, match=r"by its header, and .* leave the unit out"):
+            curves(path, wrong)
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["z"], file["f"] = Z, F
+        file["z"].attrs["units"] = "um"
+    assert is_the_curve(curves(tmp_path / "a.h5", "z = position, f = force nN")[""])
+    with pytest.raises(pl.ConfigError, match="'z' is in um by its header, and nm was given"):
+        curves(tmp_path / "a.h5", "z = position nm, f = force nN")
+
+
+@pytest.mark.parametrize("place", ["Z [s]", "Sensor (ms)", "Ramp_s", "Extension [V]"])
+def test_a_column_of_another_unit_is_not_offered(tmp_path: Path, place: str) -> None:
+    """A length is not in seconds, whatever its name is."""
+    (tmp_path / "a.txt").write_text(f"{place}\tDefl [nm]\n{rows(chr(9))}")
+    with pytest.raises(pl.ConfigError, match='--columns "<column> = height <unit>, Defl = defl'):
+        curves(tmp_path / "a.txt")
+
+
+def _calls(function: Callable[[], object]) -> int:
+    """Return the number of calls of functions in a call that raises an error of its input."""
+    count = 0
+
+    def counted(frame: object, event: str, argument: object) -> None:
+        nonlocal count
+        count += event.endswith("call")
+
+    sys.setprofile(counted)
+    try:
+        with suppress(pl.PellicleError):
+            function()
+    finally:
+        sys.setprofile(None)
+    return count
+
+
+@pytest.mark.parametrize("head", ["", "# {}"])
+def test_a_matrix_among_curves(tmp_path: Path, head: str) -> None:
+    """It is told apart, and what its columns are is guessed in a time linear in their number."""
+    counts = []
+    for size in (100, 200):
+        path = tmp_path / f"{size}.txt"
+        header = head.format(" ".join(f"name{number}" for number in range(size)))
+        np.savetxt(path, np.ones((9, size)), header=header, comments="")
+        counts.append(_calls(partial(read_first, path)))
+    assert counts[1] < 2.5 * counts[0]
+    with pytest.raises(pl.ConfigError) as raised:
+        read_first(path)
+    told = str(raised.value)
+    assert ("has 200 columns without names, as a matrix of heights" in told) == (not head)
+    assert ("sensitivity" in told) == bool(head)
+
+
+def read_first(path: Path) -> Measurement:
+    """Return the first curve of a file."""
+    return next(iter(read(path).values()))()
+
+
+def test_one_message_for_each_kind_of_header(tmp_path: Path) -> None:
+    """Of files with the same columns, and of curves of a file, it is asked once."""
+    for number in range(3):
+        (tmp_path / f"{number}.txt").write_text(f"Zsnsr [um]\tDefl [V]\n{rows(chr(9))}")
+        with h5py.File(tmp_path / "tree.h5", "a") as file:
+            file[f"{number}/height"], file[f"{number}/force"] = Z, F
+    table = pl.fit_many(tmp_path, indenter="sphere", radius="5 um", progress=False)
+    statuses = {*table["status"].values.tolist()}
+    assert len(statuses) == 2
+    assert not any("install" in status for status in statuses)
 
 
 def test_a_depth_and_a_cell_without_a_number(tmp_path: Path) -> None:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -80,6 +83,141 @@ def test_calibration_is_asked_for(tmp_path: Path, recording: instruments.Recordi
     instruments.workshop(tmp_path / "workshop.csv", recording)
     with pytest.raises(pl.ConfigError, match='--sensitivity "… nm/V" --spring-constant "… N/m"'):
         read(tmp_path / "workshop.csv")
+
+
+@pytest.mark.parametrize("name", instruments.WRITERS)
+def test_another_spring_constant_scales_the_force(
+    tmp_path: Path, recording: instruments.Recording, name: str
+) -> None:
+    """The deflection, and so the position of the tip, is what was measured; the record tells it."""
+    path, new = tmp_path / name, 1.2 * SPRING
+    instruments.WRITERS[name](path, recording)
+    if name == "workshop.csv":
+        # It states no constants, which its loader needs.
+        (curve,) = (reader() for reader in read(path, GIVEN).values())
+        assert curve.origin.sensitivity == SENSITIVITY
+        return
+    (curve,), (changed,) = (
+        [reader() for reader in read(path, Calibration(spring_constant=k)).values()]
+        for k in (None, new)
+    )
+    assert curve.stiffness == pytest.approx(SPRING)
+    assert changed.stiffness == new
+    np.testing.assert_allclose(changed.position, curve.position)
+    np.testing.assert_allclose(changed.force, 1.2 * curve.force)
+    (text,) = set(changed.messages) - set(curve.messages)
+    assert "60 mN/m in place of the file's 50 mN/m: the force is scaled by 1.2" in text
+    if name != "curve.jpk-force":
+        with pytest.raises(pl.ConfigError, match="sensitivity: is not used"):
+            [reader() for reader in read(path, GIVEN).values()]
+
+
+@pytest.mark.parametrize("sensitivity", ["61 m/A", "61 nm/nA", "0.061 um/nA"])
+def test_nova(tmp_path: Path, recording: instruments.Recording, sensitivity: str) -> None:
+    """Columns without names are taken for NT-MDT's with a warning; its signal is a current."""
+    path = tmp_path / "nova.txt"
+    options: dict[str, Any] = {"spring_constant": SPRING}
+    instruments.nova(path, recording, 61.0)
+    with pytest.raises(pl.ConfigError, match=r'NT-MDT.*missing: (.|\n)*--sensitivity "… nm/nA"'):
+        only(path)
+    for wrong in ("61 nm/V", "61 m/V", 61.0):
+        with pytest.raises(pl.ConfigError, match="signal in volts, and this one is in A"):
+            only(path, Calibration(sensitivity=wrong, **options))
+    config = pl.FitConfig.merged(curves=[path], indenter=BEAD, sensitivity=sensitivity, **options)
+    again = pl.FitConfig.merged(config.to_dict() | {"curves": [path], "indenter": BEAD})
+    for one in (config, again):
+        (source,) = one.sources()
+        assert isinstance(source.curve, Measurement)
+        assert is_curve(clean(source.curve), *SEEN)
+        assert [text for text in source.curve.messages if "three columns without names" in text]
+    (tmp_path / "commas.txt").write_text(path.read_text().replace("\t", ","))
+    with pytest.raises(pl.ConfigError, match="has '1', '2', '3'; missing: a position"):
+        read(tmp_path / "commas.txt", Calibration(sensitivity=sensitivity, **options))[""]()
+    # As a table whose columns are given it is the same, from the deepest row on.
+    config = pl.FitConfig.merged(config, columns="1 = height nm, 2 = deflection nA")
+    (source,) = config.sources()
+    assert isinstance(source.curve, Measurement)
+    assert is_curve(clean(source.curve, "retract"), SEEN[0][::-1], SEEN[1][::-1])
+
+
+NAMED = {
+    "Zsnsr [um]\tDefl [V]\ttime [s]": "Zsnsr = extension um, Defl = deflection V, time = time s",
+    "a\tb\tc": "<column> = height <unit>, <column> = deflection <unit>",
+    "x\tLoad\tDate": "<column> = height <unit>, Load = force <unit>",
+}
+
+
+@pytest.mark.parametrize("mark", ["", "# ", "# columns: "])
+@pytest.mark.parametrize("header", NAMED)
+def test_a_table_with_names_is_no_instruments(tmp_path: Path, header: str, mark: str) -> None:
+    """Of three columns that have names or units, it is asked which they are."""
+    path = tmp_path / "a.txt"
+    np.savetxt(path, np.arange(27).reshape(9, 3), header=header, comments=mark, delimiter="\t")
+    with pytest.raises(pl.ConfigError, match="missing: a position") as raised:
+        only(path, GIVEN)
+    assert f'--columns "{NAMED[header]}"' in str(raised.value)
+
+
+def test_curves_of_an_archive(tmp_path: Path, recording: instruments.Recording) -> None:
+    """Curves that share a number are all kept; places may lie on a line; no warning is right."""
+    path, given = tmp_path / "a.zip", Calibration(spring_constant=SPRING)
+    several = [replace(recording, force=f * recording.force) for f in (1, 2, 3)]
+    instruments.archive(path, several, points=[1, 1, 2])
+    curves = {label: reader() for label, reader in read(path, given).items()}
+    largest = {label: curve.force.max() / recording.force.max() for label, curve in curves.items()}
+    assert largest == pytest.approx({"1": 1, "1 (2)": 2, "2": 3})
+    instruments.archive(path, [recording] * 11, columns=11)
+    curves = {label: reader() for label, reader in read(path, given).items()}
+    assert list(curves) == [str(number) for number in range(1, 12)]
+    assert [curve.site for curve in curves.values()] == [(1e-6 * n, 0) for n in range(11)]
+    assert all(is_curve(clean(curve), *SEEN) for curve in curves.values())
+
+
+@pytest.mark.parametrize("signal", ["N", "m", "V"])
+@pytest.mark.parametrize("heights", ["height", "verticalTipPosition smoothedMeasuredHeight"])
+def test_text_exports(
+    tmp_path: Path, recording: instruments.Recording, signal: str, heights: str
+) -> None:
+    """Two segments in one text are one curve in order of time, in the units that it states."""
+    path = tmp_path / "export.txt"
+    instruments.jpk_text(path, recording, signal, heights)
+    (curve,) = (reader() for reader in read(path).values())
+    assert curve.time == pytest.approx(1e-3 * np.arange(600))
+    assert is_curve(clean(curve), *SEEN)
+    # The signal in volts is converted by a given sensitivity in place of the one stated.
+    given = Calibration(sensitivity=2 * SENSITIVITY)
+    if signal == "V":
+        (changed,) = (reader() for reader in read(path, given).values())
+        np.testing.assert_allclose(changed.force, 2 * curve.force)
+    text = path.read_text().replace("seriesTime time", "seriesTime other", 1)
+    path.write_text(text)
+    with pytest.raises(pl.ConfigError, match="its segments differ in columns"):
+        read(path)
+
+
+def test_groups_of_an_export(tmp_path: Path, recording: instruments.Recording) -> None:
+    """Whatever the groups of an export by afmformats are called, and whatever else is there."""
+    path = tmp_path / "export.h5"
+    instruments.hdf5(path, recording)
+    with h5py.File(path, "a") as file:
+        file.move("0", "7")
+        file.copy("7", "12")
+        file.create_group("notes")["by"] = np.arange(3)
+        file["lost"] = h5py.SoftLink("/nowhere")
+    curves = read(path)
+    assert list(curves) == ["7", "12"]
+    assert all(is_curve(clean(reader()), *SEEN) for reader in curves.values())
+
+
+@pytest.mark.parametrize("styles", [("extend",), ("extend", "pause", "retract", "pause", "extend")])
+def test_segments_that_afmformats_cannot_read(
+    tmp_path: Path, recording: instruments.Recording, styles: tuple[str, ...]
+) -> None:
+    """The reason is told, and what to do instead."""
+    path = tmp_path / "map.jpk-force-map"
+    instruments.jpk(path, recording, recording, styles=styles)
+    with pytest.raises(pl.StorageError, match=rf"segments: {len(styles)}.*export each .* table"):
+        read(path)
 
 
 def test_damaged_file(tmp_path: Path, recording: instruments.Recording) -> None:
