@@ -295,6 +295,8 @@ def held(estimate: pl.Estimate, truth: float) -> bool:
 
 def _off(estimate: pl.Estimate, truth: float) -> float:
     """Return the distance of a value from the truth, over that of the end on its side."""
+    if np.isnan(estimate.value):
+        return 0.0 if held(estimate, truth) else np.inf
     end = estimate.low if truth < estimate.value else estimate.high
     return 0.0 if end is None else abs((truth - estimate.value) / (end - estimate.value))
 

@@ -96,18 +96,18 @@ def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
     """Return a line for each parameter and group that has an accepted curve, then for all curves.
 
     Of all ``curves`` of a group ``n`` are accepted. Quartiles are of the best values of all of
-    these, of which ``open`` have an interval with an open end, or one too wide to quote the value.
-    Parameters that were fixed have no line.  Where curves share an error of the calibration, there
-    is a ``common_error``.
+    these, of which ``open`` have an interval with an open end, or one too wide to quote the value,
+    and ``no_sign`` show no sign of what has the parameter.  Parameters that were fixed have no
+    line.  Where curves share an error of the calibration, there is a ``common_error``.
     """
     import pandas as pd
 
     fitted = [
-        (name, row.group, e.unit, e.value, not e.is_narrow, row.outlier, row)
+        (name, row.group, e.unit, e.value, not e.is_narrow, row.has_no_sign(name), row.outlier, row)
         for name in dict.fromkeys((*OVER_TIED, *SHOWN))
         for row, e in counted(rows, name).items()
     ]
-    columns = "parameter", "group", "unit", "value", "open", "outlier", "row"
+    columns = "parameter", "group", "unit", "value", "open", "no_sign", "outlier", "row"
     frame = pd.DataFrame(fitted, columns=columns)
     curves, lines = Counter(row.group for row in rows), []
     for name, whole in frame.groupby("parameter", sort=False):
@@ -115,9 +115,10 @@ def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
         parts = [(label(group), curves[group], part) for group, part in groups]
         for group, count, part in (*parts, ("all", len(rows), whole)):
             line = {"group": group, "parameter": name, "unit": part["unit"].iloc[0]}
-            line |= {"curves": count, "n": len(part), "open": int(part["open"].sum())}
+            counts = {name: int(part[name].sum()) for name in ("open", "no_sign", "outlier")}
             quartiles = part["value"].quantile([0, 0.25, 0.5, 0.75, 1]).tolist()
-            line["outliers"] = int(part["outlier"].sum())
+            line |= {"curves": count, "n": len(part), "open": counts["open"]}
+            line |= {"no_sign": counts["no_sign"], "outliers": counts["outlier"]}
             line |= zip(QUARTILES, quartiles, strict=True)
             lines.append(line | common_error(part["row"], name))
     return lines

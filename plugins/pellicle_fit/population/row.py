@@ -29,7 +29,8 @@ NUMBERS = {
 """Unit of each number of a fit that is not a quantity of it; checks and messages are counted."""
 SHOWN = {"reduced_modulus": "E*", "tension": "τ₀", "work_of_adhesion": "W", "thickness": "h"}
 """Symbols of the quantities that tables and figures of curves show, if a curve has them."""
-OVER_TIED = "reduced_modulus", "youngs_modulus", "tension"
+MODULI = "reduced_modulus", "youngs_modulus"
+OVER_TIED = *MODULI, "tension"
 """Quantities whose intervals are over all explanations that the curve cannot tell apart."""
 ENDS = "", "_low", "_high"
 """What the names of value and ends of an interval end with."""
@@ -112,6 +113,10 @@ class Row:
         of = "reduced_modulus" if name == "youngs_modulus" else name
         ratio = self.curve["data"]["poissons_ratio"] if of != name else 0.0
         return replace(found, value=(1 - ratio**2) * self.fit["parameters"][of]["value"])
+
+    def has_no_sign(self, name: str) -> bool:
+        """Return whether there is no sign of what was asked for, which has the quantity."""
+        return name in self.fit.get("if_present", ()) and name not in MODULI
 
     @property
     def verdict(self) -> str:

@@ -116,7 +116,10 @@ def groups(of: Sequence[Row], *, si: bool = False) -> Table:
         counts = f"{part['n']} of {part['curves']}", str(part["open"]), str(part["outliers"])
         named = part["group"], f"{words(part['parameter'])} [{unit.unit}]"
         error = [f"± {unit.number(part.get('common_error', 0.0), FEW)}"] if has_error else []
-        cells.append((*named, *counts, median, f"{low} to {high}", *error))
+        ends = median, f"{low} to {high}"
+        if part["no_sign"] == part["n"]:
+            ends = "no sign", ""
+        cells.append((*named, *counts, *ends, *error))
     return Table.of_rows(
         heads, cells, "All accepted curves; open, those whose interval is open or wide."
     )

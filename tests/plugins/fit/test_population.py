@@ -38,6 +38,7 @@ from pellicle_fit.population.judgement import (
     outliers,
 )
 from pellicle_fit.population.row import Row
+from pellicle_fit.report import tables
 from pellicle_fit.report.contact_sheet import sheets
 from pellicle_fit.report.population import distributions
 from pellicle_fit.words.names import quoted, unit_of
@@ -213,6 +214,22 @@ def test_statistics_are_of_all_accepted_curves(curves: list[tuple[Any, ...]]) ->
         assert median.x == pytest.approx([parts["all", name]["median"]] * 2)
         # A bin begins, and ends, with a step of the outline.
         assert stacks[0].y[1::2].sum() == len(table)
+
+
+def test_of_explanations_that_share_no_value_the_chosen_one_counts() -> None:
+    """It is not quoted, but obeys rules and is in the median; no sign of a tension is said once."""
+    rows = [row(f"{k}", 1e3 + k, tension=estimate(1e-3, "N/m", (None, 2.0))) for k in range(3)]
+    for one in rows:
+        told = one.fit["parameters"][MODULUS] | {"value": None}
+        one.keep(one.fit | {MODULUS: told, "if_present": {"tension": {}}})
+        assert np.isnan(one.values()[MODULUS])
+    judge(rows, ["reduced_modulus > 1 kPa"], None)
+    assert [one.accepted for one in rows] == [False, True, True]
+    parts = {part["parameter"]: part for part in summary(rows)}
+    assert parts[MODULUS]["median"] == 1001.5
+    assert parts["tension"]["no_sign"] == parts["tension"]["n"] == 2
+    (column,) = (c for c in tables.groups(rows).columns if c.words == "median")
+    assert column.values[1] == "no sign"
 
 
 def test_a_value_is_quoted_where_its_interval_determines_it() -> None:
