@@ -27,7 +27,7 @@ CEILINGS = {
     "outputs": 1200,
     "studies": 1200,
     "fits": 1600,
-    "curves": 1400,
+    "curves": 1500,
     "gallery": 550,
     "explore": 230,
     "howdoi": 550,
