@@ -16,6 +16,7 @@ from pellicle.batch import status_line
 from pellicle.components import Component, HasForceCurve, HasLayerForceCurve, Indenter
 from pellicle.errors import ConfigError, PellicleError
 from pellicle.schema import walk
+from pellicle.units import readable
 
 from .calibration import errors
 from .config import FitConfig
@@ -84,6 +85,10 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
         )
     if True in depths:
         fix[CONTACT_POINT] = 0.0
+    for one in measured if CONTACT_POINT in fix else ():
+        if not (deepest := float(one.position.max())) > fix[CONTACT_POINT]:
+            reason = f"no position reaches it, the deepest is {readable(deepest, 'm', 4)}"
+            raise ConfigError(f"{reason}; give the position of first touch", CONTACT_POINT)
     bodies, layers, ratio = _on_solid(config, indenters, measured, progress)
     members = []
     touch = CONTACT_POINT in fix
