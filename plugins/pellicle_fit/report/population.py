@@ -81,7 +81,8 @@ def distributions(rows: Sequence[Row]) -> list[Chart]:
     charts = list[Chart]()
     groups = list(dict.fromkeys(label(row.group) for row in rows if row.accepted))
     for name, unit in _DRAWN.items():
-        if found := counted(rows, name):
+        found = counted(rows, name)
+        if not all(row.has_no_sign(name) for row in found):
             values = np.array([e.value for e in found.values()])
             is_wide = name == MODULUS and bool(values.max() > _DECADE * values.min())
             kinds = np.array([groups.index(label(row.group)) for row in found])

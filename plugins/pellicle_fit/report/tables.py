@@ -115,11 +115,11 @@ def groups(of: Sequence[Row], *, si: bool = False) -> Table:
         low, median, high = (unit.number(part[name]) for name in QUARTILES[1:4])
         counts = f"{part['n']} of {part['curves']}", str(part["open"]), str(part["outliers"])
         named = part["group"], f"{words(part['parameter'])} [{unit.unit}]"
-        error = [f"± {unit.number(part.get('common_error', 0.0), FEW)}"] if has_error else []
+        error = f"± {unit.number(e, FEW)}" if (e := part.get("common_error")) else ""
         ends = median, f"{low} to {high}"
         if part["no_sign"] == part["n"]:
             ends = "no sign", ""
-        cells.append((*named, *counts, *ends, *error))
+        cells.append((*named, *counts, *ends, *([error] if has_error else [])))
     return Table.of_rows(
         heads, cells, "All accepted curves; open, those whose interval is open or wide."
     )
