@@ -184,7 +184,8 @@ def _parameters(name: str, old: Any, new: Any) -> Iterator[str]:
         yield f"{name}: {sorted(old)} → {sorted(new)}"
         return
     for parameter, (value, *ends) in old.items():
-        reach = max((abs(end - value) for end in ends if end is not None), default=0.0)
+        middle = next((known for known in (value, *ends) if known is not None), 0.0)
+        reach = max((abs(end - middle) for end in ends if end is not None), default=0.0)
         for was, now in zip(old[parameter], new[parameter], strict=True):
             both = was is not None and now is not None
             if not (both and abs(now - was) <= 0.02 * reach + 1e-6 * abs(was)) and was is not now:

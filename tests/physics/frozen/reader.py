@@ -270,5 +270,5 @@ def _key(types: Collection[str]) -> str:
 
 
 def _estimate(estimate: Estimate) -> list[float | None]:
-    """Return value and both ends of the interval; None for what is open."""
-    return [estimate.value, estimate.low, estimate.high]
+    """Return value and both ends of the interval; None for what is open, or not quoted."""
+    return [estimate.to_dict()["value"], estimate.low, estimate.high]
