@@ -33,11 +33,10 @@ def curves_of_run(result: Result, chosen: list[int], begin: int) -> list[Picture
     """Return the curves of a run, marked at ``chosen`` steps; the ``begin``-th is shown first."""
     pictures = [_profiles(result, chosen, begin)]
     if result.dataset.sizes["step"] > 1:
-        drawn = figures_of(result)
         pictures += [
-            picture(drawn[name](), caption, chosen)
-            for name, caption in _CURVES.items()
-            if name in drawn
+            picture(figure, _CURVES[name], chosen)
+            for name, figure in figures_of(result)
+            if name in _CURVES
         ]
     return pictures
 
@@ -61,8 +60,8 @@ def _profiles(result: Result, chosen: list[int], begin: int) -> Picture:
 
 def curves_of_study(runs: Runs) -> Iterator[Picture]:
     """Yield a figure for each variable that is drawn over a study."""
-    for name, make in figures_of_study(runs).items():
-        chart, words = make(), column_of(runs.table[name]).words.capitalize()
+    for name, chart in figures_of_study(runs):
+        words = column_of(runs.table[name]).words.capitalize()
         title = runs.table.attrs.get("title", "")
         remarks = [line for line in chart.title.splitlines() if line != title]
         yield picture(chart, f"{', '.join([f'{words} over the study', *remarks])}.")
