@@ -16,7 +16,6 @@ from pellicle.config.run import Run
 from pellicle.contact.caveats import Status, by_phrase, from_text
 from pellicle.errors import first_of
 from pellicle.results.path import has_interaction, has_times, label_of_step, prescribed_variable
-from pellicle.results.result import FEW_CELLS as FEW_CELLS
 from pellicle.results.result import Result, first_message
 from pellicle.results.runs import axes_of, by_run, runs_of, short_files, statuses_of
 from pellicle.results.wording import column_of, has_one_shape, is_periodic
@@ -40,8 +39,6 @@ _COLUMNS = {"pull_off": "force", "pull_off_depth": "depth"}
 """The numbers of steps whose unit they share."""
 _SAME = 1e-9
 """Relative difference up to which numbers count as equal."""
-STEEP_RIM = 0.3
-"""Slope above which linear elasticity is beyond its range."""
 _FAILURES = {
     "failed": "failed",
     "NOT CONVERGED": "did not converge",
@@ -270,29 +267,6 @@ def caveats(table: xr.Dataset) -> Iterator[str]:
                 f"of {len(names)} runs, in {len({run for run, _ in messages})} {phrase}; "
                 f"{names[run]} (file {files[run]}), {message}"
             )
-
-
-def limits_of_curve(
-    missing: list[str], coarse: dict[str, float], steep: dict[str, float], low: float, high: float
-) -> str:
-    """Return which points of an adhesive curve are not known, or not as they should be.
-
-    The path has contact radii from ``low`` to ``high`` [m]; ``coarse`` are radii in cells, and
-    ``steep`` slopes of the indenter at the rim.
-    """
-    cells, slopes = (
-        ", ".join(f"{mark} {value:.{digits}f}" for mark, value in marks.items())
-        for marks, digits in ((coarse, 1), (steep, 2))
-    )
-    range_ = f"not at a contact radius from {low:.3g} to {high:.3g} m, those of the path"
-    remedy = f"from {FEW_CELLS} on force and radius are good to 2 %, so use more points"
-    theory = f"the theory is for small slopes, below about {STEEP_RIM}"
-    problems = [
-        *([f"{', '.join(missing)}: {range_}"] if missing else []),
-        *([f"contact radius in cells: {cells}; {remedy}"] if coarse else []),
-        *([f"slope of the indenter at the rim: {slopes}; {theory}"] if steep else []),
-    ]
-    return "; ".join(problems) or "computed"
 
 
 def caption_of_steps(data: xr.Dataset, fields: Sequence[str], shown: int) -> str:

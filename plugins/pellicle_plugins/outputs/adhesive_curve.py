@@ -15,9 +15,8 @@ from pellicle import analysis
 from pellicle.analysis.steepness import steepest
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
 from pellicle.errors import ConfigError
-from pellicle.results.result import Result
+from pellicle.results.result import FEW_CELLS, Result
 from pellicle.results.wording import is_periodic
-from pellicle.show.sentences import FEW_CELLS, STEEP_RIM, limits_of_curve
 from pellicle.units import Quantity
 from pellicle_plugins.validation.adhesive_path import curve_of
 
@@ -42,6 +41,8 @@ _SUMMARY_HEADS = (
 )
 _LINE = 70
 """Letters of a line of text across the figure."""
+_STEEP_RIM = 0.3
+"""Slope above which linear elasticity is beyond its range."""
 _MARKERS = {"pull-off": 0, "no load": 1, "last at fixed depth": 4}
 
 
@@ -154,11 +155,12 @@ def _status(
     curve: analysis.AdhesiveCurve, points: dict[str, analysis.AdhesiveContact], path: xr.Dataset
 ) -> str:
     """Return which points are not on the path, not resolved, or steeper than the theory allows."""
-    grid, last = Result(path).grid, path.isel(step=-1)
+    (low, high), grid = curve.contact_radius[[0, -1]], Result(path).grid
+    last = path.isel(step=-1)
     profile = last["displacement"].values - last["depth"].item() - last["gap"].values
     path = path.isel(step=np.argsort(path["contact_radius"].values))
     slopes = [steepest(profile, contact, grid) for contact in path["contact"].values]
-    missing, coarse, steep = list[str](), dict[str, float](), dict[str, float]()
+    missing, coarse, steep = list[str](), list[str](), list[str]()
     for mark, contact in points.items():
         radius = float(contact.contact_radius)
         slope = float(np.interp(radius, path["contact_radius"].values, slopes))
@@ -166,10 +168,18 @@ def _status(
             missing.append(mark)
             continue
         if radius < FEW_CELLS * max(grid.spacing):
-            coarse[mark] = radius / max(grid.spacing)
-        if slope > STEEP_RIM:
-            steep[mark] = slope
-    return limits_of_curve(missing, coarse, steep, *curve.contact_radius[[0, -1]])
+            coarse.append(f"{mark} {radius / max(grid.spacing):.1f}")
+        if slope > _STEEP_RIM:
+            steep.append(f"{mark} {slope:.2f}")
+    range_ = f"not at a contact radius from {low:.3g} to {high:.3g} m, those of the path"
+    remedy = f"from {FEW_CELLS} on force and radius are good to 2 %, so use more points"
+    theory = f"the theory is for small slopes, below about {_STEEP_RIM}"
+    problems = [
+        f"{', '.join(missing)}: {range_}" * bool(missing),
+        f"contact radius in cells: {', '.join(coarse)}; {remedy}" * bool(coarse),
+        f"slope of the indenter at the rim: {', '.join(steep)}; {theory}" * bool(steep),
+    ]
+    return "; ".join(filter(None, problems)) or "computed"
 
 
 def _refuse(run: xr.Dataset) -> None:
