@@ -283,7 +283,11 @@ def _points_of(table: Mapping[str, Any], dimensions: Mapping[str, Axes]) -> Iter
         }
         name = ", ".join(f"{key} = {short(value)}" for key, value in values.items())
         try:
-            run = _run(shared, values)
+            data: Any = shared
+            for key, value in values.items():
+                with problems_within(key):
+                    data = replaced(data, key, value)
+            run = Run(**data)
         except ConfigError as error:
             for problem in error.problems:
                 problems.setdefault(_located(problem, table, values), []).append(name)
@@ -305,14 +309,6 @@ def _points_of(table: Mapping[str, Any], dimensions: Mapping[str, Axes]) -> Iter
             else problem
             for problem, runs in problems.items()
         )
-
-
-def _run(shared: Mapping[str, Any], values: Mapping[str, Any]) -> Run:
-    data: Any = shared
-    for key, value in values.items():
-        with problems_within(key):
-            data = replaced(data, key, value)
-    return Run(**data)
 
 
 def _located(problem: Problem, table: Mapping[str, Any], values: Mapping[str, Any]) -> Problem:
