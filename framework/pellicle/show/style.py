@@ -34,25 +34,19 @@ _LABELLED_DECADES = 2.2
 class FigureStyle(Model):
     """How figures are set for print."""
 
-    width: Annotated[
-        Annotated[float, Quantity("m", at_least=0.02, at_most=1.0)] | None,
-        Field(description="width of the figure, such as 85 mm or 170 mm [m]"),
-    ] = None
-    font_size: Annotated[
-        float | None,
-        Field(
-            ge=3,
-            le=40,
-            description="size of the text in points; if absent 8 with a width, else as in file",
-        ),
-    ] = None
-    svg_text: Annotated[
-        bool,
-        Field(description="whether text in SVG stays text, which can be edited, or becomes paths"),
-    ] = True
-    file: Annotated[
-        InputPath | None, Field(description="a style file of matplotlib (.mplstyle)")
-    ] = None
+    width: Annotated[float, Quantity("m", at_least=0.02, at_most=1.0)] | None = Field(
+        None, description="width of the figure, such as 85 mm or 170 mm [m]"
+    )
+    font_size: float | None = Field(
+        None,
+        ge=3,
+        le=40,
+        description="size of the text in points; if absent 8 with a width, else as in file",
+    )
+    svg_text: bool = Field(
+        True, description="whether text in SVG stays text, which can be edited, or becomes paths"
+    )
+    file: InputPath | None = Field(None, description="a style file of matplotlib (.mplstyle)")
 
     def size(self, size: tuple[float, float]) -> tuple[float, float]:
         """Return the size of a figure [inch], scaled to the width."""
