@@ -59,12 +59,9 @@ class Executor(Component):
     family: ClassVar[str] = "executor"
     place: ClassVar[str] = "study.executor"
 
-    threads: Annotated[
-        Threads | None,
-        Field(
-            description="threads of each run's arrays and transforms; if absent, what is fastest"
-        ),
-    ] = None
+    threads: Threads | None = Field(
+        None, description="threads of each run's arrays and transforms; if absent, what is fastest"
+    )
 
     @abstractmethod
     def map(

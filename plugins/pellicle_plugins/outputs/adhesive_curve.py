@@ -70,11 +70,9 @@ class AdhesiveCurve(TableFigure):
 
     type: Literal["adhesive_curve"] = "adhesive_curve"
     examples = ({"work_of_adhesion": "50 mJ/m^2"},)
-    work_of_adhesion: Annotated[
-        float,
-        Quantity("J/m2", above=0),
-        Field(description="energy per area that separates indenter and solid [J/m2]"),
-    ]
+    work_of_adhesion: Annotated[float, Quantity("J/m2", above=0)] = Field(
+        description="energy per area that separates indenter and solid [J/m2]"
+    )
 
     @property
     def suffixes(self) -> tuple[str, ...]:

@@ -73,34 +73,26 @@ class TableFigure(Output):
     numbers: ClassVar[bool] = True
     """Whether the numbers drawn are written as CSV beside the figure."""
 
-    name: Annotated[
-        str, Field(pattern=r"^[\w-]*$", description="suffix of the file names; the type if absent")
-    ] = ""
+    name: str = Field(
+        "", pattern=r"^[\w-]*$", description="suffix of the file names; the type if absent"
+    )
     formats: Formats = ("png",)
     style: StyleField = FigureStyle()
-    title: Annotated[str, Field(description="title of the figure")] = ""
-    by: Annotated[
-        Texts,
-        Field(
-            description="axis of the study, or step, or several: each value has its own curve or "
-            "panel"
-        ),
-    ] = ()
-    where: Annotated[
-        dict[str, Any],
-        AfterValidator(Chosen),
-        Field(
-            description="values of other axes of the study for which it is drawn, such as "
-            '{ "kernel.tension" = "10 mN/m" }'
-        ),
-    ] = Field(default_factory=Chosen)
-    label: Annotated[
-        str | None,
-        Field(
-            description="name of a curve or a panel; {expression} in it is replaced by its value, "
-            "to three digits, or as in {expression:.2g}"
-        ),
-    ] = None
+    title: str = Field("", description="title of the figure")
+    by: Texts = Field(
+        (),
+        description="axis of the study, or step, or several: each value has its own curve or panel",
+    )
+    where: Annotated[dict[str, Any], AfterValidator(Chosen)] = Field(
+        default_factory=Chosen,
+        description="values of other axes of the study for which it is drawn, such as "
+        '{ "kernel.tension" = "10 mN/m" }',
+    )
+    label: str | None = Field(
+        None,
+        description="name of a curve or a panel; {expression} in it is replaced by its value, "
+        "to three digits, or as in {expression:.2g}",
+    )
 
     @property
     def suffixes(self) -> tuple[str, ...]:

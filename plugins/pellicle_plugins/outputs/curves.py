@@ -49,10 +49,10 @@ _NONE = np.empty(0)
 class Published(Model):
     """Published points or a line, to compare with."""
 
-    label: Annotated[str, Field(description="name in the legend")]
-    x: Annotated[tuple[float, ...], Field(min_length=1, description="x in the unit of the axis")]
-    y: Annotated[tuple[float, ...], Field(min_length=1, description="y in the unit of the axis")]
-    style: Annotated[Literal["points", "line"], Field(description="how it is drawn")] = "points"
+    label: str = Field(description="name in the legend")
+    x: tuple[float, ...] = Field(min_length=1, description="x in the unit of the axis")
+    y: tuple[float, ...] = Field(min_length=1, description="y in the unit of the axis")
+    style: Literal["points", "line"] = Field("points", description="how it is drawn")
 
     @model_validator(mode="after")
     def _pairs(self) -> Self:
@@ -93,36 +93,31 @@ class Curves(TableFigure):
     )
     x_label: XLabel = None
     y_label: YLabel = None
-    x: Annotated[str, Field(description="expression for the horizontal axis")] = "depth"
+    x: str = Field("depth", description="expression for the horizontal axis")
     y: Annotated[
         Texts, Field(min_length=1, description="expression, or several, for the vertical axis")
     ] = ("force",)
-    series: Annotated[
-        tuple[str, ...], Field(description="name of each y in the legend; its expression if absent")
-    ] = ()
-    over: Annotated[
-        str | None,
-        Field(description="axis, such as indenter.seed, over which mean and spread are drawn"),
-    ] = None
-    spread: Annotated[
-        Literal["range", "std", "sem"],
-        Field(
-            description="of the runs on `over`: lowest to highest, or the mean ± the standard "
-            "deviation or the standard error of the mean"
-        ),
-    ] = "range"
+    series: tuple[str, ...] = Field(
+        (), description="name of each y in the legend; its expression if absent"
+    )
+    over: str | None = Field(
+        None, description="axis, such as indenter.seed, over which mean and spread are drawn"
+    )
+    spread: Literal["range", "std", "sem"] = Field(
+        "range",
+        description="of the runs on `over`: lowest to highest, or the mean ± the standard "
+        "deviation or the standard error of the mean",
+    )
     log: Log = ()
     reference: Reference = None
-    extrapolate: Annotated[
-        bool,
-        Field(
-            description="continue each curve to x = 0 by a power law of fitted exponent: x is the "
-            "cell size of nested grids, such as grid.size.0 / grid.points"
-        ),
-    ] = False
-    published: Annotated[
-        tuple[Published, ...], Field(description="published numbers: label, x, y, style")
-    ] = ()
+    extrapolate: bool = Field(
+        False,
+        description="continue each curve to x = 0 by a power law of fitted exponent: x is the "
+        "cell size of nested grids, such as grid.size.0 / grid.points",
+    )
+    published: tuple[Published, ...] = Field(
+        (), description="published numbers: label, x, y, style"
+    )
 
     @model_validator(mode="after")
     def _names_match(self) -> Self:

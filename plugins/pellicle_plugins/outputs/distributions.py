@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from pydantic import Field
@@ -35,7 +35,7 @@ class Distributions(TableFigure):
 
     type: Literal["distributions"] = "distributions"
     examples = ({"bins": 10, "log": ["y"]},)
-    bins: Annotated[int, Field(ge=1, description="number of bins, from 0 to the highest")] = 50
+    bins: int = Field(50, ge=1, description="number of bins, from 0 to the highest")
     log: Log = ()
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:

@@ -7,7 +7,7 @@ import shlex
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 import tomli_w
@@ -72,23 +72,19 @@ class Html(Output):
     type: Literal["html"] = "html"
     examples = ({}, {"points": 8, "frames": 1})
     shares_stem: ClassVar[bool] = True
-    points: Annotated[
-        int,
-        Field(
-            ge=8,
-            le=4096,
-            description="largest number of pixels along each side of a map; with more cells or "
-            "many maps, a pixel is the mean over a block, as the page states",
-        ),
-    ] = 512
-    frames: Annotated[
-        int,
-        Field(
-            ge=1,
-            description="largest number of load steps of a run, or runs of a study, that are "
-            "mapped; of more, evenly spaced ones up to the last",
-        ),
-    ] = 64
+    points: int = Field(
+        512,
+        ge=8,
+        le=4096,
+        description="largest number of pixels along each side of a map; with more cells or "
+        "many maps, a pixel is the mean over a block, as the page states",
+    )
+    frames: int = Field(
+        64,
+        ge=1,
+        description="largest number of load steps of a run, or runs of a study, that are "
+        "mapped; of more, evenly spaced ones up to the last",
+    )
 
     @property
     def suffixes(self) -> tuple[str, ...]:

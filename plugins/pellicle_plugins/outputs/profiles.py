@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from pydantic import Field
@@ -36,13 +36,13 @@ class Profiles(TableFigure):
 
     type: Literal["profiles"] = "profiles"
     examples = ({"by": "step", "label": "{depth * 1e6} µm", "reference": "axisymmetric"},)
-    along: Annotated[Literal["x", "y"], Field(description="direction of the line")] = "x"
+    along: Literal["x", "y"] = Field("x", description="direction of the line")
     x_label: XLabel = None
     y_label: YLabel = None
-    x: Annotated[
-        str | None, Field(description="expression for the horizontal axis; the position if absent")
-    ] = None
-    y: Annotated[str, Field(description="expression for the vertical axis")] = "pressure"
+    x: str | None = Field(
+        None, description="expression for the horizontal axis; the position if absent"
+    )
+    y: str = Field("pressure", description="expression for the vertical axis")
     reference: Reference = None
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
