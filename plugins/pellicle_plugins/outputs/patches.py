@@ -52,19 +52,14 @@ class Patches(TableFigure):
         """
         rows, series, panels = list[tuple[object, ...]](), list[Series](), list[Panel]()
         for number, (name, step) in enumerate(self.steps(runs)):
-            patches = analysis.patches(step["contact"], Result(step).grid)
+            grid = Result(step).grid
+            patches = analysis.patches(step["contact"], grid)
             rows += _rows(name, step, patches)
             rank, look = np.arange(1.0, patches.count + 1), Look(number, marker=number)
             series.append(Series(patches.area, rank, legend=name.words, look=look, stepped="post"))
-            panels = [_map(name, step, patches)]
+            title, labels = f"{name.words}\n{patches.count} patches".lstrip(), patches.labels
+            panels = [Panel(grid.size, labels.astype(np.int32), title, blank=labels == 0)]
         return rows, series, panels
-
-
-def _map(name: Label, step: xr.Dataset, patches: analysis.Patches) -> Panel:
-    """Return the patches, numbered in turn."""
-    size, labels = Result(step).grid.size, patches.labels
-    title = f"{name.words}\n{patches.count} patches".lstrip()
-    return Panel(size, labels.astype(np.int32), title, blank=labels == 0)
 
 
 def _rows(name: Label, step: xr.Dataset, patches: analysis.Patches) -> Iterator[tuple[object, ...]]:
