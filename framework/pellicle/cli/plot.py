@@ -10,6 +10,14 @@ import typer
 
 from .printing import echo
 
+Stored = Annotated[
+    Path,
+    typer.Argument(
+        metavar="RESULTS",
+        help="Folder of a run, a study or another command; result (.h5) or study.h5.",
+    ),
+]
+
 
 class Format(StrEnum):
     """File formats of figures."""
@@ -20,13 +28,7 @@ class Format(StrEnum):
 
 
 def plot(
-    results: Annotated[
-        Path,
-        typer.Argument(
-            metavar="RESULTS",
-            help="Folder of a run, a study or another command; result (.h5) or study.h5.",
-        ),
-    ],
+    results: Stored,
     directory: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="DIR", help="Folder (default: that of the result)."),
