@@ -143,13 +143,22 @@ class Html(Output):
 
     def _sections_of_study(self, runs: Runs, first_run: dict[str, Any]) -> list[Section]:
         table = runs.table
-        rows = list(runs_of(table))
+        rows, names_of_runs = list(runs_of(table)), run_names(table)
         frames, setups = dict[int, Frame](), list[Picture]()
         mapped = _mapped(table)
-        for index, step, label, points in self._steps_of_runs(runs, rows):
-            frames[index] = _frame(
-                label, Result(step).grid, without_round_off(step), mapped, points
-            )
+        solved = [index for index, row in enumerate(rows) if progress_of(row)[0]]
+        chosen = self._chosen(len(solved))
+        points = side(self.points, len(chosen) * len(mapped))
+        for index in (solved[number] for number in chosen):
+            try:
+                run = runs.open(rows[index]["run"].item())
+            except StorageError:
+                continue
+            step, label = run.isel(step=default_step(run)), names_of_runs[index]
+            if WALL_PRESSURE not in step:
+                step = step.assign({WALL_PRESSURE: step["pressure"]})
+            shown = without_round_off(step)
+            frames[index] = _frame(label, Result(step).grid, shown, mapped, points)
             if not setups:
                 setups.append(_setup(step, first_run, label))
         sentence = sentence_of_study(table, len(rows))
@@ -158,16 +167,14 @@ class Html(Output):
         maps = Maps(caption, "run", tuple(mapped.values()), list(frames.values()))
         of_runs = tables.runs(table, mapped=list(frames))
         numbers = [of_runs, *tables.paths_of_runs(table)]
+        given = tables.inputs_of_study(table, inputs(first_run, Run))
         return [
             Section("In short", [*lead, Notice(*status_of_study(table))]),
             Section("Maps", [maps] if frames else []),
             Section("Curves", [*curves_of_study(runs)]),
             Section("Outputs", [*curves_of_outputs(runs, _outputs(first_run))]),
             Section("Numbers", numbers),
-            Section(
-                "Set-up",
-                [*setups[:1], _inputs(tables.inputs_of_study(table, inputs(first_run, Run)))],
-            ),
+            Section("Set-up", [*setups, _inputs(given)]),
         ]
 
     def _maps_of_steps(self, result: Result) -> tuple[Maps, list[int]]:
@@ -189,24 +196,6 @@ class Html(Output):
         names = [field.name for field in mapped.values()]
         caption = caption_of_steps(data, names, len(chosen))
         return Maps(caption, "load step", tuple(mapped.values()), frames, max(begin, 0)), chosen
-
-    def _steps_of_runs(
-        self, runs: Runs, rows: list[xr.Dataset]
-    ) -> Iterator[tuple[int, xr.Dataset, str, int]]:
-        """Yield the mapped step of each run: index among all, step, name, and pixels a side."""
-        mapped, names_of_runs = _mapped(runs.table), run_names(runs.table)
-        solved = [index for index, row in enumerate(rows) if progress_of(row)[0]]
-        chosen = self._chosen(len(solved))
-        points = side(self.points, len(chosen) * len(mapped))
-        for index in (solved[number] for number in chosen):
-            try:
-                run = runs.open(rows[index]["run"].item())
-            except StorageError:
-                continue
-            step = run.isel(step=default_step(run))
-            if WALL_PRESSURE not in step:
-                step = step.assign({WALL_PRESSURE: step["pressure"]})
-            yield index, step, names_of_runs[index], points
 
     def _chosen(self, count: int) -> list[int]:
         """Return the indices that are mapped: all, or evenly spaced ones up to the last."""
