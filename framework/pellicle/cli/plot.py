@@ -8,15 +8,7 @@ from typing import Annotated
 
 import typer
 
-from .printing import echo
-
-Stored = Annotated[
-    Path,
-    typer.Argument(
-        metavar="RESULTS",
-        help="Folder of a run, a study or another command; result (.h5) or study.h5.",
-    ),
-]
+from .printing import Stored, echo
 
 
 class Format(StrEnum):

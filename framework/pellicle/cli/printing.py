@@ -9,6 +9,7 @@ from contextlib import contextmanager, redirect_stdout
 from contextvars import ContextVar
 from io import StringIO
 from numbers import Integral, Real
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -18,6 +19,13 @@ from pellicle.errors import StorageError
 if TYPE_CHECKING:
     from pellicle.components import Table
 
+Stored = Annotated[
+    Path,
+    typer.Argument(
+        metavar="RESULTS",
+        help="Folder of a run, a study or another command; result (.h5) or study.h5.",
+    ),
+]
 InSI = Annotated[bool, typer.Option("--si", help="Print numbers in SI units.")]
 AsJSON = Annotated[bool, typer.Option("--json", help="Print the result as JSON, in SI units.")]
 NOT_CONVERGED, BAD_INPUT, CRASHED, INTERRUPTED = 1, 2, 70, 130

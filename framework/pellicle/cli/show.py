@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from .plot import Stored
-from .printing import NOT_CONVERGED, AsJSON, InSI, echo
+from .printing import NOT_CONVERGED, AsJSON, InSI, Stored, echo
 
 
 def show(
