@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from pydantic import Field
 
-from pellicle.arrays import Array
+from pellicle.arrays import Array, DataArray, Dataset
 from pellicle.errors import ConfigError
 from pellicle.schema.from_file import InputPath
 from pellicle.schema.model import Model
@@ -17,7 +17,6 @@ from pellicle.units import Quantity
 from pellicle.variables import ROLE, SEED
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.figure import Figure
 
 OKABE_ITO = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"
@@ -97,7 +96,7 @@ def colour(number: int, count: int, *, ordered: bool = False) -> Any:
     return f"C{number}"
 
 
-def is_ordered(table: xr.Dataset, dim: str | None) -> bool:
+def is_ordered(table: Dataset, dim: str | None) -> bool:
     """Return whether the values along a dimension are numbers to compare, which seeds are not."""
     return (
         dim is not None
@@ -107,7 +106,7 @@ def is_ordered(table: xr.Dataset, dim: str | None) -> bool:
     )
 
 
-def is_seed(axis: xr.DataArray) -> bool:
+def is_seed(axis: DataArray) -> bool:
     """Return whether the values of an axis only repeat a random run."""
     return bool(axis.attrs.get(ROLE) == SEED)
 

@@ -6,13 +6,14 @@ import textwrap
 from collections.abc import Iterator
 from dataclasses import replace
 from math import inf
-from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
 
 from pellicle import analysis
 from pellicle.analysis.steepness import steepest
+from pellicle.arrays import Dataset
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
 from pellicle.errors import ConfigError
 from pellicle.results.result import FEW_CELLS, Result
@@ -21,9 +22,6 @@ from pellicle.units import Quantity
 from pellicle_plugins.validation.adhesive_path import curve_of
 
 from .base import Label, TableFigure
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _HEADS = "curve", "contact_radius [m]", "depth [m]", "force [N]"
 _SUMMARY_HEADS = (
@@ -50,7 +48,7 @@ class _Drawn(NamedTuple):
     """The path of a run and its adhesive curve, without points if the path has none."""
 
     name: Label
-    path: xr.Dataset
+    path: Dataset
     curve: analysis.AdhesiveCurve | None
     points: dict[str, analysis.AdhesiveContact]
     """Pull-off, zero load and the instability at fixed depth, NaN where unknown."""
@@ -100,7 +98,7 @@ class AdhesiveCurve(TableFigure):
             )
         yield "-summary", Table.of_rows(_SUMMARY_HEADS, summary)
 
-    def _drawn(self, name: Label, run: xr.Dataset) -> _Drawn:
+    def _drawn(self, name: Label, run: Dataset) -> _Drawn:
         _refuse(run)
         path = run.isel(step=run["converged"].values & (run["contact_area"].values > 0))
         try:
@@ -150,7 +148,7 @@ class AdhesiveCurve(TableFigure):
 
 
 def _status(
-    curve: analysis.AdhesiveCurve, points: dict[str, analysis.AdhesiveContact], path: xr.Dataset
+    curve: analysis.AdhesiveCurve, points: dict[str, analysis.AdhesiveContact], path: Dataset
 ) -> str:
     """Return which points are not on the path, not resolved, or steeper than the theory allows."""
     (low, high), grid = curve.contact_radius[[0, -1]], Result(path).grid
@@ -180,7 +178,7 @@ def _status(
     return "; ".join(filter(None, problems)) or "computed"
 
 
-def _refuse(run: xr.Dataset) -> None:
+def _refuse(run: Dataset) -> None:
     """Refuse a run that has no adhesive curve, however many steps are solved."""
     if run.attrs["adheres"]:
         raise ConfigError(

@@ -6,11 +6,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 from math import prod
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from pellicle.analysis import legs
+from pellicle.arrays import DataArray, Dataset
 from pellicle.components import Axis, Chart, Fields, Look, Output, Runs, Series
 from pellicle.results.path import has_interaction, has_times
 from pellicle.results.result import Result
@@ -23,9 +24,6 @@ from pellicle.variables import CONTACT_AREA, CORRECTED_AREA
 from .base import MOST_LEGS, Formats, StyleField
 from .curves import MOST_PANELS, Curves
 from .step_figures import pressure_map, profile
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _MOST_NAMED = 10
 _ALIKE = 10.0
@@ -164,7 +162,7 @@ def _curves(result: Result, labels: dict[str, str], against: str) -> Chart:
     return Chart(x, [y], series, _title(data), hues=len(labels))
 
 
-def _series(data: xr.Dataset, x: str, y: str, look: Look) -> Series:
+def _series(data: Dataset, x: str, y: str, look: Look) -> Series:
     """Return one variable of the steps of a run against another."""
     good = data["converged"].values.astype(bool)
     points = data[x].values.astype(float), data[y].values.astype(float)
@@ -172,12 +170,12 @@ def _series(data: xr.Dataset, x: str, y: str, look: Look) -> Series:
     return Series(*points, name=y, look=look, converged=good, steps=steps)
 
 
-def _axis(variable: xr.DataArray, *, signed: bool = False) -> Axis:
+def _axis(variable: DataArray, *, signed: bool = False) -> Axis:
     unit = str(variable.attrs.get("units", "1"))
     start = None if signed else 0.0
     return Axis(column_of(variable).words, unit, limits=(start, None), signed=signed)
 
 
-def _title(data: xr.Dataset) -> str:
+def _title(data: Dataset) -> str:
     title: str = data.attrs.get("title", "")
     return title

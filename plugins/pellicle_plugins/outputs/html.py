@@ -7,13 +7,14 @@ import shlex
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 import tomli_w
 from pydantic import Field
 
 from pellicle import Grid, Run, registry
+from pellicle.arrays import Dataset
 from pellicle.components import Output, Runs, Table
 from pellicle.config.describe import FieldRow, inputs
 from pellicle.errors import StorageError
@@ -45,9 +46,6 @@ from pellicle.variables import WALL_PRESSURE
 
 from .html_curves import curves_of_outputs, curves_of_run, curves_of_study, picture
 from .step_figures import cross_section
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 FIELDS = {
     "pressure": MapField("contact pressure", "Pa", blank=True),
@@ -203,19 +201,19 @@ class Html(Output):
         return [(count * (index + 1) + number - 1) // number - 1 for index in range(number)]
 
 
-def _mapped(data: xr.Dataset) -> dict[str, MapField]:
+def _mapped(data: Dataset) -> dict[str, MapField]:
     return _STICKING if has_interaction(data) else FIELDS
 
 
 def _frame(
-    label: str, grid: Grid, step: xr.Dataset, mapped: dict[str, MapField], points: int
+    label: str, grid: Grid, step: Dataset, mapped: dict[str, MapField], points: int
 ) -> Frame:
     signed = any(field.centred for field in mapped.values())
     empty = [index for index, field in enumerate(mapped.values()) if signed and field.blank]
     return frame(label, grid, [step[name].values for name in mapped], points, empty)
 
 
-def _setup(step: xr.Dataset, configuration: dict[str, Any], label: str) -> Picture:
+def _setup(step: Dataset, configuration: dict[str, Any], label: str) -> Picture:
     """Return the indenter over the surface in a load step."""
     return picture(cross_section(step), caption_of_setup(configuration, label))
 

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
 from pellicle import analysis
+from pellicle.arrays import Dataset
 from pellicle.components import Axis, Chart, Fields, Look, Panel, Runs, Series, Shown, Table
 from pellicle.results.result import Result
 
 from .base import Label, TableFigure
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _HEADS = "curve", "step", "patch", "area [m2]", "force [N]", "neighbours"
 
@@ -62,7 +60,7 @@ class Patches(TableFigure):
         return rows, series, panels
 
 
-def _rows(name: Label, step: xr.Dataset, patches: analysis.Patches) -> Iterator[tuple[object, ...]]:
+def _rows(name: Label, step: Dataset, patches: analysis.Patches) -> Iterator[tuple[object, ...]]:
     grid = Result(step).grid
     pressure = step["pressure"].values.ravel()
     force = np.bincount(patches.labels.ravel(), pressure)[1:] * grid.cell_area

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
 
+from pellicle.arrays import DataArray, Dataset
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
 from pellicle.results.derived import as_array
 from pellicle.results.path import has_interaction
@@ -18,9 +19,6 @@ from pellicle.variables import FIELDS, WALL_PRESSURE
 from pellicle_plugins.validation.reference import exact_line
 
 from .base import Reference, TableFigure, XLabel, YLabel, axis_of
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _ACROSS = {"x": "y", "y": "x"}
 _MARKERS = 90
@@ -88,7 +86,7 @@ class Profiles(TableFigure):
     def _fields(self) -> set[str]:
         return (names_in(self.x or self.along) | names_in(self.y)) & {*FIELDS, WALL_PRESSURE}
 
-    def _columns(self, line: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
+    def _columns(self, line: Dataset) -> tuple[DataArray, DataArray]:
         """Return x and y along a line, each with a value for every point."""
         import xarray as xr
 
