@@ -33,12 +33,10 @@ class Task(Protocol):
     @property
     def name(self) -> str:
         """The name of the task in messages, on one line."""
-        ...
 
     @property
     def memory(self) -> int:
         """Estimated peak memory of the task [bytes]."""
-        ...
 
 
 AnyTask = TypeVar("AnyTask", bound=Task)

@@ -152,7 +152,7 @@ def lay_out(figure: Figure) -> None:
     if any(axes.get_aspect() != "auto" for axes in figure.axes):
         # Axes of a fixed aspect move, with their titles and labels, as they get their places.
         engine.execute(figure)
-    covering = []
+    is_moved = False
     for axes in figure.axes:
         legend = axes.get_legend()
         if not legend:
@@ -163,11 +163,10 @@ def lay_out(figure: Figure) -> None:
             path = artist.get_path().transformed(artist.get_transform())
             finite = np.isfinite(path.vertices).all(axis=1)
             if finite.any() and path.intersects_bbox(box, filled=False):
-                covering.append((axes, legend))
+                legend.set_loc("upper left")
+                legend.set_bbox_to_anchor((1.01, 1.0), transform=axes.transAxes)
+                is_moved = True
                 break
-    for axes, legend in covering:
-        legend.set_loc("upper left")
-        legend.set_bbox_to_anchor((1.01, 1.0), transform=axes.transAxes)
-    if covering:
+    if is_moved:
         engine.execute(figure)
     figure.set_layout_engine("none")

@@ -114,7 +114,6 @@ def main_steps(data: Dataset) -> Table:
 
 def contact(data: Dataset) -> Table:
     """Return the shape of the contact in each load step, and of the zone around it."""
-    # Files of earlier versions lack some.
     names = [
         n for n in names_of("contact", "interaction") if n in data and means_something(data, n)
     ]
