@@ -13,7 +13,7 @@ import numpy as np
 import tomli_w
 from pydantic import Field
 
-from pellicle import Grid, Run, registry
+from pellicle import Grid, Run
 from pellicle.arrays import Dataset
 from pellicle.components import Output, Runs, Table
 from pellicle.config.describe import FieldRow, inputs
@@ -120,7 +120,8 @@ class Html(Output):
         maps, chosen = self._maps_of_steps(result)
         step_shown = default_step(data) % data.sizes["step"]
         first, label = sentence_of_step(data, step_shown), label_of_step(data, step_shown)
-        setup = _setup(data.isel(step=step_shown), configuration, label)
+        section = cross_section(data.isel(step=step_shown))
+        setup = picture(section, caption_of_setup(configuration, label))
         aim = aim_of_path(data, result.path_summary)
         lead, rest = (aim, first) if aim else (first, range_of_path(data))
         sentences = [Text(lead, lead=True), *([Text(rest)] if rest else [])]
@@ -134,7 +135,7 @@ class Html(Output):
             Section("In short", [*sentences, Notice(*status_of_run(result))]),
             Section("Maps", [maps]),
             Section("Curves", curves_of_run(result, chosen, maps.begin)),
-            Section("Outputs", [*curves_of_outputs(runs, _outputs(configuration), chosen)]),
+            Section("Outputs", [*curves_of_outputs(runs, configuration, chosen)]),
             Section("Numbers", numbers),
             Section("Set-up", [setup, _inputs(inputs(configuration, Run))]),
         ]
@@ -143,7 +144,7 @@ class Html(Output):
         table = runs.table
         rows, names_of_runs = list(runs_of(table)), run_names(table)
         frames, setups = dict[int, Frame](), list[Picture]()
-        mapped = _mapped(table)
+        mapped = _STICKING if has_interaction(table) else FIELDS
         solved = [index for index, row in enumerate(rows) if progress_of(row)[0]]
         chosen = self._chosen(len(solved))
         points = side(self.points, len(chosen) * len(mapped))
@@ -158,7 +159,8 @@ class Html(Output):
             shown = without_round_off(step)
             frames[index] = _frame(label, Result(step).grid, shown, mapped, points)
             if not setups:
-                setups.append(_setup(step, first_run, label))
+                caption = caption_of_setup(first_run, label)
+                setups.append(picture(cross_section(step), caption))
         sentence = sentence_of_study(table, len(rows))
         lead = [Text(sentence, lead=True)] if sentence else []
         caption = caption_of_runs(table, len(frames))
@@ -170,7 +172,7 @@ class Html(Output):
             Section("In short", [*lead, Notice(*status_of_study(table))]),
             Section("Maps", [maps] if frames else []),
             Section("Curves", [*curves_of_study(runs)]),
-            Section("Outputs", [*curves_of_outputs(runs, _outputs(first_run))]),
+            Section("Outputs", [*curves_of_outputs(runs, first_run)]),
             Section("Numbers", numbers),
             Section("Set-up", [*setups, _inputs(given)]),
         ]
@@ -180,7 +182,7 @@ class Html(Output):
         data, grid = result.dataset, result.grid
         steps = data.sizes["step"]
         chosen = self._chosen(steps)
-        mapped = _mapped(data)
+        mapped = _STICKING if has_interaction(data) else FIELDS
         points = side(self.points, len(chosen) * len(mapped))
         frames = []
         for index in chosen:
@@ -201,10 +203,6 @@ class Html(Output):
         return [(count * (index + 1) + number - 1) // number - 1 for index in range(number)]
 
 
-def _mapped(data: Dataset) -> dict[str, MapField]:
-    return _STICKING if has_interaction(data) else FIELDS
-
-
 def _frame(
     label: str, grid: Grid, step: Dataset, mapped: dict[str, MapField], points: int
 ) -> Frame:
@@ -213,18 +211,9 @@ def _frame(
     return frame(label, grid, [step[name].values for name in mapped], points, empty)
 
 
-def _setup(step: Dataset, configuration: dict[str, Any], label: str) -> Picture:
-    """Return the indenter over the surface in a load step."""
-    return picture(cross_section(step), caption_of_setup(configuration, label))
-
-
 def _inputs(fields: Iterable[FieldRow]) -> Table:
     caption = "All inputs that determine the result, defaults included."
     return tables.inputs((i for i in fields if not i.name.startswith("outputs.")), caption)
-
-
-def _outputs(configuration: dict[str, Any]) -> list[Output]:
-    return [registry().make(Output, output) for output in configuration.get("outputs") or ()]
 
 
 def _reproduce(configuration: dict[str, Any], stem: Path) -> Iterator[Code]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from pellicle import registry
 from pellicle.components import Chart, Fields, Output, Runs, Table
 from pellicle.results.path import label_of_step
 from pellicle.results.result import Result
@@ -68,10 +69,11 @@ def curves_of_study(runs: Runs) -> Iterator[Picture]:
 
 
 def curves_of_outputs(
-    runs: Runs, outputs: Sequence[Output], chosen: Sequence[int] = ()
+    runs: Runs, configuration: Mapping[str, Any], chosen: Sequence[int] = ()
 ) -> Iterator[Picture]:
     """Yield what the other outputs of a run or study show, marked at ``chosen`` steps."""
-    for output in outputs:
+    for table in configuration.get("outputs") or ():
+        output = registry().make(Output, table)
         beside = output.type_name in ("figures", "html") or type(output).charts is Output.charts
         if beside or output.scope == ("study" if runs.axes is None else "run"):
             continue
