@@ -11,16 +11,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from numbers import Real
 from traceback import extract_tb
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .arrays import Array
+from .arrays import Array, Dataset
 from .errors import ConfigError, PellicleError, PluginError, shown
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def component_name(component: object) -> str:
@@ -53,7 +50,7 @@ def read_only(array: NDArray[Any]) -> NDArray[Any]:
     return view
 
 
-def read_only_dataset(dataset: xr.Dataset) -> xr.Dataset:
+def read_only_dataset(dataset: Dataset) -> Dataset:
     """Return a dataset that shares the arrays of ``dataset`` and cannot be used to change them."""
     # xarray replaces a view of texts by a writable array; coordinates share one with an index.
     data = {

@@ -58,26 +58,22 @@ class Grid(Model):
     points: Annotated[
         tuple[_Points, _Points],
         BeforeValidator(pair, json_schema_input_type=_Whole | tuple[_Whole, _Whole]),
-        Field(
-            title="number of cells",
-            description="number of cells: one whole number, or two as [along x, along y]",
-        ),
-    ]
+    ] = Field(
+        title="number of cells",
+        description="number of cells: one whole number, or two as [along x, along y]",
+    )
     size: Annotated[
         tuple[Length, Length],
         BeforeValidator(pair, json_schema_input_type=Length | tuple[Length, Length]),
-        Field(
-            title="domain size",
-            description="edge length of the domain [m]: one, or two as [along x, along y]",
-        ),
-    ]
-    boundary: Annotated[
-        Boundary,
-        Field(
-            description='"free": an isolated contact on an infinite surface; '
-            '"periodic": the domain repeats in both directions'
-        ),
-    ] = "free"
+    ] = Field(
+        title="domain size",
+        description="edge length of the domain [m]: one, or two as [along x, along y]",
+    )
+    boundary: Boundary = Field(
+        "free",
+        description='"free": an isolated contact on an infinite surface; '
+        '"periodic": the domain repeats in both directions',
+    )
 
     @property
     def shape(self) -> tuple[int, int]:

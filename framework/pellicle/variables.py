@@ -230,7 +230,7 @@ CAVEATS: Final = "caveats"
 BEYOND_THEORY: Final = "beyond_theory"
 """Text in the table of a study: what `Result.beyond_theory` says of a run, if it says so of any."""
 REQUIRED = (*names_of("field", "status"), "depth", "force", "contact_area", "iterations")
-"""Variables in the result files of every version."""
+"""Variables in every result file."""
 CONTACT_AREA: Final = "contact area"
 CORRECTED_AREA: Final = "contact_area_"
 """Beginning of the name of an area with a correction, which its type ends."""

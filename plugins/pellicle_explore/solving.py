@@ -9,16 +9,14 @@ import warnings
 from collections.abc import Callable, Mapping
 from concurrent.futures import CancelledError
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
+import xarray as xr
 from bokeh.document import Document
 
 import pellicle as pl
 from pellicle.show import with_rim
 from pellicle.units import readable
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 # Time after which a solve is cancelled if another run waits [s]. A typed tension of 1 MN/m may take
 # minutes; but if every solve were cancelled, a contact that sticks would not follow a slider.

@@ -150,48 +150,43 @@ class FitConfig(FromFile, Calibration):
         },
     )
 
-    curves: Annotated[
-        tuple[Path, ...],
-        _list(tuple[Path, ...] | Path),
-        Field(description="files, folders, patterns such as beads/*.csv, or tables of files"),
-    ] = ()
+    curves: Annotated[tuple[Path, ...], _list(tuple[Path, ...] | Path)] = Field(
+        (), description="files, folders, patterns such as beads/*.csv, or tables of files"
+    )
     indenter: Annotated[
         Indenter | HasForceCurve | dict[str, Any],
         PlainValidator(_indenter, json_schema_input_type=dict[str, Any] | str),
         PlainSerializer(described),
-        Field(description="the indenter: its type and fields"),
-    ]
+    ] = Field(description="the indenter: its type and fields")
     poissons_ratio: PoissonsRatio | None = Field(
         None, description="of the solid, to get Young's modulus as well, or if the kernel needs it"
     )
     kernel: Annotated[
         dict[str, Any] | None,
         BeforeValidator(_component, json_schema_input_type=dict[str, Any] | str | None),
-        Field(description="the solid without its modulus and tension; a half-space if not given"),
-    ] = None
+    ] = Field(
+        None, description="the solid without its modulus and tension; a half-space if not given"
+    )
     thickness: Annotated[float, Quantity("m", above=0)] | Literal["free"] | None = Field(
         None,
         description="of a layer bonded to a rigid base, in place of a half-space; "
         '"free" fits it. It needs poissons_ratio',
     )
-    model: Annotated[
-        tuple[_OneEffect, ...],
-        _list(_Effects),
-        Field(
-            description="effects that the force has; whether the first is needed is the question. "
-            "Without any, whether a curve shows more than an elastic half-space",
-            validate_default=True,
-        ),
-    ] = ("tension",)  # type: ignore[assignment]
+    model: Annotated[tuple[_OneEffect, ...], _list(_Effects)] = Field(
+        ("tension",),
+        description="effects that the force has; whether the first is needed is the question. "
+        "Without any, whether a curve shows more than an elastic half-space",
+        validate_default=True,
+    )
     rivals: Annotated[
         tuple[Annotated[tuple[_OneEffect, ...], BeforeValidator(_as_list)], ...],
         _list(list[str | dict[str, Any] | _Effects]),
-        Field(
-            description="effects, or lists of effects that act together, that are compared with "
-            "the model, each alone and beside it",
-            validate_default=True,
-        ),
-    ] = DEFAULT_RIVALS  # type: ignore[assignment]
+    ] = Field(
+        DEFAULT_RIVALS,
+        description="effects, or lists of effects that act together, that are compared with "
+        "the model, each alone and beside it",
+        validate_default=True,
+    )
     fix: dict[str, float] = Field(
         default_factory=dict,
         description="values of quantities of the solid, of the model and of rivals that are not "
@@ -215,12 +210,9 @@ class FitConfig(FromFile, Calibration):
         "one value for each file",
     )
     pool: bool = Field(False, description="whether all curves share one modulus and one tension")
-    accept: Annotated[
-        tuple[str, ...],
-        _list(tuple[str, ...] | str),
-        AfterValidator(rules),
-        Field(description="rules for the curves of a population, such as r_squared > 0.95"),
-    ] = ()
+    accept: Annotated[tuple[str, ...], _list(tuple[str, ...] | str), AfterValidator(rules)] = Field(
+        (), description="rules for the curves of a population, such as r_squared > 0.95"
+    )
     rejected: InputPath | None = Field(
         None, description="file that names curves that are rejected, one on each line, and why"
     )
@@ -228,12 +220,10 @@ class FitConfig(FromFile, Calibration):
         "",
         description="column of a table of files, or a pattern of file names such as {group}_*.csv",
     )
-    executor: Annotated[
-        Executor,
-        FromRegistry(),
-        BeforeValidator(_component),
-        Field(description="executor of many fits and of simulations"),
-    ] = Field(default_factory=lambda: registry().make(Executor, {"type": "serial"}))
+    executor: Annotated[Executor, FromRegistry(), BeforeValidator(_component)] = Field(
+        default_factory=lambda: registry().make(Executor, {"type": "serial"}),
+        description="executor of many fits and of simulations",
+    )
     cache: InputPath | None = Field(None, description="folder that keeps simulated force curves")
     grid_points: int = Field(
         GRID_POINTS,

@@ -11,9 +11,11 @@ from importlib.metadata import version
 from itertools import islice
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import pandas as pd
+import xarray as xr
 
 from pellicle import registry, results
 from pellicle.batch import BatchProgress, locked, mapped
@@ -31,11 +33,10 @@ from .population.images import force_maps
 from .population.judgement import Names, group_of, judge
 from .population.row import FAILED, Row, as_json, sketch
 from .problem import Problem, components_of, data_of, problem, record_of
+from .report.paper_table import save_tables
+from .report.population import save_population
 from .sealed import read_sealed, write_sealed
 from .words.story import calibration_of, shares
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _JOURNAL = "curves"
 _WITHOUT_EFFECT = {
@@ -163,8 +164,6 @@ def fit_sources(
 
     Curves are read in batches, so that a population does not have to fit in memory.
     """
-    from .report.population import save_population
-
     directory = None if directory is None else Path(directory)
     rejected = None if config.rejected is None else Names(config.rejected)
     fits, began = ManyFits([], configuration=config.to_dict()), perf_counter()
@@ -303,10 +302,6 @@ def _failure(error: Exception, name: str) -> str:
 
 def _write(fits: ManyFits, config: FitConfig, began: float, directory: Path) -> tuple[Path, ...]:
     """Write the tables of the curves and of the groups, and return their paths."""
-    import pandas as pd
-
-    from .report.paper_table import save_tables
-
     record = record_of(config, [row.curve["data"] for row in fits.rows if row.is_fitted], began)
     attributes = {
         "configuration": config.to_json(),

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from .printing import echo
+from .printing import Stored, echo
 
 
 class Format(StrEnum):
@@ -20,13 +20,7 @@ class Format(StrEnum):
 
 
 def plot(
-    results: Annotated[
-        Path,
-        typer.Argument(
-            metavar="RESULTS",
-            help="Folder of a run, a study or another command; result (.h5) or study.h5.",
-        ),
-    ],
+    results: Stored,
     directory: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="DIR", help="Folder (default: that of the result)."),

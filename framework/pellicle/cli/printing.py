@@ -9,13 +9,25 @@ from contextlib import contextmanager, redirect_stdout
 from contextvars import ContextVar
 from io import StringIO
 from numbers import Integral, Real
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
 
 from pellicle.errors import StorageError
 
 if TYPE_CHECKING:
     from pellicle.components import Table
 
+Stored = Annotated[
+    Path,
+    typer.Argument(
+        metavar="RESULTS",
+        help="Folder of a run, a study or another command; result (.h5) or study.h5.",
+    ),
+]
+InSI = Annotated[bool, typer.Option("--si", help="Print numbers in SI units.")]
+AsJSON = Annotated[bool, typer.Option("--json", help="Print the result as JSON, in SI units.")]
 NOT_CONVERGED, BAD_INPUT, CRASHED, INTERRUPTED = 1, 2, 70, 130
 """70 is EX_SOFTWARE of sysexits.h; Python's own 1 for a traceback would mean NOT_CONVERGED."""
 _UNBOUNDED = 100_000

@@ -10,7 +10,7 @@ import typer
 
 from pellicle.hookspecs import RegisterCommand, hookimpl
 
-from .printing import INTERRUPTED, echo, print_json, print_table, print_warning
+from .printing import INTERRUPTED, AsJSON, InSI, echo, print_json, print_table, print_warning
 
 
 def run(
@@ -49,10 +49,8 @@ def run(
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Print the planned runs without executing them.")
     ] = False,
-    si: Annotated[bool, typer.Option("--si", help="Print numbers in SI units.")] = False,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print the result as JSON, in SI units.")
-    ] = False,
+    si: InSI = False,
+    json: AsJSON = False,
 ) -> None:
     """Solve a run, or all runs of a study, and write the results; continue after an interruption.
 

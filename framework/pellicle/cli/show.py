@@ -2,26 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated
-
 import typer
 
-from .printing import NOT_CONVERGED, echo
+from .printing import NOT_CONVERGED, AsJSON, InSI, Stored, echo
 
 
 def show(
-    results: Annotated[
-        Path,
-        typer.Argument(
-            metavar="RESULTS",
-            help="Folder of a run, a study or another command; result (.h5) or study.h5.",
-        ),
-    ],
-    si: Annotated[bool, typer.Option("--si", help="Print numbers in SI units.")] = False,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print the result as JSON, in SI units.")
-    ] = False,
+    results: Stored,
+    si: InSI = False,
+    json: AsJSON = False,
 ) -> None:
     """Print steps of a result or runs of a study, and its origin; or what a command wrote."""
     from pellicle.results.result import Result, file_of_run, load

@@ -33,12 +33,10 @@ class Task(Protocol):
     @property
     def name(self) -> str:
         """The name of the task in messages, on one line."""
-        ...
 
     @property
     def memory(self) -> int:
         """Estimated peak memory of the task [bytes]."""
-        ...
 
 
 AnyTask = TypeVar("AnyTask", bound=Task)
@@ -59,12 +57,9 @@ class Executor(Component):
     family: ClassVar[str] = "executor"
     place: ClassVar[str] = "study.executor"
 
-    threads: Annotated[
-        Threads | None,
-        Field(
-            description="threads of each run's arrays and transforms; if absent, what is fastest"
-        ),
-    ] = None
+    threads: Threads | None = Field(
+        None, description="threads of each run's arrays and transforms; if absent, what is fastest"
+    )
 
     @abstractmethod
     def map(

@@ -6,23 +6,21 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
+from typing import Any, ClassVar, Literal, Protocol
 
+from pellicle.arrays import DataArray, Dataset
 from pellicle.checks import component_name, errors_attributed_to
 from pellicle.errors import ConfigError, PluginError, shown
 
 from .base import Component
 from .charts import Shown
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 class Runs(Protocol):
     """A run or a study: a table of numbers, and the fields of each run, read when needed."""
 
     @property
-    def table(self) -> xr.Dataset:
+    def table(self) -> Dataset:
         """Numbers of each run and step, over ``step`` and, in a study, over its axes.
 
         The variable ``run`` names the runs; numbers of missing steps are NaN. Where there is an
@@ -37,22 +35,22 @@ class Runs(Protocol):
     def axes(self) -> tuple[str, ...] | None:
         """The dimensions of a study; None for a run."""
 
-    def open(self, name: str = "") -> xr.Dataset:
+    def open(self, name: str = "") -> Dataset:
         """Return all numbers and fields of a run, given its name in the table of a study.
 
         A file that does not exist or cannot be read is a StorageError.
         """
 
-    def datasets(self) -> Iterator[tuple[tuple[int, ...], xr.Dataset | None]]:
+    def datasets(self) -> Iterator[tuple[tuple[int, ...], Dataset | None]]:
         """Yield the index in the table and the dataset of each run; None for a missing file."""
 
-    def column(self, text: str) -> xr.DataArray:
+    def column(self, text: str) -> DataArray:
         """Return the value of an expression for each step; fields in it have to be reduced.
 
         A text that is not arithmetic, or names an unknown variable, is a ConfigError.
         """
 
-    def from_each(self, function: Callable[[xr.Dataset], Any]) -> xr.DataArray:
+    def from_each(self, function: Callable[[Dataset], Any]) -> DataArray:
         """Return the values of ``function`` for all steps of all runs; NaN for missing runs."""
 
 
@@ -101,7 +99,7 @@ class Output(Component):
 
         return write_charts(self.charts(runs), stem)
 
-    def step(self, record: xr.Dataset, stem: Path) -> None:
+    def step(self, record: Dataset, stem: Path) -> None:
         """Receive a load step, with dimension ``step`` of length 1, as soon as it is solved.
 
         Each step is passed once, in order, including those that an earlier process solved.

@@ -42,42 +42,35 @@ class Sample(NamedTuple):
 class Move(Model):
     """A ramp to a value: { to, time, num }."""
 
-    to: Annotated[float, Field(title="end value", description="value at the end of the leg")]
-    time: Annotated[
-        float,
-        Quantity("s", at_least=0),
-        Field(title="duration", description="duration of the leg [s]; 0 is a jump"),
-    ]
+    to: float = Field(title="end value", description="value at the end of the leg")
+    time: Annotated[float, Quantity("s", at_least=0)] = Field(
+        title="duration", description="duration of the leg [s]; 0 is a jump"
+    )
     num: Number
 
 
 class Hold(Model):
     """A time at the value reached: { hold, num }."""
 
-    hold: Annotated[
-        float,
-        Quantity("s", above=0),
-        Field(title="duration", description="duration of the leg [s]"),
-    ]
+    hold: Annotated[float, Quantity("s", above=0)] = Field(
+        title="duration", description="duration of the leg [s]"
+    )
     num: Number
 
 
 class Oscillation(Model):
     """A sine about the value reached: { amplitude, frequency, cycles, num }."""
 
-    amplitude: Annotated[float, Field(description="amplitude of the oscillation")]
-    frequency: Annotated[
-        float, Quantity("Hz", above=0), Field(description="frequency of the oscillation [Hz]")
-    ]
-    cycles: Annotated[int, Field(title="number of cycles", ge=1, description="number of cycles")]
-    num: Annotated[
-        int,
-        Field(
-            title="steps of a cycle",
-            ge=_FEWEST_OF_CYCLE,
-            description="number of load steps of each cycle",
-        ),
-    ]
+    amplitude: float = Field(description="amplitude of the oscillation")
+    frequency: Annotated[float, Quantity("Hz", above=0)] = Field(
+        description="frequency of the oscillation [Hz]"
+    )
+    cycles: int = Field(title="number of cycles", ge=1, description="number of cycles")
+    num: int = Field(
+        title="steps of a cycle",
+        ge=_FEWEST_OF_CYCLE,
+        description="number of load steps of each cycle",
+    )
 
 
 Leg = Move | Hold | Oscillation

@@ -41,21 +41,17 @@ _USUAL = "depth", "force", "mean_pressure"
 class Options(Model):
     """The keys of ``[loading]`` beside what is prescribed."""
 
-    stiffness: Annotated[
-        bool,
-        Field(
-            description="whether to compute the contact stiffness dF/dδ of each step, by one more "
-            "linear solve per step"
-        ),
-    ] = False
+    stiffness: bool = Field(
+        False,
+        description="whether to compute the contact stiffness dF/dδ of each step, by one more "
+        "linear solve per step",
+    )
 
-    time: Annotated[
-        Annotated[tuple[float, ...], LoadSteps(Quantity("s"))] | None,
-        Field(
-            description="time [s] at the end of each step, for a solid that relaxes; equal times "
-            "are a jump, and the first step is one"
-        ),
-    ] = None
+    time: Annotated[tuple[float, ...], LoadSteps(Quantity("s"))] | None = Field(
+        None,
+        description="time [s] at the end of each step, for a solid that relaxes; equal times "
+        "are a jump, and the first step is one",
+    )
 
 
 class Loading(Options):
@@ -68,16 +64,14 @@ class Loading(Options):
     prescription are further keys.
     """
 
-    prescription: Annotated[
-        Prescription, FromRegistry(), Field(description="the prescription with its fields")
-    ]
+    prescription: Annotated[Prescription, FromRegistry()] = Field(
+        description="the prescription with its fields"
+    )
 
     # Only the prescription knows the unit and the range of the values: `fields_from` reads them.
-    path: Annotated[
-        SkipValidation[tuple[float, ...] | tuple[Leg, ...]],
-        WithJsonSchema({}),
-        Field(description="the prescribed values, or the legs through them"),
-    ]
+    path: Annotated[SkipValidation[tuple[float, ...] | tuple[Leg, ...]], WithJsonSchema({})] = (
+        Field(description="the prescribed values, or the legs through them")
+    )
 
     def __init__(self, /, **table: Any) -> None:
         is_read = isinstance(table.get("prescription"), Prescription)

@@ -58,31 +58,26 @@ _TENSED_CELLS = 3.0
 class Run(FromFile):
     """One contact problem with its load steps."""
 
-    title: Annotated[str, Field(description="a line for figures and listings")] = ""
-    grid: Annotated[Grid, Field(description="the domain and its cells")]
-    kernel: Annotated[Kernel, FromRegistry(), Field(description="how the surface yields")]
-    indenter: Annotated[Indenter, FromRegistry(), Field(description="what is pressed in")]
-    interaction: Annotated[
-        Annotated[Interaction, FromRegistry()] | None,
-        Field(
-            description="what acts across the gap; without it contact is hard and does not stick"
-        ),
-    ] = None
-    loading: Annotated[Loading, Field(description="the load steps")]
-    solver: Annotated[Solver, FromRegistry(), Field(description="how it is solved")] = Field(
-        default_factory=lambda: registry().make(Solver, {"type": DEFAULT_SOLVER})
+    title: str = Field("", description="a line for figures and listings")
+    grid: Grid = Field(description="the domain and its cells")
+    kernel: Annotated[Kernel, FromRegistry()] = Field(description="how the surface yields")
+    indenter: Annotated[Indenter, FromRegistry()] = Field(description="what is pressed in")
+    interaction: Annotated[Interaction, FromRegistry()] | None = Field(
+        None, description="what acts across the gap; without it contact is hard and does not stick"
     )
-    corrections: Annotated[
-        tuple[Annotated[AreaCorrection, FromRegistry()], ...],
-        Field(description="corrections of the contact area"),
-    ] = ()
-    outputs: Annotated[
-        tuple[Annotated[Output, FromRegistry()], ...] | None,
-        Field(
-            description="what is written besides the result file: csv and figures if not given, "
-            "nothing if []"
-        ),
-    ] = None
+    loading: Loading = Field(description="the load steps")
+    solver: Annotated[Solver, FromRegistry()] = Field(
+        default_factory=lambda: registry().make(Solver, {"type": DEFAULT_SOLVER}),
+        description="how it is solved",
+    )
+    corrections: tuple[Annotated[AreaCorrection, FromRegistry()], ...] = Field(
+        (), description="corrections of the contact area"
+    )
+    outputs: tuple[Annotated[Output, FromRegistry()], ...] | None = Field(
+        None,
+        description="what is written besides the result file: csv and figures if not given, "
+        "nothing if []",
+    )
 
     @field_validator("indenter", mode="wrap")
     @classmethod

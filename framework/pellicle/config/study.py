@@ -72,35 +72,28 @@ class Study(FromFile):
     """
 
     run: Annotated[
-        dict[str, Any],
-        BeforeValidator(_as_table, json_schema_input_type=dict[str, Any]),
-        Field(description="what all runs share: a run, or a mapping of the form of a run file"),
-    ]
+        dict[str, Any], BeforeValidator(_as_table, json_schema_input_type=dict[str, Any])
+    ] = Field(description="what all runs share: a run, or a mapping of the form of a run file")
     vary: Annotated[
-        dict[str, tuple[Any, ...]],
-        BeforeValidator(expand, json_schema_input_type=dict[str, Any]),
-        Field(
-            description="dotted parameter → values, each combined with each: a list, or {start, "
-            'stop, num} with spacing = "log" if need be',
-            default_factory=dict,
-        ),
-    ]
+        dict[str, tuple[Any, ...]], BeforeValidator(expand, json_schema_input_type=dict[str, Any])
+    ] = Field(
+        description="dotted parameter → values, each combined with each: a list, or {start, "
+        'stop, num} with spacing = "log" if need be',
+        default_factory=dict,
+    )
     zip: Annotated[
         tuple[dict[str, tuple[Any, ...]], ...],
         BeforeValidator(_expanded, json_schema_input_type=list[dict[str, Any]]),
-        Field(description="tables of parameters that take their values together, not combined"),
-    ] = ()
-    derived: Annotated[
-        dict[str, str],
-        Field(description="further numbers of the table: name → arithmetic expression"),
-    ] = Field(default_factory=dict)
-    executor: Annotated[
-        Annotated[Executor, FromRegistry()] | None,
-        Field(
-            description="what carries out the runs; without it this process, and processes once "
-            "the runs left would take more than 10 s"
-        ),
-    ] = None
+    ] = Field((), description="tables of parameters that take their values together, not combined")
+    derived: dict[str, str] = Field(
+        default_factory=dict,
+        description="further numbers of the table: name → arithmetic expression",
+    )
+    executor: Annotated[Executor, FromRegistry()] | None = Field(
+        None,
+        description="what carries out the runs; without it this process, and processes once "
+        "the runs left would take more than 10 s",
+    )
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: the varied parameters and the number of runs."""
@@ -283,7 +276,11 @@ def _points_of(table: Mapping[str, Any], dimensions: Mapping[str, Axes]) -> Iter
         }
         name = ", ".join(f"{key} = {short(value)}" for key, value in values.items())
         try:
-            run = _run(shared, values)
+            data: Any = shared
+            for key, value in values.items():
+                with problems_within(key):
+                    data = replaced(data, key, value)
+            run = Run(**data)
         except ConfigError as error:
             for problem in error.problems:
                 problems.setdefault(_located(problem, table, values), []).append(name)
@@ -305,14 +302,6 @@ def _points_of(table: Mapping[str, Any], dimensions: Mapping[str, Axes]) -> Iter
             else problem
             for problem, runs in problems.items()
         )
-
-
-def _run(shared: Mapping[str, Any], values: Mapping[str, Any]) -> Run:
-    data: Any = shared
-    for key, value in values.items():
-        with problems_within(key):
-            data = replaced(data, key, value)
-    return Run(**data)
 
 
 def _located(problem: Problem, table: Mapping[str, Any], values: Mapping[str, Any]) -> Problem:

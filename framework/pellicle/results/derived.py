@@ -6,15 +6,13 @@ import json
 import math
 from collections.abc import Callable, Mapping
 from operator import methodcaller
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from pellicle.arrays import DataArray, Dataset
 from pellicle.errors import ConfigError
 from pellicle.schema.expression import evaluate, names_in
 from pellicle.schema.model import walk
 from pellicle.units import one, si_unit
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 CELLS = ["x", "y"]
 """Dimensions of a field."""
@@ -31,14 +29,14 @@ DERIVED = "derived"
 """Attribute of a study's table: as JSON, the expression of each derived column, by name."""
 
 
-def configuration_of(data: xr.Dataset) -> dict[str, Any]:
+def configuration_of(data: Dataset) -> dict[str, Any]:
     """Return the configuration of a result, or of the first run of a study, in SI."""
     text = data.attrs.get(FIRST_RUN, data.attrs["configuration"])
     configuration: dict[str, Any] = json.loads(text)
     return configuration
 
 
-def names(data: xr.Dataset) -> dict[str, Any]:
+def names(data: Dataset) -> dict[str, Any]:
     """Return the values that expressions over a result or the table of a study may use, by name.
 
     These are its numeric variables and coordinates, and the numbers of its configuration by their
@@ -60,9 +58,7 @@ def names(data: xr.Dataset) -> dict[str, Any]:
     return {**fixed, **columns}
 
 
-def derive(
-    table: xr.Dataset, expressions: Mapping[str, str], units: Mapping[str, str]
-) -> xr.Dataset:
+def derive(table: Dataset, expressions: Mapping[str, str], units: Mapping[str, str]) -> Dataset:
     """Return the table of a study with derived columns, which may use earlier ones.
 
     A column has a value for each step, or one for each run if it uses variables of the path only.
@@ -83,7 +79,7 @@ def derive(
     return table
 
 
-def _unit_of(text: str, table: xr.Dataset, units: Mapping[str, str]) -> str:
+def _unit_of(text: str, table: Dataset, units: Mapping[str, str]) -> str:
     """Return the SI unit of an expression over a table; ``"1"`` also where there is none."""
     of_table = {str(name): v.attrs.get("units", "1") for name, v in table.variables.items()}
     all_units = {**units, **of_table}
@@ -107,7 +103,7 @@ def constants(configuration: object) -> dict[str, float]:
     }
 
 
-def as_array(text: str, data: xr.Dataset) -> xr.DataArray:
+def as_array(text: str, data: Dataset) -> DataArray:
     """Return the value of an expression over a result or a table as an array."""
     import xarray as xr
 
@@ -115,7 +111,7 @@ def as_array(text: str, data: xr.Dataset) -> xr.DataArray:
     return value if isinstance(value, xr.DataArray) else xr.DataArray(value)
 
 
-def header(name: str, variable: xr.DataArray) -> str:
+def header(name: str, variable: DataArray) -> str:
     """Return the header of a variable's column in a file: its name and SI unit."""
     unit = variable.attrs.get("units", "1")
     return name if unit == "1" else f"{name} [{unit}]"

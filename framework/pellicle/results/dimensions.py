@@ -4,27 +4,24 @@ from __future__ import annotations
 
 import json
 from collections.abc import Hashable, Iterable, Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pellicle.arrays import Dataset
 from pellicle.schema.model import python_names
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 PARAMETER = "parameter"
 """Attribute of a coordinate of `with_python_names`: the dotted path of the parameter."""
 
 
-def parts(table: xr.Dataset, dimensions: Iterable[Hashable]) -> Iterator[xr.Dataset]:
+def parts(table: Dataset, dimensions: Iterable[Hashable]) -> Iterator[Dataset]:
     """Yield the part of a table at each combination of indices along dimensions, in C order."""
     dimensions = list(dimensions)
     for index in np.ndindex(*(table.sizes[dim] for dim in dimensions)):
         yield table.isel(dict(zip(dimensions, index, strict=True)))
 
 
-def with_python_names(table: xr.Dataset) -> xr.Dataset:
+def with_python_names(table: Dataset) -> Dataset:
     """Return a table whose dimensions have names that Python can write, such as kernel_tension.
 
     Expressions and outputs name a parameter by its dotted path. It stays the name of a second
@@ -44,7 +41,7 @@ def with_python_names(table: xr.Dataset) -> xr.Dataset:
     return table
 
 
-def with_paths(table: xr.Dataset) -> xr.Dataset:
+def with_paths(table: Dataset) -> Dataset:
     """Return a table whose dimensions are the dotted paths of their parameters, as in run files."""
     axes, names = _axes_and_names(table)
     renamed = {names[dim]: dim for dim in axes if names[dim] != dim and names[dim] in table.dims}
@@ -54,7 +51,7 @@ def with_paths(table: xr.Dataset) -> xr.Dataset:
     return table.drop_vars(copies).drop_indexes(stale).swap_dims(renamed)
 
 
-def _axes_and_names(table: xr.Dataset) -> tuple[dict[str, list[str]], dict[str, str]]:
+def _axes_and_names(table: Dataset) -> tuple[dict[str, list[str]], dict[str, str]]:
     """Return the parameters along each dimension, and the name in Python of each parameter."""
     axes: dict[str, list[str]] = json.loads(table.attrs.get("axes", "{}"))
     return axes, python_names([key for keys in axes.values() for key in keys])

@@ -4,38 +4,35 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from itertools import chain
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pellicle.analysis import Oscillation, oscillations, path_summary
+from pellicle.arrays import Dataset
 from pellicle.units import DIGITS, readable
 from pellicle.variables import VARIABLES
 
 from .dimensions import parts
 from .wording import column_of
 
-if TYPE_CHECKING:
-    import xarray as xr
 
-
-def has_interaction(data: xr.Dataset) -> bool:
+def has_interaction(data: Dataset) -> bool:
     """Return whether the steps of a result, or of any run in the table of a study, attract."""
     return "zone_area" in data
 
 
-def has_times(data: xr.Dataset) -> bool:
+def has_times(data: Dataset) -> bool:
     """Return whether the steps of a result, or of any run in the table of a study, have times."""
     return "time" in data
 
 
-def prescribed_variable(data: xr.Dataset) -> str:
+def prescribed_variable(data: Dataset) -> str:
     """Return the variable that names load steps: what is prescribed, else the depth."""
     prescribed = str(data.attrs["prescribed"])
     return prescribed if prescribed in data else "depth"
 
 
-def label_of_step(data: xr.Dataset, index: int) -> str:
+def label_of_step(data: Dataset, index: int) -> str:
     """Return what a load step prescribes: "depth 3 µm", "1 s, force 5 nN"."""
     name = prescribed_variable(data)
     label = column_of(data[name]).text(data[name].values[index].item())
@@ -44,12 +41,12 @@ def label_of_step(data: xr.Dataset, index: int) -> str:
     return label
 
 
-def has_path(data: xr.Dataset) -> bool:
+def has_path(data: Dataset) -> bool:
     """Return whether a result, or any run of a study, has variables of its whole path."""
     return has_interaction(data) or "cycle" in data
 
 
-def oscillations_of(steps: xr.Dataset) -> list[Oscillation]:
+def oscillations_of(steps: Dataset) -> list[Oscillation]:
     """Return the response of each oscillation on the path of a run."""
     if "cycle" not in steps:
         return []
@@ -58,7 +55,7 @@ def oscillations_of(steps: xr.Dataset) -> list[Oscillation]:
     return oscillations(*(done[name].values for name in names))
 
 
-def path_variables(steps: xr.Dataset) -> dict[str, float]:
+def path_variables(steps: Dataset) -> dict[str, float]:
     """Return the variables of kinds ``path`` and ``oscillation`` of the steps of a run.
 
     They are those of `pellicle.analysis.PathSummary` where there is an interaction, and of the last
@@ -76,7 +73,7 @@ def path_variables(steps: xr.Dataset) -> dict[str, float]:
     return variables
 
 
-def with_path(table: xr.Dataset) -> xr.Dataset:
+def with_path(table: Dataset) -> Dataset:
     """Return the numbers of a run, or the table of a study, with the path variables of each run.
 
     Without an interaction or an oscillation the table is returned as it is.

@@ -6,12 +6,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import isfinite, nan, sqrt
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from pellicle.analysis import Oscillation
 from pellicle.analysis.steepness import steepest
+from pellicle.arrays import Dataset
 from pellicle.contact.caveats import (
     AT_PULL_OFF,
     SLOPES,
@@ -32,9 +33,6 @@ from . import storage
 from .derived import configuration_of
 from .path import has_interaction, label_of_step, oscillations_of, path_variables
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 _NO_CONTACT = "0.93"
 _STEEPEST = 1.0
 """Slope above which a contact without interaction is warned of; the theory is for 0.3."""
@@ -46,7 +44,7 @@ FEW_CELLS = 12
 class Result:
     """The result of a run: all steps with their fields, and its configuration."""
 
-    dataset: xr.Dataset
+    dataset: Dataset
     """Dimensions (step, x, y), with units in the attributes of each variable."""
 
     @property

@@ -13,7 +13,7 @@ from pellicle.contact.caveats import sentence_of, status_of, to_text
 from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.load_step import FinishedStep, LoadStep
 from pellicle.grid import Grid
-from pellicle.variables import CAVEATS, VARIABLES, Variable
+from pellicle.variables import CAVEATS, VARIABLES, Variable, names_of
 
 from . import storage
 
@@ -147,8 +147,5 @@ def _numbers(grid: Grid, equilibrium: Equilibrium) -> dict[str, object]:
         "major_axis_angle": shape.angle,
         "patches": patches(contact, grid).count,
         "perimeter": perimeter(contact, grid),
-        "residual_contact": equilibrium.residual_contact,
-        "residual_penetration": equilibrium.residual_penetration,
-        "residual_complementarity": equilibrium.residual_complementarity,
-        "residual_load": equilibrium.residual_load,
+        **{name: getattr(equilibrium, name) for name in names_of("residual")},
     }

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from pellicle.arrays import DataArray, Dataset
 from pellicle.components.charts import Column
 from pellicle.units import DIGITS
 from pellicle.variables import CORRECTED_FRACTION, WORDS, WORDS_OF_VALUES, words_of_name
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _ALL_DIGITS = 15
 _AXES: Final = {"semi_major_axis", "semi_minor_axis", "major_axis_angle"}
@@ -21,7 +19,7 @@ _OF_A_PERIOD: Final = {"contact_fraction", "mean_pressure"}
 _ROUND: Final = 1e-9
 
 
-def column_of(variable: xr.DataArray) -> Column:
+def column_of(variable: DataArray) -> Column:
     """Return a variable or a coordinate of a result or a table as a column.
 
     Its attributes or, without them, its name give the words. The numbers of a coordinate have as
@@ -46,17 +44,17 @@ def column_of(variable: xr.DataArray) -> Column:
     return column
 
 
-def has_one_shape(data: xr.Dataset) -> bool:
+def has_one_shape(data: Dataset) -> bool:
     """Return whether the contact is always in one part, which a radius and an ellipse describe."""
     return "patches" in data and not bool((data["patches"] > 1).any())
 
 
-def is_periodic(data: xr.Dataset) -> bool:
+def is_periodic(data: Dataset) -> bool:
     """Return whether the domain of a result, or of some run of a study, repeats."""
     return bool(data.attrs["boundary"] == "periodic")
 
 
-def means_something(data: xr.Dataset, name: str) -> bool:
+def means_something(data: Dataset, name: str) -> bool:
     """Return whether a variable has a meaning for the contacts of a result or of a study.
 
     A contact in several parts has neither radius nor ellipse, and a round one no axes besides its

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from pellicle.arrays import Array, Mask
+from pellicle.arrays import Array, Dataset, Mask
 from pellicle.contact.problem import height_scale
 from pellicle.results.wording import is_periodic
 from pellicle.variables import CORRECTED_AREA
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _OUTER, _FITTED, _FEWEST = 2, 4, 16
 """Cells at the rim that are not drawn, those from which the line goes on, and the fewest across."""
@@ -21,7 +16,7 @@ _ELLIPTIC = 0.02
 """Share by which the area of a contact may differ from that of its ellipse."""
 
 
-def without_round_off(step: xr.Dataset) -> xr.Dataset:
+def without_round_off(step: Dataset) -> Dataset:
     """Return a load step for drawing, with gaps below its tolerance set to 0.
 
     The tolerance is ``solver.tolerance`` times the length that scales the residuals of the step;
@@ -40,19 +35,19 @@ def without_round_off(step: xr.Dataset) -> xr.Dataset:
     return step.assign(gap=(step["gap"].dims, np.where(closed, 0.0, gap), step["gap"].attrs))
 
 
-def default_step(steps: xr.Dataset) -> int:
+def default_step(steps: Dataset) -> int:
     """Return the index of the load step of a run that is drawn: the last in contact, else -1."""
     in_contact = np.flatnonzero(steps["contact_area"].values > 0)
     return int(in_contact[-1]) if in_contact.size else -1
 
 
-def contact_and_zone(step: xr.Dataset) -> list[Mask]:
+def contact_and_zone(step: Dataset) -> list[Mask]:
     """Return where a load step is in contact, and where a traction acts, each shape (nx, ny)."""
     contact = step["contact"].transpose("x", "y").values
     return [contact, contact | (step["pressure"].transpose("x", "y").values != 0)]
 
 
-def with_rim(line: xr.Dataset) -> xr.Dataset:
+def with_rim(line: Dataset) -> Dataset:
     """Return pressure and numbers along a line of cells of a load step, up to the rim of contact.
 
     The line has x or y as its only dimension. Where the contact is an ellipse, points at its rim
@@ -68,7 +63,7 @@ def with_rim(line: xr.Dataset) -> xr.Dataset:
     )
 
 
-def _rim(line: xr.Dataset, along: str) -> float:
+def _rim(line: Dataset, along: str) -> float:
     """Return where an elliptic contact ends on a line through its centre [m]; NaN if it is none.
 
     The ellipse is that of the cells, scaled to the corrected area if there is one.

@@ -117,19 +117,9 @@ class Maps:
             scale, unit = axis_unit(np.array(ends), field.unit)
             scales.append(scale)
             colours = matplotlib.colormaps[field.colours](np.arange(256), bytes=True)[:, :3]
-            fields.append(
-                {
-                    "name": field.name,
-                    "unit": unit,
-                    "si": field.unit,
-                    "per_si": scale,
-                    "blank": field.blank,
-                    "power": field.power,
-                    **({"centred": True} if field.centred else {}),
-                    # The 256 colours of the map, three bytes for each.
-                    "colours": base64.b64encode(colours.tobytes()).decode(),
-                }
-            )
+            told = field._asdict() | {"unit": unit, "si": field.unit, "per_si": scale}
+            # The 256 colours of the map, three bytes for each.
+            fields.append(told | {"colours": base64.b64encode(colours.tobytes()).decode()})
         return {
             "unit": length_unit,
             "per_metre": length,

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pellicle.arrays import Dataset
 from pellicle.components import Output
 from pellicle.components.charts import Chart, Fields, Shown, Table
 from pellicle.errors import PluginError
@@ -24,7 +25,6 @@ from .numbers import table_of, write_csv
 from .style import FigureStyle, label_log_axes, lay_out
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.figure import Figure
 
 
@@ -79,7 +79,7 @@ def figure_of(
     return fill, (sum(width for width, _ in sizes), max(height for _, height in sizes))
 
 
-def figures(shown: Result | xr.Dataset) -> dict[str, Shown]:
+def figures(shown: Result | Dataset) -> dict[str, Shown]:
     """Return what the standard output ``figures`` shows of a result or of the table of a study.
 
     The keys are the suffixes of its files, such as ``force_depth``.

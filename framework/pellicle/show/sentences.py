@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellicle.arrays import Array
+from pellicle.arrays import Array, DataArray, Dataset
 from pellicle.components.charts import Column
 from pellicle.config.describe import inputs
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Status, by_phrase, from_text
 from pellicle.errors import first_of
 from pellicle.results.path import has_interaction, has_times, label_of_step, prescribed_variable
-from pellicle.results.result import FEW_CELLS as FEW_CELLS
 from pellicle.results.result import Result, first_message
 from pellicle.results.runs import axes_of, by_run, runs_of, short_files, statuses_of
 from pellicle.results.wording import column_of, has_one_shape, is_periodic
@@ -24,8 +23,6 @@ from pellicle.units import decimal, readable
 from pellicle.variables import BEYOND_THEORY, CAVEATS, VARIABLES
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from pellicle.runs.validation import CheckedCase
 
 _DIGITS = 3
@@ -40,8 +37,6 @@ _COLUMNS = {"pull_off": "force", "pull_off_depth": "depth"}
 """The numbers of steps whose unit they share."""
 _SAME = 1e-9
 """Relative difference up to which numbers count as equal."""
-STEEP_RIM = 0.3
-"""Slope above which linear elasticity is beyond its range."""
 _FAILURES = {
     "failed": "failed",
     "NOT CONVERGED": "did not converge",
@@ -51,7 +46,7 @@ _FAILURES = {
 _BEYOND = "a contact is far beyond the theory or its cells"
 
 
-def sentence_of_step(data: xr.Dataset, index: int) -> str:
+def sentence_of_step(data: Dataset, index: int) -> str:
     """Return a sentence like "At depth 3 µm: force 904 nN, contact radius 4.5 µm" for a load step.
 
     A contact in several parts has its fraction of a periodic domain, or its area on a free one,
@@ -113,7 +108,7 @@ def status_of_run(result: Result) -> tuple[str, bool | None, list[str]]:
     return " ".join(sentences), is_good if done == total and not failed else False, details
 
 
-def status_of_study(table: xr.Dataset) -> tuple[str, bool | None, list[str]]:
+def status_of_study(table: Dataset) -> tuple[str, bool | None, list[str]]:
     """Return what became of a study, whether all is well, None with reservations, and details."""
     failed, warnings = failures(table), [*caveats(table)]
     if failed:
@@ -128,7 +123,7 @@ def unfinished(result: Result) -> str:
     return f"interrupted: {done} of {planned} steps are finished; run it again" * (done < planned)
 
 
-def aim_of_path(data: xr.Dataset, summary: Mapping[str, float]) -> str:
+def aim_of_path(data: Dataset, summary: Mapping[str, float]) -> str:
     """Return what a path is made for: complex stiffness, pull-off, the force of a hold; or ""."""
     sentences = []
     for names in _AIMS:
@@ -149,14 +144,14 @@ def aim_of_path(data: xr.Dataset, summary: Mapping[str, float]) -> str:
     return " ".join(sentences)
 
 
-def range_of_path(data: xr.Dataset) -> str:
+def range_of_path(data: Dataset) -> str:
     """Return the range of the force over the load steps; empty for one, and with adhesion."""
     steps = data.sizes["step"]
     is_one = steps == 1 or has_interaction(data)
     return "" if is_one else f"Over {steps} load steps: {_range(data['force'])}."
 
 
-def _text_of(name: str, value: float, data: xr.Dataset) -> str:
+def _text_of(name: str, value: float, data: Dataset) -> str:
     """Return a number of a path in words, in the unit of the column of the steps that has it."""
     variable = VARIABLES[name]
     shown = Column(variable.words, [value], variable.unit)
@@ -165,7 +160,7 @@ def _text_of(name: str, value: float, data: xr.Dataset) -> str:
     return replace(shown, digits=_DIGITS).text(value)
 
 
-def sentence_of_study(table: xr.Dataset, count: int) -> str:
+def sentence_of_study(table: Dataset, count: int) -> str:
     """Return the results of a study in its last step; empty if there is none.
 
     Of force, depth and contact radius, the one that all runs share there, if any, comes first.
@@ -191,7 +186,7 @@ def _is_one_value(values: Array) -> bool:
     return bool(np.ptp(finite) <= _SAME * np.abs(finite).max())
 
 
-def _values(variable: xr.DataArray, count: int) -> str:
+def _values(variable: DataArray, count: int) -> str:
     """Return the values of a few runs in their order, the range of many."""
     values = variable.values.ravel()
     if count > _FEW or variable.ndim > 1 or not np.isfinite(values).all() or _is_one_value(values):
@@ -200,7 +195,7 @@ def _values(variable: xr.DataArray, count: int) -> str:
     return f"{shown.words} {shown.listing}"
 
 
-def _range(variable: xr.DataArray) -> str:
+def _range(variable: DataArray) -> str:
     shown = replace(column_of(variable), digits=_DIGITS)
     finite = variable.values[np.isfinite(variable.values)]
     if not finite.size:
@@ -211,7 +206,7 @@ def _range(variable: xr.DataArray) -> str:
     return f"{shown.words} from {low} to {shown.scale.with_unit(high)}"
 
 
-def run_names(table: xr.Dataset) -> list[str]:
+def run_names(table: Dataset) -> list[str]:
     """Return the values that distinguish each run, such as "surface tension 30 mN/m"."""
     axes = {name: column_of(table[name]) for name in axes_of(table)}
     return [
@@ -220,7 +215,7 @@ def run_names(table: xr.Dataset) -> list[str]:
     ]
 
 
-def reasons(table: xr.Dataset) -> Iterator[str]:
+def reasons(table: Dataset) -> Iterator[str]:
     """Yield the runs that did not converge or failed, with the first status of either kind.
 
     Runs of equal status are one text, which names the first.
@@ -237,7 +232,7 @@ def reasons(table: xr.Dataset) -> Iterator[str]:
         yield f"{first_of(runs)}: {message}"
 
 
-def failures(table: xr.Dataset) -> str:
+def failures(table: Dataset) -> str:
     """Return a phrase on runs that failed, did not converge or were not finished, if any."""
     verdicts = [{status.verdict for status in statuses} for statuses in statuses_of(table)]
     counts = {verdict: sum(verdict in run for run in verdicts) for verdict in _FAILURES}
@@ -245,7 +240,7 @@ def failures(table: xr.Dataset) -> str:
     return f"of {len(verdicts)} runs {', '.join(phrases)}" if phrases else ""
 
 
-def caveats(table: xr.Dataset) -> Iterator[str]:
+def caveats(table: Dataset) -> Iterator[str]:
     """Yield a message for each kind of caveat: how many runs have it, and a run and a step that do.
 
     Of a small domain it is the step that needs the largest one.
@@ -272,30 +267,7 @@ def caveats(table: xr.Dataset) -> Iterator[str]:
             )
 
 
-def limits_of_curve(
-    missing: list[str], coarse: dict[str, float], steep: dict[str, float], low: float, high: float
-) -> str:
-    """Return which points of an adhesive curve are not known, or not as they should be.
-
-    The path has contact radii from ``low`` to ``high`` [m]; ``coarse`` are radii in cells, and
-    ``steep`` slopes of the indenter at the rim.
-    """
-    cells, slopes = (
-        ", ".join(f"{mark} {value:.{digits}f}" for mark, value in marks.items())
-        for marks, digits in ((coarse, 1), (steep, 2))
-    )
-    range_ = f"not at a contact radius from {low:.3g} to {high:.3g} m, those of the path"
-    remedy = f"from {FEW_CELLS} on force and radius are good to 2 %, so use more points"
-    theory = f"the theory is for small slopes, below about {STEEP_RIM}"
-    problems = [
-        *([f"{', '.join(missing)}: {range_}"] if missing else []),
-        *([f"contact radius in cells: {cells}; {remedy}"] if coarse else []),
-        *([f"slope of the indenter at the rim: {slopes}; {theory}"] if steep else []),
-    ]
-    return "; ".join(problems) or "computed"
-
-
-def caption_of_steps(data: xr.Dataset, fields: Sequence[str], shown: int) -> str:
+def caption_of_steps(data: Dataset, fields: Sequence[str], shown: int) -> str:
     """Return the caption of maps of some fields in as many load steps as are ``shown``."""
     *first, last = fields
     names = f"{', '.join(first)} and {last}".capitalize()
@@ -306,7 +278,7 @@ def caption_of_steps(data: xr.Dataset, fields: Sequence[str], shown: int) -> str
     return f"{names} at prescribed {words}, in {steps}{colours}."
 
 
-def caption_of_runs(table: xr.Dataset, shown: int) -> str:
+def caption_of_runs(table: Dataset, shown: int) -> str:
     """Return the caption of maps of as many runs as are ``shown``."""
     runs = _share(shown, table["run"].size, "run")
     return f"The last step in contact of {runs}, each in colours over its own range."

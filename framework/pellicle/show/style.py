@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from pydantic import Field
 
-from pellicle.arrays import Array
+from pellicle.arrays import Array, DataArray, Dataset
 from pellicle.errors import ConfigError
 from pellicle.schema.from_file import InputPath
 from pellicle.schema.model import Model
@@ -17,7 +17,6 @@ from pellicle.units import Quantity
 from pellicle.variables import ROLE, SEED
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.figure import Figure
 
 OKABE_ITO = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"
@@ -34,25 +33,19 @@ _LABELLED_DECADES = 2.2
 class FigureStyle(Model):
     """How figures are set for print."""
 
-    width: Annotated[
-        Annotated[float, Quantity("m", at_least=0.02, at_most=1.0)] | None,
-        Field(description="width of the figure, such as 85 mm or 170 mm [m]"),
-    ] = None
-    font_size: Annotated[
-        float | None,
-        Field(
-            ge=3,
-            le=40,
-            description="size of the text in points; if absent 8 with a width, else as in file",
-        ),
-    ] = None
-    svg_text: Annotated[
-        bool,
-        Field(description="whether text in SVG stays text, which can be edited, or becomes paths"),
-    ] = True
-    file: Annotated[
-        InputPath | None, Field(description="a style file of matplotlib (.mplstyle)")
-    ] = None
+    width: Annotated[float, Quantity("m", at_least=0.02, at_most=1.0)] | None = Field(
+        None, description="width of the figure, such as 85 mm or 170 mm [m]"
+    )
+    font_size: float | None = Field(
+        None,
+        ge=3,
+        le=40,
+        description="size of the text in points; if absent 8 with a width, else as in file",
+    )
+    svg_text: bool = Field(
+        True, description="whether text in SVG stays text, which can be edited, or becomes paths"
+    )
+    file: InputPath | None = Field(None, description="a style file of matplotlib (.mplstyle)")
 
     def size(self, size: tuple[float, float]) -> tuple[float, float]:
         """Return the size of a figure [inch], scaled to the width."""
@@ -103,7 +96,7 @@ def colour(number: int, count: int, *, ordered: bool = False) -> Any:
     return f"C{number}"
 
 
-def is_ordered(table: xr.Dataset, dim: str | None) -> bool:
+def is_ordered(table: Dataset, dim: str | None) -> bool:
     """Return whether the values along a dimension are numbers to compare, which seeds are not."""
     return (
         dim is not None
@@ -113,7 +106,7 @@ def is_ordered(table: xr.Dataset, dim: str | None) -> bool:
     )
 
 
-def is_seed(axis: xr.DataArray) -> bool:
+def is_seed(axis: DataArray) -> bool:
     """Return whether the values of an axis only repeat a random run."""
     return bool(axis.attrs.get(ROLE) == SEED)
 
@@ -159,7 +152,7 @@ def lay_out(figure: Figure) -> None:
     if any(axes.get_aspect() != "auto" for axes in figure.axes):
         # Axes of a fixed aspect move, with their titles and labels, as they get their places.
         engine.execute(figure)
-    covering = []
+    is_moved = False
     for axes in figure.axes:
         legend = axes.get_legend()
         if not legend:
@@ -170,11 +163,10 @@ def lay_out(figure: Figure) -> None:
             path = artist.get_path().transformed(artist.get_transform())
             finite = np.isfinite(path.vertices).all(axis=1)
             if finite.any() and path.intersects_bbox(box, filled=False):
-                covering.append((axes, legend))
+                legend.set_loc("upper left")
+                legend.set_bbox_to_anchor((1.01, 1.0), transform=axes.transAxes)
+                is_moved = True
                 break
-    for axes, legend in covering:
-        legend.set_loc("upper left")
-        legend.set_bbox_to_anchor((1.01, 1.0), transform=axes.transAxes)
-    if covering:
+    if is_moved:
         engine.execute(figure)
     figure.set_layout_engine("none")

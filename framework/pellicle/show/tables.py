@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pellicle.arrays import Dataset
 from pellicle.components.charts import Column, Table
 from pellicle.config import describe
 from pellicle.config.describe import FieldRow
@@ -24,7 +25,6 @@ from pellicle.units import axis_unit, readable
 from pellicle.variables import CAVEATS, VARIABLES, names_of
 
 if TYPE_CHECKING:
-    import xarray as xr
     from pydantic import BaseModel
 
     from pellicle.runs.validation import CheckedCase
@@ -40,14 +40,14 @@ _COMPARED = 8
 _POWERS = str.maketrans("²³", "23")
 
 
-def numbers(data: xr.Dataset) -> Table:
+def numbers(data: Dataset) -> Table:
     """Return all numbers and texts of each step, as files have them."""
     names = [str(n) for n, variable in data.data_vars.items() if variable.dims == ("step",)]
     columns = [(name, data[name]) for name in ("step", *names)]
     return Table([Column(n, v.values.tolist(), v.attrs.get("units", "")) for n, v in columns])
 
 
-def steps(data: xr.Dataset, names: Iterable[str], caption: str = "") -> Table:
+def steps(data: Dataset, names: Iterable[str], caption: str = "") -> Table:
     """Return variables of each step; a residual has two digits."""
     columns = []
     for name in ("step", *names):
@@ -69,7 +69,7 @@ def _is_effort(name: str) -> bool:
     return name in names_of("effort") or name.startswith("residual_")
 
 
-def _is_shown(data: xr.Dataset, name: str) -> bool:
+def _is_shown(data: Dataset, name: str) -> bool:
     """Return whether a variable describes the contact, and has finite values.
 
     Without a finite force the variables of a step stay in the table.
@@ -80,7 +80,7 @@ def _is_shown(data: xr.Dataset, name: str) -> bool:
     return not missing or not np.isfinite(data["force"].values).any()
 
 
-def _names_of_numbers(data: xr.Dataset) -> list[str]:
+def _names_of_numbers(data: Dataset) -> list[str]:
     return [
         str(name)
         for name, variable in data.data_vars.items()
@@ -88,7 +88,7 @@ def _names_of_numbers(data: xr.Dataset) -> list[str]:
     ]
 
 
-def all_steps(data: xr.Dataset) -> list[Table]:
+def all_steps(data: Dataset) -> list[Table]:
     """Return the numbers of each load step: the result, the shape of the contact, the effort."""
     names, of_contact = _names_of_numbers(data), names_of("contact")
     effort = [n for n in names if _is_effort(n)]
@@ -102,7 +102,7 @@ def all_steps(data: xr.Dataset) -> list[Table]:
     return [steps(data, [*names, "status"], caption) for caption, names in tables.items() if names]
 
 
-def main_steps(data: xr.Dataset) -> Table:
+def main_steps(data: Dataset) -> Table:
     """Return the main numbers of each load step, with what was asked for."""
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
     usual = {"time", "depth", "force", *areas, *names_of("other")}
@@ -112,16 +112,15 @@ def main_steps(data: xr.Dataset) -> Table:
     return steps(data, [*time, "depth", "force", *areas, *requested, "iterations", "status"])
 
 
-def contact(data: xr.Dataset) -> Table:
+def contact(data: Dataset) -> Table:
     """Return the shape of the contact in each load step, and of the zone around it."""
-    # Files of earlier versions lack some.
     names = [
         n for n in names_of("contact", "interaction") if n in data and means_something(data, n)
     ]
     return steps(data, [name for name in names if not name.startswith("residual_")])
 
 
-def path(data: xr.Dataset, *, si: bool = False) -> list[Table]:
+def path(data: Dataset, *, si: bool = False) -> list[Table]:
     """Return the events on the path and its work, where there is an interaction.
 
     Depths, forces and stiffnesses have the prefix of those of the load steps.
@@ -140,7 +139,7 @@ def path(data: xr.Dataset, *, si: bool = False) -> list[Table]:
     return [Table.of_rows(("path", "value", "meaning"), rows, caption)] if rows else []
 
 
-def oscillations(data: xr.Dataset) -> list[Table]:
+def oscillations(data: Dataset) -> list[Table]:
     """Return the numbers of each oscillation on the path, where a leg oscillates."""
     found = oscillations_of(data)
     columns = [
@@ -156,9 +155,7 @@ def oscillations(data: xr.Dataset) -> list[Table]:
     return [Table(columns, caption)] if found else []
 
 
-def runs(
-    table: xr.Dataset, names: Sequence[str] | None = None, mapped: Sequence[int] = ()
-) -> Table:
+def runs(table: Dataset, names: Sequence[str] | None = None, mapped: Sequence[int] = ()) -> Table:
     """Return the parameters of each run of a study, and numbers of its last step.
 
     Without ``names`` these are all but those of the effort. ``mapped`` has the indices of the runs
@@ -195,14 +192,14 @@ def runs(
     return Table(columns, "The last load step of each run; a click on a run shows its map.")
 
 
-def main_runs(table: xr.Dataset) -> Table:
+def main_runs(table: Dataset) -> Table:
     """Return the parameters of each run of a study, and the main numbers of its last step."""
     main = [n for n in names_of("main") if n in table and means_something(table, n)]
     derived = [n for n in json.loads(table.attrs[DERIVED]) if "step" in table[n].dims]
     return runs(table, [*main, *derived])
 
 
-def paths_of_runs(table: xr.Dataset, names: Sequence[str] | None = None) -> list[Table]:
+def paths_of_runs(table: Dataset, names: Sequence[str] | None = None) -> list[Table]:
     """Return numbers of the path of each run, where it sticks or oscillates.
 
     Without ``names`` these are all of them, and the parameters of the runs.
@@ -216,13 +213,13 @@ def paths_of_runs(table: xr.Dataset, names: Sequence[str] | None = None) -> list
     return [Table([number, *_of_runs(table, names)], caption)] if names else []
 
 
-def main_paths(table: xr.Dataset) -> list[Table]:
+def main_paths(table: Dataset) -> list[Table]:
     """Return the main numbers of the path of each run, and those that are derived from them."""
     derived = [n for n in json.loads(table.attrs[DERIVED]) if "step" not in table[n].dims]
     return paths_of_runs(table, [name for name in (*_OF_PATHS, *derived) if name in table])
 
 
-def _of_runs(table: xr.Dataset, names: Iterable[str]) -> Iterator[Column]:
+def _of_runs(table: Dataset, names: Iterable[str]) -> Iterator[Column]:
     for name in names:
         values = table[name].broadcast_like(table["run"]).transpose(*table["run"].dims)
         yield replace(column_of(table[name]), values=column_of(values).values)
@@ -248,7 +245,7 @@ def input_table(
     return inputs(describe.inputs(configuration, model), caption)
 
 
-def inputs_of_study(table: xr.Dataset, fields: Iterable[FieldRow]) -> list[FieldRow]:
+def inputs_of_study(table: Dataset, fields: Iterable[FieldRow]) -> list[FieldRow]:
     """Return the inputs of a study: its axes, and the inputs of its first run that do not vary."""
     axes = []
     for name in axes_of(table):

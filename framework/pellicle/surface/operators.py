@@ -33,7 +33,6 @@ class HasCompliance(Protocol):
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa] for wavenumbers q > 0 [rad/m]."""
-        ...
 
 
 @runtime_checkable
@@ -42,11 +41,9 @@ class HasClosedForm(HasCompliance, Protocol):
 
     def greens_function(self, r: Array) -> Array:
         """Return the displacement at distances r > 0 [m] from a unit force [m/N]."""
-        ...
 
     def radial_primitive(self, r: Array) -> Array:
         """Return ∫₀^r G(r') r' dr' [m³/N] for r ≥ 0 [m]."""
-        ...
 
 
 @runtime_checkable
@@ -59,7 +56,6 @@ class HasMeanCompliance(HasCompliance, Protocol):
         If it is infinite, the mean displacement is set to 0 and depths are measured from the mean
         plane.
         """
-        ...
 
 
 def mean_compliance(kernel: HasCompliance) -> float:

@@ -77,15 +77,12 @@ def _problems() -> list[Problem]:
     ]
 
 
-def _state(pressure: Any) -> State:
-    return State(pressure, pressure, 0.0)
-
-
 def response_is_that_of_a_flat_punch(solver: Solver) -> None:
     """response() displaces the contact of a state by 1 and acts nowhere else."""
     for problem in _problems():
         contact = problem.profile > 0.1 * problem.profile.min()
-        pressure = response_of(solver, problem, _state(contact.astype(np.float64)), ignore)
+        pressed = contact.astype(np.float64)
+        pressure = response_of(solver, problem, State(pressed, pressed, 0.0), ignore)
         residual = measure_stiffness(problem, contact, pressure).residual
         what = f"response() misses the displacement 1 by {residual:.1e}"
         require(residual <= solver.tolerance, what)

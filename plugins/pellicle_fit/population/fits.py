@@ -6,16 +6,15 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import pandas as pd
+import xarray as xr
 
 from pellicle_fit.intervals import threshold_of
 
 from .row import ENDS, OVER_TIED, SHOWN, Row, counted, units
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 QUARTILES = "minimum", "lower_quartile", "median", "upper_quartile", "maximum"
 _MEASURED = {"spring_constant": "N/m", "sensitivity": "m/V", "poissons_ratio": "1"}
@@ -48,9 +47,6 @@ def table(rows: Sequence[Row]) -> xr.Dataset:
 
     Each quantity has its value and the ends of its interval, such as ``tension_low``.
     """
-    import pandas as pd
-    import xarray as xr
-
     cells = [_cells(row) for row in rows]
     # The curve with the most quantities gives the order of the columns.
     names = list(dict.fromkeys(name for one in sorted(cells, key=len)[::-1] for name in one))
@@ -100,8 +96,6 @@ def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
     and ``no_sign`` show no sign of what has the parameter.  Parameters that were fixed have no
     line.  Where curves share an error of the calibration, there is a ``common_error``.
     """
-    import pandas as pd
-
     fitted = [
         (name, row.group, e.unit, e.value, not e.is_narrow, row.has_no_sign(name), row.outlier, row)
         for name in dict.fromkeys((*OVER_TIED, *SHOWN))
@@ -129,8 +123,6 @@ def common_error(rows: Iterable[Row], name: str) -> dict[str, float]:
 
     It is half of a 95 % interval [SI]: by so much the calibration that curves share may move all.
     """
-    import pandas as pd
-
     moved = pd.DataFrame([row.fit.get("common_errors", {}).get(name, {}) for row in rows])
     deviation = float(np.sqrt((moved.fillna(0.0).median() ** 2).sum()))
     return {"common_error": threshold_of(np.inf) ** 0.5 * deviation} if moved.size else {}

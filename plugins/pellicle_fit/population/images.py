@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
+import xarray as xr
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array
 from pellicle_fit.objective import CONTACT_POINT
 
 from .row import ENDS, Row, units
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 CONTACT_HEIGHT = "contact_height"
 """Minus the contact point: the height of the surface over the zero of the instrument [m]."""
@@ -44,8 +42,6 @@ def force_maps(rows: Sequence[Row]) -> tuple[dict[str, xr.Dataset], list[str]]:
 
 def _images(rows: Sequence[Row], places: Array, x: Array, y: Array) -> xr.Dataset:
     """Return the images of a map; of curves at one place the last accepted one is shown."""
-    import pandas as pd
-
     pixels = pd.MultiIndex.from_arrays([_nearest(y, places[1]), _nearest(x, places[0])])
     accepted = [row.accepted for row in rows]
     frame = pd.DataFrame([_numbers(row) for row in rows if row.accepted], index=pixels[accepted])

@@ -9,6 +9,7 @@ from itertools import compress
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.files import read_text
@@ -161,8 +162,6 @@ def outliers(rows: Sequence[Row]) -> list[Row]:
     The deviation is 1.4826 times the median absolute deviation, which some of the outliers
     themselves do not change (Iglewicz and Hoaglin, 1993).
     """
-    import pandas as pd
-
     found = counted(rows, MODULUS)
     known = [(e.value, e.low or 0.0, np.inf if e.high is None else e.high) for e in found.values()]
     with np.errstate(divide="ignore"):

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from pellicle import registry
 from pellicle.arrays import Array
 from pellicle_fit.effect import Effect, Solid, quantities
 from pellicle_fit.files.measurement import Site
 from pellicle_fit.intervals import Estimate
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
 
 FITTED = "fitted"
 FAILED = "failed: "

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import pandas as pd
+
 from pellicle.files import atomic_write, for_document
 from pellicle.units import Scale
 from pellicle_fit.population.row import Row
@@ -19,8 +21,6 @@ def save_tables(rows: Sequence[Row], stem: Path) -> list[Path]:
     The modulus is Young's where it is known; ``n`` is the number of points.  A value whose interval
     is open or wide is left out.
     """
-    import pandas as pd
-
     has_youngs = any("youngs_modulus" in row.estimates for row in rows)
     modulus = ("E", "youngs_modulus") if has_youngs else ("E*", "reduced_modulus")
     lines = []

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellicle.arrays import Array
+from pellicle.arrays import Array, Dataset
 from pellicle.components import Axis, Chart, Look, Series
 from pellicle.files import atomic_write
 from pellicle.results import header
@@ -24,7 +24,6 @@ from pellicle_fit.words.names import words
 from .contact_sheet import PAGE, sheets
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.figure import Figure
 
 _DRAWN = {MODULUS: "Pa", TENSION: "N/m"}
@@ -120,9 +119,7 @@ def _histogram(
     return Chart(axis, [Axis("curves")], [*series[::-1], *guides], hues=len(legends))
 
 
-def map_figure(
-    images: xr.Dataset, title: str
-) -> tuple[Callable[[Figure], None], tuple[float, float]]:
+def map_figure(images: Dataset, title: str) -> tuple[Callable[[Figure], None], tuple[float, float]]:
     """Return what draws each parameter beside the width of its interval, and its size [inch].
 
     It is grey where there is no value.
@@ -154,7 +151,7 @@ def map_figure(
     return draw, (2 * _WIDTH, height * len(names) + 0.4)
 
 
-def _pitches(images: xr.Dataset) -> tuple[float, float]:
+def _pitches(images: Dataset) -> tuple[float, float]:
     """Return the sizes of a pixel along x and y [m]; a line of curves is one pixel wide."""
     sides = [images[name].values for name in "xy"]
     x, y = (float(side[1] - side[0]) if side.size > 1 else 0.0 for side in sides)

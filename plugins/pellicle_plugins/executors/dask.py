@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Literal
+from typing import Literal
 
 from pydantic import Field
 
@@ -22,17 +22,12 @@ class Dask(Executor):
 
     type: Literal["dask"] = "dask"
     examples = ({"address": "tcp://127.0.0.1:8786"},)
-    address: Annotated[
-        str,
-        Field(
-            description='address of the scheduler, such as "tcp://node1:8786"; start one with '
-            "`dask scheduler`, its workers with `dask worker ADDRESS`, or use the executor "
-            '"processes" on one machine'
-        ),
-    ]
-    threads: Annotated[
-        Threads, Field(description="threads of each run's arrays and transforms")
-    ] = 1
+    address: str = Field(
+        description='address of the scheduler, such as "tcp://node1:8786"; start one with '
+        "`dask scheduler`, its workers with `dask worker ADDRESS`, or use the executor "
+        '"processes" on one machine'
+    )
+    threads: Threads = Field(1, description="threads of each run's arrays and transforms")
 
     def map(
         self, work: Work[AnyTask, Outcome], tasks: Sequence[AnyTask], report: Report[AnyTask]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Literal
+from typing import Literal
 
 from pydantic import Field
 
@@ -20,13 +20,12 @@ class Processes(Executor):
 
     type: Literal["processes"] = "processes"
     examples = ({"workers": 2},)
-    workers: Annotated[
-        Workers | None,
-        Field(description="number of processes; if absent, enough to use all available cores"),
-    ] = None
-    threads: Annotated[
-        Threads, Field(description="threads of each run's arrays, transforms and linear algebra")
-    ] = 1
+    workers: Workers | None = Field(
+        None, description="number of processes; if absent, enough to use all available cores"
+    )
+    threads: Threads = Field(
+        1, description="threads of each run's arrays, transforms and linear algebra"
+    )
 
     def map(
         self, work: Work[AnyTask, Outcome], tasks: Sequence[AnyTask], report: Report[AnyTask]

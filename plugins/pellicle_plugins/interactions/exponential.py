@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
@@ -20,10 +20,10 @@ class Exponential(Interaction):
 
     type: Literal["exponential"] = "exponential"
     examples = ({"work_of_adhesion": "50 mJ/m^2", "range": "1 um"},)
-    work_of_adhesion: Annotated[
-        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m2]")
-    ]
-    range: Annotated[Length, Field(description="decay length of the energy [m]")]
+    work_of_adhesion: WorkOfAdhesion = Field(
+        description="energy per area to separate a closed gap [J/m2]"
+    )
+    range: Length = Field(description="decay length of the energy [m]")
 
     def energy(self, gap: Array) -> Array:
         """Return γ(g) = −w e^(−g/range) [J/m²]."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, ClassVar, Literal, Self
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import ConfigDict, Field, model_validator
@@ -59,15 +59,15 @@ class Adhesive(Interaction):
     # Work of adhesion over strength times range.
     _SHAPE: ClassVar[float]
 
-    work_of_adhesion: Annotated[
-        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m2]")
-    ]
-    range: Annotated[
-        Length | None, Field(description="gap at which the traction ends [m]; or strength")
-    ] = None
-    strength: Annotated[
-        Strength | None, Field(description="traction that separates a closed gap [Pa]; or range")
-    ] = None
+    work_of_adhesion: WorkOfAdhesion = Field(
+        description="energy per area to separate a closed gap [J/m2]"
+    )
+    range: Length | None = Field(
+        None, description="gap at which the traction ends [m]; or strength"
+    )
+    strength: Strength | None = Field(
+        None, description="traction that separates a closed gap [Pa]; or range"
+    )
 
     @property
     def reach(self) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Annotated, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from pydantic import ConfigDict, Field
@@ -41,17 +41,15 @@ class JKR(Interaction):
 
     type: Literal["jkr"] = "jkr"
     examples = ({"work_of_adhesion": "50 mJ/m^2"},)
-    work_of_adhesion: Annotated[
-        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m2]")
-    ]
+    work_of_adhesion: WorkOfAdhesion = Field(
+        description="energy per area to separate a closed gap [J/m2]"
+    )
 
-    estimate_error: Annotated[
-        bool,
-        Field(
-            description="whether to solve each step again with a wider zone, for the error of its "
-            "force and its limit"
-        ),
-    ] = True
+    estimate_error: bool = Field(
+        True,
+        description="whether to solve each step again with a wider zone, for the error of its "
+        "force and its limit",
+    )
 
     def energy(self, gap: Array) -> Array:
         """Return −w [J/m²] at contact and 0 across any gap."""

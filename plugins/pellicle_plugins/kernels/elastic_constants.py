@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Self
+from typing import Self
 
 from pydantic import ConfigDict, Field, model_validator
 
@@ -23,18 +23,15 @@ class ElasticModulus(Model):
         }
     )
 
-    reduced_modulus: Annotated[
-        Modulus | None,
-        Field(description="reduced modulus E* [Pa]; or youngs_modulus and poissons_ratio"),
-    ] = None
-    youngs_modulus: Annotated[
-        Modulus | None,
-        Field(title="Young's modulus", description="Young's modulus E [Pa], with poissons_ratio"),
-    ] = None
-    poissons_ratio: Annotated[
-        PoissonsRatio | None,
-        Field(title="Poisson's ratio", description="Poisson's ratio ν, −1 < ν ≤ 0.5"),
-    ] = None
+    reduced_modulus: Modulus | None = Field(
+        None, description="reduced modulus E* [Pa]; or youngs_modulus and poissons_ratio"
+    )
+    youngs_modulus: Modulus | None = Field(
+        None, title="Young's modulus", description="Young's modulus E [Pa], with poissons_ratio"
+    )
+    poissons_ratio: PoissonsRatio | None = Field(
+        None, title="Poisson's ratio", description="Poisson's ratio ν, −1 < ν ≤ 0.5"
+    )
 
     @property
     def contact_modulus(self) -> float:
@@ -75,13 +72,10 @@ class ElasticConstants(ElasticModulus):
         }
     )
 
-    poissons_ratio: Annotated[
-        PoissonsRatio,
-        Field(
-            title="Poisson's ratio",
-            description="Poisson's ratio ν, −1 < ν ≤ 0.5; 0.5 is incompressible",
-        ),
-    ]
+    poissons_ratio: PoissonsRatio = Field(
+        title="Poisson's ratio",
+        description="Poisson's ratio ν, −1 < ν ≤ 0.5; 0.5 is incompressible",
+    )
 
     @property
     def coupling_ratio(self) -> float:

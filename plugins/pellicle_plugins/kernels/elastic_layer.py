@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
@@ -18,7 +18,7 @@ from .hyperbolic import DEEP, scaled_sinh_rest
 class Layer(ElasticConstants):
     """One elastic layer."""
 
-    thickness: Annotated[Length, Field(description="thickness h of the layer [m]")]
+    thickness: Length = Field(description="thickness h of the layer [m]")
 
     def mean_compliance(self) -> float:
         """Return h/M [m/Pa], M the P-wave modulus: uniaxial strain; 0 for ν = ½.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import ConfigDict, Field
@@ -40,10 +40,9 @@ class TensedMembrane(ElasticSolid):
 
     type: Literal["tensed_membrane"] = "tensed_membrane"
     examples = ({"reduced_modulus": "10 kPa", "tension": "1 N/m"},)
-    tension: Annotated[
-        Tension,
-        Field(title="surface tension", description="tension τ₀ of the surface [N/m], 0 for none"),
-    ]
+    tension: Tension = Field(
+        title="surface tension", description="tension τ₀ of the surface [N/m], 0 for none"
+    )
 
     @property
     def elastocapillary_length(self) -> float:

@@ -50,22 +50,18 @@ class Layered(Kernel):
             "substrate": {"youngs_modulus": "100 kPa", "poissons_ratio": 0.4},
         },
     )
-    layers: Annotated[
-        tuple[Layer, ...],
-        Field(
-            min_length=1,
-            description="layers from the surface down: tables of youngs_modulus or "
-            "reduced_modulus, poissons_ratio, thickness",
-        ),
-    ]
+    layers: tuple[Layer, ...] = Field(
+        min_length=1,
+        description="layers from the surface down: tables of youngs_modulus or "
+        "reduced_modulus, poissons_ratio, thickness",
+    )
     substrate: Annotated[
         ElasticConstants | Literal["rigid"],
         BeforeValidator(_substrate, json_schema_input_type=ElasticConstants | Literal["rigid"]),
-        Field(
-            description='what the layers are glued to: "rigid", or a half-space as a table of '
-            "youngs_modulus or reduced_modulus, and poissons_ratio"
-        ),
-    ]
+    ] = Field(
+        description='what the layers are glued to: "rigid", or a half-space as a table of '
+        "youngs_modulus or reduced_modulus, and poissons_ratio"
+    )
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa], by a recursion from the substrate to the surface.

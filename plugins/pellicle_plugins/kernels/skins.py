@@ -16,17 +16,14 @@ from .elastic_constants import ElasticConstants, ElasticSolid
 class Skin(Kernel):
     """A kernel whose surface is a skin under tension that may resist bending."""
 
-    tension: Annotated[
-        Tension,
-        Field(title="surface tension", description="tension τ₀ of the skin [N/m], 0 for none"),
-    ] = 0.0
-    bending: Annotated[
-        BendingStiffness,
-        Field(
-            title="bending stiffness",
-            description="bending stiffness B of the skin [N*m], 0 for none",
-        ),
-    ] = 0.0
+    tension: Tension = Field(
+        0.0, title="surface tension", description="tension τ₀ of the skin [N/m], 0 for none"
+    )
+    bending: BendingStiffness = Field(
+        0.0,
+        title="bending stiffness",
+        description="bending stiffness B of the skin [N*m], 0 for none",
+    )
 
     def skin_stiffness(self, q: Array) -> Array:
         """Return τ₀ q² + B q⁴ [Pa/m], a plate under tension; Timoshenko & Woinowsky-Krieger 1959.
@@ -45,13 +42,9 @@ class BendingSkin(Skin, ElasticSolid):
 
     type: Literal["bending_skin"] = "bending_skin"
     examples = ({"reduced_modulus": "10 kPa", "tension": "0.1 N/m", "bending": "100 pN*m"},)
-    bending: Annotated[
-        BendingStiffness,
-        Field(
-            title="bending stiffness",
-            description="bending stiffness B of the skin [N*m], 0 for none",
-        ),
-    ]
+    bending: BendingStiffness = Field(
+        title="bending stiffness", description="bending stiffness B of the skin [N*m], 0 for none"
+    )
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) = 1/(E* q/2 + τ₀ q² + B q⁴) [m/Pa]."""
@@ -78,9 +71,9 @@ class GurtinMurdoch(Skin, ElasticConstants):
             "tension": "0.5 N/m",
         },
     )
-    surface_stiffness: Annotated[
-        Tension, Field(description="stiffness κ_s = λ_s + 2μ_s of the surface in its plane [N/m]")
-    ]
+    surface_stiffness: Tension = Field(
+        description="stiffness κ_s = λ_s + 2μ_s of the surface in its plane [N/m]"
+    )
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa] of surface elasticity after Gurtin & Murdoch 1975.
@@ -113,9 +106,9 @@ class Coated(Skin, KernelOf):
             },
         },
     )
-    substrate: Annotated[
-        Kernel, FromRegistry(), Field(description="the kernel under the skin: a table with type")
-    ]
+    substrate: Annotated[Kernel, FromRegistry()] = Field(
+        description="the kernel under the skin: a table with type"
+    )
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) = 1/(1/G_s + τ₀ q² + B q⁴) [m/Pa], with G_s of the substrate."""

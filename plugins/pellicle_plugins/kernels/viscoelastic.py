@@ -27,29 +27,25 @@ _LARGEST_ERROR: Final = 0.01
 class RelaxingFraction(Model):
     """A fraction of a solid's stiffness that relaxes exponentially."""
 
-    fraction: Annotated[
-        float,
-        Quantity("1", above=0, at_most=1),
-        Field(description="fraction of the instantaneous stiffness"),
-    ]
-    time: Annotated[Time, Field(description="relaxation time τ [s]")]
+    fraction: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
+        description="fraction of the instantaneous stiffness"
+    )
+    time: Time = Field(description="relaxation time τ [s]")
 
 
 class PowerLaw(Model):
     """A stiffness that falls as a power of time."""
 
-    exponent: Annotated[
-        float, Quantity("1", above=0, below=1), Field(description="exponent α of E ∝ t^(−α)")
-    ]
-    time: Annotated[Time, Field(description="time t₀ [s] at which the solid is the one given")]
-    shortest: Annotated[
-        Time | None,
-        Field(description="start of the span in which the law holds [s]; time/1000 if not given"),
-    ] = None
-    longest: Annotated[
-        Time | None,
-        Field(description="end of the span in which the law holds [s]; 1000 time if not given"),
-    ] = None
+    exponent: Annotated[float, Quantity("1", above=0, below=1)] = Field(
+        description="exponent α of E ∝ t^(−α)"
+    )
+    time: Time = Field(description="time t₀ [s] at which the solid is the one given")
+    shortest: Time | None = Field(
+        None, description="start of the span in which the law holds [s]; time/1000 if not given"
+    )
+    longest: Time | None = Field(
+        None, description="end of the span in which the law holds [s]; 1000 time if not given"
+    )
 
     @property
     def span(self) -> tuple[float, float]:
@@ -101,25 +97,18 @@ class Viscoelastic(KernelOf):
             "relaxation": [{"fraction": 0.5, "time": "1 s"}, {"fraction": 0.3, "time": "1 min"}],
         },
     )
-    solid: Annotated[
-        Kernel,
-        FromRegistry(),
-        Field(
-            description="the instantaneous response, or for a power law that at its time: a kernel "
-            "without a skin, as a table with type"
-        ),
-    ]
-    relaxation: Annotated[
-        tuple[RelaxingFraction, ...] | None,
-        Field(
-            min_length=1,
-            description="fractions of the stiffness that relax: tables of fraction and time",
-        ),
-    ] = None
-    power_law: Annotated[
-        PowerLaw | None,
-        Field(description="a power law of time: a table of exponent, time, shortest and longest"),
-    ] = None
+    solid: Annotated[Kernel, FromRegistry()] = Field(
+        description="the instantaneous response, or for a power law that at its time: a kernel "
+        "without a skin, as a table with type"
+    )
+    relaxation: tuple[RelaxingFraction, ...] | None = Field(
+        None,
+        min_length=1,
+        description="fractions of the stiffness that relax: tables of fraction and time",
+    )
+    power_law: PowerLaw | None = Field(
+        None, description="a power law of time: a table of exponent, time, shortest and longest"
+    )
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa] of the instantaneous response; of a power law, before its span."""

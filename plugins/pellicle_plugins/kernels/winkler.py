@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import ConfigDict, Field
@@ -19,12 +19,9 @@ class Winkler(Kernel):
 
     type: Literal["winkler"] = "winkler"
     examples = ({"foundation": "100 Pa/um"},)
-    foundation: Annotated[
-        FoundationStiffness,
-        Field(
-            title="foundation stiffness", description="stiffness k of the springs per area [Pa/m]"
-        ),
-    ]
+    foundation: FoundationStiffness = Field(
+        title="foundation stiffness", description="stiffness k of the springs per area [Pa/m]"
+    )
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) = 1/k [m/Pa], the same for every wave; Johnson 1985, section 4.3."""

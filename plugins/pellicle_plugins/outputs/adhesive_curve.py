@@ -6,25 +6,22 @@ import textwrap
 from collections.abc import Iterator
 from dataclasses import replace
 from math import inf
-from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
 
 from pellicle import analysis
 from pellicle.analysis.steepness import steepest
+from pellicle.arrays import Dataset
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
 from pellicle.errors import ConfigError
-from pellicle.results.result import Result
+from pellicle.results.result import FEW_CELLS, Result
 from pellicle.results.wording import is_periodic
-from pellicle.show.sentences import FEW_CELLS, STEEP_RIM, limits_of_curve
 from pellicle.units import Quantity
 from pellicle_plugins.validation.adhesive_path import curve_of
 
 from .base import Label, TableFigure
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _HEADS = "curve", "contact_radius [m]", "depth [m]", "force [N]"
 _SUMMARY_HEADS = (
@@ -42,6 +39,8 @@ _SUMMARY_HEADS = (
 )
 _LINE = 70
 """Letters of a line of text across the figure."""
+_STEEP_RIM = 0.3
+"""Slope above which linear elasticity is beyond its range."""
 _MARKERS = {"pull-off": 0, "no load": 1, "last at fixed depth": 4}
 
 
@@ -49,7 +48,7 @@ class _Drawn(NamedTuple):
     """The path of a run and its adhesive curve, without points if the path has none."""
 
     name: Label
-    path: xr.Dataset
+    path: Dataset
     curve: analysis.AdhesiveCurve | None
     points: dict[str, analysis.AdhesiveContact]
     """Pull-off, zero load and the instability at fixed depth, NaN where unknown."""
@@ -69,11 +68,9 @@ class AdhesiveCurve(TableFigure):
 
     type: Literal["adhesive_curve"] = "adhesive_curve"
     examples = ({"work_of_adhesion": "50 mJ/m^2"},)
-    work_of_adhesion: Annotated[
-        float,
-        Quantity("J/m2", above=0),
-        Field(description="energy per area that separates indenter and solid [J/m2]"),
-    ]
+    work_of_adhesion: Annotated[float, Quantity("J/m2", above=0)] = Field(
+        description="energy per area that separates indenter and solid [J/m2]"
+    )
 
     @property
     def suffixes(self) -> tuple[str, ...]:
@@ -101,7 +98,7 @@ class AdhesiveCurve(TableFigure):
             )
         yield "-summary", Table.of_rows(_SUMMARY_HEADS, summary)
 
-    def _drawn(self, name: Label, run: xr.Dataset) -> _Drawn:
+    def _drawn(self, name: Label, run: Dataset) -> _Drawn:
         _refuse(run)
         path = run.isel(step=run["converged"].values & (run["contact_area"].values > 0))
         try:
@@ -151,14 +148,15 @@ class AdhesiveCurve(TableFigure):
 
 
 def _status(
-    curve: analysis.AdhesiveCurve, points: dict[str, analysis.AdhesiveContact], path: xr.Dataset
+    curve: analysis.AdhesiveCurve, points: dict[str, analysis.AdhesiveContact], path: Dataset
 ) -> str:
     """Return which points are not on the path, not resolved, or steeper than the theory allows."""
-    grid, last = Result(path).grid, path.isel(step=-1)
+    (low, high), grid = curve.contact_radius[[0, -1]], Result(path).grid
+    last = path.isel(step=-1)
     profile = last["displacement"].values - last["depth"].item() - last["gap"].values
     path = path.isel(step=np.argsort(path["contact_radius"].values))
     slopes = [steepest(profile, contact, grid) for contact in path["contact"].values]
-    missing, coarse, steep = list[str](), dict[str, float](), dict[str, float]()
+    missing, coarse, steep = list[str](), list[str](), list[str]()
     for mark, contact in points.items():
         radius = float(contact.contact_radius)
         slope = float(np.interp(radius, path["contact_radius"].values, slopes))
@@ -166,13 +164,21 @@ def _status(
             missing.append(mark)
             continue
         if radius < FEW_CELLS * max(grid.spacing):
-            coarse[mark] = radius / max(grid.spacing)
-        if slope > STEEP_RIM:
-            steep[mark] = slope
-    return limits_of_curve(missing, coarse, steep, *curve.contact_radius[[0, -1]])
+            coarse.append(f"{mark} {radius / max(grid.spacing):.1f}")
+        if slope > _STEEP_RIM:
+            steep.append(f"{mark} {slope:.2f}")
+    range_ = f"not at a contact radius from {low:.3g} to {high:.3g} m, those of the path"
+    remedy = f"from {FEW_CELLS} on force and radius are good to 2 %, so use more points"
+    theory = f"the theory is for small slopes, below about {_STEEP_RIM}"
+    problems = [
+        f"{', '.join(missing)}: {range_}" * bool(missing),
+        f"contact radius in cells: {', '.join(coarse)}; {remedy}" * bool(coarse),
+        f"slope of the indenter at the rim: {', '.join(steep)}; {theory}" * bool(steep),
+    ]
+    return "; ".join(filter(None, problems)) or "computed"
 
 
-def _refuse(run: xr.Dataset) -> None:
+def _refuse(run: Dataset) -> None:
     """Refuse a run that has no adhesive curve, however many steps are solved."""
     if run.attrs["adheres"]:
         raise ConfigError(

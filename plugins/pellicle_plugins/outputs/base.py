@@ -7,11 +7,12 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field
 
+from pellicle.arrays import Dataset
 from pellicle.components import Axis, Output, Runs
 from pellicle.config.describe import words_at
 from pellicle.config.run import Run
@@ -27,9 +28,6 @@ from pellicle.show.saving import write_charts
 from pellicle.show.style import FigureStyle, is_ordered
 from pellicle.units import DIGITS, Quantity, readable
 from pellicle.variables import words_of_name
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 MOST_LEGS = 4
 """Largest number of legs of a path in time that are told apart."""
@@ -73,34 +71,26 @@ class TableFigure(Output):
     numbers: ClassVar[bool] = True
     """Whether the numbers drawn are written as CSV beside the figure."""
 
-    name: Annotated[
-        str, Field(pattern=r"^[\w-]*$", description="suffix of the file names; the type if absent")
-    ] = ""
+    name: str = Field(
+        "", pattern=r"^[\w-]*$", description="suffix of the file names; the type if absent"
+    )
     formats: Formats = ("png",)
     style: StyleField = FigureStyle()
-    title: Annotated[str, Field(description="title of the figure")] = ""
-    by: Annotated[
-        Texts,
-        Field(
-            description="axis of the study, or step, or several: each value has its own curve or "
-            "panel"
-        ),
-    ] = ()
-    where: Annotated[
-        dict[str, Any],
-        AfterValidator(Chosen),
-        Field(
-            description="values of other axes of the study for which it is drawn, such as "
-            '{ "kernel.tension" = "10 mN/m" }'
-        ),
-    ] = Field(default_factory=Chosen)
-    label: Annotated[
-        str | None,
-        Field(
-            description="name of a curve or a panel; {expression} in it is replaced by its value, "
-            "to three digits, or as in {expression:.2g}"
-        ),
-    ] = None
+    title: str = Field("", description="title of the figure")
+    by: Texts = Field(
+        (),
+        description="axis of the study, or step, or several: each value has its own curve or panel",
+    )
+    where: Annotated[dict[str, Any], AfterValidator(Chosen)] = Field(
+        default_factory=Chosen,
+        description="values of other axes of the study for which it is drawn, such as "
+        '{ "kernel.tension" = "10 mN/m" }',
+    )
+    label: str | None = Field(
+        None,
+        description="name of a curve or a panel; {expression} in it is replaced by its value, "
+        "to three digits, or as in {expression:.2g}",
+    )
 
     @property
     def suffixes(self) -> tuple[str, ...]:
@@ -135,7 +125,7 @@ class TableFigure(Output):
             table = table.isel({axis.dims[0]: int(np.argmax(same))})
         return StoredRuns(table, runs.open, runs.configuration)
 
-    def picked(self, runs: Runs) -> Iterator[tuple[Label, xr.Dataset]]:
+    def picked(self, runs: Runs) -> Iterator[tuple[Label, Dataset]]:
         """Yield the name of each curve or panel and the point of the table that it shows.
 
         Other axes are at their first value, steps at the last of the table.
@@ -151,7 +141,7 @@ class TableFigure(Output):
         """Return whether the curves belong to numbers to compare."""
         return len(self.by) == 1 and is_ordered(runs.table, self.by[0])
 
-    def opened(self, runs: Runs) -> Iterator[tuple[Label, xr.Dataset, xr.Dataset]]:
+    def opened(self, runs: Runs) -> Iterator[tuple[Label, Dataset, Dataset]]:
         """Yield the name, the point of the table and the run of each, if there is its file."""
         for name, point in self.picked(runs):
             try:
@@ -160,7 +150,7 @@ class TableFigure(Output):
                 continue
             yield name, point, run
 
-    def steps(self, runs: Runs) -> Iterator[tuple[Label, xr.Dataset]]:
+    def steps(self, runs: Runs) -> Iterator[tuple[Label, Dataset]]:
         """Yield the name of each curve or panel and the last load step of its run, if finished."""
         for name, point, run in self.opened(runs):
             number = int(point["step"].item())
@@ -179,7 +169,7 @@ def require_axes(known: Iterable[object], chosen: Iterable[str], field: str) -> 
             raise ConfigError(f"{axis!r} is not an axis of the table; {suggestion}", field)
 
 
-def along(table: xr.Dataset, dims: Sequence[str]) -> list[dict[str, int]]:
+def along(table: Dataset, dims: Sequence[str]) -> list[dict[str, int]]:
     """Return the indices along dimensions, the last fastest; without any, that of the table."""
     ranges = [range(table.sizes[dim]) for dim in dims]
     return [dict(zip(dims, index, strict=True)) for index in product(*ranges)]
@@ -194,7 +184,7 @@ class Label(NamedTuple):
     """For the column ``curve`` of its numbers, such as "kernel.tension = 30 mN/m"."""
 
 
-def label(template: str | None, data: xr.Dataset, dims: Sequence[str], whole: xr.Dataset) -> Label:
+def label(template: str | None, data: Dataset, dims: Sequence[str], whole: Dataset) -> Label:
     """Return the name of a curve or a panel.
 
     ``{…}`` in the template is an expression, replaced by its mean over ``data``, the part of the
@@ -221,7 +211,7 @@ def label(template: str | None, data: xr.Dataset, dims: Sequence[str], whole: xr
     return Label(", ".join(words), ", ".join(keys))
 
 
-def axis_of(text: str, label: str | None, data: xr.Dataset) -> Axis:
+def axis_of(text: str, label: str | None, data: Dataset) -> Axis:
     """Return the axis that shows the expression ``text`` over ``data``.
 
     A bare variable has its unit, unless there is a ``label``; other expressions are in SI, since
@@ -233,7 +223,7 @@ def axis_of(text: str, label: str | None, data: xr.Dataset) -> Axis:
     return Axis(column_of(data[name]).words, str(data[name].attrs.get("units", "1")))
 
 
-def in_words(text: str, data: xr.Dataset) -> str:
+def in_words(text: str, data: Dataset) -> str:
     """Return an expression over a result or a table with words in place of its names."""
     configuration = configuration_of(data)
 

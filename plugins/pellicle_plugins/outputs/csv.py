@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
+from pellicle.arrays import Dataset
 from pellicle.components import Output, Runs
 from pellicle.show import tables
 from pellicle.show.numbers import write_csv
 from pellicle.variables import CAVEATS
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 class Csv(Output):
@@ -27,7 +25,7 @@ class Csv(Output):
         """Suffix of the table."""
         return (".csv",)
 
-    def step(self, record: xr.Dataset, stem: Path) -> None:
+    def step(self, record: Dataset, stem: Path) -> None:
         """Write the row of the step, the first with a header."""
         numbers = tables.numbers(record.drop_vars(CAVEATS))
         write_csv(numbers, Path(f"{stem}.csv"), append=record["step"].item() > 1)

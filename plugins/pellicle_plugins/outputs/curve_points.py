@@ -4,28 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from pellicle.analysis import Leg, extrapolate, legs
+from pellicle.arrays import DataArray, Dataset
 from pellicle.components import Look, Series
 from pellicle.errors import ConfigError
 from pellicle.results.path import has_interaction, has_path, has_times
 
 from .base import MOST_LEGS
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 _GRIDS = 3
 """Fewest grids from which a limit follows."""
 
 
 def points_of(
-    table: xr.Dataset,
-    x: xr.DataArray,
-    y: xr.DataArray,
+    table: Dataset,
+    x: DataArray,
+    y: DataArray,
     *,
     over: str | None,
     spread: str,
@@ -74,7 +72,7 @@ def points_of(
     return replace(series, low=low, high=high, columns=written | {"spread": spread})
 
 
-def limit_of(grids: xr.DataArray, points: Series, name: str, hue: int | None) -> Iterator[Series]:
+def limit_of(grids: DataArray, points: Series, name: str, hue: int | None) -> Iterator[Series]:
     """Yield a curve continued to x = 0, and its limit there with the error."""
     if (count := np.unique(grids).size) < _GRIDS:
         raise ConfigError(

@@ -7,11 +7,12 @@ from dataclasses import replace
 from functools import partial
 from itertools import product
 from math import prod
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
+from pellicle.arrays import DataArray, Dataset
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown
 from pellicle.errors import ConfigError
 from pellicle.results.path import has_path
@@ -38,9 +39,6 @@ from .base import (
 )
 from .curve_points import limit_of, points_of
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 _SPREADS = {"range": "range", "std": "± standard deviation", "sem": "± standard error"}
 MOST_PANELS = 12
 _NONE = np.empty(0)
@@ -49,10 +47,10 @@ _NONE = np.empty(0)
 class Published(Model):
     """Published points or a line, to compare with."""
 
-    label: Annotated[str, Field(description="name in the legend")]
-    x: Annotated[tuple[float, ...], Field(min_length=1, description="x in the unit of the axis")]
-    y: Annotated[tuple[float, ...], Field(min_length=1, description="y in the unit of the axis")]
-    style: Annotated[Literal["points", "line"], Field(description="how it is drawn")] = "points"
+    label: str = Field(description="name in the legend")
+    x: tuple[float, ...] = Field(min_length=1, description="x in the unit of the axis")
+    y: tuple[float, ...] = Field(min_length=1, description="y in the unit of the axis")
+    style: Literal["points", "line"] = Field("points", description="how it is drawn")
 
     @model_validator(mode="after")
     def _pairs(self) -> Self:
@@ -93,36 +91,31 @@ class Curves(TableFigure):
     )
     x_label: XLabel = None
     y_label: YLabel = None
-    x: Annotated[str, Field(description="expression for the horizontal axis")] = "depth"
+    x: str = Field("depth", description="expression for the horizontal axis")
     y: Annotated[
         Texts, Field(min_length=1, description="expression, or several, for the vertical axis")
     ] = ("force",)
-    series: Annotated[
-        tuple[str, ...], Field(description="name of each y in the legend; its expression if absent")
-    ] = ()
-    over: Annotated[
-        str | None,
-        Field(description="axis, such as indenter.seed, over which mean and spread are drawn"),
-    ] = None
-    spread: Annotated[
-        Literal["range", "std", "sem"],
-        Field(
-            description="of the runs on `over`: lowest to highest, or the mean ± the standard "
-            "deviation or the standard error of the mean"
-        ),
-    ] = "range"
+    series: tuple[str, ...] = Field(
+        (), description="name of each y in the legend; its expression if absent"
+    )
+    over: str | None = Field(
+        None, description="axis, such as indenter.seed, over which mean and spread are drawn"
+    )
+    spread: Literal["range", "std", "sem"] = Field(
+        "range",
+        description="of the runs on `over`: lowest to highest, or the mean ± the standard "
+        "deviation or the standard error of the mean",
+    )
     log: Log = ()
     reference: Reference = None
-    extrapolate: Annotated[
-        bool,
-        Field(
-            description="continue each curve to x = 0 by a power law of fitted exponent: x is the "
-            "cell size of nested grids, such as grid.size.0 / grid.points"
-        ),
-    ] = False
-    published: Annotated[
-        tuple[Published, ...], Field(description="published numbers: label, x, y, style")
-    ] = ()
+    extrapolate: bool = Field(
+        False,
+        description="continue each curve to x = 0 by a power law of fitted exponent: x is the "
+        "cell size of nested grids, such as grid.size.0 / grid.points",
+    )
+    published: tuple[Published, ...] = Field(
+        (), description="published numbers: label, x, y, style"
+    )
 
     @model_validator(mode="after")
     def _names_match(self) -> Self:
@@ -142,7 +135,7 @@ class Curves(TableFigure):
             )
         return self
 
-    def _axes_told(self, table: xr.Dataset) -> tuple[Sequence[str], Sequence[str]]:
+    def _axes_told(self, table: Dataset) -> tuple[Sequence[str], Sequence[str]]:
         """Return the axes of which each value has curves, and those of which each has a panel.
 
         Each curve goes along an axis that ``x`` names, else along the steps, else along the last.
@@ -165,7 +158,7 @@ class Curves(TableFigure):
         rest = [dim for dim in long if dim not in goes_along[:1]]
         return (self.by, rest) if self.by else (rest[:1], rest[1:])
 
-    def _over_steps(self, table: xr.Dataset) -> bool:
+    def _over_steps(self, table: Dataset) -> bool:
         """Return whether the expressions have a value for each step, not just one for each run."""
         if not has_path(table):
             return True
@@ -217,7 +210,7 @@ class Curves(TableFigure):
             titles=[title.words.replace(", ", "\n") for title in titles] if panels else (),
         )
 
-    def _y_axis(self, ys: Sequence[xr.DataArray], table: xr.Dataset) -> tuple[Axis, Sequence[str]]:
+    def _y_axis(self, ys: Sequence[DataArray], table: Dataset) -> tuple[Axis, Sequence[str]]:
         """Return the vertical axis, and the name of each y.
 
         Several y have but a common unit. Without one they are in SI, with their units in the names.
@@ -239,7 +232,7 @@ class Curves(TableFigure):
     def _series(
         self,
         runs: Runs,
-        columns: Sequence[xr.DataArray],
+        columns: Sequence[DataArray],
         names: Sequence[str],
         by: Sequence[str],
         panels: Sequence[str],
@@ -298,7 +291,7 @@ class Curves(TableFigure):
         return Look(hue, None if self.reference else number, marker)
 
     def _curve(
-        self, table: xr.Dataset, point: dict[str, int], by: Sequence[str], panels: Sequence[str]
+        self, table: Dataset, point: dict[str, int], by: Sequence[str], panels: Sequence[str]
     ) -> Label:
         """Return the words for the colour of a curve, and its key."""
         if not by:
@@ -309,9 +302,7 @@ class Curves(TableFigure):
             name = Label(name.words, f"{name.key}, {other.key}")
         return name
 
-    def _legend(
-        self, table: xr.Dataset, names: Sequence[str], by: Sequence[str]
-    ) -> Iterator[Series]:
+    def _legend(self, table: Dataset, names: Sequence[str], by: Sequence[str]) -> Iterator[Series]:
         """Yield entries that only the legend shows: several y, a second axis, the reference."""
         looks = {}
         if by and len(names) > 1:
@@ -342,5 +333,5 @@ class Curves(TableFigure):
             )
 
 
-def _at(column: xr.DataArray, point: dict[str, int]) -> xr.DataArray:
+def _at(column: DataArray, point: dict[str, int]) -> DataArray:
     return column.isel({dim: index for dim, index in point.items() if dim in column.dims})

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
 
 from pellicle import analysis
+from pellicle.arrays import Dataset
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
 from pellicle.results.path import has_interaction
 from pellicle.units import axis_unit
 
 from .base import Label, Log, TableFigure
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _HEADS = "curve", "series", "lower", "upper", "mean", "density"
 _FIELDS = {"pressure": "Pa", "gap": "m"}
@@ -35,7 +33,7 @@ class Distributions(TableFigure):
 
     type: Literal["distributions"] = "distributions"
     examples = ({"bins": 10, "log": ["y"]},)
-    bins: Annotated[int, Field(ge=1, description="number of bins, from 0 to the highest")] = 50
+    bins: int = Field(50, ge=1, description="number of bins, from 0 to the highest")
     log: Log = ()
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
@@ -69,7 +67,7 @@ class Distributions(TableFigure):
             ordered=self.is_ordered(runs),
         )
 
-    def _densities(self, step: xr.Dataset) -> dict[str, analysis.Distribution]:
+    def _densities(self, step: Dataset) -> dict[str, analysis.Distribution]:
         contact = step["contact"].values
         acts = contact | (step["pressure"].values != 0) if has_interaction(step) else contact
         cells = {"pressure": acts, "gap": ~contact}

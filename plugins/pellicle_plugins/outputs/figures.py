@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
-from functools import partial
 from math import prod
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from pellicle.analysis import legs
+from pellicle.arrays import DataArray, Dataset
 from pellicle.components import Axis, Chart, Fields, Look, Output, Runs, Series
 from pellicle.results.path import has_interaction, has_times
 from pellicle.results.result import Result
@@ -24,9 +24,6 @@ from pellicle.variables import CONTACT_AREA, CORRECTED_AREA
 from .base import MOST_LEGS, Formats, StyleField
 from .curves import MOST_PANELS, Curves
 from .step_figures import pressure_map, profile
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _MOST_NAMED = 10
 _ALIKE = 10.0
@@ -54,11 +51,10 @@ class Figures(Output):
         return tuple(f"-{name}.{format_}" for name in names for format_ in self.formats)
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Chart | Fields]]:
-        """Yield the figures of the result of a run, or of the table of a study."""
+        """Return the figures of the result of a run, or of the table of a study."""
         is_run = runs.axes is None
         shown = figures_of(Result(runs.open())) if is_run else figures_of_study(runs)
-        for name, make in shown.items():
-            yield f"-{name}", make()
+        return ((f"-{name}", figure) for name, figure in shown)
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figures in each format."""
@@ -67,27 +63,24 @@ class Figures(Output):
         return write_charts(alone, stem, self.formats, self.style)
 
 
-def figures_of(result: Result) -> dict[str, Callable[[], Chart | Fields]]:
-    """Return what makes each figure of a run, by suffix; with times there is one over them."""
-    figures: dict[str, Callable[[Result], Chart | Fields]] = {
-        "pressure": pressure_map,
-        "profile": profile,
-        "force_depth": force_depth,
-        "area_force": area_force,
-    }
+def figures_of(result: Result) -> Iterator[tuple[str, Chart | Fields]]:
+    """Yield each figure of a run with its suffix; with times there is one over them."""
+    yield "pressure", pressure_map(result)
+    yield "profile", profile(result)
+    yield "force_depth", force_depth(result)
+    yield "area_force", area_force(result)
     if has_times(result.dataset) and result.dataset.sizes["step"] > 1:
-        figures["time"] = over_time
-    return {name: partial(figure, result) for name, figure in figures.items()}
+        yield "time", over_time(result)
 
 
-def figures_of_study(runs: Runs) -> dict[str, Callable[[], Chart]]:
-    """Return what makes each figure of a study: force, and contact fraction or area, by variable.
+def figures_of_study(runs: Runs) -> Iterator[tuple[str, Chart]]:
+    """Yield each figure of a study with its variable: force, and contact fraction or area.
 
     A free domain has no nominal area of which the contact is a fraction.
     """
     area = "contact_fraction" if is_periodic(runs.table) else "contact_area"
-    names = ("force", area) if "force" in runs.table else ()
-    return {name: partial(study_curves, runs, name) for name in names}
+    for name in ("force", area) if "force" in runs.table else ():
+        yield name, study_curves(runs, name)
 
 
 def force_depth(result: Result) -> Chart:
@@ -169,7 +162,7 @@ def _curves(result: Result, labels: dict[str, str], against: str) -> Chart:
     return Chart(x, [y], series, _title(data), hues=len(labels))
 
 
-def _series(data: xr.Dataset, x: str, y: str, look: Look) -> Series:
+def _series(data: Dataset, x: str, y: str, look: Look) -> Series:
     """Return one variable of the steps of a run against another."""
     good = data["converged"].values.astype(bool)
     points = data[x].values.astype(float), data[y].values.astype(float)
@@ -177,12 +170,12 @@ def _series(data: xr.Dataset, x: str, y: str, look: Look) -> Series:
     return Series(*points, name=y, look=look, converged=good, steps=steps)
 
 
-def _axis(variable: xr.DataArray, *, signed: bool = False) -> Axis:
+def _axis(variable: DataArray, *, signed: bool = False) -> Axis:
     unit = str(variable.attrs.get("units", "1"))
     start = None if signed else 0.0
     return Axis(column_of(variable).words, unit, limits=(start, None), signed=signed)
 
 
-def _title(data: xr.Dataset) -> str:
+def _title(data: Dataset) -> str:
     title: str = data.attrs.get("title", "")
     return title

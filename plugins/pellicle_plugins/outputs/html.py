@@ -7,13 +7,14 @@ import shlex
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 import tomli_w
 from pydantic import Field
 
-from pellicle import Grid, Run, registry
+from pellicle import Grid, Run
+from pellicle.arrays import Dataset
 from pellicle.components import Output, Runs, Table
 from pellicle.config.describe import FieldRow, inputs
 from pellicle.errors import StorageError
@@ -46,9 +47,6 @@ from pellicle.variables import WALL_PRESSURE
 from .html_curves import curves_of_outputs, curves_of_run, curves_of_study, picture
 from .step_figures import cross_section
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 FIELDS = {
     "pressure": MapField("contact pressure", "Pa", blank=True),
     "gap": MapField("gap", "m", "Blues", power=0.5),
@@ -72,23 +70,19 @@ class Html(Output):
     type: Literal["html"] = "html"
     examples = ({}, {"points": 8, "frames": 1})
     shares_stem: ClassVar[bool] = True
-    points: Annotated[
-        int,
-        Field(
-            ge=8,
-            le=4096,
-            description="largest number of pixels along each side of a map; with more cells or "
-            "many maps, a pixel is the mean over a block, as the page states",
-        ),
-    ] = 512
-    frames: Annotated[
-        int,
-        Field(
-            ge=1,
-            description="largest number of load steps of a run, or runs of a study, that are "
-            "mapped; of more, evenly spaced ones up to the last",
-        ),
-    ] = 64
+    points: int = Field(
+        512,
+        ge=8,
+        le=4096,
+        description="largest number of pixels along each side of a map; with more cells or "
+        "many maps, a pixel is the mean over a block, as the page states",
+    )
+    frames: int = Field(
+        64,
+        ge=1,
+        description="largest number of load steps of a run, or runs of a study, that are "
+        "mapped; of more, evenly spaced ones up to the last",
+    )
 
     @property
     def suffixes(self) -> tuple[str, ...]:
@@ -126,7 +120,8 @@ class Html(Output):
         maps, chosen = self._maps_of_steps(result)
         step_shown = default_step(data) % data.sizes["step"]
         first, label = sentence_of_step(data, step_shown), label_of_step(data, step_shown)
-        setup = _setup(data.isel(step=step_shown), configuration, label)
+        section = cross_section(data.isel(step=step_shown))
+        setup = picture(section, caption_of_setup(configuration, label))
         aim = aim_of_path(data, result.path_summary)
         lead, rest = (aim, first) if aim else (first, range_of_path(data))
         sentences = [Text(lead, lead=True), *([Text(rest)] if rest else [])]
@@ -140,38 +135,46 @@ class Html(Output):
             Section("In short", [*sentences, Notice(*status_of_run(result))]),
             Section("Maps", [maps]),
             Section("Curves", curves_of_run(result, chosen, maps.begin)),
-            Section("Outputs", [*curves_of_outputs(runs, _outputs(configuration), chosen)]),
+            Section("Outputs", [*curves_of_outputs(runs, configuration, chosen)]),
             Section("Numbers", numbers),
             Section("Set-up", [setup, _inputs(inputs(configuration, Run))]),
         ]
 
     def _sections_of_study(self, runs: Runs, first_run: dict[str, Any]) -> list[Section]:
         table = runs.table
-        rows = list(runs_of(table))
+        rows, names_of_runs = list(runs_of(table)), run_names(table)
         frames, setups = dict[int, Frame](), list[Picture]()
-        mapped = _mapped(table)
-        for index, step, label, points in self._steps_of_runs(runs, rows):
-            frames[index] = _frame(
-                label, Result(step).grid, without_round_off(step), mapped, points
-            )
+        mapped = _STICKING if has_interaction(table) else FIELDS
+        solved = [index for index, row in enumerate(rows) if progress_of(row)[0]]
+        chosen = self._chosen(len(solved))
+        points = side(self.points, len(chosen) * len(mapped))
+        for index in (solved[number] for number in chosen):
+            try:
+                run = runs.open(rows[index]["run"].item())
+            except StorageError:
+                continue
+            step, label = run.isel(step=default_step(run)), names_of_runs[index]
+            if WALL_PRESSURE not in step:
+                step = step.assign({WALL_PRESSURE: step["pressure"]})
+            shown = without_round_off(step)
+            frames[index] = _frame(label, Result(step).grid, shown, mapped, points)
             if not setups:
-                setups.append(_setup(step, first_run, label))
+                caption = caption_of_setup(first_run, label)
+                setups.append(picture(cross_section(step), caption))
         sentence = sentence_of_study(table, len(rows))
         lead = [Text(sentence, lead=True)] if sentence else []
         caption = caption_of_runs(table, len(frames))
         maps = Maps(caption, "run", tuple(mapped.values()), list(frames.values()))
         of_runs = tables.runs(table, mapped=list(frames))
         numbers = [of_runs, *tables.paths_of_runs(table)]
+        given = tables.inputs_of_study(table, inputs(first_run, Run))
         return [
             Section("In short", [*lead, Notice(*status_of_study(table))]),
             Section("Maps", [maps] if frames else []),
             Section("Curves", [*curves_of_study(runs)]),
-            Section("Outputs", [*curves_of_outputs(runs, _outputs(first_run))]),
+            Section("Outputs", [*curves_of_outputs(runs, first_run)]),
             Section("Numbers", numbers),
-            Section(
-                "Set-up",
-                [*setups[:1], _inputs(tables.inputs_of_study(table, inputs(first_run, Run)))],
-            ),
+            Section("Set-up", [*setups, _inputs(given)]),
         ]
 
     def _maps_of_steps(self, result: Result) -> tuple[Maps, list[int]]:
@@ -179,7 +182,7 @@ class Html(Output):
         data, grid = result.dataset, result.grid
         steps = data.sizes["step"]
         chosen = self._chosen(steps)
-        mapped = _mapped(data)
+        mapped = _STICKING if has_interaction(data) else FIELDS
         points = side(self.points, len(chosen) * len(mapped))
         frames = []
         for index in chosen:
@@ -194,54 +197,23 @@ class Html(Output):
         caption = caption_of_steps(data, names, len(chosen))
         return Maps(caption, "load step", tuple(mapped.values()), frames, max(begin, 0)), chosen
 
-    def _steps_of_runs(
-        self, runs: Runs, rows: list[xr.Dataset]
-    ) -> Iterator[tuple[int, xr.Dataset, str, int]]:
-        """Yield the mapped step of each run: index among all, step, name, and pixels a side."""
-        mapped, names_of_runs = _mapped(runs.table), run_names(runs.table)
-        solved = [index for index, row in enumerate(rows) if progress_of(row)[0]]
-        chosen = self._chosen(len(solved))
-        points = side(self.points, len(chosen) * len(mapped))
-        for index in (solved[number] for number in chosen):
-            try:
-                run = runs.open(rows[index]["run"].item())
-            except StorageError:
-                continue
-            step = run.isel(step=default_step(run))
-            if WALL_PRESSURE not in step:
-                step = step.assign({WALL_PRESSURE: step["pressure"]})
-            yield index, step, names_of_runs[index], points
-
     def _chosen(self, count: int) -> list[int]:
         """Return the indices that are mapped: all, or evenly spaced ones up to the last."""
         number = min(count, self.frames)
         return [(count * (index + 1) + number - 1) // number - 1 for index in range(number)]
 
 
-def _mapped(data: xr.Dataset) -> dict[str, MapField]:
-    return _STICKING if has_interaction(data) else FIELDS
-
-
 def _frame(
-    label: str, grid: Grid, step: xr.Dataset, mapped: dict[str, MapField], points: int
+    label: str, grid: Grid, step: Dataset, mapped: dict[str, MapField], points: int
 ) -> Frame:
     signed = any(field.centred for field in mapped.values())
     empty = [index for index, field in enumerate(mapped.values()) if signed and field.blank]
     return frame(label, grid, [step[name].values for name in mapped], points, empty)
 
 
-def _setup(step: xr.Dataset, configuration: dict[str, Any], label: str) -> Picture:
-    """Return the indenter over the surface in a load step."""
-    return picture(cross_section(step), caption_of_setup(configuration, label))
-
-
 def _inputs(fields: Iterable[FieldRow]) -> Table:
     caption = "All inputs that determine the result, defaults included."
     return tables.inputs((i for i in fields if not i.name.startswith("outputs.")), caption)
-
-
-def _outputs(configuration: dict[str, Any]) -> list[Output]:
-    return [registry().make(Output, output) for output in configuration.get("outputs") or ()]
 
 
 def _reproduce(configuration: dict[str, Any], stem: Path) -> Iterator[Code]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from pellicle import registry
 from pellicle.components import Chart, Fields, Output, Runs, Table
 from pellicle.results.path import label_of_step
 from pellicle.results.result import Result
@@ -33,11 +34,10 @@ def curves_of_run(result: Result, chosen: list[int], begin: int) -> list[Picture
     """Return the curves of a run, marked at ``chosen`` steps; the ``begin``-th is shown first."""
     pictures = [_profiles(result, chosen, begin)]
     if result.dataset.sizes["step"] > 1:
-        drawn = figures_of(result)
         pictures += [
-            picture(drawn[name](), caption, chosen)
-            for name, caption in _CURVES.items()
-            if name in drawn
+            picture(figure, _CURVES[name], chosen)
+            for name, figure in figures_of(result)
+            if name in _CURVES
         ]
     return pictures
 
@@ -61,18 +61,19 @@ def _profiles(result: Result, chosen: list[int], begin: int) -> Picture:
 
 def curves_of_study(runs: Runs) -> Iterator[Picture]:
     """Yield a figure for each variable that is drawn over a study."""
-    for name, make in figures_of_study(runs).items():
-        chart, words = make(), column_of(runs.table[name]).words.capitalize()
+    for name, chart in figures_of_study(runs):
+        words = column_of(runs.table[name]).words.capitalize()
         title = runs.table.attrs.get("title", "")
         remarks = [line for line in chart.title.splitlines() if line != title]
         yield picture(chart, f"{', '.join([f'{words} over the study', *remarks])}.")
 
 
 def curves_of_outputs(
-    runs: Runs, outputs: Sequence[Output], chosen: Sequence[int] = ()
+    runs: Runs, configuration: Mapping[str, Any], chosen: Sequence[int] = ()
 ) -> Iterator[Picture]:
     """Yield what the other outputs of a run or study show, marked at ``chosen`` steps."""
-    for output in outputs:
+    for table in configuration.get("outputs") or ():
+        output = registry().make(Output, table)
         beside = output.type_name in ("figures", "html") or type(output).charts is Output.charts
         if beside or output.scope == ("study" if runs.axes is None else "run"):
             continue

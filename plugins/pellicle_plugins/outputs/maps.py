@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
@@ -35,8 +35,8 @@ class Maps(TableFigure):
 
     type: Literal["maps"] = "maps"
     examples = ({"field": "displacement - depth - gap", "name": "indenter"},)
-    field: Annotated[str, Field(description="expression for what is drawn")] = "pressure"
-    field_label: Annotated[str | None, Field(description="label of the colours")] = None
+    field: str = Field("pressure", description="expression for what is drawn")
+    field_label: str | None = Field(None, description="label of the colours")
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
         """Yield the maps."""

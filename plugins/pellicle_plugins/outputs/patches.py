@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
 from pellicle import analysis
+from pellicle.arrays import Dataset
 from pellicle.components import Axis, Chart, Fields, Look, Panel, Runs, Series, Shown, Table
 from pellicle.results.result import Result
 
 from .base import Label, TableFigure
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _HEADS = "curve", "step", "patch", "area [m2]", "force [N]", "neighbours"
 
@@ -52,22 +50,17 @@ class Patches(TableFigure):
         """
         rows, series, panels = list[tuple[object, ...]](), list[Series](), list[Panel]()
         for number, (name, step) in enumerate(self.steps(runs)):
-            patches = analysis.patches(step["contact"], Result(step).grid)
+            grid = Result(step).grid
+            patches = analysis.patches(step["contact"], grid)
             rows += _rows(name, step, patches)
             rank, look = np.arange(1.0, patches.count + 1), Look(number, marker=number)
             series.append(Series(patches.area, rank, legend=name.words, look=look, stepped="post"))
-            panels = [_map(name, step, patches)]
+            title, labels = f"{name.words}\n{patches.count} patches".lstrip(), patches.labels
+            panels = [Panel(grid.size, labels.astype(np.int32), title, blank=labels == 0)]
         return rows, series, panels
 
 
-def _map(name: Label, step: xr.Dataset, patches: analysis.Patches) -> Panel:
-    """Return the patches, numbered in turn."""
-    size, labels = Result(step).grid.size, patches.labels
-    title = f"{name.words}\n{patches.count} patches".lstrip()
-    return Panel(size, labels.astype(np.int32), title, blank=labels == 0)
-
-
-def _rows(name: Label, step: xr.Dataset, patches: analysis.Patches) -> Iterator[tuple[object, ...]]:
+def _rows(name: Label, step: Dataset, patches: analysis.Patches) -> Iterator[tuple[object, ...]]:
     grid = Result(step).grid
     pressure = step["pressure"].values.ravel()
     force = np.bincount(patches.labels.ravel(), pressure)[1:] * grid.cell_area

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
 
+from pellicle.arrays import DataArray, Dataset
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
 from pellicle.results.derived import as_array
 from pellicle.results.path import has_interaction
@@ -18,9 +19,6 @@ from pellicle.variables import FIELDS, WALL_PRESSURE
 from pellicle_plugins.validation.reference import exact_line
 
 from .base import Reference, TableFigure, XLabel, YLabel, axis_of
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _ACROSS = {"x": "y", "y": "x"}
 _MARKERS = 90
@@ -36,13 +34,13 @@ class Profiles(TableFigure):
 
     type: Literal["profiles"] = "profiles"
     examples = ({"by": "step", "label": "{depth * 1e6} µm", "reference": "axisymmetric"},)
-    along: Annotated[Literal["x", "y"], Field(description="direction of the line")] = "x"
+    along: Literal["x", "y"] = Field("x", description="direction of the line")
     x_label: XLabel = None
     y_label: YLabel = None
-    x: Annotated[
-        str | None, Field(description="expression for the horizontal axis; the position if absent")
-    ] = None
-    y: Annotated[str, Field(description="expression for the vertical axis")] = "pressure"
+    x: str | None = Field(
+        None, description="expression for the horizontal axis; the position if absent"
+    )
+    y: str = Field("pressure", description="expression for the vertical axis")
     reference: Reference = None
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
@@ -88,7 +86,7 @@ class Profiles(TableFigure):
     def _fields(self) -> set[str]:
         return (names_in(self.x or self.along) | names_in(self.y)) & {*FIELDS, WALL_PRESSURE}
 
-    def _columns(self, line: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
+    def _columns(self, line: Dataset) -> tuple[DataArray, DataArray]:
         """Return x and y along a line, each with a value for every point."""
         import xarray as xr
 

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
 from pellicle import analysis
+from pellicle.arrays import Dataset
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
 from pellicle.results.result import Result
 
 from .base import TableFigure
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _LINES = {"indenter": 1, "displacement": 0}
 _HEADS = "curve", "series", "wavenumber [rad/m]", "density [m4]", "wave_vectors"
@@ -66,7 +64,7 @@ class Spectrum(TableFigure):
         yield "", Chart(x, [y], series, self.title, hues=hues, ordered=ordered)
 
 
-def _spectra(step: xr.Dataset) -> dict[str, analysis.Spectrum]:
+def _spectra(step: Dataset) -> dict[str, analysis.Spectrum]:
     displacement = step["displacement"].values
     surfaces = {
         "indenter": displacement - step["depth"].item() - step["gap"].values,

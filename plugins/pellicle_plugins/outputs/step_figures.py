@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from pellicle.arrays import Dataset
 from pellicle.components import Axis, Chart, Fields, Look, Panel, Series
 from pellicle.results.path import has_interaction, label_of_step
 from pellicle.results.result import Result
 from pellicle.show.fields import contact_and_zone, default_step, with_rim, without_round_off
 from pellicle.units import readable
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _OPEN = 4.0
 """Largest gap along a line, over the depth, up to which the whole line is drawn."""
@@ -80,7 +76,7 @@ def profile(result: Result, step: int | None = None) -> Chart:
     return Chart(across, axes, series, title, shaded=shaded, heights=heights)
 
 
-def cross_section(step: xr.Dataset) -> Chart:
+def cross_section(step: Dataset) -> Chart:
     """Return the indenter over the deformed surface along x, through its deepest point.
 
     ``step`` is one load step. Heights are above the undeformed surface.

@@ -11,20 +11,18 @@ import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 from xml.sax.saxutils import XMLGenerator
 from xml.sax.xmlreader import AttributesImpl
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pellicle.arrays import Dataset
 from pellicle.components import Output, Runs
 from pellicle.files import atomic_write, storage_errors
 from pellicle.results.path import has_times
 from pellicle.variables import FIELDS, WALL_PRESSURE
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _TYPES = {"f8": "Float64", "i8": "Int64", "b1": "UInt8"}
 _LETTERS = 3 << 20
@@ -52,7 +50,7 @@ class Vtk(Output):
         """Suffixes of the list and of the steps."""
         return ".pvd", "-*.vts"
 
-    def step(self, record: xr.Dataset, stem: Path) -> None:
+    def step(self, record: Dataset, stem: Path) -> None:
         """Write the file of the step; the first one removes those of an earlier run."""
         number = record["step"].item()
         if number == 1:
@@ -81,7 +79,7 @@ def _file(stem: Path, number: int) -> Path:
     return Path(f"{stem}-{number:04d}.vts")
 
 
-def _write_step(step: xr.Dataset, path: Path) -> None:
+def _write_step(step: Dataset, path: Path) -> None:
     data = step.isel(step=0)
     x, y = data["x"].values, data["y"].values
     extent = f"0 {x.size - 1} 0 {y.size - 1} 0 0"

@@ -94,11 +94,9 @@ class BaseDisplacement(Prescription):
         Variable("base_displacement", "m", "displacement of the base, 0 at first touch"),
     )
 
-    spring_constant: Annotated[
-        float,
-        Quantity("N/m", above=0),
-        Field(description="spring constant k of the spring that holds the indenter [N/m]"),
-    ]
+    spring_constant: Annotated[float, Quantity("N/m", above=0)] = Field(
+        description="spring constant k of the spring that holds the indenter [N/m]"
+    )
 
     def target(self, setting: Setting, value: float) -> Depth:
         """Return depth control with a spring between base and indenter."""

@@ -154,7 +154,8 @@ class _Iterate:
     @property
     def error(self) -> float:
         """The largest gap on the contact by magnitude [m]."""
-        return self.directions.error(self.residual)
+        mean = self.directions.mean(self.residual)
+        return max(float(self.residual.max()) - mean, mean - float(self.residual.min()))
 
     def advance(self, direction: Array, descent: float) -> float:
         """Go along a direction to the least energy, and return ⟨direction, A direction⟩.
@@ -331,8 +332,3 @@ class _Directions:
     def mean(self, gap: Array) -> float:
         """Return the mean gap on the contact, which a free depth closes; 0 at a given depth."""
         return float(gap.mean()) if self._keeps_force else 0.0
-
-    def error(self, residual: Array) -> float:
-        """Return max |gap| on the contact."""
-        mean = self.mean(residual)
-        return max(float(residual.max()) - mean, mean - float(residual.min()))

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from math import pi, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pellicle import Run, analysis
+from pellicle.arrays import Dataset
 from pellicle.components import Kernel
 from pellicle.errors import ConfigError
 from pellicle.results.result import Result
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _ROUND = 0.02
 """Relative difference of a circle's semi-axes, or of its area from the ellipse's, beyond a cell."""
@@ -22,7 +19,7 @@ _EXCESS_CELLS = 0.115
 """Excess of the radius counted in cells, per power of q in the stiffness of a wave, 1/G."""
 
 
-def curve_of(path: xr.Dataset, work_of_adhesion: float) -> analysis.AdhesiveCurve:
+def curve_of(path: Dataset, work_of_adhesion: float) -> analysis.AdhesiveCurve:
     """Return the adhesive curve of the load steps of a run, for a work of adhesion [J/m²]."""
     grid = Result(path).grid
     area = path["contact_area"].values

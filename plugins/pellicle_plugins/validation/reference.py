@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 from contextlib import suppress
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pellicle import Run
+from pellicle.arrays import Dataset
 from pellicle.axisymmetric import AxisymmetricContact, indent, kinks_of
 from pellicle.components import HasAbelSlope, Runs
 from pellicle.errors import ConfigError
@@ -19,15 +19,12 @@ from pellicle.results.runs import StoredRuns
 from pellicle.variables import CORRECTED_AREA, CORRECTED_FRACTION, names_of
 from pellicle_plugins.kernels.half_spaces import HalfSpace, TensedMembrane
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 _PRESCRIBED = "depth", "force", "contact_radius", "contact_area"
 _LINE = 401
 """Points of a line from the centre to the edge of the contact."""
 
 
-def contact(run: xr.Dataset, step: int) -> AxisymmetricContact | None:
+def contact(run: Dataset, step: int) -> AxisymmetricContact | None:
     """Return the reference contact of a load step, counted from 1; None if 0 is prescribed."""
     return _contact(run.attrs["configuration"], step)
 
@@ -72,7 +69,7 @@ def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
 def exact(runs: Runs) -> Runs:
     """Return the table of ``runs`` with the numbers of the semi-analytic solution alone."""
 
-    def no_fields(_name: str) -> xr.Dataset:
+    def no_fields(_name: str) -> Dataset:
         raise ConfigError(
             "the semi-analytic solution has no fields on a grid; compare fields by the output "
             "profiles",
@@ -101,7 +98,7 @@ def exact(runs: Runs) -> Runs:
 
 
 def _numbers(
-    solution: AxisymmetricContact | None, domain: float, simulated: xr.Dataset
+    solution: AxisymmetricContact | None, domain: float, simulated: Dataset
 ) -> dict[str, float]:
     """Return the variables of a result that the equation gives; ``domain`` is in m².
 
@@ -129,7 +126,7 @@ def _numbers(
     }
 
 
-def exact_line(run: xr.Dataset) -> xr.Dataset:
+def exact_line(run: Dataset) -> Dataset:
     """Return pressure, contact and numbers of the semi-analytic solution along a line.
 
     ``run`` is one step with either ``x`` or ``y`` as its only spatial dimension, along which the
