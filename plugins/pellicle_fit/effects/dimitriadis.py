@@ -19,6 +19,7 @@ class Dimitriadis(Layer, title="a thin layer by the polynomial of Dimitriadis"):
     """
 
     type: Literal["dimitriadis"] = "dimitriadis"  # type: ignore[assignment]
+    examples = ({}, {"thickness": "10 um", "poissons_ratio": 0.4})
 
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Refuse tips that are not round, and sets with a tension."""
