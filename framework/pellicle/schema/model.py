@@ -59,16 +59,16 @@ def get(at: Any, path: str) -> Any:
     return at
 
 
-def walk(at: Any) -> list[tuple[str, Any, FieldInfo | None]]:
+def walk(at: Any, path: str = "") -> list[tuple[str, Any, FieldInfo | None]]:
     """Return path, value and field of each value below ``at``, outer ones before inner ones.
 
     Entries of a list have the field of the list; those of a table have none.
     """
     values: list[tuple[str, Any, FieldInfo | None]] = []
-    waiting: list[tuple[str, Any, FieldInfo | None]] = [("", at, None)]
+    waiting: list[tuple[str, Any, FieldInfo | None]] = [(path, at, None)]
     while waiting:
         place, value, field = waiting.pop()
-        prefix = f"{place}." if values else ""
+        prefix = f"{place}." if values else path
         values.append((place, value, field))
         if isinstance(value, Model):
             for name, (entry, info) in reversed([*value.entries.items()]):
