@@ -13,12 +13,9 @@ import io
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import BinaryIO
 
 from pellicle.errors import StorageError
-
-if TYPE_CHECKING:
-    import h5py
 
 _MARK = b"pellicle"
 _LENGTH = 16

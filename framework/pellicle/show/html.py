@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from itertools import zip_longest
-from typing import Any, ClassVar
+from typing import Any
 
 from pellicle.components.charts import Column, Table
 from pellicle.files import for_document
@@ -30,7 +30,6 @@ _HASH = re.compile(r"\b([0-9a-f]{8})[0-9a-f]{24,}\b")
 class Text:
     """A paragraph."""
 
-    kind: ClassVar[str] = "text"
     text: str
     lead: bool = False
     """Whether it stands out as the result."""
@@ -40,7 +39,6 @@ class Text:
 class Notice:
     """A sentence that stands out."""
 
-    kind: ClassVar[str] = "notice"
     text: str
     good: bool | None
     """Whether all is well; None if it is, with reservations."""
@@ -52,7 +50,6 @@ class Notice:
 class Picture:
     """A static drawing."""
 
-    kind: ClassVar[str] = "picture"
     svg: bytes
     caption: str
     description: str
@@ -89,7 +86,6 @@ class Picture:
 class Code:
     """Text to be typed or saved literally."""
 
-    kind: ClassVar[str] = "code"
     text: str
     caption: str = ""
     file: str = ""
@@ -163,5 +159,6 @@ def _template() -> Any:
         lstrip_blocks=True,
         finalize=lambda value: for_document(value) if type(value) is str else value,
     )
+    environment.filters["kind"] = lambda block: type(block).__name__
     environment.filters["shown"] = lambda table: list(map(_column, table.columns))
     return environment.from_string(_part("page.html"))

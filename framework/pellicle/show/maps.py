@@ -7,7 +7,7 @@ import zlib
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from math import sqrt
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -85,7 +85,6 @@ def frame(
 class Maps:
     """Maps of the same fields in several frames, zoomed together, each in colours of its range."""
 
-    kind: ClassVar[str] = "maps"
     caption: str
     what: str
     """What a frame shows, such as ``"load step"``."""

@@ -6,18 +6,15 @@ import json
 from base64 import b64encode
 from collections.abc import Sequence
 from html import escape
-from typing import TYPE_CHECKING
 
 from pellicle.components.charts import Table
 from pellicle.config.describe import inputs, words_at
 from pellicle.config.run import Run
+from pellicle.config.study import Study
+from pellicle.results.result import Result
 
 from . import tables
 from .sentences import status_of_run
-
-if TYPE_CHECKING:
-    from pellicle.config.study import Study
-    from pellicle.results.result import Result
 
 _MOST = 12
 """Rows of the steps of a result."""

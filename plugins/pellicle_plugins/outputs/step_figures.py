@@ -15,13 +15,13 @@ _OPEN = 4.0
 """Largest gap along a line, over the depth, up to which the whole line is drawn."""
 
 
-def pressure_map(result: Result, step: int | None = None) -> Fields:
-    """Return the pressure of a load step over the domain, by default of `default_step`.
+def pressure_map(result: Result) -> Fields:
+    """Return the pressure over the domain, in the load step `default_step`.
 
     Where there is tension, colours are centred at 0, a line encloses the contact and a dotted line
     the zone in which an interaction pulls.
     """
-    step = default_step(result.dataset) if step is None else step
+    step = default_step(result.dataset)
     data = result.dataset.isel(step=step)
     pressure, pulls = data["pressure"].transpose("x", "y").values, has_interaction(data)
     outlines = contact_and_zone(data) if pulls else []
