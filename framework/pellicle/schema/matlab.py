@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+import math
+import struct
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from pellicle import memory
+
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _USER_BLOCK = 512
 """Size of the text that precedes the HDF5 content of version 7.3 [bytes]."""
+
+
+_COMPRESSED = 15
+"""Type of a compressed variable of version 5."""
 
 
 def read_mat(path: Path) -> dict[str, Any]:
@@ -24,7 +33,8 @@ def read_mat(path: Path) -> dict[str, Any]:
     OSError
         The file cannot be read.
     ValueError
-        The file is not a MATLAB file.
+        The file is not a MATLAB file, takes values from other files or unpacks to more than half
+        of the available memory.
     """
     with path.open("rb") as file:
         head = file.read(_USER_BLOCK + len(_HDF5))
@@ -33,6 +43,7 @@ def read_mat(path: Path) -> dict[str, Any]:
     from scipy.io import loadmat
 
     try:
+        _require_memory(_unpacked_size(path))
         content = loadmat(path, simplify_cells=True)
     except OSError:
         raise
@@ -53,17 +64,51 @@ def _plain(value: Any) -> Any:
     return value
 
 
+def _unpacked_size(path: Path) -> int:
+    """Return the size [bytes] that the compressed variables of a file of version 5 state."""
+    total = 0
+    with path.open("rb") as file:
+        end = file.read(128)[126:]
+        order = "<II" if end == b"IM" else ">II"
+        while end in (b"IM", b"MI") and len(tag := file.read(8)) == 8:
+            kind, size = struct.unpack(order, tag)
+            head = b""
+            if kind == _COMPRESSED:
+                head = zlib.decompressobj().decompress(file.peek(64)[:size], 8)
+            total += struct.unpack(order, head)[1] if len(head) == 8 else 0
+            file.seek(size, 1)
+    return total
+
+
+def _require_memory(size: float) -> None:
+    if 2 * size > (available := memory.available() or math.inf):
+        raise ValueError(f"it unpacks to {memory.shortage(2 * size, available)}")
+
+
 def _read_hdf5(path: Path) -> dict[str, Any]:
     import h5py
 
+    seen: set[Any] = set()
+    total = 0
+
     def content(item: Any) -> Any:
+        nonlocal total
+        # Links and references may lead in circles: each group and each cell is entered once.
+        if isinstance(item, h5py.Group) or item.dtype == h5py.ref_dtype:
+            if item in seen:
+                return {}
+            seen.add(item)
         if isinstance(item, h5py.Group):
             return {str(name): content(entry) for name, entry in item.items()}
         if item.dtype == h5py.ref_dtype:
             references = np.atleast_1d(item[()]).ravel()
             return {str(n): content(file[ref]) for n, ref in enumerate(references, 1) if ref}
+        if item.is_virtual or item.external:
+            raise ValueError(f"it takes {item.name} from other files")
+        _require_memory(total := total + item.nbytes)
         return np.asarray(item).T
 
     with h5py.File(path) as file:
+        seen.add(file["/"])
         # "#refs#" and "#subsystem#" hold what variables refer to.
         return {name: content(item) for name, item in file.items() if not name.startswith("#")}

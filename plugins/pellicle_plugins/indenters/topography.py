@@ -17,7 +17,7 @@ from pellicle.errors import ConfigError
 from pellicle.schema import InputPath
 from pellicle.units import Length, Quantity, readable
 
-from .from_heights import FromHeights, HeightUnit
+from .from_heights import FromHeights, HeightUnit, marks_in
 from .sampling import UniformAxis
 from .scan import Scan
 from .topography_reader import library, read_scan
@@ -91,6 +91,7 @@ class Topography(FromHeights):
         bool, Field(description="true if the valleys of the scan are what touches, not its peaks")
     ] = False
     _size: tuple[float, float] = PrivateAttr()
+    _missing: str = PrivateAttr()
 
     @model_validator(mode="after")
     def _read(self) -> Self:
@@ -102,8 +103,8 @@ class Topography(FromHeights):
                 "path",
             )
         self._warn_of_unit(scan)
-        self._keep(scan.heights, scan.digest)
-        self._size = scan.size
+        self._keep(scan.heights, scan.digest, str(self.path))
+        self._size, self._missing = scan.size, scan.missing
         return self
 
     def _warn_of_unit(self, scan: Scan) -> None:
@@ -120,11 +121,15 @@ class Topography(FromHeights):
         remedy = "export it again with the units of its sides and of its heights"
         if self.unit is not None or self.size is not None:
             remedy = "correct unit or size"
+        marks = marks_in(scan.heights, scan.unit, apart=max(slopes) <= _STEEP)
         if reasons:
+            also = "".join(f"; it has {words}" for words in marks)
             warnings.warn(
-                f"{self.path} {' and '.join(reasons)}: a unit may be wrong; if so, {remedy}",
+                f"{self.path} {' and '.join(reasons)}: a unit may be wrong; if so, {remedy}{also}",
                 stacklevel=2,
             )
+        elif marks:
+            warnings.warn(f"{self.path} has {' and '.join(marks)}", stacklevel=2)
 
     def profile(self, x: Array, y: Array) -> Array:
         """Return the heights at the cells minus the highest one within the domain [m].
@@ -157,17 +162,11 @@ class Topography(FromHeights):
             (c[0] - a.spacing / 2, c[-1] + a.spacing / 2) for c, a in zip(cells, axes, strict=True)
         ]
         within = [(p >= low) & (p <= high) for p, (low, high) in zip(points, ends, strict=True)]
+        # A peak between cells is no farther above the highest than neighbouring cells differ.
         highest = float(sampled.max())
-        top = float(heights[np.ix_(*within)].max(initial=highest))
-        if top - highest > max(np.abs(np.diff(sampled, axis=axis)).max() for axis in (0, 1)):
-            warnings.warn(
-                f"the cells miss the highest point of {self.path} under the domain by "
-                f"{readable(top - highest, 'm', 2)}: depth counts from the highest cell; use cells "
-                f"as fine as its points, {_lengths(pitch)}",
-                stacklevel=2,
-            )
-            top = highest
-        return sampled - top
+        hidden = max(float(np.abs(np.diff(sampled, axis=axis)).max()) for axis in (0, 1))
+        between = float(heights[np.ix_(*within)].max(initial=highest))
+        return sampled - min(between, highest + hidden)
 
     @property
     def _middle(self) -> tuple[float, float]:
@@ -183,8 +182,8 @@ class Topography(FromHeights):
             room = 2 * min(centre, self._size[number] - centre)
             raise ConfigError(
                 f"the domain reaches along {name} from {readable(low, 'm')} to "
-                f"{readable(high, 'm')} of a scan of {_lengths(self._size, 9)}; make grid.size at "
-                f"most {readable(room, 'm', 9)} along {name}, or move centre",
+                f"{readable(high, 'm')} of {self.path}, {_lengths(self._size, 9)} wide; make "
+                f"grid.size at most {readable(room, 'm', 9)} along {name}, or move centre",
                 "centre" if self.centre else "path",
             )
         first = max(0, floor(low / pitch + 0.01))
@@ -210,14 +209,14 @@ class Topography(FromHeights):
             if share > self.fill or not measured.any():
                 raise ConfigError(
                     f"{share:.2%} of the points of {self.path} under the domain are "
-                    f"missing, and fill allows {self.fill:.2%}; raise it, or move or "
+                    f"{self._missing}, and fill allows {self.fill:.2%}; raise it, or move or "
                     "shrink the domain",
                     "fill",
                 )
             # On a tilt, heights that are filled before levelling would be those at the rim.
             trend = _polynomial(heights, measured, max(degree, 1))
             left = np.ma.masked_array(np.where(measured, heights - trend, 0.0), mask=~measured)
-            scan = library().Topography(left, left.shape)
+            scan = library(self.path).Topography(left, left.shape)
             # The missing heights solve Laplace's equation.
             filled = scan.interpolate_undefined_data_with_harmonic_function().heights()
             heights = np.where(measured, heights, np.ma.getdata(filled) + trend)
