@@ -32,23 +32,25 @@ _MARKS = 999, 9999, 99999, 999.25, 32767, 32768, 65535, 2147483647, 2147483648, 
 """Numbers that, with either sign, programs write for a missing point and a surface may have."""
 
 
-def marks_in(heights: Array, unit: float, *, apart: bool = True) -> list[str]:
+def marks_in(heights: Array, unit: float, *, is_steep: bool = False) -> list[str]:
     """Return what to do with the lowest and highest heights [m] if they mark missing points.
 
-    ``unit`` is the length [m] of 1 in the file. If ``apart``, marks are only those farther from all
-    other heights than these are from each other.
+    ``unit`` is the length [m] of 1 in the file. A mark has a usual number and is farther from all
+    other heights than these are from each other; on a surface that is too steep one of both is
+    enough.
     """
     measured = heights[np.isfinite(heights)]
     words = []
     for value in np.unique([measured.min(), measured.max()]) if measured.size else ():
         number = value / unit
-        if not np.isclose(abs(number), _MARKS, rtol=1e-6, atol=0).any():
-            continue
-        others = measured[measured != value]
-        if not apart or (others.size and np.abs(others - value).min() > np.ptp(others)):
-            count = measured.size - others.size
-            points = f"{count} point{'s' * (count > 1)} of {number:.10g}"
-            words.append(f"{points}: if they mark missing points, write nan")
+        is_usual = np.isclose(abs(number), _MARKS, rtol=1e-6, atol=0).any()
+        if is_usual or is_steep:
+            others = measured[measured != value]
+            is_apart = others.size and np.abs(others - value).min() > np.ptp(others)
+            if is_apart or (is_usual and is_steep):
+                count = measured.size - others.size
+                points = f"{count} point{'s' * (count > 1)} of {number:.10g}"
+                words.append(f"{points}: if they mark missing points, write nan")
     return words
 
 

@@ -15,9 +15,10 @@ from pydantic import AfterValidator, Field, model_validator
 from pellicle.arrays import Array
 from pellicle.components import shape_of_run
 from pellicle.errors import ConfigError
-from pellicle.schema import InputPath, read_mat
+from pellicle.schema import InputPath, read_mat, unpacked_size
 
-from .file_checks import datasets, require_file
+from .contents import first
+from .file_checks import datasets, require_file, require_memory
 from .from_heights import FromHeights, HeightUnit, marks_in
 from .text_table import FORMAT_MARKS, read_tables, text_in
 
@@ -97,9 +98,7 @@ def _load(path: Path, dataset: str | None) -> Any:
             name = next(iter(arrays)) if is_only else dataset
             if name is None or name not in arrays:
                 content = f"no array {name!r}" if name else "more than one array"
-                raise ConfigError(
-                    f"{path} has {content}; give one of: {', '.join(arrays)}", "dataset"
-                )
+                raise ConfigError(f"{path} has {content}; give one of: {first(arrays)}", "dataset")
             array = arrays[name]
             if kind != "text":
                 _require_kind(array, str(path), "path")
@@ -111,10 +110,10 @@ def _load(path: Path, dataset: str | None) -> Any:
     # Readers raise anything for damaged files.
     except Exception as error:
         reason = (str(error).splitlines() or [""])[0][:200] or type(error).__name__
+        netcdf = ", or read a classic NetCDF as type = 'topography'" * (path.suffix == ".nc")
         raise ConfigError(
             f"{path} cannot be read as {kind} ({reason}); give a 2-D array of numbers as .npy, "
-            "text or .h5, or, with a scale of its own as in a classic NetCDF, as type = "
-            "'topography'",
+            f"text or .h5{netcdf}",
             "path",
         ) from None
 
@@ -127,6 +126,7 @@ def _arrays(path: Path, kind: str) -> Iterator[Mapping[str, Any]]:
             raise ConfigError(f"{path} has a scale of its own; read it as 'topography'", "type")
         yield {name: table.values for name, table in read_tables(text, path).items()}
     elif kind == "mat":
+        require_memory(2.0 * unpacked_size(path), f"{path} with all that it unpacks to")
         yield {name: value for name, value in read_mat(path).items() if np.ndim(value) == 2}
     elif kind == "hdf5":
         with datasets(path) as arrays:
@@ -182,9 +182,9 @@ def _checked(raw: Any, name: str, field: str) -> Array:
         bad |= np.ma.getmaskarray(raw)
     if count := np.count_nonzero(bad):
         kinds = "masked, NaN" if masked else "NaN"
+        finite = ", or beyond any surface" * (not masked and bool(np.isfinite(array[bad]).any()))
         raise ConfigError(
-            f"{name} holds {count} {kinds} or infinite heights, or beyond any surface; "
-            "fill or crop them first",
+            f"{name} holds {count} {kinds} or infinite heights{finite}; fill or crop them first",
             field,
         )
     return np.array(array, dtype=np.float64, order="C")

@@ -121,7 +121,7 @@ class Topography(FromHeights):
         remedy = "export it again with the units of its sides and of its heights"
         if self.unit is not None or self.size is not None:
             remedy = "correct unit or size"
-        marks = marks_in(scan.heights, scan.unit, apart=max(slopes) <= _STEEP)
+        marks = marks_in(scan.heights, scan.unit, is_steep=max(slopes) > _STEEP)
         if reasons:
             also = "".join(f"; it has {words}" for words in marks)
             warnings.warn(
@@ -259,21 +259,14 @@ def _polynomial(heights: Array, measured: Array, degree: int) -> Array:
     general least-squares solver would take twenty times the memory of the heights.
     """
     i, j = np.nonzero(np.add.outer(*2 * [np.arange(degree + 1)]) <= degree)
-    if not i.size:
-        return np.zeros((1, 1))
-    along_x, along_y = (
-        legvander(np.linspace(-1, 1, n), degree)[:, powers]
-        for n, powers in zip(heights.shape, (i, j), strict=True)
-    )
-    pairs_x, pairs_y = (
-        (along[:, :, None] * along[:, None, :]).reshape(len(along), -1)
-        for along in (along_x, along_y)
-    )
+    x, y = (legvander(np.linspace(-1, 1, n), max(degree, 0)) for n in heights.shape)
+    x, y = x[:, i], y[:, j]
+    pairs_x, pairs_y = ((b[:, :, None] * b[:, None]).reshape(len(b), -1) for b in (x, y))
     products = np.einsum("py,yp->p", pairs_x.T @ measured.astype(np.float64), pairs_y)
-    moments = np.einsum("py,yp->p", along_x.T @ np.where(measured, heights, 0.0), along_y)
+    moments = np.einsum("py,yp->p", x.T @ np.where(measured, heights, 0.0), y)
     # On two points a square and a constant are linearly dependent.
     factors = np.linalg.lstsq(products.reshape(2 * moments.shape), moments)[0]
-    return np.asarray((along_x * factors) @ along_y.T)
+    return np.asarray((x * factors) @ y.T)
 
 
 def _lengths(values: Sequence[float], digits: int = 3) -> str:

@@ -77,7 +77,7 @@ def test_what_is_beyond_any_surface_is_missing(
         profiles.append(scan.profile(*GRID.coordinates()))
         with pytest.raises(pl.ConfigError, match=r"^fill: .* are missing, and fill allows 0"):
             _topography(name, heights)[0].profile(*GRID.coordinates())
-    assert np.array_equal(*profiles)
+    assert np.array_equal(profiles[0], profiles[1])
 
 
 @FEW
@@ -98,6 +98,14 @@ def test_a_usual_mark_is_named(name: str, mark: float, count: int, is_steep: boo
     assert ("rms slope" in text) == is_steep
     with pytest.warns(UserWarning, match=f"of {mark:.10g}: if they mark missing .*crop them"):
         pl.indenter("heights", values=heights, unit="1 nm")
+
+
+def test_a_mark_in_another_unit_is_named_where_it_is_steep() -> None:
+    """Of a file in metres, in which -9999 nm are no usual number, what lies apart is named."""
+    heights = 1e-9 * ROUGH
+    heights[2, 3] = -9999e-9
+    _, said = _topography("a.mat", heights, unit="1 m")
+    assert said[0].endswith("it has 1 point of -9.999e-06: if they mark missing points, write nan")
 
 
 def test_heights_that_have_the_number_of_a_mark_are_no_marks() -> None:
@@ -153,7 +161,11 @@ def _x3p(path: Path, old: bytes, new: bytes) -> None:
 
 
 NO_HEIGHTS: dict[str, tuple[str, Callable[[Path], object], str]] = {
-    "3-D": ("a.h5", lambda p: _hdf5(p, z=np.zeros((1, 4, 6))), r"'z' of shape \(1, 4, 6\); save"),
+    "3-D": (
+        "a.h5",
+        lambda p: _hdf5(p, z=np.zeros((1, 4, 6))),
+        r"'z' of shape \(1, 4, 6\), float64; save",
+    ),
     "groups": (
         "a.h5",
         lambda p: _hdf5(p, g_t=np.zeros(3), g_n="x"),
@@ -257,7 +269,7 @@ def test_a_netcdf_map_of_other_kinds_is_told(tmp_path: Path) -> None:
     _netcdf(path, lambda a: a, 0, "yx")
     with pytest.raises(pl.ConfigError, match=r"part of a map, or turned.*transpose heights"):
         pl.indenter("topography", path=path)
-    with pytest.raises(pl.ConfigError, match=r"a\.nc .*classic NetCDF, as type = 'topography'"):
+    with pytest.raises(pl.ConfigError, match=r"a\.nc .*classic NetCDF as type = 'topography'"):
         pl.indenter("heights", path=path, unit="1 um")
 
 

@@ -165,7 +165,7 @@ def test_level_by_default() -> None:
             _solve(scan, 32, boundary)[0].dataset.gap.values
             for scan in (_scan(tilted), _scan(tilted, level=level))
         ]
-        assert np.array_equal(*gaps)
+        assert np.array_equal(gaps[0], gaps[1])
 
 
 @settings(max_examples=12, deadline=None, derandomize=True)
