@@ -24,7 +24,7 @@ _of_run: ContextVar[Grid | None] = ContextVar("grid of the run", default=None)
 
 @contextmanager
 def grid_of_run(grid: Grid | None) -> Iterator[None]:
-    """Let components created within this context know the grid of their run, if there is one."""
+    """Let components created or asked within this context know the grid of their run."""
     token = _of_run.set(grid)
     try:
         yield
@@ -39,6 +39,12 @@ def shape_of_run() -> tuple[int, int] | None:
     """
     grid = _of_run.get()
     return None if grid is None else grid.shape
+
+
+def boundary_of_run() -> Boundary | None:
+    """Return the boundary of the grid on which a component is asked; None outside of a run."""
+    grid = _of_run.get()
+    return None if grid is None else grid.boundary
 
 
 def pair(value: object) -> object:

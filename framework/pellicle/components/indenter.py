@@ -11,7 +11,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to, read_only, real_array
 from pellicle.errors import ConfigError, PluginError, problems_within, shown
-from pellicle.grid import Grid
+from pellicle.grid import Grid, grid_of_run
 from pellicle.units import DIGITS, readable
 
 from .base import Component
@@ -170,7 +170,7 @@ class HasLayerForceCurve(Protocol):
 def profile_of(indenter: Indenter, grid: Grid) -> Array:
     """Return the profile f ≤ 0 [m] of an indenter on a grid, read-only."""
     x, y = (read_only(points) for points in grid.coordinates())
-    with problems_within("indenter"), errors_attributed_to(indenter):
+    with problems_within("indenter"), errors_attributed_to(indenter), grid_of_run(grid):
         value, footprint = indenter.profile(x, y), indenter.footprint
     profile = real_array(indenter, "profile(x, y)", value, grid.shape)
     name = component_name(indenter)

@@ -8,6 +8,7 @@ from .from_file import overridden as overridden
 from .from_file import paths_relative_to as paths_relative_to
 from .from_file import read_toml as read_toml
 from .matlab import read_mat as read_mat
+from .matlab import unpacked_size as unpacked_size
 from .messages import nearest as nearest
 from .model import Model as Model
 from .model import get as get

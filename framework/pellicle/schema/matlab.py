@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import struct
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -11,6 +13,8 @@ import numpy as np
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _USER_BLOCK = 512
 """Size of the text that precedes the HDF5 content of version 7.3 [bytes]."""
+_COMPRESSED = 15
+"""Type of a compressed variable of version 5."""
 
 
 def read_mat(path: Path) -> dict[str, Any]:
@@ -24,11 +28,9 @@ def read_mat(path: Path) -> dict[str, Any]:
     OSError
         The file cannot be read.
     ValueError
-        The file is not a MATLAB file.
+        The file is not a MATLAB file, or takes values from other files.
     """
-    with path.open("rb") as file:
-        head = file.read(_USER_BLOCK + len(_HDF5))
-    if _HDF5 in (head[: len(_HDF5)], head[_USER_BLOCK:]):
+    if _is_hdf5(path):
         return _read_hdf5(path)
     from scipy.io import loadmat
 
@@ -40,6 +42,33 @@ def read_mat(path: Path) -> dict[str, Any]:
         # scipy raises errors of zlib, of struct and of its own for damaged files.
         raise ValueError(str(error) or type(error).__name__) from None
     return {name: _plain(value) for name, value in content.items() if not name.startswith("__")}
+
+
+def unpacked_size(path: Path) -> int:
+    """Return the size [bytes] that the compressed variables of a MATLAB file state."""
+    sizes = []
+    if _is_hdf5(path):
+        import h5py
+
+        with h5py.File(path) as content:
+            content.visititems(lambda _, item: sizes.append(getattr(item, "nbytes", 0)))
+        return sum(sizes)
+    with path.open("rb") as file:
+        end = file.read(128)[126:]
+        order = "<II" if end == b"IM" else ">II"
+        while end in (b"IM", b"MI") and len(tag := file.read(8)) == 8:
+            kind, size = struct.unpack(order, tag)
+            if kind == _COMPRESSED:
+                head = zlib.decompressobj().decompress(file.peek(64)[:size], 8)
+                sizes.append(struct.unpack(order, head)[1])
+            file.seek(size, 1)
+    return sum(sizes)
+
+
+def _is_hdf5(path: Path) -> bool:
+    with path.open("rb") as file:
+        head = file.read(_USER_BLOCK + len(_HDF5))
+    return _HDF5 in (head[: len(_HDF5)], head[_USER_BLOCK:])
 
 
 def _plain(value: Any) -> Any:
@@ -56,14 +85,24 @@ def _plain(value: Any) -> Any:
 def _read_hdf5(path: Path) -> dict[str, Any]:
     import h5py
 
+    entered: set[Any] = set()
+
     def content(item: Any) -> Any:
+        # A link may lead nowhere, to a type or in circles: groups and cells are entered once.
+        if not isinstance(item, (h5py.Group, h5py.Dataset)) or item in entered:
+            return {}
         if isinstance(item, h5py.Group):
+            entered.add(item)
             return {str(name): content(entry) for name, entry in item.items()}
+        if item.is_virtual or item.external:
+            raise ValueError(f"it takes {item.name} from other files")
         if item.dtype == h5py.ref_dtype:
+            entered.add(item)
             references = np.atleast_1d(item[()]).ravel()
             return {str(n): content(file[ref]) for n, ref in enumerate(references, 1) if ref}
-        return np.asarray(item).T
+        return np.asarray(item[()]).T
 
     with h5py.File(path) as file:
+        entered.add(file["/"])
         # "#refs#" and "#subsystem#" hold what variables refer to.
         return {name: content(item) for name, item in file.items() if not name.startswith("#")}

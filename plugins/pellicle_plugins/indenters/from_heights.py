@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar
 
+import numpy as np
 from pydantic import (
     BeforeValidator,
     Field,
@@ -27,6 +28,32 @@ HeightUnit = Annotated[Length, BeforeValidator(_one_of_it, json_schema_input_typ
 """A length [m] that heights without a unit count: ``"um"``, ``"1 um"``, or a number of metres."""
 
 
+_MARKS = 999, 9999, 99999, 999.25, 32767, 32768, 65535, 2147483647, 2147483648, 4294967295
+"""Numbers that, with either sign, programs write for a missing point and a surface may have."""
+
+
+def marks_in(heights: Array, unit: float, *, is_steep: bool = False) -> list[str]:
+    """Return what to do with the lowest and highest heights [m] if they mark missing points.
+
+    ``unit`` is the length [m] of 1 in the file. A mark has a usual number and is farther from all
+    other heights than these are from each other; on a surface that is too steep one of both is
+    enough.
+    """
+    measured = heights[np.isfinite(heights)]
+    words = []
+    for value in np.unique([measured.min(), measured.max()]) if measured.size else ():
+        number = value / unit
+        is_usual = np.isclose(abs(number), _MARKS, rtol=1e-6, atol=0).any()
+        if is_usual or is_steep:
+            others = measured[measured != value]
+            is_apart = others.size and np.abs(others - value).min() > np.ptp(others)
+            if is_apart or (is_usual and is_steep):
+                count = measured.size - others.size
+                points = f"{count} point{'s' * (count > 1)} of {number:.10g}"
+                words.append(f"{points}: if they mark missing points, write nan")
+    return words
+
+
 class FromHeights(Indenter):
     """Rough punch given by heights, whose peaks touch first; it ends at the edge of the domain."""
 
@@ -38,12 +65,12 @@ class FromHeights(Indenter):
     _heights: Array = PrivateAttr()
     _digest: str = PrivateAttr()
 
-    def _keep(self, heights: Array, digest: str) -> None:
-        """Store the heights, and the hash of the file or array from which they were read."""
+    def _keep(self, heights: Array, digest: str, name: str) -> None:
+        """Store the heights, and the hash of the file or array ``name`` that holds them."""
         if self.sha256 not in (None, digest):
             raise ConfigError(
-                f"{self.sha256} is not the hash {digest} of the heights: they have changed; remove "
-                "sha256 to use them as they are",
+                f"{self.sha256} is not the hash {digest} of the heights of {name}: they have "
+                "changed; remove sha256 to use them as they are",
                 "sha256",
             )
         heights.setflags(write=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,15 +15,17 @@ from pydantic import AfterValidator, Field, model_validator
 from pellicle.arrays import Array
 from pellicle.components import shape_of_run
 from pellicle.errors import ConfigError
-from pellicle.files import read_text
-from pellicle.schema import InputPath, read_mat
+from pellicle.schema import InputPath, read_mat, unpacked_size
 
-from .file_checks import require_file
-from .from_heights import FromHeights, HeightUnit
-from .text_table import FORMAT_MARKS, read_tables
+from .contents import first
+from .file_checks import datasets, require_file, require_memory
+from .from_heights import FromHeights, HeightUnit, marks_in
+from .text_table import FORMAT_MARKS, read_tables, text_in
 
 _KINDS = {".npy": "npy", ".h5": "hdf5", ".hdf5": "hdf5", ".nc": "hdf5", ".mat": "mat"}
 """What a file is by its ending; text otherwise."""
+_BEYOND = 1e30
+"""Number that no height is, in any unit; files mark missing points with such numbers."""
 
 
 class Heights(FromHeights):
@@ -65,10 +68,13 @@ class Heights(FromHeights):
                 else ""
             )
             raise ConfigError(f"give either a file or, from the library, values{hint}", "path")
-        heights = self.values
+        heights, name, field = self.values, "the array", "values"
         if self.path is not None:
-            heights = _checked(_load(self.path, self.dataset), str(self.path), "path")
-        self._keep(heights, hashlib.sha256(heights.tobytes()).hexdigest())
+            name, field = str(self.path), "path"
+            heights = _checked(_load(self.path, self.dataset), name, field)
+        for words in marks_in(heights, 1.0):
+            warnings.warn(f"{name} has {words}, fill or crop them", stacklevel=2)
+        self._keep(heights, hashlib.sha256(heights.tobytes()).hexdigest(), name)
         return self
 
     def profile(self, x: Array, y: Array) -> Array:
@@ -92,9 +98,7 @@ def _load(path: Path, dataset: str | None) -> Any:
             name = next(iter(arrays)) if is_only else dataset
             if name is None or name not in arrays:
                 content = f"no array {name!r}" if name else "more than one array"
-                raise ConfigError(
-                    f"{path} has {content}; give one of: {', '.join(arrays)}", "dataset"
-                )
+                raise ConfigError(f"{path} has {content}; give one of: {first(arrays)}", "dataset")
             array = arrays[name]
             if kind != "text":
                 _require_kind(array, str(path), "path")
@@ -103,11 +107,13 @@ def _load(path: Path, dataset: str | None) -> Any:
             return array[...]
     except ConfigError:
         raise
-    except (OSError, ValueError, EOFError, MemoryError) as error:
-        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+    # Readers raise anything for damaged files.
+    except Exception as error:
+        reason = (str(error).splitlines() or [""])[0][:200] or type(error).__name__
+        netcdf = ", or read a classic NetCDF as type = 'topography'" * (path.suffix == ".nc")
         raise ConfigError(
             f"{path} cannot be read as {kind} ({reason}); give a 2-D array of numbers as .npy, "
-            "text or .h5",
+            f"text or .h5{netcdf}",
             "path",
         ) from None
 
@@ -116,21 +122,14 @@ def _load(path: Path, dataset: str | None) -> Any:
 def _arrays(path: Path, kind: str) -> Iterator[Mapping[str, Any]]:
     """Yield the arrays of an open file by name; those of HDF5 and .npy are not read yet."""
     if kind == "text":
-        if (text := read_text(path)).startswith(FORMAT_MARKS):
+        if (text := text_in(path)).startswith(FORMAT_MARKS):
             raise ConfigError(f"{path} has a scale of its own; read it as 'topography'", "type")
         yield {name: table.values for name, table in read_tables(text, path).items()}
     elif kind == "mat":
+        require_memory(2.0 * unpacked_size(path), f"{path} with all that it unpacks to")
         yield {name: value for name, value in read_mat(path).items() if np.ndim(value) == 2}
     elif kind == "hdf5":
-        import h5py
-
-        with h5py.File(path, "r") as file:
-            arrays: dict[str, Any] = {}
-            file.visititems(
-                lambda name, item: (
-                    arrays.update({name: item}) if isinstance(item, h5py.Dataset) else None
-                )
-            )
+        with datasets(path) as arrays:
             yield arrays
     else:
         # A mapped array runs no pickle, and takes no memory whatever shape its header claims.
@@ -178,12 +177,14 @@ def _checked(raw: Any, name: str, field: str) -> Array:
     """Return heights as a new float64 array; refuse those that are masked or not finite."""
     _require_kind(raw, name, field)
     array = np.asarray(raw)
-    bad = ~np.isfinite(array)
+    bad = ~(np.abs(array) < _BEYOND)
     if masked := np.ma.isMaskedArray(raw):
         bad |= np.ma.getmaskarray(raw)
     if count := np.count_nonzero(bad):
         kinds = "masked, NaN" if masked else "NaN"
+        finite = ", or beyond any surface" * (not masked and bool(np.isfinite(array[bad]).any()))
         raise ConfigError(
-            f"{name} holds {count} {kinds} or infinite heights; fill or crop them first", field
+            f"{name} holds {count} {kinds} or infinite heights{finite}; fill or crop them first",
+            field,
         )
     return np.array(array, dtype=np.float64, order="C")

@@ -25,6 +25,10 @@ class Scan(NamedTuple):
     """Edge lengths [m]."""
     digest: str
     """SHA-256 of the file."""
+    unit: float
+    """Length that 1 in the file stands for [m]."""
+    missing: str
+    """What is known of the missing points, in words."""
 
 
 class Channel(NamedTuple):
@@ -39,6 +43,8 @@ class Channel(NamedTuple):
     """Two edge lengths, as `known` returns them."""
     read: Callable[[], Array]
     """Return the values along x, then y; NaN where a point is missing."""
+    missing: str = "missing"
+    """What is known of the missing points, in words."""
 
 
 def known(edges: Sequence[Edge]) -> Sequence[Edge]:

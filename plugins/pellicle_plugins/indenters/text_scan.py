@@ -74,7 +74,7 @@ def _channel(name: str, table: TextTable, path: Path) -> Channel:
             stated.append((edge[0], units[-1]))
     edges = known(stated)
     is_areal = min(heights.shape) > 2 or (len(heights) > 1 and bool(edges))
-    if len(heights) == 3:
+    if len(heights) == 3 and not (edges and _is_matrix(heights, edges)):
         heights, coordinates = _on_grid(heights, path)
         if edges:
             _require_size(edges, coordinates, heights.shape, path)
@@ -107,6 +107,22 @@ def _quantity(entries: Mapping[str, str], *names: str) -> tuple[float, str | Non
     return None
 
 
+def _is_matrix(columns: Array, stated: Sequence[Edge]) -> bool:
+    """Return whether three columns under the size of a scan are heights, not points x, y, z.
+
+    Their points are then square, or the first two have more values than those of a grid and do not
+    extend as the sides of the scan do.
+    """
+    number = columns.shape[1]
+    x, y = (edge * (metres(unit or "m") or 1.0) for edge, unit in stated)
+    if any(abs(x / nx * ny / y - 1) < _SIZE_TOLERANCE for nx, ny in ((3, number), (2, number - 1))):
+        return True
+    values_x, values_y = map(np.unique, columns[:2])
+    extents = np.ptp(values_x) * y, np.ptp(values_y) * x
+    is_extended = abs(extents[0] - extents[1]) < 0.2 * max(extents)
+    return number < 4 or (values_x.size * values_y.size > 2 * number and not is_extended)
+
+
 def _on_grid(points: Array, path: Path) -> tuple[Array, list[float]]:
     """Return the heights of points x, y, z, of shape (3, n), on their regular grid, and its edges.
 
@@ -114,7 +130,9 @@ def _on_grid(points: Array, path: Path) -> tuple[Array, list[float]]:
     """
     *positions, heights = points
     irregular = ConfigError(
-        f"{path} has points at irregular distances; resample them to a regular grid first", "path"
+        f"{path} has points at irregular distances; resample them to a regular grid first, or give "
+        "three columns of heights as type = 'heights'",
+        "path",
     )
     indices, edges = [], []
     for position in positions:

@@ -12,12 +12,12 @@ from numpy.polynomial.legendre import legvander
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from pellicle.arrays import Array
-from pellicle.components import pair
+from pellicle.components import boundary_of_run, pair
 from pellicle.errors import ConfigError
 from pellicle.schema import InputPath
 from pellicle.units import Length, Quantity, readable
 
-from .from_heights import FromHeights, HeightUnit
+from .from_heights import FromHeights, HeightUnit, marks_in
 from .sampling import UniformAxis
 from .scan import Scan
 from .topography_reader import library, read_scan
@@ -28,6 +28,9 @@ _LEVELS: tuple[_Level, ...] = get_args(_Level)
 """In the order of the degree of the subtracted polynomial, which is −1 for none."""
 _LARGE, _STEEP = 0.1, 1.0
 """Size [m] and rms slope above which a wrong unit is more likely than such a surface."""
+_STEPS = 1.5
+"""Step between the mean heights of opposite edges, over the largest of neighbouring lines, above
+which a surface is not periodic; 1.2 is the largest of 480 rough ones of 64 lines."""
 
 
 class Topography(FromHeights):
@@ -69,24 +72,26 @@ class Topography(FromHeights):
         ),
     ] = None
     level: Annotated[
-        _Level,
+        _Level | None,
         Field(
             description="shape subtracted by least squares: the mean height, which has no effect "
-            "since only differences matter, a plane or a paraboloid"
+            "since only differences matter, a plane or a paraboloid; if absent, 'tilt', or 'mean' "
+            "on a periodic grid, whose edges a plane would part"
         ),
-    ] = "tilt"
+    ] = None
     fill: Annotated[
         float,
         Quantity("1", at_least=0, below=1),
         Field(
-            description="largest share of missing points to fill in, harmonically from their "
-            "neighbours; 0 refuses any"
+            description="largest share of missing points to fill in, after levelling, "
+            "harmonically from their neighbours; 0 refuses any"
         ),
     ] = 0.0
     invert: Annotated[
         bool, Field(description="true if the valleys of the scan are what touches, not its peaks")
     ] = False
     _size: tuple[float, float] = PrivateAttr()
+    _missing: str = PrivateAttr()
 
     @model_validator(mode="after")
     def _read(self) -> Self:
@@ -98,8 +103,8 @@ class Topography(FromHeights):
                 "path",
             )
         self._warn_of_unit(scan)
-        self._keep(scan.heights, scan.digest)
-        self._size = scan.size
+        self._keep(scan.heights, scan.digest, str(self.path))
+        self._size, self._missing = scan.size, scan.missing
         return self
 
     def _warn_of_unit(self, scan: Scan) -> None:
@@ -116,14 +121,21 @@ class Topography(FromHeights):
         remedy = "export it again with the units of its sides and of its heights"
         if self.unit is not None or self.size is not None:
             remedy = "correct unit or size"
+        marks = marks_in(scan.heights, scan.unit, is_steep=max(slopes) > _STEEP)
         if reasons:
+            also = "".join(f"; it has {words}" for words in marks)
             warnings.warn(
-                f"{self.path} {' and '.join(reasons)}: a unit may be wrong; if so, {remedy}",
+                f"{self.path} {' and '.join(reasons)}: a unit may be wrong; if so, {remedy}{also}",
                 stacklevel=2,
             )
+        elif marks:
+            warnings.warn(f"{self.path} has {' and '.join(marks)}", stacklevel=2)
 
     def profile(self, x: Array, y: Array) -> Array:
-        """Return the heights at the cells minus the highest measured one under the domain [m]."""
+        """Return the heights at the cells minus the highest one within the domain [m].
+
+        The highest is a cell, or a measured point between coarser cells.
+        """
         from scipy.interpolate import make_interp_spline
 
         axes = UniformAxis.of(x.ravel()), UniformAxis.of(y.ravel())
@@ -146,8 +158,15 @@ class Topography(FromHeights):
         for axis, (positions, cell) in enumerate(zip(points, cells, strict=True)):
             spline = make_interp_spline(positions, sampled, k=min(3, positions.size - 1), axis=axis)
             sampled = spline(np.clip(cell, positions[0], positions[-1]))
-        # A spline may exceed the points that it interpolates.
-        return sampled - max(float(heights.max()), float(sampled.max()))
+        ends = [
+            (c[0] - a.spacing / 2, c[-1] + a.spacing / 2) for c, a in zip(cells, axes, strict=True)
+        ]
+        within = [(p >= low) & (p <= high) for p, (low, high) in zip(points, ends, strict=True)]
+        # A peak between cells is no farther above the highest than neighbouring cells differ.
+        highest = float(sampled.max())
+        hidden = max(float(np.abs(np.diff(sampled, axis=axis)).max()) for axis in (0, 1))
+        between = float(heights[np.ix_(*within)].max(initial=highest))
+        return sampled - min(between, highest + hidden)
 
     @property
     def _middle(self) -> tuple[float, float]:
@@ -163,8 +182,8 @@ class Topography(FromHeights):
             room = 2 * min(centre, self._size[number] - centre)
             raise ConfigError(
                 f"the domain reaches along {name} from {readable(low, 'm')} to "
-                f"{readable(high, 'm')} of a scan of {_lengths(self._size, 9)}; make grid.size at "
-                f"most {readable(room, 'm', 9)} along {name}, or move centre",
+                f"{readable(high, 'm')} of {self.path}, {_lengths(self._size, 9)} wide; make "
+                f"grid.size at most {readable(room, 'm', 9)} along {name}, or move centre",
                 "centre" if self.centre else "path",
             )
         first = max(0, floor(low / pitch + 0.01))
@@ -181,40 +200,73 @@ class Topography(FromHeights):
     def _prepared(self, window: tuple[slice, ...]) -> Array:
         """Return the scan under the domain, filled, levelled and with peaks up [m]."""
         heights = self._heights[window]
-        missing = np.isnan(heights)
-        if missing.any():
-            share = float(missing.mean())
-            if share > self.fill or missing.all():
+        measured = np.isfinite(heights)
+        is_periodic = boundary_of_run() == "periodic"
+        level = self.level or ("mean" if is_periodic else "tilt")
+        degree = _LEVELS.index(level) - 1
+        if not measured.all():
+            share = 1 - float(measured.mean())
+            if share > self.fill or not measured.any():
                 raise ConfigError(
-                    f"{share:.2%} of the points of {self.path} under the domain are missing, and "
-                    f"fill allows {self.fill:.2%}; raise it, or move or shrink the domain",
+                    f"{share:.2%} of the points of {self.path} under the domain are "
+                    f"{self._missing}, and fill allows {self.fill:.2%}; raise it, or move or "
+                    "shrink the domain",
                     "fill",
                 )
-            masked = np.ma.masked_array(np.where(missing, 0.0, heights), mask=missing)
-            scan = library().Topography(masked, heights.shape)
+            # On a tilt, heights that are filled before levelling would be those at the rim.
+            trend = _polynomial(heights, measured, max(degree, 1))
+            left = np.ma.masked_array(np.where(measured, heights - trend, 0.0), mask=~measured)
+            scan = library(self.path).Topography(left, left.shape)
             # The missing heights solve Laplace's equation.
-            filled = scan.interpolate_undefined_data_with_harmonic_function()
-            heights = np.asarray(np.ma.getdata(filled.heights()), dtype=np.float64)
-        heights = _levelled(heights, _LEVELS.index(self.level) - 1)
-        return -heights if self.invert else heights
+            filled = scan.interpolate_undefined_data_with_harmonic_function().heights()
+            heights = np.where(measured, heights, np.ma.getdata(filled) + trend)
+        levelled = heights - _polynomial(heights, measured, degree)
+        if is_periodic:
+            other: _Level = "tilt" if degree < 1 else "mean"
+            rest = heights - _polynomial(heights, measured, _LEVELS.index(other) - 1)
+            self._warn_of_seam({level: levelled, other: rest})
+        return -levelled if self.invert else levelled
+
+    def _warn_of_seam(self, levelled: dict[_Level, Array]) -> None:
+        """Warn if opposite edges meet in a step, which the level leaves or makes.
+
+        ``levelled`` are the heights [m] by levels, first those that are pressed. Any two lines of a
+        periodic surface may be its edges: their mean heights differ as those of all neighbours do.
+        """
+        (level, heights), (other, rest) = levelled.items()
+        for axis, name in enumerate("xy"):
+            step, step_of_rest = (
+                float(np.sqrt(np.mean((h.take(0, axis) - h.take(-1, axis)) ** 2)))
+                for h in (heights, rest)
+            )
+            lines = heights.mean(axis=1 - axis)
+            is_left = abs(lines[0] - lines[-1]) > _STEPS * np.abs(np.diff(lines)).max()
+            is_made = other == "mean" and step - step_of_rest > 0.01 * heights.std()
+            if is_left or is_made:
+                warnings.warn(
+                    f"{self.path} is not periodic along {name} with level = {level!r}: its edges "
+                    f"meet in a step of {readable(step, 'm', 2)} (rms), with level = {other!r} of "
+                    f"{readable(step_of_rest, 'm', 2)}; take the level that leaves none, or "
+                    'press it on grid.boundary = "free"',
+                    stacklevel=2,
+                )
 
 
-def _levelled(heights: Array, degree: int) -> Array:
-    """Return heights minus the polynomial of a total degree that fits them best.
+def _polynomial(heights: Array, measured: Array, degree: int) -> Array:
+    """Return the polynomial of a total degree that fits the measured heights best; 0 for −1.
 
-    The basis functions are products of functions of x and of y, and so are their scalar products. A
+    The basis functions are products of functions of x and of y, and so are their products. A
     general least-squares solver would take twenty times the memory of the heights.
     """
-    if degree < 0:
-        return heights
-    along_x, along_y = (legvander(np.linspace(-1, 1, n), degree) for n in heights.shape)
     i, j = np.nonzero(np.add.outer(*2 * [np.arange(degree + 1)]) <= degree)
-    gram_x, gram_y = along_x.T @ along_x, along_y.T @ along_y
-    products = gram_x[np.ix_(i, i)] * gram_y[np.ix_(j, j)]
-    factors = np.zeros((degree + 1, degree + 1))
+    x, y = (legvander(np.linspace(-1, 1, n), max(degree, 0)) for n in heights.shape)
+    x, y = x[:, i], y[:, j]
+    pairs_x, pairs_y = ((b[:, :, None] * b[:, None]).reshape(len(b), -1) for b in (x, y))
+    products = np.einsum("py,yp->p", pairs_x.T @ measured.astype(np.float64), pairs_y)
+    moments = np.einsum("py,yp->p", x.T @ np.where(measured, heights, 0.0), y)
     # On two points a square and a constant are linearly dependent.
-    factors[i, j] = np.linalg.lstsq(products, (along_x.T @ heights @ along_y)[i, j])[0]
-    return np.asarray(heights - along_x @ factors @ along_y.T)
+    factors = np.linalg.lstsq(products.reshape(2 * moments.shape), moments)[0]
+    return np.asarray((x * factors) @ y.T)
 
 
 def _lengths(values: Sequence[float], digits: int = 3) -> str:

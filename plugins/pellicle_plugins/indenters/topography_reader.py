@@ -15,13 +15,15 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
-from pellicle.files import read_text
 
-from .file_checks import require_file, require_memory
+from .contents import contents, unit_of_image
+from .file_checks import HDF5, datasets, require_file, require_memory, require_unpacked
 from .scan import Channel, Scan, chosen, edge_lengths, height_scale, known
 from .text_scan import text_channels
-from .text_table import FORMAT_MARKS, read_tables
+from .text_table import FORMAT_MARKS, read_tables, text_in
 
+_BEYOND = 1e9
+"""Height [m] that no surface has; files mark missing points with numbers of this size and more."""
 _ARRAYS = 9
 """Peak memory while a scan is read, in arrays of its points; 8 were measured at 2000² points."""
 
@@ -58,6 +60,7 @@ def _read(
             scale = height_scale(channel, unit, path)
             edges = edge_lengths(channel, size, scale, path)
             heights = channel.read() * scale
+            heights[~(np.abs(heights) < _BEYOND)] = np.nan
     except ConfigError:
         raise
     except PermissionError as error:
@@ -67,9 +70,8 @@ def _read(
         raise ConfigError(
             f"{path} is damaged or incomplete ({reason}); export it again", "path"
         ) from None
-    heights[~np.isfinite(heights)] = np.nan
     heights.setflags(write=False)
-    return Scan(heights, edges, digest)
+    return Scan(heights, edges, digest, scale, channel.missing)
 
 
 def _channels(file: BinaryIO, path: Path) -> list[Channel]:
@@ -80,16 +82,29 @@ def _channels(file: BinaryIO, path: Path) -> list[Channel]:
     text = ""
     if head.startswith((BOM_UTF16_LE, BOM_UTF16_BE)) or b"\0" not in head:
         with suppress(ValueError):
-            text = read_text(path)
+            text = text_in(path)
     if not text.startswith(FORMAT_MARKS) and (tables := read_tables(text, path)):
         return text_channels(tables, path)
-    io = library().IO
+    require_unpacked(path)
+    if head.startswith(HDF5):
+        with datasets(path):
+            pass
+    io = library(path).IO
     with suppress(io.CannotDetectFileFormat):
         reader = io.open_topography(file)
         # Any file of 2n² bytes passes as hgt, n² integers without a header.
         if reader.format() != "hgt" or path.suffix.lower() == ".hgt":
-            channels = reader.default_channel, *reader.channels
-            return [_library_channel(channel, path) for channel in channels]
+            if not reader.channels:
+                content = contents(path, getattr(reader, "_metadata", {}))
+                content = content or f"is of the format {reader.format()} and holds no heights"
+                raise ConfigError(f"{path} {content}", "path")
+            if reader.format() == "nc":
+                _require_whole(reader, path)
+            channels = (reader.default_channel, *reader.channels)
+            listed = [_library_channel(channel, reader, path) for channel in channels]
+            return sorted(listed, key=lambda channel: not channel.is_height)
+    if content := contents(path, {}):
+        raise ConfigError(f"{path} {content}", "path")
     raise ConfigError(
         f"{path} is damaged or in an unknown format; give a file that SurfaceTopography reads "
         "(gwy, opd, sdf, sur, x3p, …), text with a row of numbers, separated by blanks, commas or "
@@ -98,7 +113,7 @@ def _channels(file: BinaryIO, path: Path) -> list[Channel]:
     )
 
 
-def _library_channel(channel: Any, path: Path) -> Channel:
+def _library_channel(channel: Any, reader: Any, path: Path) -> Channel:
     def read() -> Array:
         nx, ny = channel.nb_grid_pts
         require_memory(8.0 * _ARRAYS * nx * ny, f"{path} with its {nx} × {ny} points")
@@ -109,12 +124,36 @@ def _library_channel(channel: Any, path: Path) -> Channel:
 
     is_height = channel.is_height_channel
     unit = channel.unit if is_height else channel.data_unit
+    missing = "missing"
+    if reader.format() == "gwy":
+        missing = "marked by the mask of the file, or missing" if reader._masks else missing
+        # To the library A is the ångström, to Gwyddion the ampere.
+        if unit_of_image(reader._metadata, f"/{channel.tags['index']}/data") == "A":
+            is_height, unit = False, "A"
     edges = known([(float(edge), None) for edge in channel.physical_sizes or ()])
-    return Channel(channel.name, unit, is_height, channel.dim == 2, edges, read)
+    return Channel(channel.name, unit, is_height, channel.dim == 2, edges, read, missing)
 
 
-def library() -> ModuleType:
-    """Return the package SurfaceTopography, which takes seconds to import."""
+def _require_whole(reader: Any, path: Path) -> None:
+    """Refuse a part that was cut from a NetCDF map and still states the size of the whole."""
+    is_whole = reader._heights_var.dimensions in (("x", "y"), ("x",), ("n",))
+    for variable in (reader._x_var, reader._y_var):
+        if length := getattr(variable, "length", None):
+            steps = np.diff(np.ma.filled(variable[...], np.nan))
+            # A length may lack the last pitch.
+            pitches = [float(length) / n for n in (steps.size + 1, max(1, steps.size))]
+            is_whole &= any(np.allclose(steps, pitch, rtol=0.05, atol=0) for pitch in pitches)
+    if not is_whole:
+        raise ConfigError(
+            f"{path} is a part of a map, or turned: its coordinates x, y are not those of the size "
+            "that it states; transpose heights to x, y, and set the attribute length of x and y to "
+            "their pitch times their number",
+            "path",
+        )
+
+
+def library(path: Path) -> ModuleType:
+    """Return the package SurfaceTopography, which takes seconds to import, to read a file."""
     try:
         with warnings.catch_warnings():
             # It warns that MPI is missing, which pellicle does not use.
@@ -122,7 +161,7 @@ def library() -> ModuleType:
             import SurfaceTopography.IO
     except ImportError as error:
         raise ConfigError(
-            f"needs SurfaceTopography, which is not installed ({error}); "
+            f"{path} needs SurfaceTopography, which is not installed ({error}); "
             "pip install 'pellicle[topography]'",
             "type",
         ) from None
