@@ -6,10 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from pellicle.arrays import Mask
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.load_step import LoadStep
+from pellicle.contact.masks import labelled
+from pellicle.grid import Boundary
 
 from . import Surroundings
 
@@ -44,12 +47,10 @@ def _failures(run: Run, step: LoadStep, value: float) -> Iterator[Caveat]:
                 status,
                 {"measure": residual, "tolerance": tolerance, "stop": step.stop.name},
             )
-    reach, loading = equilibrium.contact | equilibrium.zone, run.loading
-    # A period one cell wide has no border in that direction: the problem is plane there.
-    free = run.grid.boundary == "free"
-    across = [axis for axis in (0, 1) if reach.shape[axis] > 1 or free]
-    at_edge = any(np.take(reach, [0, -1], axis=axis).any() for axis in across)
-    if at_edge and run.indenter.footprint == "unbounded":
+    loading = run.loading
+    if run.indenter.footprint == "unbounded" and _has_no_end(
+        equilibrium.contact | equilibrium.zone, run.grid.boundary
+    ):
         yield Caveat(
             Status.CONTACT_AT_EDGE,
             {
@@ -60,6 +61,23 @@ def _failures(run: Run, step: LoadStep, value: float) -> Iterator[Caveat]:
                 "unit": loading.prescription.unit,
             },
         )
+
+
+def _has_no_end(reach: Mask, boundary: Boundary) -> bool:
+    """Return whether cells reach the edge of a free domain, or their own image on a periodic one.
+
+    A patch that goes on into its image is one patch in two periods side by side. A period one cell
+    wide has no border in that direction: the problem is plane there.
+    """
+    for axis in (0, 1):
+        if boundary == "free":
+            if np.take(reach, [0, -1], axis=axis).any():
+                return True
+        elif reach.shape[axis] > 1 and reach.any(axis=1 - axis).all():
+            twice = np.concatenate([reach, reach], axis)
+            if labelled(twice, boundary, 8)[1] < 2 * labelled(reach, boundary, 8)[1]:
+                return True
+    return False
 
 
 def _coarse(run: Run, equilibrium: Equilibrium) -> Iterator[Caveat]:
