@@ -10,7 +10,7 @@ import typer
 
 from pellicle.hookspecs import RegisterCommand, hookimpl
 
-from .printing import INTERRUPTED, echo, print_json, print_table, print_warning
+from .printing import INTERRUPTED, echo, print_json, print_table
 
 
 def run(
@@ -64,17 +64,15 @@ def run(
     from pellicle.runs.journal import Journal
     from pellicle.runs.progress import RunProgress
     from pellicle.show import sentences, tables
-    from pellicle.show.doubtful_scales import doubts_of_scale
     from pellicle.studies import runner as studies
 
     from .results import exit_by_outcome, print_outcome_json, print_tables
 
     began, configuration = monotonic(), from_toml(file, set_ or ())
-    for doubt in doubts_of_scale(configuration).values():
-        print_warning(doubt)
     folder = directory or Path(file.stem)
     stem = folder / file.stem
     if dry_run:
+        studies.warn_of_scale(configuration)
         tasks = studies.planned(configuration, stem, overwrite=overwrite)
         table, sentence = tables.planned(tasks)
         if json:

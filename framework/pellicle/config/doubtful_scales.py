@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterator
 from contextlib import suppress
 
@@ -39,6 +40,12 @@ def doubts_of_scale(configuration: Run | Study) -> dict[str, str]:
         for path, message in _doubts(run):
             doubts.setdefault(path, message)
     return doubts
+
+
+def warn_of_scale(configuration: Run | Study) -> None:
+    """Warn the caller of the caller of what is out of scale with the rest."""
+    for doubt in doubts_of_scale(configuration).values():
+        warnings.warn(doubt, stacklevel=4)
 
 
 def _doubts(run: Run) -> Iterator[tuple[str, str]]:
