@@ -96,7 +96,8 @@ def run(
             outcome, files, resumed = runner.execute(
                 configuration, journal, outputs, bar, threads=threads
             )
-            if Status.CONTACT_AT_EDGE.name in outcome.dataset["status_code"].values:
+            at_edge = {Status.CONTACT_AT_EDGE.name, Status.ZONE_AT_EDGE.name}
+            if at_edge & {*outcome.dataset["status_code"].values}:
                 echo(sentences.larger_domain(file, folder), err=True)
     except KeyboardInterrupt:
         finished = "runs" if isinstance(configuration, Study) else "steps"

@@ -47,20 +47,25 @@ def _failures(run: Run, step: LoadStep, value: float) -> Iterator[Caveat]:
                 status,
                 {"measure": residual, "tolerance": tolerance, "stop": step.stop.name},
             )
-    loading = run.loading
-    if run.indenter.footprint == "unbounded" and _has_no_end(
-        equilibrium.contact | equilibrium.zone, run.grid.boundary
-    ):
+    contact, reach = equilibrium.contact, equilibrium.contact | equilibrium.zone
+    size, boundary, loading = run.grid.size, run.grid.boundary, run.loading
+    edges = {"size_x": size[0], "size_y": size[1]}
+    if boundary == "free" and min(contact.shape) == 1 < contact.size and reach.any():
+        yield Caveat(Status.STRIP, {"length": size[int(contact.shape[1] == 1)]})
+    elif run.indenter.footprint != "unbounded":
+        return
+    elif _has_no_end(contact, boundary):
         yield Caveat(
             Status.CONTACT_AT_EDGE,
             {
-                "size_x": run.grid.size[0],
-                "size_y": run.grid.size[1],
+                **edges,
                 "prescribed": loading.prescribed,
                 "value": value,
                 "unit": loading.prescription.unit,
             },
         )
+    elif _has_no_end(reach, boundary):
+        yield Caveat(Status.ZONE_AT_EDGE, edges)
 
 
 def _has_no_end(reach: Mask, boundary: Boundary) -> bool:
