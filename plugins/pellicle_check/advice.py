@@ -109,8 +109,8 @@ def advise(run: Run, allowed: float) -> Advice:
     """
     if run.grid.boundary == "free" and min(run.grid.points) == 1:
         raise ConfigError(
-            f"{' × '.join(map(str, run.grid.points))} cells on a free boundary are a strip as long as "
-            'grid.size, not a line contact; give "periodic", or more of grid.points each way',
+            f"{' × '.join(map(str, run.grid.points))} cells on a free boundary are a strip as long "
+            'as grid.size, not a line contact; give "periodic", or more of grid.points each way',
             "grid.boundary",
         )
     grids = _coarser(run.grid)

@@ -101,8 +101,8 @@ def contacts_at_edge(advised: Sequence[Advised]) -> Iterator[str]:
     reaching = [one for one in advised if one.advice.at_edge]
     for name, run, advice, _ in reaching:
         steps = f"step{'s' * (len(advice.at_edge) > 1)} {', '.join(map(str, advice.at_edge))}"
-        zone = ", or the zone around it," * bool(run.interaction)
-        yield f"{name}{': ' * bool(name)}the contact of {steps}{zone} reaches the edge of the domain"
+        what = f"the contact{', or the zone around it,' * bool(run.interaction)} of {steps}"
+        yield f"{name}{': ' * bool(name)}{what} reaches the edge of the domain"
     if reaching:
         yield f"{_domain(reaching)} holds every step; the errors are for such a domain"
 

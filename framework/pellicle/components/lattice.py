@@ -38,8 +38,8 @@ class Lattice(NamedTuple):
         ]
         highest = None
         for steps in product((0, -1, 1), repeat=2):
-            image = (p + n * edge for p, n, edge in zip(points, steps, self.grid.size, strict=True))
-            heights = profile(*map(read_only, self._turned(*image, -1)))
+            image = [p + n * edge for p, n, edge in zip(points, steps, self.grid.size, strict=True)]
+            heights = profile(*map(read_only, self._turned(image[0], image[1], -1)))
             highest = heights if highest is None else np.maximum(highest, heights)
         assert highest is not None
         return highest

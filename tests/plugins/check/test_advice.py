@@ -59,7 +59,7 @@ def test_a_domain_without_contact_is_not_called_good() -> None:
     with pytest.raises(pl.ConfigError, match="on which the cells resolve it"):
         advise(wide, 0.01)
     strip = run(grid={"points": [256, 1], "size": 4e-5}, loading={"depth": 1e-7})
-    with pytest.raises(pl.ConfigError, match='^grid.boundary: 256 × 1 .* give "periodic"'):
+    with pytest.raises(pl.ConfigError, match=r'^grid\.boundary: 256 × 1 .* give "periodic"'):
         advise(strip, 0.01)
 
 
