@@ -107,6 +107,12 @@ def advise(run: Run, allowed: float) -> Advice:
     less than 5 of 100 true errors of force and depth exceed: order 2 for smooth contacts without
     interaction and history, 1 for others.
     """
+    if run.grid.boundary == "free" and min(run.grid.points) == 1:
+        raise ConfigError(
+            f"{' × '.join(map(str, run.grid.points))} cells on a free boundary are a strip as long "
+            'as grid.size, not a line contact; give "periodic", or more of grid.points each way',
+            "grid.boundary",
+        )
     grids = _coarser(run.grid)
     # Each of the coarser grids resolves the indenter if possible.
     for shares in _LARGEST_SHARES:
@@ -118,7 +124,7 @@ def advise(run: Run, allowed: float) -> Advice:
     results = [_solved(run, grid) for grid in grids]
     at_edge = _at_edge(results[-1])
     if at_edge:
-        size = size_for(run)
+        size = size_for(run, at_edge)
         points = _points(run.grid, size, 1.0)
         run = _on(run, run.grid.model_copy(update={"points": points, "size": size}))
         grids = _coarser(run.grid)
@@ -140,8 +146,11 @@ def advise(run: Run, allowed: float) -> Advice:
     return Advice(steps, points, fitting, at_edge, in_wave)
 
 
-def size_for(run: Run) -> tuple[float, float]:
-    """Return edges [m] of a domain that holds the contact of every step."""
+def size_for(run: Run, at_edge: Sequence[int]) -> tuple[float, float]:
+    """Return edges [m] of a domain that holds the contact of every step.
+
+    The steps ``at_edge`` of the domain of the run are in contact or attracted on a larger one too.
+    """
     scale = min(1.0, _MOST / 2 / max(run.grid.points))
     points = tuple(max(1, round(n * scale)) for n in run.grid.points)
     for factor in 2.0 ** np.arange(1, 7):
@@ -150,6 +159,11 @@ def size_for(run: Run) -> tuple[float, float]:
         solved = _solved(run, grid)
         if _at_edge(solved):
             continue
+        held = solved.sel(step=list(at_edge))
+        acting = held["contact"].any(("x", "y")) | (held.get("zone_area", 0.0) > 0)
+        if not acting.all():
+            # Cells as wide as these do not see the contact.
+            break
         extent = np.max([_extent(contact, grid) for contact in solved["contact"].values], axis=0)
         close = np.maximum(run.grid.size, [float(f"{_MARGIN * edge:.2g}") for edge in extent])
         # The zone of an interaction reaches beyond the contact.
@@ -157,7 +171,8 @@ def size_for(run: Run) -> tuple[float, float]:
         x, y = size if _at_edge(_solved(run, closer)) else close
         return float(x), float(y)
     raise ConfigError(
-        "does not hold the contact of every step, nor does 64 times that; press in less far",
+        "does not hold the contact of every step, nor does a larger one, up to 64 times that, on "
+        "which the cells resolve it; press in less far, or give more grid.points",
         "grid.size",
     )
 
@@ -222,8 +237,9 @@ def _on(run: Run, grid: Grid) -> Run:
 
 
 def _at_edge(result: xr.Dataset) -> tuple[int, ...]:
-    """Return the numbers of the steps whose contact reaches an edge where it must not."""
-    reaches = result["status_code"].values == Status.CONTACT_AT_EDGE.name
+    """Return the numbers of the steps whose contact or zone reaches an edge where it must not."""
+    codes = [Status.CONTACT_AT_EDGE.name, Status.ZONE_AT_EDGE.name]
+    reaches = np.isin(result["status_code"].values.astype(str), codes)
     return tuple(result["step"].values[reaches].tolist())
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
@@ -27,16 +26,14 @@ def check(
 ) -> None:
     """Check a run or a study, and estimate its errors and memory from coarser grids."""
     from pellicle import Study
-    from pellicle.show import doubts_of_scale
-    from pellicle.studies import from_toml, planned
+    from pellicle.studies import from_toml, planned, warn_of_scale
     from pellicle_check import words
     from pellicle_check.advice import advise
 
     allowed = _allowed(error.strip())
     configuration = from_toml(file, set_ or ())
     is_study = isinstance(configuration, Study)
-    for doubt in doubts_of_scale(configuration).values():
-        warnings.warn(doubt, stacklevel=2)
+    warn_of_scale(configuration)
     checked = []
     for task in planned(configuration, Path(file.stem)):
         name = task.name if is_study else ""

@@ -99,9 +99,10 @@ def advice_on_runs(advised: Sequence[Advised], allowed: float) -> Iterator[str]:
 def contacts_at_edge(advised: Sequence[Advised]) -> Iterator[str]:
     """Yield which steps reach the edge of the domain, and a domain that holds all; or nothing."""
     reaching = [one for one in advised if one.advice.at_edge]
-    for name, _, advice, _ in reaching:
+    for name, run, advice, _ in reaching:
         steps = f"step{'s' * (len(advice.at_edge) > 1)} {', '.join(map(str, advice.at_edge))}"
-        yield f"{name}{': ' * bool(name)}the contact of {steps} reaches the edge of the domain"
+        what = f"the contact{', or the zone around it,' * bool(run.interaction)} of {steps}"
+        yield f"{name}{': ' * bool(name)}{what} reaches the edge of the domain"
     if reaching:
         yield f"{_domain(reaching)} holds every step; the errors are for such a domain"
 

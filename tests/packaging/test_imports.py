@@ -78,6 +78,19 @@ def test_the_registry_loads_no_more_than_components_need() -> None:
     assert public <= {"scipy.fft", "scipy.sparse", "scipy.special", "scipy.version"}
 
 
+def test_a_misspelt_keyword_loads_no_command() -> None:
+    """Only a file may be for another command; a call says what it makes."""
+    run = "grid={'points': 8, 'size': 1.0}, kernel={'type': 'half_space', 'reduced_modulus': 1.0}"
+    study = f"pellicle.Study(run=dict({run}, kernl=1), vary={{'kernel.reduced_modulus': [1, 2]}})"
+    wrong = (f"pellicle.Run({run}, kernl=1)", f"pellicle.run(dict({run}, kernl=1))", study)
+    tries = "".join(
+        f"try:\n    {call}\nexcept pellicle.ConfigError as e:\n    assert 'kernl' in str(e)\n"
+        for call in wrong
+    )
+    names = modules(f"import pellicle\n{tries}")
+    assert not {"pellicle_fit.command", "pellicle_check", "pellicle.cli.run"} & names
+
+
 def test_unknown_name_is_an_attribute_error() -> None:
     """A name that does not exist fails as in any module."""
     with pytest.raises(AttributeError, match="nonsense"):

@@ -151,6 +151,42 @@ def test_a_step_across_the_lowest_force_does_not_jump() -> None:
         assert not path["jump_energy"].values[1:].any()
 
 
+@pytest.mark.parametrize(
+    ("law", "length", "reach", "steps", "jumps"),
+    [
+        ("linear", 0.5, 2.0, 6, 0),
+        ("linear", 0.5, 2.0, 24, 0),
+        pytest.param("dugdale", 0.0, 1.5, 6, 0, marks=pytest.mark.slow),
+        pytest.param("exponential", 0.0, 0.7, 24, 2, marks=pytest.mark.slow),
+        pytest.param("linear", 0.2, 0.8, 6, 1, marks=pytest.mark.slow),
+        pytest.param("linear", 0.2, 0.8, 24, 2, marks=pytest.mark.slow),
+    ],
+)
+def test_a_loss_that_falls_with_the_step_is_no_jump(
+    law: str, length: float, reach: float, steps: int, jumps: int
+) -> None:
+    """A step that jumps loses as much in 16 parts; where contact begins smoothly none is named."""
+    interaction = {"type": law, "work_of_adhesion": 1.0, "range": reach}
+    down = np.linspace(-2.5, 0.6, steps + 1)
+
+    def path(depths: list[float]) -> Any:
+        return solved(24, length, depths, interaction=interaction, size=7.0)
+
+    depths = [*down, *down[-2::-1]]
+    coarse = path(depths)
+    named = np.flatnonzero(coarse["jumped"].values)
+    assert named.size == jumps
+    assert (coarse["jump_energy"].values[named] > 0).all()
+    for index in named:
+        parts = np.linspace(*depths[index - 1 : index + 1], 17)
+        fine = path([*depths[: index - 1], *parts]).isel(step=slice(index - 1, None))
+        force, depth, energy = (fine[name].values for name in ("force", "depth", "energy"))
+        work = float((0.5 * (force[1:] + force[:-1]) * np.diff(depth)).sum())
+        lost = work - (energy[-1] - energy[0])
+        assert lost > 0.3 * float(coarse["jump_energy"][index])
+        assert np.nansum(fine["jump_energy"].values) == pytest.approx(lost, rel=0.2)
+
+
 @pytest.mark.parametrize("law", ["jkr", "dugdale"])
 @pytest.mark.parametrize(
     ("prescribed", "values"), [("depth", [1e-6, 2e-6]), ("force", [1e-7, 2e-7])]

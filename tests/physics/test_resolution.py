@@ -8,20 +8,20 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from tests.physics.tables import half_space, paraboloid
+from tests.physics.tables import half_space, heights, paraboloid
 
 RADIUS, MODULUS = 1e-3, 1e4
 POINTS, SIZE = 32, 5e-4
 COARSE = "too coarse for this contact"
 
 
-def pressed(points: Any = POINTS, **loading: Any) -> pl.Result:
-    """Return a paraboloid on a half-space."""
+def pressed(points: Any = POINTS, indenter: Any = None, **loading: Any) -> pl.Result:
+    """Return a paraboloid, or another indenter, on a half-space."""
     return pl.run(
         {
             "grid": {"points": points, "size": SIZE},
             "kernel": half_space(MODULUS),
-            "indenter": paraboloid(RADIUS),
+            "indenter": indenter or paraboloid(RADIUS),
             "loading": loading,
         },
         progress=False,
@@ -65,8 +65,41 @@ def test_no_load_is_not_coarse() -> None:
     assert pressed(depth=0).dataset["status"].item() == "converged"
 
 
-def test_a_free_grid_one_cell_wide_has_an_edge() -> None:
+ONE_LINE = heights(-(np.linspace(-1e-2, 1e-2, 64)[:, None] ** 2))
+
+
+@pytest.mark.parametrize(
+    ("points", "indenter"),
+    [
+        (1, {}),
+        ([1, 64], {}),
+        ([64, 1], {}),
+        ([64, 1], ONE_LINE),
+        ([64, 1], {"type": "sum", "parts": [paraboloid(1e-3), ONE_LINE]}),
+    ],
+)
+def test_a_free_grid_one_cell_wide_has_an_edge(points: Any, indenter: dict[str, Any]) -> None:
     """The contact reaches beyond a strip of cells, and beyond a single one."""
-    for points in (1, [1, 64], [64, 1]):
-        with pytest.warns(pl.ConvergenceWarning, match="reaches the edge"):
-            assert not pressed(points, depth=2e-5).converged
+    words = "reaches the edge" if points == 1 else 'give grid.boundary = "periodic"'
+    with pytest.warns(pl.ConvergenceWarning, match=words):
+        result = pressed(points, indenter=indenter, depth=2e-5)
+    code = "CONTACT_AT_EDGE" if points == 1 else "STRIP"
+    assert result.dataset["status_code"].item() == code
+
+
+def test_a_zone_that_reaches_the_edge_has_words_of_its_own() -> None:
+    """Without contact it is the zone that needs room; with room the same is said of neither."""
+    run: dict[str, Any] = {
+        "kernel": {"type": "half_space", "reduced_modulus": 1.0},
+        "indenter": {"type": "paraboloid", "radius": 10.0},
+        "interaction": {"type": "dugdale", "work_of_adhesion": 1e-4, "range": 1.0},
+        "loading": {"depth": -0.5},
+    }
+    for boundary in ("free", "periodic"):
+        grid = {"points": 10, "size": 1.0, "boundary": boundary}
+        with pytest.warns(pl.ConvergenceWarning, match="the zone in which the interaction pulls"):
+            data = pl.run({**run, "grid": grid}, progress=False).dataset
+        assert data["status_code"].item() == "ZONE_AT_EDGE"
+        assert not data["contact"].any()
+        data = pl.run({**run, "grid": {**grid, "points": 24, "size": 12.0}}, progress=False).dataset
+        assert data["converged"].all()

@@ -102,6 +102,8 @@ class _Group(TyperGroup):
         try:
             with warnings.catch_warnings():
                 warnings.showwarning = print_warning
+                # A command prints what Python, started with -W error, would raise.
+                warnings.simplefilter("default", UserWarning)
                 return super().invoke(ctx)
         except PellicleError as error:
             for line in str(error).splitlines():

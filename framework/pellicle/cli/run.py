@@ -10,7 +10,7 @@ import typer
 
 from pellicle.hookspecs import RegisterCommand, hookimpl
 
-from .printing import INTERRUPTED, AsJSON, InSI, echo, print_json, print_table, print_warning
+from .printing import INTERRUPTED, AsJSON, InSI, echo, print_json, print_table
 
 
 def run(
@@ -62,17 +62,15 @@ def run(
     from pellicle.runs.journal import Journal
     from pellicle.runs.progress import RunProgress
     from pellicle.show import sentences, tables
-    from pellicle.show.doubtful_scales import doubts_of_scale
     from pellicle.studies import runner as studies
 
     from .results import exit_by_outcome, print_outcome_json, print_tables
 
     began, configuration = monotonic(), from_toml(file, set_ or ())
-    for doubt in doubts_of_scale(configuration).values():
-        print_warning(doubt)
     folder = directory or Path(file.stem)
     stem = folder / file.stem
     if dry_run:
+        studies.warn_of_scale(configuration)
         tasks = studies.planned(configuration, stem, overwrite=overwrite)
         table, sentence = tables.planned(tasks)
         if json:
@@ -96,7 +94,8 @@ def run(
             outcome, files, resumed = runner.execute(
                 configuration, journal, outputs, bar, threads=threads
             )
-            if Status.CONTACT_AT_EDGE.name in outcome.dataset["status_code"].values:
+            at_edge = {Status.CONTACT_AT_EDGE.name, Status.ZONE_AT_EDGE.name}
+            if at_edge & {*outcome.dataset["status_code"].values}:
                 echo(sentences.larger_domain(file, folder), err=True)
     except KeyboardInterrupt:
         finished = "runs" if isinstance(configuration, Study) else "steps"

@@ -51,6 +51,7 @@ from .indenter import profile_of as profile_of
 from .interaction import Interaction as Interaction
 from .kernel import Kernel as Kernel
 from .kernel import KernelOf as KernelOf
+from .lattice import Lattice as Lattice
 from .output import Output as Output
 from .output import Runs as Runs
 from .prescription import Prescription as Prescription

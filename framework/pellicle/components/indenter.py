@@ -15,6 +15,7 @@ from pellicle.grid import Grid, grid_of_run
 from pellicle.units import DIGITS, readable
 
 from .base import Component
+from .lattice import Lattice
 
 Footprint = Literal["unbounded", "domain"]
 
@@ -49,6 +50,18 @@ class Indenter(Component):
         is rotated, ``x`` and ``y`` both have shape (nx, ny). An indenter that has no profile on
         these points raises a ConfigError.
         """
+
+    def repeated(self, x: Array, y: Array, lattice: Lattice | None) -> Array:
+        """Return the profile [m] of the indenter and its images at points as for `profile`.
+
+        On a periodic grid, whose ``lattice`` is given, all images press, and the lowest at a point
+        counts: neither the place of an indenter nor the origin of the grid then matters. An
+        indenter made of others overrides it and asks its parts. ``lattice`` is None on a free grid.
+        """
+        if lattice is None:
+            return self.profile(x, y)
+        known_at_cells = self.footprint == "domain"
+        return (lattice.rolled if known_at_cells else lattice.envelope)(self.profile, x, y)
 
 
 @runtime_checkable
@@ -170,8 +183,9 @@ class HasLayerForceCurve(Protocol):
 def profile_of(indenter: Indenter, grid: Grid) -> Array:
     """Return the profile f ≤ 0 [m] of an indenter on a grid, read-only."""
     x, y = (read_only(points) for points in grid.coordinates())
+    lattice = Lattice(grid) if grid.boundary == "periodic" else None
     with problems_within("indenter"), errors_attributed_to(indenter), grid_of_run(grid):
-        value, footprint = indenter.profile(x, y), indenter.footprint
+        value, footprint = indenter.repeated(x, y, lattice), indenter.footprint
     profile = real_array(indenter, "profile(x, y)", value, grid.shape)
     name = component_name(indenter)
     if footprint not in get_args(Footprint):

@@ -201,7 +201,8 @@ def solution_of(
         value = solver.solve(view, None if start is None else _read_only_state(start), monitor)
     state = _checked_state(solver, problem, value)
     jumped = bool(value.jumped)
-    if adheres:
+    # Under a law with a range contact may begin and end smoothly.
+    if problem.law and (start is None or problem.law.needs_contact):
         touched = start is not None and bool(start.contact.any())
         jumped = jumped or bool(state.contact.any()) != touched
     return Solution(state, int(value.iterations), value.stop, jumped)

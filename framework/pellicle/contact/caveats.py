@@ -71,10 +71,20 @@ class Status(Enum):
         "the contact stiffness is not known: its displacement misses by {measure:.1e}, over the "
         "tolerance {tolerance:.1e}; loosen solver.tolerance, or leave loading.stiffness out"
     )
+    STRIP = (
+        "the contact reaches the edge of a grid one cell across: on a free boundary it is a strip "
+        "{length:m} long, not a line contact, which repeats along its line; give "
+        'grid.boundary = "periodic", or more than one of grid.points each way'
+    )
     CONTACT_AT_EDGE = (
         "the contact reaches the edge of the domain, where the indenter does not end, so force "
         "and area are wrong; enlarge grid.size = {size_x:m} × {size_y:m} or press in less far "
         "(loading.{prescribed} = {value:unit})"
+    )
+    ZONE_AT_EDGE = (
+        "the zone in which the interaction pulls reaches the edge of the domain, where the "
+        "indenter does not end, so the force is wrong; enlarge grid.size = {size_x:m} × "
+        "{size_y:m}, or give the interaction a shorter range, which jkr has on smaller cells"
     )
     AREA = (
         "the contact area misses the prescribed one by {measure:.1e}, over {tolerance:g}; "

@@ -121,7 +121,7 @@ def start_of(problem: Problem, state: State | None, path: Sequence[FinishedStep]
     if state is None or len(path) < 2 or problem.left is not None or problem.law:
         return state
     before, last = path
-    reached = [_control(problem, point.state) for point in (before, last)]
+    reached = [control_of(problem, point.state) for point in (before, last)]
     step = reached[1] - reached[0]
     ratio = (problem.value - reached[1]) / step if step else 0.0
     touches = before.state.contact.any() and last.state.contact.any()
@@ -132,7 +132,7 @@ def start_of(problem: Problem, state: State | None, path: Sequence[FinishedStep]
     return State(pressure, pressure, depth)
 
 
-def _control(problem: Problem, state: State) -> float:
+def control_of(problem: Problem, state: State) -> float:
     """Return the depth of the base [m] or the force [N] of a state, as `Problem.value` is."""
     total = float(state.pressure.sum())
     if isinstance(problem.control, Depth):

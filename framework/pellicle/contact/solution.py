@@ -64,7 +64,7 @@ class Solution:
     stop: Stop = Stop.DONE
     """Why the solver stopped."""
     jumped: bool = False
-    """Whether all contact was gained or lost since the start; only with a law."""
+    """Whether all contact was gained or lost in a jump since the start; only with a law."""
 
     @property
     def pressure(self) -> Array:

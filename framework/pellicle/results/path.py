@@ -63,7 +63,9 @@ def path_variables(steps: Dataset) -> dict[str, float]:
     """
     variables: dict[str, float] = {}
     if has_interaction(steps):
-        done = steps.isel(step=~np.isnan(steps["zone_area"].values))
+        # Without the fields, which would be copied.
+        numbers = steps.drop_dims(["x", "y"], errors="ignore")
+        done = numbers.isel(step=~np.isnan(steps["zone_area"].values))
         if done.sizes["step"]:
             names = "depth", "force", "contact_radius", "energy", "converged", "force_error"
             columns = {name: done[name].values for name in names if name in done}

@@ -49,6 +49,7 @@ class Journal:
             steps = load(self.path).dataset
         except StorageError as error:
             raise StorageError(f"{error}; {storage.REPLACING}") from None
+        steps = steps[[name for name, column in steps.data_vars.items() if "step" in column.dims]]
         return [steps.isel(step=[index]) for index in range(steps.sizes["step"])]
 
     def append(self, step: xr.Dataset) -> None:

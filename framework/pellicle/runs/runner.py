@@ -19,10 +19,12 @@ from pellicle import memory
 from pellicle.checks import checked_threads, errors_attributed_to, read_only_dataset
 from pellicle.components import Output
 from pellicle.components.output import Runs, files_of, stem_of
+from pellicle.config.doubtful_scales import warn_of_scale
 from pellicle.config.run import Run
 from pellicle.errors import ConfigError, ConvergenceWarning
 from pellicle.grid import Grid
 from pellicle.plugins import registry
+from pellicle.results.path import with_path
 from pellicle.results.result import Result
 from pellicle.results.runs import StoredRuns
 from pellicle.results.step import Steps
@@ -84,6 +86,8 @@ def run(
     ConvergenceWarning
         A step of the result did not converge or has a caveat, or the largest contact is far outside
         the theory.
+    UserWarning
+        A value is out of scale with the others, as one without its unit is.
     """
     threads = checked_threads(threads)
     run = Run.of(configuration)
@@ -106,7 +110,8 @@ def run(
 
 def solve(run: Run) -> Result:
     """Return the result of ``run``; nothing is written or shown."""
-    return execute(run, None, (), RunProgress(len(run.loading.values), False)).result
+    bar = RunProgress(len(run.loading.values), False)
+    return execute(run, None, (), bar, inner=True).result
 
 
 class Executed(NamedTuple, Generic[Outcome]):
@@ -126,14 +131,16 @@ def execute(
     bar: Bar,
     *,
     threads: int | None = None,
-    lock: bool = True,
+    inner: bool = False,
 ) -> Executed[Result]:
     """Solve the load steps that ``journal`` lacks and write the outputs beside it.
 
     After an interruption the outputs still show the finished steps. Without a journal nothing is
-    written. No other process may write the same files meanwhile; without ``lock`` the caller has to
-    ensure that.
+    written. No other process may write the same files meanwhile. For an ``inner`` run, such as one
+    of a study, the caller ensures that, and has warned of values out of scale.
     """
+    if not inner:
+        warn_of_scale(run)
     memory.require(memory_of(run), run.grid, len(run.loading.values))
     steps = Steps(len(run.loading.values))
     outputs = [output for output in outputs if journal and output.scope != "study"]
@@ -147,7 +154,7 @@ def execute(
         try:
             solved = solve_steps(run, compose(run), steps, monitor_of)
             if journal:
-                if lock:
+                if not inner:
                     stack.enter_context(locked(journal.stem.parent, journal.stem.name))
                 for step in journal.resume():
                     _hand_over(steps.append(step), outputs, journal)
@@ -163,7 +170,7 @@ def execute(
             ) from None
         finally:
             if steps:
-                result = Result(steps.joined())
+                result = Result(with_path(steps.joined()))
                 if journal:
                     calls = [journal.close, *writers(outputs, runs, journal.stem, run)]
                     files = tuple(chain(*all_done(calls)))

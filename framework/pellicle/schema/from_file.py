@@ -22,6 +22,7 @@ _OF_A_VALUE = "Invalid value", "Expected newline", "Unclosed array", "Unclosed i
 PORTABLE: Final = "portable"
 """Context of ``model_dump`` that writes the names of files without their folders."""
 _folder: ContextVar[Path | None] = ContextVar("folder", default=None)
+_is_file: ContextVar[bool] = ContextVar("a file is being read", default=False)
 
 
 @contextmanager
@@ -31,10 +32,12 @@ def paths_relative_to(folder: Path | None) -> Iterator[None]:
     None stands for the folder of the file being read or, without one, the current folder.
     """
     token = _folder.set(folder or _folder.get() or Path.cwd())
+    of_file = _is_file.set(folder is not None or _is_file.get())
     try:
         yield
     finally:
         _folder.reset(token)
+        _is_file.reset(of_file)
 
 
 def _from_folder(path: Path) -> Path:
@@ -59,9 +62,11 @@ class FromFile(Model):
         try:
             super().__init__(**data)
         except ConfigError:
-            from pellicle.commands import refuse_file_of_another
+            # Whether a file is for another command takes the import of every command.
+            if _is_file.get():
+                from pellicle.commands import refuse_file_of_another
 
-            refuse_file_of_another(type(self), data.keys())
+                refuse_file_of_another(type(self), data.keys())
             raise
 
     @classmethod

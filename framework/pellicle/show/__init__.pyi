@@ -1,6 +1,5 @@
 __all__: list[str]
 
-from .doubtful_scales import doubts_of_scale as doubts_of_scale
 from .drawing import draw as draw
 from .fields import up_to_rim as up_to_rim
 from .fields import with_rim as with_rim

@@ -21,6 +21,7 @@ from pellicle import memory
 from pellicle.batch import BatchProgress, locked, mapped
 from pellicle.checks import checked_threads, read_only_dataset
 from pellicle.components import Executor, Output, Say
+from pellicle.config.doubtful_scales import warn_of_scale as warn_of_scale
 from pellicle.config.run import Run
 from pellicle.config.study import DEFAULT_EXECUTOR, Study
 from pellicle.config.study import from_toml as from_toml
@@ -120,6 +121,8 @@ def run_study(
     -----
     ConvergenceWarning
         A step did not converge, or a run failed; see ``status``.
+    UserWarning
+        A value is out of scale with the others, as one without its unit is.
     """
     threads = checked_threads(threads)
     study = Study.of(configuration)
@@ -174,6 +177,7 @@ def execute(
 
     After an interruption the table and the outputs show the finished steps.
     """
+    warn_of_scale(study)
     with locked(directory, "study"):
         path, first = directory / "study.h5", study.points[0].run
         rows, unfinished = _begun(study, path, overwrite)
@@ -287,7 +291,7 @@ def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
     bar = nullcontext(partial(reporting, steps=task.steps, show=say))
     with _recorded_warnings() as caught:
         executed = runner.execute(
-            task.run, task.journal, task.outputs, bar, threads=threads, lock=False
+            task.run, task.journal, task.outputs, bar, threads=threads, inner=True
         )
     messages = [str(warning.message) for warning in caught]
     numbers = executed.result.dataset.drop_dims(["x", "y"])

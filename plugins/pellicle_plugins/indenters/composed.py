@@ -3,41 +3,36 @@
 from __future__ import annotations
 
 from math import cos, sin
-from typing import Annotated, ClassVar, Literal, Self
+from typing import Annotated, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from pellicle.arrays import Array
-from pellicle.components import Footprint, FromRegistry, Indenter
+from pellicle.components import Footprint, FromRegistry, Indenter, Lattice
 from pellicle.errors import ConfigError, problems_within
 from pellicle.units import Quantity
 
 
-class Transformed(Indenter):
+class Composed(Indenter):
+    """Base class of the indenters made of others, each of which repeats on a periodic grid."""
+
+    def profile(self, x: Array, y: Array) -> Array:
+        """Return the profile [m] of the indenter alone."""
+        return self.repeated(x, y, None)
+
+
+class Transformed(Composed):
     """Base class of the indenters that change one other, their ``part``."""
 
     part: Annotated[
         Indenter, FromRegistry(), Field(description="the indenter to change: a table with type")
     ]
 
-    moves: ClassVar[bool] = True
-    """Whether it moves its part, which must then reach beyond the domain; `Scaled` does not."""
-
     @property
     def footprint(self) -> Footprint:
         """The footprint of the part."""
         return self.part.footprint
-
-    @model_validator(mode="after")
-    def _moved_part_is_unbounded(self) -> Self:
-        if self.moves and self.part.footprint == "domain":
-            raise ConfigError(
-                "ends where the domain does and would leave a part of it empty; move the other "
-                "parts of a sum instead, or the heights before they are read",
-                "part",
-            )
-        return self
 
 
 class Shifted(Transformed):
@@ -52,9 +47,15 @@ class Shifted(Transformed):
         float, Quantity("m"), Field(title="shift along y", description="shift along y [m]")
     ] = 0.0
 
-    def profile(self, x: Array, y: Array) -> Array:
+    def repeated(self, x: Array, y: Array, lattice: Lattice | None) -> Array:
         """Return f(x − x₀, y − y₀) [m]."""
-        return profile_of_part(self.part, x - self.x, y - self.y, "part")
+        if lattice is None and self.part.footprint == "domain":
+            raise ConfigError(
+                "ends where the domain does and would leave a part of it empty; move the other "
+                "parts of a sum instead, or press it on a periodic grid, where it goes on",
+                "part",
+            )
+        return profile_of_part(self.part, x - self.x, y - self.y, lattice, "part")
 
 
 class Rotated(Transformed):
@@ -68,10 +69,21 @@ class Rotated(Transformed):
         float, Quantity("rad"), Field(description="angle [rad] from x towards y, or as '30 degree'")
     ]
 
-    def profile(self, x: Array, y: Array) -> Array:
+    @model_validator(mode="after")
+    def _part_is_unbounded(self) -> Self:
+        if self.part.footprint == "domain":
+            raise ConfigError(
+                "ends where the domain does and would leave a part of it empty; move the other "
+                "parts of a sum instead, or the heights before they are read",
+                "part",
+            )
+        return self
+
+    def repeated(self, x: Array, y: Array, lattice: Lattice | None) -> Array:
         """Return f(x cos α + y sin α, y cos α − x sin α) [m]."""
         c, s = cos(self.angle), sin(self.angle)
-        return profile_of_part(self.part, c * x + s * y, c * y - s * x, "part")
+        turned = lattice and lattice._replace(angle=lattice.angle - self.angle)
+        return profile_of_part(self.part, c * x + s * y, c * y - s * x, turned, "part")
 
 
 class Scaled(Transformed):
@@ -81,27 +93,28 @@ class Scaled(Transformed):
     examples = (
         {"part": {"type": "heights", "path": "heights.txt", "unit": "1 um"}, "factor": 0.5},
     )
-    moves: ClassVar[bool] = False
     factor: Annotated[
         float,
         Quantity("1", at_least=0),
         Field(title="height factor", description="factor of the heights; 0 is flat"),
     ]
 
-    def profile(self, x: Array, y: Array) -> Array:
+    def repeated(self, x: Array, y: Array, lattice: Lattice | None) -> Array:
         """Return factor · f [m], or −inf where f is −inf."""
-        profile = profile_of_part(self.part, x, y, "part")
+        profile = profile_of_part(self.part, x, y, lattice, "part")
         # −inf · 0 would be NaN.
         return np.multiply(profile, self.factor, out=profile.copy(), where=np.isfinite(profile))
 
 
-def profile_of_part(part: Indenter, x: Array, y: Array, field: str) -> Array:
+def profile_of_part(
+    part: Indenter, x: Array, y: Array, lattice: Lattice | None, field: str
+) -> Array:
     """Return the profile [m] of the part in ``field``; its errors name that field."""
     with problems_within(field):
-        return part.profile(x, y)
+        return part.repeated(x, y, lattice)
 
 
-class Sum(Indenter):
+class Sum(Composed):
     """Heights of several indenters added, such as roughness on a sphere.
 
     It ends at the edge of the domain if any of its parts does. Depth is measured from the lowest
@@ -127,7 +140,7 @@ class Sum(Indenter):
         """``"domain"`` if any part ends there."""
         return "domain" if any(part.footprint == "domain" for part in self.parts) else "unbounded"
 
-    def profile(self, x: Array, y: Array) -> Array:
+    def repeated(self, x: Array, y: Array, lattice: Lattice | None) -> Array:
         """Return Σ f_i − its value at the lowest point [m].
 
         The lowest point of the sum of the unbounded parts is located between the cells. Parts that
@@ -138,7 +151,7 @@ class Sum(Indenter):
         smooth, rough = np.zeros(shape), np.zeros(shape)
         hidden = 0.0
         for index, part in enumerate(self.parts):
-            profile = profile_of_part(part, x, y, f"parts.{index}")
+            profile = profile_of_part(part, x, y, lattice, f"parts.{index}")
             if part.footprint == "domain":
                 rough += profile
                 hidden -= float(profile.max())
@@ -149,11 +162,11 @@ class Sum(Indenter):
         top = float(total[at])
         if not np.isfinite(top):
             raise ConfigError("do not overlap anywhere; shift them so that they do", "parts")
-        hidden += self._summit(x, y, smooth) - float(smooth.max())
+        hidden += self._summit(x, y, smooth, lattice) - float(smooth.max())
         # Rounding may leave the lowest point slightly above 0.
         return np.minimum(total - (top + hidden), 0.0)
 
-    def _summit(self, x: Array, y: Array, smooth: Array) -> float:
+    def _summit(self, x: Array, y: Array, smooth: Array, lattice: Lattice | None) -> float:
         """Return the maximum of the sum of the unbounded parts, at cells or between them."""
         from scipy.optimize import minimize
 
@@ -161,7 +174,7 @@ class Sum(Indenter):
 
         def heights(px: float, py: float) -> float:
             point = np.array([[px]]), np.array([[py]])
-            return float(sum(part.profile(*point).item() for part in unbounded))
+            return float(sum(part.repeated(*point, lattice).item() for part in unbounded))
 
         # No part is above 0, so a sum of 0 at the centre is the maximum.
         if heights(0.0, 0.0) == 0:

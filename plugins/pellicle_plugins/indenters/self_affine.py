@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from pellicle.arrays import Array
-from pellicle.components import Footprint, Indenter
+from pellicle.components import Footprint, Indenter, Lattice
 from pellicle.errors import ConfigError
 from pellicle.units import Length, Quantity, readable
 
@@ -80,6 +80,10 @@ class SelfAffine(Indenter):
             )
         series = self._series(axes[0].period, axes[1].period)
         return _sample(series, *axes) - _maximum(series, *axes)
+
+    def repeated(self, x: Array, y: Array, lattice: Lattice | None) -> Array:
+        """Return the profile [m]: the series is known between the cells, so any shift is exact."""
+        return self.profile(x, y)
 
     def _series(self, period_x: float, period_y: float) -> _Series:
         """Return the Fourier modes, one of each pair ±q of wave vectors."""

@@ -45,7 +45,7 @@ class GapVolume(Prescription):
             _volume,
             control=Depth if setting.law else Force,
             increasing=False,
-            resolution=1e-6 * (value or _at_first_touch(setting)),
+            resolution=1e-9 * (value or _at_first_touch(setting)),
             quantity="gap volume",
             unit="m3",
         )

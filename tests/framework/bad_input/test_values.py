@@ -9,7 +9,7 @@ import pytest
 
 import pellicle as pl
 from pellicle import memory
-from pellicle.show.doubtful_scales import doubts_of_scale
+from pellicle.config.doubtful_scales import doubts_of_scale
 from tests.framework.bad_input.command_line import says
 
 
@@ -87,3 +87,18 @@ def test_plausible_scales_are_not_doubted(scale: float) -> None:
     )
     assert doubts_of_scale(run) == {}
     assert doubts_of_scale(pl.Run(**BEAD)) == {}
+
+
+@pytest.mark.parametrize("solve", [pl.run, pl.run_study])
+def test_the_library_warns_of_a_scale_as_the_command_does(
+    solve: Any, recwarn: pytest.WarningsRecorder
+) -> None:
+    """A run, and a study for all of its runs, tell the value once, to the line that called."""
+    run: dict[str, Any] = {**BEAD, "grid": {"points": 12, "size": "50 um"}, "outputs": []}
+    run["kernel"] = {**BEAD["kernel"], "tension": 1000.0}
+    if solve is pl.run_study:
+        run["study"] = {"vary": {"kernel.tension": [0.005, 1000.0, 2000.0]}}
+    solve(run, progress=False)
+    (told,) = [entry for entry in recwarn if "is in SI" in str(entry.message)]
+    assert str(told.message).startswith("kernel.tension is 1000 N/m")
+    assert told.filename == __file__

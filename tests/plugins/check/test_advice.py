@@ -52,6 +52,17 @@ def test_errors_are_at_most_those_expected(shape: str, tension: float) -> None:
         assert abs(force / exact - 1) <= step.force_error <= 0.1
 
 
+def test_a_domain_without_contact_is_not_called_good() -> None:
+    """Neither cells too wide to see the contact nor a strip are advised: both are refused."""
+    ridge = {"type": "quadric", "radius_x": 1e-6, "radius_y": 1e-2}
+    wide = run(indenter=ridge, loading={"depth": 1e-7}, grid={"points": [128, 8], "size": 1e-5})
+    with pytest.raises(pl.ConfigError, match="on which the cells resolve it"):
+        advise(wide, 0.01)
+    strip = run(grid={"points": [256, 1], "size": 4e-5}, loading={"depth": 1e-7})
+    with pytest.raises(pl.ConfigError, match=r'^grid\.boundary: 256 × 1 .* give "periodic"'):
+        advise(strip, 0.01)
+
+
 @pytest.mark.filterwarnings("ignore:.*too coarse for this contact")
 def test_the_suggested_grid_meets_the_allowed_error() -> None:
     """On it every expected error of the force is about the allowed one, or below."""

@@ -95,6 +95,10 @@ def test_pull_off_on_few_cells_has_its_error_beside_it(bead: tuple[Path, pl.Resu
     (message,) = result.beyond_theory().values()
     assert "6.0 cells" in message
     summary = result.path_summary
+    for data in (result.dataset, pl.load(folder).dataset):
+        assert {name: data[name].item() for name in names_of("path")} == pytest.approx(
+            summary, rel=0, nan_ok=True
+        )
     assert -summary["pull_off"] * 0.05 < summary["pull_off_accuracy"] < -summary["pull_off"] * 0.2
     assert message in " ".join(
         CliRunner().invoke(app, ["show", str(folder / "run.h5")]).output.split()

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from pellicle.components.solver import solution_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import Equilibrium, equilibrium_of
-from pellicle.contact.load_step import FinishedStep, LoadStep, Value
+from pellicle.contact.load_step import LoadStep, Value, control_of
 from pellicle.contact.masks import labelled
 from pellicle.contact.problem import Depth
 from pellicle.contact.solution import State, Stop
@@ -41,6 +41,10 @@ _CONSTANT: Final = 0.05
 # Share of |ΔF Δδ|/2 by which the trapezoidal rule may miss the work of a step without a jump. It
 # is 1/3 for F ∝ √(δ − δ₀), the steepest that a force falls before it jumps.
 _MISSED: Final = 0.5
+# Halvings of a step that seems to jump, and the share of its loss that is left in one part of it if
+# it does: what the rule misses falls at least as the step to 3/2, to 0.04.
+_REFINEMENTS: Final = 3
+_STAYS: Final = 0.25
 # Share of |F Δδ| that does not count as a jump: the change of the energy with the place of the edge
 # on the cells, 0.005 at two cells in the zone.
 _UNCERTAIN: Final = 0.01
@@ -48,17 +52,20 @@ _UNCERTAIN: Final = 0.01
 
 def adhesion(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
     """Add jumps, the limit of the force, and whether zone and slopes are those of the theory."""
-    setting, equilibrium, jumped_as_whole = surroundings.setting, step.equilibrium, step.jumped
+    setting, equilibrium = surroundings.setting, step.equilibrium
     if step.stop is Stop.PULLED_OFF:
         step = step.having({}, [_pulled_off(run, step, surroundings)])
-    lost = _jump_energy(setting.path, equilibrium, run.solver.tolerance)
-    jumped = jumped_as_whole or lost > 0 or _asperity_jumped(setting.state, equilibrium)
+    touched = setting.state is not None and bool(setting.state.contact.any())
+    as_whole = bool(equilibrium.contact.any()) != touched
+    jumped = step.jumped or _asperity_jumped(setting.state, equilibrium)
+    lost = _jump_energy(run, equilibrium, surroundings, is_certain=jumped)
+    jumped = jumped or lost > 0
     limit = _force_limit(run, equilibrium, surroundings.monitor)
     step = step.having({"jumped": jumped, "jump_energy": lost, **limit})
     if not step.converged:
         return step
     caveats = [*_limits(run, equilibrium)]
-    if jumped and not jumped_as_whole and equilibrium.contact.any():
+    if jumped and not as_whole and equilibrium.contact.any():
         loss = "known" if lost > 0 else "unknown"
         caveats.append(Caveat(Status.JUMPED, {"lost": lost, "loss": loss}))
     return step.having({}, caveats)
@@ -164,36 +171,77 @@ def _asperity_jumped(before: State | None, equilibrium: Equilibrium) -> bool:
     return False
 
 
-def _jump_energy(path: Sequence[FinishedStep], equilibrium: Equilibrium, tolerance: float) -> float:
-    """Return the energy [J] that jumps have lost since the end of a path; 0 if too little to tell.
+class _Point(NamedTuple):
+    """A state on the path, and what the work between it and another one is computed from."""
 
-    ``path`` has the last two steps, or fewer, solved to the residual ``tolerance``.
+    state: State
+    depth: float
+    force: float
+    energy: float
+
+    def loss(self, after: _Point) -> float:
+        """Return the work up to another point less the change of the energy [J]."""
+        return (
+            self.energy
+            - after.energy
+            + 0.5 * (self.force + after.force) * (after.depth - self.depth)
+        )
+
+    def missed(self, after: _Point) -> float:
+        """Return how much of it [J] the trapezoidal rule may leave without a jump."""
+        share = 0.5 * _MISSED * abs(after.force - self.force)
+        share += _UNCERTAIN * max(abs(self.force), abs(after.force))
+        return share * abs(after.depth - self.depth)
+
+
+def _jump_energy(
+    run: Run, equilibrium: Equilibrium, surroundings: Surroundings, *, is_certain: bool
+) -> float:
+    """Return the energy [J] that jumps have lost since the end of a path; 0 if too little to tell.
 
     Without a jump the energy changes by the work ∫F dδ of the step, whatever is prescribed; a jump
     loses the rest. That counts if it is more than the trapezoidal rule may miss, so every jump
-    shows once the steps are small enough. The rule misses a share of |ΔF Δδ|/2 where F is
-    monotonic. Across an extremum, where ΔF may be 0, it misses one of |B Δδ|/2, B being the
-    departure of F from the slope of the step before: F″Δδ³/12 for a constant F″, which is 1/3 at
-    most. Energies are known to the tolerance of their elastic and adhesive parts, which may cancel.
+    shows once the steps are small enough. Unless it ``is_certain``, the step is halved where most
+    is missing: what a bend of the force misses falls with the step, and is no jump; what a jump
+    loses stays. Energies are known to the tolerance of their elastic and adhesive parts, which may
+    cancel.
 
     NaN where the energy is not known, or the last step did not converge.
     """
+    path, problem, tolerance = surroundings.setting.path, equilibrium.problem, run.solver.tolerance
     if not path:
         return float("nan")
-    problem, last = equilibrium.problem, path[-1]
+    last = path[-1]
     assert problem.law
     cell = problem.grid.cell_area
-    forces = [*(float(point.state.pressure.sum()) * cell for point in path), equilibrium.force]
-    steps = np.diff([*(point.state.depth for point in path), equilibrium.depth])
     acting = np.count_nonzero(equilibrium.pressure) * cell
     parts = max(abs(last.energy), abs(equilibrium.energy))
-    parts += 2 * acting * problem.law.work_of_adhesion()
-    step, greatest = float(steps[-1]), max(map(abs, forces[-2:]))
-    lost = last.energy - equilibrium.energy + 0.5 * (forces[-2] + forces[-1]) * step
-    varies = abs(forces[-1] - forces[-2])
-    if len(path) == 2 and steps[0]:
-        bend = forces[-1] - forces[-2] - (forces[1] - forces[0]) / steps[0] * step
-        # The slope of a step that was almost held is that of its errors.
-        varies = max(varies, min(abs(bend), greatest))
-    share = 0.5 * _MISSED * varies + _UNCERTAIN * greatest
-    return 0.0 if lost <= share * abs(step) + tolerance * parts else lost
+    noise = tolerance * (parts + 2 * acting * problem.law.work_of_adhesion())
+
+    def excess(pair: tuple[_Point, _Point]) -> float:
+        return pair[0].loss(pair[1]) - pair[0].missed(pair[1]) - noise
+
+    force = float(last.state.pressure.sum()) * cell
+    pair = _Point(last.state, last.state.depth, force, last.energy), _point_of(equilibrium)
+    lost = pair[0].loss(pair[1])
+    if excess(pair) <= 0:
+        return 0.0
+    ends = control_of(problem, last.state), problem.value
+    for _ in range(0 if is_certain or np.isnan(lost) else _REFINEMENTS):
+        middle = 0.5 * (ends[0] + ends[1])
+        halved = replace(problem, control=replace(problem.control, value=middle))
+        solution = solution_of(run.solver, halved, pair[0].state, surroundings.monitor)
+        between = equilibrium_of(halved, solution)
+        if solution.stop is Stop.PULLED_OFF or not between.residual <= tolerance:
+            break
+        point = _point_of(between)
+        halves = (pair[0], point), (point, pair[1])
+        worse = int(excess(halves[1]) > excess(halves[0]))
+        pair, ends = halves[worse], ((ends[0], middle), (middle, ends[1]))[worse]
+        if excess(pair) <= 0 or pair[0].loss(pair[1]) < _STAYS * lost:
+            return 0.0
+    return lost
+
+
+def _point_of(equilibrium: Equilibrium) -> _Point:
+    return _Point(equilibrium.state, equilibrium.depth, equilibrium.force, equilibrium.energy)

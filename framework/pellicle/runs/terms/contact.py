@@ -6,10 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from pellicle.arrays import Mask
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.load_step import LoadStep
+from pellicle.contact.masks import labelled
+from pellicle.grid import Boundary
 
 from . import Surroundings
 
@@ -44,22 +47,42 @@ def _failures(run: Run, step: LoadStep, value: float) -> Iterator[Caveat]:
                 status,
                 {"measure": residual, "tolerance": tolerance, "stop": step.stop.name},
             )
-    reach, loading = equilibrium.contact | equilibrium.zone, run.loading
-    # A period one cell wide has no border in that direction: the problem is plane there.
-    free = run.grid.boundary == "free"
-    across = [axis for axis in (0, 1) if reach.shape[axis] > 1 or free]
-    at_edge = any(np.take(reach, [0, -1], axis=axis).any() for axis in across)
-    if at_edge and run.indenter.footprint == "unbounded":
+    contact, reach = equilibrium.contact, equilibrium.contact | equilibrium.zone
+    size, boundary, loading = run.grid.size, run.grid.boundary, run.loading
+    edges = {"size_x": size[0], "size_y": size[1]}
+    if boundary == "free" and min(contact.shape) == 1 < contact.size and reach.any():
+        yield Caveat(Status.STRIP, {"length": size[int(contact.shape[1] == 1)]})
+    elif run.indenter.footprint != "unbounded":
+        return
+    elif _has_no_end(contact, boundary):
         yield Caveat(
             Status.CONTACT_AT_EDGE,
             {
-                "size_x": run.grid.size[0],
-                "size_y": run.grid.size[1],
+                **edges,
                 "prescribed": loading.prescribed,
                 "value": value,
                 "unit": loading.prescription.unit,
             },
         )
+    elif _has_no_end(reach, boundary):
+        yield Caveat(Status.ZONE_AT_EDGE, edges)
+
+
+def _has_no_end(reach: Mask, boundary: Boundary) -> bool:
+    """Return whether cells reach the edge of a free domain, or their own image on a periodic one.
+
+    A patch that goes on into its image is one patch in two periods side by side. A period one cell
+    wide has no border in that direction: the problem is plane there.
+    """
+    for axis in (0, 1):
+        if boundary == "free":
+            if np.take(reach, [0, -1], axis=axis).any():
+                return True
+        elif reach.shape[axis] > 1 and reach.any(axis=1 - axis).all():
+            twice = np.concatenate([reach, reach], axis)
+            if labelled(twice, boundary, 8)[1] < 2 * labelled(reach, boundary, 8)[1]:
+                return True
+    return False
 
 
 def _coarse(run: Run, equilibrium: Equilibrium) -> Iterator[Caveat]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterator
 from contextlib import suppress
 
@@ -41,6 +42,12 @@ def doubts_of_scale(configuration: Run | Study) -> dict[str, str]:
     return doubts
 
 
+def warn_of_scale(configuration: Run | Study) -> None:
+    """Warn the caller of the caller of what is out of scale with the rest."""
+    for doubt in doubts_of_scale(configuration).values():
+        warnings.warn(doubt, stacklevel=4)
+
+
 def _doubts(run: Run) -> Iterator[tuple[str, str]]:
     size = max(run.grid.size)
     domain = f"on a domain of {readable(size, 'm', 3)}"
@@ -56,7 +63,9 @@ def _doubts(run: Run) -> Iterator[tuple[str, str]]:
         yield _doubt("grid.size", size, "m")
     for path, value, unit in values:
         part = path.partition(".")[0]
-        if part == "indenter" and unit == "m" and value > _LENGTHS * size:
+        # Along the line of a line contact the indenter may be of any length.
+        is_line = min(run.grid.points) == 1
+        if part == "indenter" and unit == "m" and value > _LENGTHS * size and not is_line:
             yield _doubt(path, value, unit, domain)
         if part == "kernel" and unit == "N/m" and moduli:
             length = value / max(moduli)
@@ -65,10 +74,16 @@ def _doubts(run: Run) -> Iterator[tuple[str, str]]:
                 yield _doubt(path, value, unit, f"{over}, {domain}")
         if part == "interaction" and unit == "J/m2" and value * softness > _STICKY * size:
             yield _doubt(path, value, unit, "which displaces this solid by more than the domain")
-        if part == "loading":
+        if part == "loading" and not (unit == "m" and _has_spring(run)):
             reached = {"m": value / size, "N": value / size**2 * softness, "Pa": value * softness}
             if reached.get(unit, 0.0) > 1.0:
                 yield _doubt(path, value, unit, domain)
+
+
+def _has_spring(run: Run) -> bool:
+    """Return whether a spring, however soft, takes up most of what is prescribed."""
+    quantities = map(quantity_of, type(run.loading.prescription).model_fields.values())
+    return any(quantity.unit == "N/m" for quantity in quantities if quantity)
 
 
 def _values(run: Run) -> Iterator[tuple[str, float, str]]:
