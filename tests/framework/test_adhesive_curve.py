@@ -78,6 +78,24 @@ def test_a_cantilever_jumps_where_the_slope_is_minus_its_stiffness() -> None:
     assert force / depth == pytest.approx(-spring, rel=1e-3)
 
 
+@pytest.mark.parametrize(("flat", "pinned"), [(0.6, "depth"), (1.5, "both"), (0.2, "")])
+def test_the_edge_of_a_flat_end_holds_until_its_punch_lets_go(flat: float, pinned: str) -> None:
+    """Without tension δ = a√(a² − b²)/R; the punch lets go at F = −√(8πE*w b³) (Kendall 1971)."""
+    b, rise = flat * A0, np.geomspace(0.03, 4, 20) * A0
+    a = np.hypot(b, rise)
+    force = 2 * E / 3 / R * (2 * a**2 + b**2) * rise
+    sticky = curve(**hertz(a, depth=a * rise / R, force=force))
+    lowest, pull_off = sticky.instability(inf), sticky.instability()
+    fine = np.hypot(b, np.geomspace(1e-4, 10, 20000) * A0)
+    rise, retraction = np.sqrt(fine**2 - b**2), np.sqrt(2 * pi * fine * W / E)
+    depth = fine * rise / R - retraction
+    force = 2 * E / 3 / R * (2 * fine**2 + b**2) * rise - 2 * E * fine * retraction
+    assert lowest.depth == pytest.approx(depth.min(), rel=5e-3)
+    assert pull_off.force == pytest.approx(force.min(), rel=5e-3)
+    assert (lowest.contact_radius == sticky.contact_radius[0]) == bool(pinned)
+    assert (pull_off.contact_radius == sticky.contact_radius[0]) == (pinned == "both")
+
+
 def test_order_and_repetition_of_steps_do_not_matter() -> None:
     """A path there and back has the curve of one way."""
     there_and_back = hertz(np.concatenate([RADII, RADII[-2::-1]]))

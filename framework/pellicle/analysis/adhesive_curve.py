@@ -22,6 +22,11 @@ _POINTS_PER_STEP = 32
 """Points of a curve for each step."""
 _SCATTER = 1e-3
 """Relative difference of stiffness and slope up to which a point counts as on the path."""
+_FLAT = 0.03
+"""Relative difference of F/δ and stiffness up to which a step touches a flat end alone: that of a
+contact half a cell wider than a flat with ten cells in its radius."""
+_BESIDE = 1.1
+"""Radius over that of an edge below which the spline, of few steps there, is not used."""
 
 
 class AdhesiveContact(NamedTuple):
@@ -36,26 +41,34 @@ class AdhesiveContact(NamedTuple):
 
 
 class AdhesiveCurve(AdhesiveContact):
-    """Adhesive equilibria, stable or not, by growing contact radius; arrays of shape (n,)."""
+    """Adhesive equilibria, stable or not, by growing contact radius; arrays of shape (n,).
+
+    Two points of one radius are the ends of a straight piece, on which an edge pins the rim.
+    """
 
     def instability(self, spring_constant: float = 0.0) -> AdhesiveContact:
         """Return the last stable equilibrium of a retraction, where dF/dδ = −k_c.
 
         k_c = ``spring_constant`` [N/m] is that of what holds the indenter.  0, the default, is a
         dead load: pull-off, the lowest force.  ``math.inf`` is a fixed depth: the lowest depth.
-        All is NaN if the curve does not contain it.
+        At an edge it is where the punch of that radius lets go.  All is NaN if the curve does not
+        contain it.
         """
         if not spring_constant >= 0:
             raise ConfigError(f"must not be negative, got {spring_constant!r}", "spring_constant")
         fixed_quantity = (
             self.depth if spring_constant == inf else self.force + spring_constant * self.depth
         )
-        rises = np.diff(fixed_quantity) >= 0
-        lowest = np.flatnonzero(~rises[:-1] & rises[1:])
-        if not lowest.size:
+        rises, pinned = np.diff(fixed_quantity) >= 0, np.diff(self.contact_radius) == 0
+        minima = np.flatnonzero(np.append(pinned[:1], ~rises[:-1]) & rises)
+        if not minima.size:
             return AdhesiveContact(*np.full(3, nan))
+        # A contact that jumps at a minimum may be held at a lower one.
+        lowest = int(minima[fixed_quantity[minima].argmin()])
+        if pinned[lowest]:
+            return AdhesiveContact(*(np.asarray(y[lowest]) for y in self))
         # The vertex of the parabola through the lowest point and its neighbours.
-        near = slice(int(lowest[-1]), int(lowest[-1]) + 3)
+        near = slice(lowest - 1, lowest + 2)
         low, centre, high = fixed_quantity[near]
         offset = (low - high) / (2 * (low - 2 * centre + high))
         return AdhesiveContact(
@@ -69,11 +82,16 @@ class AdhesiveCurve(AdhesiveContact):
 
     def at_zero_load(self) -> AdhesiveContact:
         """Return the largest contact that is neither pressed nor pulled; NaN if there is none."""
-        rising = np.flatnonzero((self.force[:-1] < 0) & (self.force[1:] >= 0))
+        return self.at("force", 0.0)
+
+    def at(self, quantity: str, value: float) -> AdhesiveContact:
+        """Return the largest contact at a rising depth [m] or force [N]; NaN if there is none."""
+        values = getattr(self, quantity) - value
+        rising = np.flatnonzero((values[:-1] < 0) & (values[1:] >= 0))
         if not rising.size:
             return AdhesiveContact(*np.full(3, nan))
         low = int(rising[-1])
-        share = self.force[low] / (self.force[low] - self.force[low + 1])
+        share = values[low] / (values[low] - values[low + 1])
         return AdhesiveContact(*(np.asarray(y[low] + share * (y[low + 1] - y[low])) for y in self))
 
 
@@ -99,6 +117,10 @@ def adhesive_curve(
     stiffness of a step change in steps of whole cells, but together: the radius as a function of
     the stiffness has a tenth of the scatter that it has as a function of the depth.
 
+    Of an indenter with a flat end the shallowest steps touch that alone, F₁ = kδ₁.  Its edge pins
+    the rim of an adhesive contact until the flat punch lets go, at δ = −D with the D of its radius;
+    dk/da there, from a parabola of log a over log k, is within some per cent.
+
     The steps have δ₁ [m], F₁ [N], a [m] and k [N/m], positive, in any order, each of shape (n,); w
     is in J/m². On a grid the area of cells overestimates a by 0.115 cells on a half-space, by 0.24
     under tension.
@@ -119,6 +141,7 @@ def adhesive_curve(
         raise ConfigError("depth, force, contact radius and stiffness must be positive", "path")
     # Steps with the same depth count once.
     path = np.log(path[:, np.unique(path[0], return_index=True)[1]])
+    on_flat = int(np.argmin(np.append(np.abs(path[1] - path[0] - path[3]) < _FLAT, False)))
     force_by_depth = _spline(path[0], path[1], np.exp(2 * path[2]), "depth")
     # Steps with the same cells in contact have the same stiffness but for rounding.
     distinct = path[:, np.unique(path[2], return_index=True)[1]]
@@ -140,7 +163,11 @@ def adhesive_curve(
     # The smallest contacts, of few cells, may scatter too much.
     falling = np.flatnonzero((np.diff(radius, prepend=0.0) <= 0) | (growth <= 0))
     first = int(falling[-1]) + 1 if falling.size else 0
-    if radius.size < 2 * (first + 1):
+    edge = np.zeros((3, 0))
+    if on_flat:
+        edge = _pinned(distinct, np.exp(path[0, on_flat - 1]), work_of_adhesion)
+        first = max(first, int(np.count_nonzero(radius <= _BESIDE * edge[0, 0])))
+    if radius.size < (first + 2 if on_flat else 2 * (first + 1)):
         raise ConfigError(
             "the contact radius does not grow with the depth, or the stiffness not with the radius",
             "path",
@@ -148,11 +175,22 @@ def adhesive_curve(
     retraction = radius[first:] * np.sqrt(
         4 * pi * work_of_adhesion * growth[first:] / slope[first:]
     )
-    return AdhesiveCurve(
-        contact_radius=radius[first:],
-        depth=hard_depth[first:] - retraction,
-        force=hard_force[first:] - slope[first:] * retraction,
-    )
+    beyond = hard_depth[first:] - retraction, hard_force[first:] - slope[first:] * retraction
+    return AdhesiveCurve(*np.hstack([edge, [radius[first:], *beyond]]))
+
+
+def _pinned(distinct: Array, depth: float, work_of_adhesion: float) -> Array:
+    """Return radius, depth and force where the edge of a flat lets go, and where it is left.
+
+    ``distinct`` has the logarithms of a path by stiffness, the flat first, which touches alone up
+    to a ``depth`` [m] without adhesion.
+    """
+    relative = distinct[3] - distinct[3, 0]
+    _, growth, log_radius = np.polyfit(relative, distinct[2], 2)
+    radius, stiffness = np.exp(log_radius), np.exp(distinct[3, 0])
+    end = -radius * np.sqrt(4 * pi * work_of_adhesion * growth / stiffness)
+    depths = np.array([end, end + depth])
+    return np.array([np.full(2, radius), depths, stiffness * depths])
 
 
 def _spline(x: Array, y: Array, weights: Array, name: str) -> BSpline:

@@ -10,29 +10,37 @@ the theory of Johnson, Kendall & Roberts (1971) for a paraboloid, of Maugis & Ba
 cone and of Kendall (1971) for a flat punch.  Where tension dominates (s ≫ a) the slope of the
 surface jumps by √(2w/τ₀) at the rim, as under a drop (Hui, Liu, Salez, Raphaël & Jagota 2015).
 The theory assumes small slopes.
+
+Where the slope of the profile jumps by θ, at an edge of radius b, the contact without adhesion has
+that radius from one depth on to another that is greater by θ√(2πb τ₀/k′), and so has the adhesive
+one, retracted by the D of that radius.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from math import exp, inf, log, pi, sqrt
+from math import exp, inf, log, nan, pi, sqrt
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pellicle.analysis import AdhesiveContact
+from pellicle.analysis import AdhesiveContact, AdhesiveCurve
 from pellicle.arrays import Array
 from pellicle.components import HasAbelSlope
 from pellicle.errors import ConfigError
 
 from .arguments import not_negative, positive
-from .equation import without_kinks
+from .equation import kinks_of
 from .radius_curves import END, RadiusCurves, radius_at, radius_curves, xi_at
-from .reciprocity import punch_slope
+from .reciprocity import contacts, punch_slope
 from .tensed_punch import punch
 
 _STEP = 0.5
+_SAMPLES, _REFINED = 400, 2
+"""Radii at which a body with edges is known, and how often those near an answer are made denser."""
+_NEAR = 1e-8
+"""Distance from an edge at which the slope of the transform is taken, over its radius."""
 
 
 @dataclass(frozen=True)
@@ -41,11 +49,11 @@ class Adhesion:
 
     Without tension, forces and depths have relative errors below 1e-9, and with it below 1e-8. The
     radius of an instability under tension has one below 5e-6, and so has what depends on it to
-    first order: the force at a fixed depth.
+    first order: the force at a fixed depth. With `kinks` these errors are below 1e-6 and 1e-4.
     """
 
     indenter: HasAbelSlope
-    """A paraboloid, sphere or cone component, or any other object with this transform; no kinks."""
+    """A paraboloid, sphere or cone component, or any other object with this transform."""
     reduced_modulus: float
     """E* = E / (1 − ν²) [Pa]."""
     tension: float
@@ -54,12 +62,14 @@ class Adhesion:
     """w [J/m²]."""
 
     def __post_init__(self) -> None:
-        without_kinks(self.indenter)
         positive(reduced_modulus=self.reduced_modulus, work_of_adhesion=self.work_of_adhesion)
         not_negative(tension=self.tension)
 
     def equilibrium(self, contact_radius: ArrayLike) -> AdhesiveContact:
-        """Return the equilibrium, stable or not, at contact radii > 0 [m] of any shape."""
+        """Return the equilibrium, stable or not, at contact radii > 0 [m] of any shape.
+
+        At the radius of an edge it is the deepest retracted one, which lets go.
+        """
         radius = np.asarray(contact_radius, dtype=float)
         limit = self.indenter.contact_radius_limit
         if not np.all((radius > 0) & (radius < limit)):
@@ -67,6 +77,9 @@ class Adhesion:
                 f"must be positive and less than {limit} m, got {contact_radius!r}",
                 "contact_radius",
             )
+        if kinks_of(self.indenter):
+            contact = self._with_edges(radius.ravel(), ())
+            return AdhesiveContact(*(values.reshape(radius.shape) for values in contact))
         return self._equilibrium(xi_at(self.indenter, radius))
 
     def instability(self, spring_constant: float = 0.0) -> AdhesiveContact:
@@ -82,6 +95,8 @@ class Adhesion:
         apex_slope = 2 / pi * float(self.indenter.abel_slope(np.zeros(1))[0])
         if self.indenter.pointed and apex_slope >= self._rim_slope:
             return AdhesiveContact(*np.zeros(3))
+        if kinks_of(self.indenter):
+            return self._sought(lambda curve: curve.instability(spring_constant))
         per_modulus = spring_constant / self.reduced_modulus
 
         def slope(xi: float) -> float:
@@ -104,12 +119,56 @@ class Adhesion:
         lowest = float(getattr(end, quantity))
         if not value > lowest:
             raise ConfigError(f"must be above {lowest:g}, the lowest, got {value!r}", quantity)
+        if kinks_of(self.indenter):
+            return self._sought(lambda curve: curve.at(quantity, value))
 
         def excess(xi: float) -> float:
             return float(getattr(self._equilibrium(np.array(xi)), quantity)) - value
 
         start = xi_at(self.indenter, end.contact_radius) if end.contact_radius else self._guess()
         return self._equilibrium(np.array(_rising_root(excess, float(start), self._last)))
+
+    def _sought(self, ask: Callable[[AdhesiveCurve], AdhesiveContact]) -> AdhesiveContact:
+        """Return what a curve is asked for, of an indenter with edges."""
+        limit, edges = self.indenter.contact_radius_limit, kinks_of(self.indenter)
+        top, curve = edges[-1], None
+        lowest = 1e-3 * min(edges[0], self.work_of_adhesion / self.reduced_modulus)
+        answer = AdhesiveContact(*np.full(3, nan))
+        while curve is None or curve.force[-1] < 0 or np.isnan(answer.contact_radius):
+            top = min(2 * top, (top + limit) / 2)
+            if top > limit * (1 - END):
+                raise ConfigError(
+                    f"spreads the contact over the whole profile, {limit:g} m wide",
+                    "work_of_adhesion",
+                )
+            radii = np.geomspace(lowest, top, _SAMPLES)
+            curve = self._with_edges(np.union1d(radii, edges), edges)
+            answer = ask(curve)
+        width = log(radii[1] / radii[0])
+        for _ in range(_REFINED):
+            radii = answer.contact_radius * np.exp(width * np.linspace(-1.5, 1.5, 49))
+            inside = [edge for edge in edges if radii[0] < edge < radii[-1]]
+            answer = ask(self._with_edges(np.union1d(radii, inside), inside))
+            width /= 16
+        return answer
+
+    def _with_edges(self, radius: Array, edges: Iterable[float]) -> AdhesiveCurve:
+        """Return equilibria at radii [m], of shape (n,), with both ends of each edge."""
+        modulus, length = self.reduced_modulus, 2 * self.tension / self.reduced_modulus
+        hard = contacts(self.indenter, radius, length)
+        area_rate = 4 * pi * self.work_of_adhesion / modulus * radius
+        retraction = np.sqrt(area_rate / hard.stiffness_slope)
+        depth, stiffness = hard.depth - retraction, modulus * hard.stiffness
+        curve = np.stack([radius, depth, modulus * hard.force - stiffness * retraction])
+        for edge in edges:
+            at = int(np.searchsorted(curve[0], edge))
+            here = int(np.searchsorted(radius, edge))
+            slopes = self.indenter.abel_slope(edge * (1 + _NEAR * np.array([1.0, 4.0])))
+            kink = max(0.0, 2 * sqrt(2 * _NEAR) * float(slopes[0] - slopes[1]))
+            width = kink * sqrt(pi * edge * length / float(hard.stiffness_slope[here]))
+            end = curve[:, at] + width * np.array([0.0, 1.0, stiffness[here]])
+            curve = np.insert(curve, at + 1, end, axis=1)
+        return AdhesiveCurve(*curve)
 
     @property
     def _rim_slope(self) -> float:

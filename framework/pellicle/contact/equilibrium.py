@@ -11,6 +11,7 @@ import numpy as np
 from pellicle.arrays import Array, Mask
 
 from .attraction import Attraction
+from .flats import with_flats
 from .problem import Force, Problem, adhesive_scale
 from .solution import Solution, State
 
@@ -42,6 +43,13 @@ class Equilibrium:
     def contact(self) -> Mask:
         """The cells with wall pressure > 0, bool of the grid's shape."""
         return self.wall > 0
+
+    @cached_property
+    def counted_contact(self) -> Mask:
+        """The contact as it is counted: `contact`, and without a law all of its flats."""
+        if self.problem.law:
+            return self.contact
+        return with_flats(self.contact, self.problem.heights, self.gap, self.displacement)
 
     @property
     def state(self) -> State:

@@ -35,7 +35,7 @@ def step_dataset(
         "pressure": equilibrium.pressure,
         "displacement": equilibrium.displacement,
         "gap": equilibrium.gap,
-        "contact": equilibrium.contact,
+        "contact": equilibrium.counted_contact,
     }
     of_law: dict[str, object] = {}
     if equilibrium.problem.law:
@@ -131,7 +131,7 @@ class Steps:
 
 def _numbers(grid: Grid, equilibrium: Equilibrium) -> dict[str, object]:
     """Return the variables of every load step: force, shape of the contact and residuals."""
-    contact = equilibrium.contact
+    contact = equilibrium.counted_contact
     area = np.count_nonzero(contact) * grid.cell_area
     shape = ellipse(contact, grid)
     return {

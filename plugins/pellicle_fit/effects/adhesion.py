@@ -13,6 +13,8 @@ _SEARCHED, _REFINED, _NODES = 61, 3, 120
 """Contacts among which the end of a branch is sought, and how often; nodes that describe it."""
 _HIGHER = 10.0
 """How far above the first guess the other end is sought, in logarithms of the depth."""
+_LEVEL = 1e-3
+"""Relative rise of the position up to which it is that of the end of a branch."""
 _DECADES = 7.0
 """How far below the largest contact the end is sought."""
 _SHALLOW = 1e-6
@@ -68,7 +70,12 @@ class Adhesion(Responds):
         end = position[0]
         root = np.sqrt(np.maximum(position - end, 0.0))
         keep = np.append(True, root[1:] > np.maximum.accumulate(root)[:-1] + 1e-9 * root[-1])
-        spline = CubicSpline(root[keep], force[keep])
+        spline = back = CubicSpline(root[keep], force[keep])
+        if np.any(np.diff(root) < 0):
+            # The edge of a worn tip: what is pulled off it jumps to it from a wider contact.
+            wider = np.minimum.accumulate(root[::-1])[::-1]
+            keep = np.append(root[:-1] < wider[1:] - 1e-9 * root[-1], True)
+            back = CubicSpline(root[keep], force[keep])
         ramp = _RAMP * curve.span / curve.passes[0].size
 
         def response(depth: Array) -> Array:
@@ -79,7 +86,10 @@ class Adhesion(Responds):
                 touches[rows] = touching
                 steep[rows] = _PENALTY * curve.largest / curve.span * np.minimum(beyond[rows], 0.0)
             at = np.sqrt(np.clip(beyond, 0.0, root[-1] ** 2))
-            return np.asarray(touches * (spline(at) + steep))
+            along = spline(at)
+            if back is not spline:
+                along = np.where(curve.moves_out, back(at), along)
+            return np.asarray(touches * (along + steep))
 
         return response
 
@@ -90,6 +100,13 @@ class Adhesion(Responds):
         reaches = self._equilibria(contact, np.exp(top), softness)[0] >= deepest
         top = top[int(np.argmax(reaches)) if reaches.any() else -1]
         grid = np.linspace(top - _DECADES * np.log(10), top, _SEARCHED)
+        position = self._equilibria(contact, np.exp(grid), softness)[0]
+        rise = position - position[0]
+        if 0 <= rise[1] < _LEVEL * abs(position[0]) and rise.min() >= 0:
+            # The edge of a flat end holds the rim until the punch lets go, at the depth 0.
+            leaves = grid[np.argmax(rise > _LEVEL * rise[-1])]
+            ends = np.append(grid[0], np.linspace(leaves, top, _NODES - 1))
+            return self._equilibria(contact, np.exp(ends), softness)
         for _ in range(_REFINED):
             least = int(np.argmin(self._equilibria(contact, np.exp(grid), softness)[0]))
             low, high = grid[max(least - 1, 0)], grid[min(least + 1, _SEARCHED - 1)]

@@ -119,7 +119,7 @@ class AdhesiveCurve(TableFigure):
                 continue
             end = d.points["last at fixed depth"].contact_radius
             # Without that point on the curve all of it is stable at a fixed depth.
-            stable = ~(d.curve.contact_radius < end)
+            stable = ~(d.curve.contact_radius < end) & (np.gradient(d.curve.depth) >= 0)
             x, y = d.curve.depth, d.curve.force
             smooth = Look(hue, 0, hue if len(drawn) > 1 else None, sparse=True)
             series.append(Series(x[stable], y[stable], legend=d.name.words, look=smooth))

@@ -79,7 +79,7 @@ def _area_search(setting: Setting, area: float) -> Force | Search:
         guess = depth if setting.law else setting.force_at(depth)
 
     def measure(step: Equilibrium) -> float:
-        return float(np.count_nonzero(step.contact)) * cell
+        return float(np.count_nonzero(step.counted_contact)) * cell
 
     # A jump is located to 1e-4 of the control; half a cell means the nearest whole number of cells.
     # Along the force a contact that sticks would jump.

@@ -15,6 +15,11 @@ from pellicle.results.result import Result
 _ROUND = 0.02
 """Relative difference of a circle's semi-axes, or of its area from the ellipse's, beyond a cell."""
 
+_CELLS_OF_FLAT = 2.0
+"""Radius in cells from which cells of one height are a flat end, which a few at the tip are not."""
+_LEVEL = 1e-12
+"""Difference of two heights that are one, over the depth."""
+
 _EXCESS_CELLS = 0.115
 """Excess of the radius counted in cells, per power of q in the stiffness of a wave, 1/G."""
 
@@ -36,13 +41,25 @@ def curve_of(path: Dataset, work_of_adhesion: float) -> analysis.AdhesiveCurve:
                 "axisymmetric indenter"
             )
     kernel = Run.from_json(path.attrs["configuration"]).kernel
-    return analysis.adhesive_curve(
+    curve = analysis.adhesive_curve(
         path["depth"].values,
         path["force"].values,
         np.sqrt(area / pi) - excess_radius(kernel, sqrt(grid.cell_area)),
         path["stiffness"].values,
         work_of_adhesion,
     )
+    pinned = curve.contact_radius[0] == curve.contact_radius[1]
+    if pinned and curve.contact_radius[0] < _CELLS_OF_FLAT * min(grid.spacing):
+        return analysis.AdhesiveCurve(*(values[2:] for values in curve))
+    last = path.isel(step=-1)
+    heights = (last["displacement"] - last["gap"]).values
+    flat = sqrt(np.count_nonzero(heights > (1 - _LEVEL) * heights.max()) * grid.cell_area / pi)
+    if not pinned and flat > _CELLS_OF_FLAT * min(grid.spacing):
+        raise ConfigError(
+            f"the edge of a flat end of radius {flat:.3g} m holds the contact, and no step of the "
+            "path touches the flat alone; begin at a smaller depth"
+        )
+    return curve
 
 
 def excess_radius(kernel: Kernel, spacing: float) -> float:

@@ -12,6 +12,7 @@ import pytest
 from pellicle.axisymmetric.adhesive_contact import Adhesion, punch_pull_off
 from pellicle.axisymmetric.indentation import indent
 from pellicle.axisymmetric.radius_curves import radius_curves
+from pellicle.axisymmetric.reciprocity import contacts
 from pellicle.axisymmetric.tensed_punch import punch
 from pellicle.components import HasAbelSlope
 from pellicle.errors import ConfigError
@@ -193,6 +194,48 @@ def test_punch_pulls_off_at_its_rim(length: float) -> None:
         assert end.force == pytest.approx(-whole.force, rel=1e-12)
 
 
+@pytest.mark.parametrize("length", [0.0, 0.1, 1.0, 10.0])
+@pytest.mark.parametrize("flat", [0.3, 0.6, 1.5])
+def test_an_edge_holds_the_rim_until_its_punch_lets_go(flat: float, length: float) -> None:
+    """The lowest force and depth are those of the punch or of a wider contact that pulls harder."""
+    body = Paraboloid(radius=1.0, flat_radius=flat)
+    sticky, end = adhesion(length, indenter=body), punch_pull_off(flat, 1.0, length / 2, 1.0)
+    radii = flat * (1 + np.geomspace(1e-5, 9, 1000))
+    hard = contacts(body, radii, length)
+    retraction = np.sqrt(4 * pi * radii / hard.stiffness_slope)
+    wider = hard.depth - retraction, hard.force - hard.stiffness * retraction
+    lowest = [min(float(e), w.min()) for e, w in zip(end[1:], wider, strict=True)]
+    assert sticky.instability(inf).depth == pytest.approx(lowest[0], rel=1e-4)
+    assert sticky.instability().force == pytest.approx(lowest[1], rel=1e-4)
+    if (flat, length) == (0.6, 1.0):
+        assert np.array(lowest) == pytest.approx([-1.688003, -1.504754 * pi], rel=1e-6)
+    edge = sticky.equilibrium(flat)
+    assert np.array(edge) == pytest.approx(np.array(end), rel=1e-9)
+    # Pinned, it is the punch at any depth between; without tension there is none.
+    if length and edge.depth <= lowest[0]:
+        held = sticky.at_depth(0.97 * float(edge.depth))
+        assert held.contact_radius == flat
+        assert held.force == pytest.approx(0.97 * edge.force, rel=1e-9)
+    free = sticky.at_force(0.0)
+    assert sticky.at_depth(float(free.depth) + 1e-9).force == pytest.approx(0, abs=1e-5)
+
+
+def test_a_small_flat_and_a_blunt_tip_change_little() -> None:
+    """A flat of 1e-3 a₀ changes nothing to 1e-6; a blunt tip is a paraboloid at first."""
+    for small, whole in (
+        (adhesion(1.0, indenter=Paraboloid(radius=1.0, flat_radius=1e-3)), adhesion(1.0)),
+        (
+            adhesion(1e-2, 1e-6, indenter=Cone(half_angle=0.1, tip_radius=1.0)),
+            adhesion(1e-2, 1e-6),
+        ),
+    ):
+        for other in (0.0, 1.0, inf):
+            one, same = small.instability(other), whole.instability(other)
+            assert np.array(one[1:]) == pytest.approx(np.array(same[1:]), rel=1e-6)
+            assert one.contact_radius == pytest.approx(float(same.contact_radius), rel=1e-4)
+        assert small.at_force(1e-9).depth == pytest.approx(float(whole.at_force(1e-9).depth), 1e-5)
+
+
 @pytest.mark.parametrize(
     ("message", "act"),
     [
@@ -202,6 +245,10 @@ def test_punch_pulls_off_at_its_rim(length: float) -> None:
         ("above -4.71239, the lowest", lambda: adhesion(0.0).at_force(-4.8)),
         ("above -1.60877, the lowest", lambda: adhesion(0.0).at_depth(-1.7)),
         ("whole profile", lambda: adhesion(0.0, 1e12, indenter=Sphere(radius=1.0)).instability()),
+        (
+            "whole profile",
+            lambda: adhesion(0, 1e12, indenter=Sphere(radius=1, flat_radius=0.1)).instability(),
+        ),
     ],
 )
 def test_impossible_requests_are_refused(message: str, act: Callable[[], object]) -> None:

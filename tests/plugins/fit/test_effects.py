@@ -15,6 +15,7 @@ from scipy.special import beta
 
 import pellicle as pl
 from pellicle.arrays import Array
+from pellicle.axisymmetric import Adhesion
 from pellicle.testing import rules_of
 from pellicle_fit import testing
 from pellicle_fit.contact import Contact
@@ -198,6 +199,34 @@ def test_adhesion(stiffness: float | None) -> None:
     assert not found[apart].any()
     assert touches.any()
     assert apart.any()
+
+
+def test_adhesion_of_a_worn_tip() -> None:
+    """The edge holds the rim until its punch lets go; back is wider than there while both hold."""
+    work, tension, stiffness, flat = 2e-5, 6e-4, 4e-4, 0.38e-6
+    tip = body("paraboloid", radius=R, flat_radius=flat)
+    sticky = Adhesion(tip, E, tension, work)
+    edge = sticky.equilibrium(flat)
+    wide = sticky.equilibrium(flat * (1 + np.geomspace(1e-6, 9, 2000)))
+    base = wide.depth + wide.force / stiffness
+    end = float(edge.depth + edge.force / stiffness)
+    fold, left = int(base.argmin()), float(base[0])
+    assert end < base[fold] < left
+    path = np.linspace(1.01 * end, -2 * end, 400)
+    for unloading, first in ((True, float(base[fold])), (False, float(base[:fold].max()))):
+        curve = Curve(path, 0 * path, tip, stiffness=stiffness, unloading=np.full(400, unloading))
+        found = force(
+            curve,
+            effect("tension", tension=tension),
+            effect("adhesion", work_of_adhesion=work),
+        )
+        wider = np.interp(curve.base, base[fold:], wide.force[fold:])
+        held = edge.force * curve.base / end
+        near = np.abs(curve.base - first) < 0.05 * (left - end)
+        expected = np.where(curve.base > first, wider, held)
+        seen = ~near & (curve.base > (0.98 * end if unloading else 0.1e-6))
+        scale = float(-edge.force)
+        np.testing.assert_allclose(found[seen], expected[seen], atol=2e-3 * scale)
 
 
 def test_of_the_instrument() -> None:

@@ -78,6 +78,10 @@ def test_what_the_path_does_not_contain_is_unknown(tmp_path: Path) -> None:
     [
         ({"loading": {"depth": ["5 um", "10 um"], "stiffness": True}}, "2 steps.*at least 8"),
         (
+            {"indenter": {"type": "sphere", "radius": "0.2 mm", "flat_radius": "20 um"}},
+            "flat end of radius 1.98e-05 m holds .* begin at a smaller depth",
+        ),
+        (
             {"indenter": {"type": "quadric", "radius_x": "0.2 mm", "radius_y": "0.25 mm"}},
             "not a circle",
         ),

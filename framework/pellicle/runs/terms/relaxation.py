@@ -37,7 +37,7 @@ def relaxation(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep
     if surroundings.setting.law and branches_of(run.kernel) and loading.durations[index] > 0:
         # The energy of a solid that has relaxed on its way does not follow from its surface.
         measures["energy"] = np.nan
-    area = np.count_nonzero(step.equilibrium.contact) * run.grid.cell_area
+    area = np.count_nonzero(step.equilibrium.counted_contact) * run.grid.cell_area
     largest_area = max(area, *(finished.area for finished in surroundings.path), 0.0)
     needed, smallest = _least_domain(run, index, largest_area), min(run.grid.size)
     if needed <= smallest or not step.converged:

@@ -22,7 +22,7 @@ from . import Surroundings
 def corrections(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
     """Add the contact area by each correction, and after these the shares of the domain."""
     areas = {
-        correction.type_name: corrected_area(correction, step.equilibrium.contact, run.grid)
+        correction.type_name: corrected_area(correction, step.equilibrium.counted_contact, run.grid)
         for correction in run.corrections
     }
     measures = {f"{CORRECTED_AREA}{type_}": area for type_, area in areas.items()}
