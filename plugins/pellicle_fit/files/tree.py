@@ -43,15 +43,22 @@ def read_tree(
         raise StorageError(f"{path}: cannot be read as {kind} file ({reason})") from None
 
 
-def _arrays(node: Mapping[str, Any], folder: str = "") -> Iterator[tuple[str, Any]]:
+def _arrays(node: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     """Yield the arrays of numbers in a folder and below by their paths."""
-    for name in node:
-        # A link of an HDF5 file may lead nowhere.
-        child = node.get(name)
-        if isinstance(child, Mapping):
-            yield from _arrays(child, f"{folder}{name}/")
-        elif getattr(getattr(child, "dtype", None), "kind", "") in ("f", "i", "u"):
-            yield f"{folder}{name}", child
+    # Links of an HDF5 file may lead nowhere or in circles: each folder is entered once.
+    entered: set[Any] = set()
+
+    def walk(node: Mapping[str, Any], folder: str) -> Iterator[tuple[str, Any]]:
+        entered.add(getattr(node, "id", id(node)))
+        for name in node:
+            child = node.get(name)
+            if isinstance(child, Mapping):
+                if getattr(child, "id", id(child)) not in entered:
+                    yield from walk(child, f"{folder}{name}/")
+            elif getattr(getattr(child, "dtype", None), "kind", "") in ("f", "i", "u"):
+                yield f"{folder}{name}", child
+
+    return walk(node, "")
 
 
 def _unit(array: Any) -> str:

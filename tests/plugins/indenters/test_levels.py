@@ -66,7 +66,6 @@ def _holes(draw: st.DrawFn, n: int = 32) -> np.ndarray:
     return missing | (rest < 0.02)
 
 
-@pytest.mark.slow
 @settings(max_examples=12, deadline=None, derandomize=True)
 @given(
     missing=_holes(),
