@@ -71,7 +71,8 @@ class Expected(NamedTuple):
     cells: float
     """Cells across the contact, or all of its patches, on the grid of the run."""
     force_error: float
-    """Expected relative error of the force, 0 where it is prescribed; NaN without contact."""
+    """Expected relative error of the force, with an interaction over the largest on the path; 0
+    where it is prescribed, NaN without contact or where only some grids have one."""
     depth_error: float
     """Expected error of the depth over the largest depth; NaN without contact."""
     area_error: float
@@ -191,7 +192,14 @@ def _expected(
         for name in ("force", "depth", "contact_area")
     )
     sizes = np.array([grid.cell_size for grid in grids]) / run.grid.cell_size
-    cells = np.where(area[-1] > 0, np.sqrt(area[-1]) / run.grid.cell_size, math.nan)
+    # Where the contact is lost on some grids only, forces are those of different states.
+    compared = (area > 0).all(axis=0)
+    cells = np.where(compared, np.sqrt(area[-1]) / run.grid.cell_size, math.nan)
+    # A path with an interaction crosses 0; what is asked of it is its pull-off.
+    sizes_of_forces = np.abs(force[-1])
+    of_forces = (
+        np.full_like(sizes_of_forces, sizes_of_forces.max()) if run.interaction else sizes_of_forces
+    )
 
     def errors(values: Array, scale: Array, rule: _Rule) -> list[float]:
         # A quantity that is prescribed is equal on all grids and has no error.
@@ -210,7 +218,7 @@ def _expected(
     columns = zip(
         force[-1].tolist(),
         [max(_extent(contact, grids[-1])) for contact in results[-1]["contact"].values],
-        errors(force, np.abs(force[-1]), _SMOOTH if smooth else _OTHER),
+        errors(force, of_forces, _SMOOTH if smooth else _OTHER),
         errors(
             depth,
             np.full(cells.shape, np.abs(depth[-1]).max()),

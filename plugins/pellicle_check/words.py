@@ -51,7 +51,8 @@ def advice_on_run(advised: Advised, allowed: float) -> Iterator[str]:
     """Yield what a run needs, and a grid that keeps its errors below what is ``allowed``."""
     _, run, advice, needed = advised
     nx, ny = run.grid.points
-    yield f"{nx} × {ny} cells need {needed / 1e6:.3g} MB; errors are at most about these"
+    of_path = ", those of force over the largest on the path" * bool(run.interaction)
+    yield f"{nx} × {ny} cells need {needed / 1e6:.3g} MB; errors are at most about these{of_path}"
     if advice.size and not advice.at_edge:
         yield f"the contact fits into a smaller domain: {_domain([advised])}"
     if advice.size or advice.points != run.grid.points:

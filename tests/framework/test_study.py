@@ -476,3 +476,25 @@ def test_long_runs_go_to_processes(
     assert len(shared) == 12 - here
     told = capfd.readouterr().err.count("go to processes")
     assert told == (len(shared) > 0 and "executor" not in others)
+
+
+def test_an_unfinished_table_is_completed_as_it_is_read(tmp_path: Path) -> None:
+    """Steps that a kill left out of the table, and those in tails, are read from the runs."""
+    plan = pl.Study(run=RUN, vary={TENSION: [0.1, 0.5]}, derived={"twice": "2 * depth"})
+    whole = carry_out(plan, tmp_path)
+    date = xr.load_dataset(tmp_path / "study.h5", engine="h5netcdf").attrs["date"]
+    StudyTable(plan).write(tmp_path, at_once=True)
+    first, second = sorted((tmp_path / "runs").glob("*.h5"))
+    steps = [pl.load(first).dataset.isel(step=[index]) for index in range(2)]
+    names = [name for name, column in steps[0].data_vars.items() if "step" in column.dims]
+    storage.write(steps[0][names], first)
+    storage.append(steps[1][names], first)
+    second.unlink()
+    table, folder = study_module.read(tmp_path)
+    assert folder == tmp_path
+    done = (table["status_code"].values == "CONVERGED").sum(axis=-1)
+    assert sorted(done.tolist()) == [0, 2]
+    at = int(done.argmax())
+    for name in ("force", "depth", "twice"):
+        np.testing.assert_array_equal(table[name].values[at, :2], whole[name].values[at, :2])
+    assert table.attrs["date"] >= date

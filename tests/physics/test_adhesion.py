@@ -156,9 +156,9 @@ def test_a_step_across_the_lowest_force_does_not_jump() -> None:
     [
         ("linear", 0.5, 2.0, 6, 0),
         ("linear", 0.5, 2.0, 24, 0),
-        pytest.param("dugdale", 0.0, 1.5, 6, 0, marks=pytest.mark.slow),
+        pytest.param("dugdale", 0.0, 1.5, 6, 1, marks=pytest.mark.slow),
         pytest.param("exponential", 0.0, 0.7, 24, 2, marks=pytest.mark.slow),
-        pytest.param("linear", 0.2, 0.8, 6, 1, marks=pytest.mark.slow),
+        pytest.param("linear", 0.2, 0.8, 6, 2, marks=pytest.mark.slow),
         pytest.param("linear", 0.2, 0.8, 24, 2, marks=pytest.mark.slow),
     ],
 )
@@ -178,7 +178,7 @@ def test_a_loss_that_falls_with_the_step_is_no_jump(
     assert named.size == jumps
     assert (coarse["jump_energy"].values[named] > 0).all()
     for index in named:
-        parts = np.linspace(*depths[index - 1 : index + 1], 17)
+        parts = np.linspace(depths[index - 1], depths[index], 17)
         fine = path([*depths[: index - 1], *parts]).isel(step=slice(index - 1, None))
         force, depth, energy = (fine[name].values for name in ("force", "depth", "energy"))
         work = float((0.5 * (force[1:] + force[:-1]) * np.diff(depth)).sum())

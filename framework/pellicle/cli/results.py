@@ -46,7 +46,7 @@ def print_origin(data: xr.Dataset) -> None:
 
 
 def print_tables(outcome: Result | xr.Dataset, *, si: bool = False, whole: bool = True) -> None:
-    """Print the steps of a run, with the ``whole`` also its contact and path; the runs of a study.
+    """Print path and steps of a run, with the ``whole`` also its contact; the runs of a study.
 
     A study is given by its table.
     """
@@ -56,11 +56,11 @@ def print_tables(outcome: Result | xr.Dataset, *, si: bool = False, whole: bool 
             print_table(path, "path", si=si)
         return
     data = outcome.dataset
+    for path in tables.path(data, si=si, whole=whole):
+        print_table(path)
     print_table(tables.main_steps(data), si=si)
     if whole:
         print_table(tables.contact(data), "contact", si=si)
-        for path in tables.path(data, si=si):
-            print_table(path)
         for table in tables.oscillations(data):
             print_table(table, "oscillations", si=si)
 

@@ -42,7 +42,10 @@ class Task(Protocol):
 AnyTask = TypeVar("AnyTask", bound=Task)
 
 Report = Callable[[AnyTask, Any], None]
-"""Function that the executor calls in the calling process with a task and a progress message."""
+"""Function that the executor calls in the calling process with a task and a progress message.
+
+A message that is text is shown as a line: a worker that joins, one that is lost.
+"""
 Say = Callable[[Any], None]
 """Function that work calls, in any process, with a small picklable message for `Report`."""
 Work = Callable[[AnyTask, Say], Outcome]

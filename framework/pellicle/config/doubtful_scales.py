@@ -63,9 +63,9 @@ def _doubts(run: Run) -> Iterator[tuple[str, str]]:
         yield _doubt("grid.size", size, "m")
     for path, value, unit in values:
         part = path.partition(".")[0]
-        # Along the line of a line contact the indenter may be of any length.
-        is_line = min(run.grid.points) == 1
-        if part == "indenter" and unit == "m" and value > _LENGTHS * size and not is_line:
+        # Of a line contact the indenter may have any length along the line, heights any unit.
+        is_scale = min(run.grid.points) == 1 or path.endswith(".unit")
+        if part == "indenter" and unit == "m" and value > _LENGTHS * size and not is_scale:
             yield _doubt(path, value, unit, domain)
         if part == "kernel" and unit == "N/m" and moduli:
             length = value / max(moduli)

@@ -148,10 +148,12 @@ class BatchProgress(_Progress):
         self._done += done
         self._advance()
 
-    def report(self, task: Task, message: ProgressMessage) -> None:
-        """Show the progress of a task."""
+    def report(self, task: Task, message: ProgressMessage | str) -> None:
+        """Show the progress of a task, or a line of text of the executor."""
         self.check()
-        if not self._bars:
+        if isinstance(message, str):
+            self.say(message)
+        if not self._bars or isinstance(message, str):
             return
         if task.name in self._running:
             task_id, _ = self._running[task.name]

@@ -35,6 +35,8 @@ _OF_PATHS = [
     *("storage_stiffness", "loss_stiffness", "phase", "cycle_dissipation"),
 ]
 """What the terminal shows of the path of each run of a study."""
+_OF_PATH = "pull_off", "pull_off_accuracy", "detach", "jump_in", "work", "dissipated_energy"
+"""What the terminal shows of the path of a run that it has just solved."""
 _COMPARED = 8
 """Digits of values that are compared."""
 _POWERS = str.maketrans("²³", "23")
@@ -120,17 +122,18 @@ def contact(data: Dataset) -> Table:
     return steps(data, [name for name in names if not name.startswith("residual_")])
 
 
-def path(data: Dataset, *, si: bool = False) -> list[Table]:
+def path(data: Dataset, *, si: bool = False, whole: bool = True) -> list[Table]:
     """Return the events on the path and its work, where there is an interaction.
 
-    Depths, forces and stiffnesses have the prefix of those of the load steps.
+    Without the ``whole`` these are pull-off, loss and gain of contact, and the work. Depths,
+    forces and stiffnesses have the prefix of those of the load steps.
     """
     of_steps = [data[name] for name in ("depth", "force", "stiffness") if name in data]
     beside = {variable.attrs.get("units"): variable.values.tolist() for variable in of_steps}
     rows = []
     for name, number in path_variables(data).items():
         variable = VARIABLES[name]
-        if variable.kind == "path":
+        if variable.kind == "path" and (whole or name in _OF_PATH):
             values = [number, *beside.get(variable.unit, ())]
             scale, digits = Column("", values, variable.unit).unit_and_digits(si=si)
             text = "none" if number != number else scale.text(number, digits)

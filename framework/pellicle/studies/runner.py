@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import tempfile
 import threading
 import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from functools import partial
 from itertools import chain
@@ -25,7 +26,8 @@ from pellicle.config.doubtful_scales import warn_of_scale as warn_of_scale
 from pellicle.config.run import Run
 from pellicle.config.study import DEFAULT_EXECUTOR, Study
 from pellicle.config.study import from_toml as from_toml
-from pellicle.errors import ConfigError, ConvergenceWarning, StorageError
+from pellicle.contact.caveats import Status
+from pellicle.errors import ConfigError, ConvergenceWarning, PellicleError, StorageError
 from pellicle.files import check_writable, is_file, is_folder
 from pellicle.plugins import registry
 from pellicle.results import storage
@@ -329,10 +331,28 @@ def _collect(task: RunTask, rows: table.StudyTable) -> int:
 def read(path: Path) -> tuple[xr.Dataset, Path]:
     """Return the table of a study and its folder, given the folder or its ``study.h5``.
 
-    A kill may leave finished steps out of the table, until the study is run again.
+    A kill may leave finished steps out of the table; they are read from the files of the runs.
     """
     whole = path / "study.h5" if is_folder(path) else path
-    return with_paths(storage.table(whole)), whole.parent
+    rows = with_paths(storage.table(whole))
+    if Status.NOT_RUN.name in rows["status_code"].values:
+        # Where a file that the study names is gone, the table is shown as it was left.
+        with suppress(PellicleError):
+            rows = _completed(rows, whole)
+    return rows, whole.parent
+
+
+def _completed(earlier: xr.Dataset, path: Path) -> xr.Dataset:
+    """Return an unfinished table with all steps that the files of its runs hold."""
+    study = Study.from_mapping(json.loads(earlier.attrs["configuration"]))
+    rows, statuses = table.StudyTable(study), earlier["status"].values
+    rows.recall(earlier)
+    for task in planned(study, path):
+        _collect(task, rows)
+        failed = earlier["status_code"].values[task.index] == Status.FAILED.name
+        for sentence in statuses[task.index][failed][:1]:
+            rows.fail(task.index, sentence.removeprefix(Status.FAILED.value.format(reason="")))
+    return rows.dataset().assign_attrs(earlier.attrs)
 
 
 def is_table(path: Path) -> bool:

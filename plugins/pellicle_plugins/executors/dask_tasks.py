@@ -28,6 +28,8 @@ _CHECK_INTERVAL = 2.0
 _END_TIMEOUT = 10.0
 """Largest time to wait for running tasks to end at their next report [s]."""
 _POLL_INTERVAL = 0.05
+_WORKERS = {"add-worker": "a worker joined", "remove-worker": "a worker was lost"}
+"""What the scheduler tells of workers, and its words."""
 _KEPT = {-1: 2**30, -3: 2**25}
 """Options of mallopt of glibc: freed bytes that are kept, bytes of an array of its own."""
 
@@ -41,11 +43,12 @@ class Submission(Generic[AnyTask]):
         self._tasks = list(tasks)
         self._name = f"pellicle-{uuid4().hex}"
         self._futures: dict[int, Future[bytes]] = {}
-        self._events: SimpleQueue[tuple[int, bytes | None]] = SimpleQueue()
+        self._events: SimpleQueue[tuple[int, bytes | str | None]] = SimpleQueue()
         self._refused: list[tuple[AnyTask, Exception]] = []
 
     def __enter__(self) -> Self:
         self._client.subscribe_topic(self._name, lambda event: self._events.put(event[1]))
+        self._client.subscribe_topic("all", self._tell_of_worker)
         workers = self._client.scheduler_info()["workers"].values()
         limits = [worker["memory_limit"] for worker in workers]
         # A worker without a limit has 0.
@@ -66,6 +69,7 @@ class Submission(Generic[AnyTask]):
         client, name = self._client, self._name
         client.cancel(list(self._futures.values()), force=True)
         client.unsubscribe_topic(name)
+        client.unsubscribe_topic("all")
 
         def runs_ours(dask_worker: Any) -> bool:
             return any(str(key).startswith(name) for key in dask_worker.state.tasks)
@@ -101,6 +105,10 @@ class Submission(Generic[AnyTask]):
                     )
                 yield self._tasks[index], outcome
 
+    def _tell_of_worker(self, event: tuple[float, dict[str, Any]]) -> None:
+        if words := _WORKERS.get(event[1]["action"]):
+            self._events.put((0, words))
+
     def _submit(self, index: int) -> None:
         future = self._client.submit(
             _bootstrap(),
@@ -130,7 +138,9 @@ class Submission(Generic[AnyTask]):
                         stacklevel=2,
                     )
                 continue
-            if message is not None:
+            if isinstance(message, str):
+                report(self._tasks[0], f"{message}; there are {len(self._client.nthreads())} now")
+            elif message is not None:
                 report(self._tasks[index], pickle.loads(message))
             elif index in self._futures:
                 # Dropping the future keeps dask from computing the result again if its worker dies.

@@ -130,7 +130,7 @@ class Html(Output):
             apart, *_ = tables.all_steps(data.isel(step=off))
             apart = replace(apart, caption="Results of the steps out of contact.", folded=True)
             of_steps = [*tables.all_steps(data.isel(step=~off))[:-1], apart, of_steps[-1]]
-        numbers = [*of_steps, *tables.path(data), *tables.oscillations(data)]
+        numbers = [*tables.path(data), *of_steps, *tables.oscillations(data)]
         return [
             Section("In short", [*sentences, Notice(*status_of_run(result))]),
             Section("Maps", [maps]),

@@ -68,7 +68,6 @@ def test_grid_that_is_too_coarse(strength: str) -> None:
 
 @pytest.mark.parametrize("work", [1e-30, 1e-12, 1e6, 1e30])
 @pytest.mark.filterwarnings("ignore::pellicle.ConvergenceWarning")
-@pytest.mark.filterwarnings("ignore:interaction.work_of_adhesion is 1e")
 def test_works_of_all_sizes(work: float) -> None:
     """A work of adhesion far from any that exists ends in finite numbers and a status in words."""
     result = pl.run(

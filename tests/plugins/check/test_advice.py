@@ -52,6 +52,23 @@ def test_errors_are_at_most_those_expected(shape: str, tension: float) -> None:
         assert abs(force / exact - 1) <= step.force_error <= 0.1
 
 
+def test_a_path_that_sticks_is_judged_by_its_largest_force() -> None:
+    """Where the force crosses 0 its error counts over the pull-off; no huge grid is asked for."""
+    path = run(
+        points=48,
+        grid={"points": 48, "size": 1.6e-4},
+        kernel={"type": "tensed_membrane", "reduced_modulus": 1e3, "tension": 0.02},
+        indenter={"type": "paraboloid", "radius": 2e-4},
+        interaction={"type": "jkr", "work_of_adhesion": 5e-4, "estimate_error": False},
+        loading={"depth": [4e-6, 3.2e-6, 0.0, -2e-6]},
+    )
+    steps = advise(path, 0.01).steps
+    largest = max(abs(step.force) for step in steps)
+    assert min(abs(step.force) for step in steps) < 0.1 * largest
+    assert max(step.force_error for step in steps) < 0.15
+    assert advise(path, 0.01).points[0] < 1000
+
+
 def test_a_domain_without_contact_is_not_called_good() -> None:
     """Neither cells too wide to see the contact nor a strip are advised: both are refused."""
     ridge = {"type": "quadric", "radius_x": 1e-6, "radius_y": 1e-2}

@@ -100,10 +100,14 @@ def test_an_address_is_needed() -> None:
 @posix
 def test_task_of_a_killed_worker_runs_elsewhere(start_dask: Any, tmp_path: Path) -> None:
     """The table is that of an undisturbed study, and no finished task was begun again."""
-    jobs = [Job(i, tmp_path) for i in range(6)]
+    jobs, lines = [Job(i, tmp_path) for i in range(6)], list[str]()
     with start_dask() as address:
-        outcomes = dict(dask(address=address).map(die_the_first_time, jobs, silence))
+        told = dask(address=address).map(
+            die_the_first_time, jobs, lambda _, line: lines.append(line)
+        )
+        outcomes = dict(told)
     assert outcomes == {job: job.number for job in jobs}
+    assert any(line.startswith("a worker was lost") for line in lines)
     assert len(list(tmp_path.glob("1-*"))) == 2
 
 
@@ -128,11 +132,14 @@ def test_no_workers_are_warned_of(start_dask: Any, monkeypatch: pytest.MonkeyPat
 
 @pytest.mark.slow
 def test_workers_may_come_later(start_dask: Any, tmp_path: Path) -> None:
-    """Runs wait for the first worker, as a queue may take its time to start one."""
+    """Runs wait for the first worker, as a queue may take its time to start it, and tell of it."""
+    lines: list[str] = []
     with start_dask(0) as address, worker_of(address, tmp_path), warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
-        outcomes = dict(dask(address=address).map(square, [Job(i) for i in range(3)], silence))
+        jobs = [Job(i) for i in range(3)]
+        outcomes = dict(dask(address=address).map(square, jobs, lambda _, line: lines.append(line)))
     assert outcomes == {Job(i): i**2 for i in range(3)}
+    assert lines[:1] == ["a worker joined; there are 1 now"]
 
 
 @pytest.mark.slow

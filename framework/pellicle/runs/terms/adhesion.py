@@ -43,7 +43,7 @@ _CONSTANT: Final = 0.05
 _MISSED: Final = 0.5
 # Halvings of a step that seems to jump, and the share of its loss that is left in one part of it if
 # it does: what the rule misses falls at least as the step to 3/2, to 0.04.
-_REFINEMENTS: Final = 3
+_REFINEMENTS: Final = 4
 _STAYS: Final = 0.25
 # Share of |F Δδ| that does not count as a jump: the change of the energy with the place of the edge
 # on the cells, 0.005 at two cells in the zone.
@@ -58,7 +58,7 @@ def adhesion(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
     touched = setting.state is not None and bool(setting.state.contact.any())
     as_whole = bool(equilibrium.contact.any()) != touched
     jumped = step.jumped or _asperity_jumped(setting.state, equilibrium)
-    lost = _jump_energy(run, equilibrium, surroundings, is_certain=jumped)
+    lost = _jump_energy(run, equilibrium, surroundings, is_certain=jumped, as_whole=as_whole)
     jumped = jumped or lost > 0
     limit = _force_limit(run, equilibrium, surroundings.monitor)
     step = step.having({"jumped": jumped, "jump_energy": lost, **limit})
@@ -189,13 +189,16 @@ class _Point(NamedTuple):
 
     def missed(self, after: _Point) -> float:
         """Return how much of it [J] the trapezoidal rule may leave without a jump."""
-        share = 0.5 * _MISSED * abs(after.force - self.force)
-        share += _UNCERTAIN * max(abs(self.force), abs(after.force))
-        return share * abs(after.depth - self.depth)
+        return 0.5 * _MISSED * abs((after.force - self.force) * (after.depth - self.depth))
 
 
 def _jump_energy(
-    run: Run, equilibrium: Equilibrium, surroundings: Surroundings, *, is_certain: bool
+    run: Run,
+    equilibrium: Equilibrium,
+    surroundings: Surroundings,
+    *,
+    is_certain: bool,
+    as_whole: bool,
 ) -> float:
     """Return the energy [J] that jumps have lost since the end of a path; 0 if too little to tell.
 
@@ -203,7 +206,8 @@ def _jump_energy(
     loses the rest. That counts if it is more than the trapezoidal rule may miss, so every jump
     shows once the steps are small enough. Unless it ``is_certain``, the step is halved where most
     is missing: what a bend of the force misses falls with the step, and is no jump; what a jump
-    loses stays. Energies are known to the tolerance of their elastic and adhesive parts, which may
+    loses stays. Where contact begins or ends as a whole it is halved, and the loss is that of the
+    last part. Energies are known to the tolerance of their elastic and adhesive parts, which may
     cancel.
 
     NaN where the energy is not known, or the last step did not converge.
@@ -216,15 +220,18 @@ def _jump_energy(
     cell = problem.grid.cell_area
     acting = np.count_nonzero(equilibrium.pressure) * cell
     parts = max(abs(last.energy), abs(equilibrium.energy))
+    force = float(last.state.pressure.sum()) * cell
+    pair = _Point(last.state, last.state.depth, force, last.energy), _point_of(equilibrium)
+    lost = pair[0].loss(pair[1])
+    greatest = max(abs(point.force) for point in pair)
     noise = tolerance * (parts + 2 * acting * problem.law.work_of_adhesion())
+    noise += _UNCERTAIN * greatest * abs(pair[1].depth - pair[0].depth)
 
     def excess(pair: tuple[_Point, _Point]) -> float:
         return pair[0].loss(pair[1]) - pair[0].missed(pair[1]) - noise
 
-    force = float(last.state.pressure.sum()) * cell
-    pair = _Point(last.state, last.state.depth, force, last.energy), _point_of(equilibrium)
-    lost = pair[0].loss(pair[1])
-    if excess(pair) <= 0:
+    as_whole = as_whole and not is_certain
+    if excess(pair) <= 0 and not as_whole:
         return 0.0
     ends = control_of(problem, last.state), problem.value
     for _ in range(0 if is_certain or np.isnan(lost) else _REFINEMENTS):
@@ -236,11 +243,14 @@ def _jump_energy(
             break
         point = _point_of(between)
         halves = (pair[0], point), (point, pair[1])
-        worse = int(excess(halves[1]) > excess(halves[0]))
+        later = point.state.contact.any() == pair[0].state.contact.any()
+        worse = int(later if as_whole else excess(halves[1]) > excess(halves[0]))
         pair, ends = halves[worse], ((ends[0], middle), (middle, ends[1]))[worse]
-        if excess(pair) <= 0 or pair[0].loss(pair[1]) < _STAYS * lost:
+        if not as_whole and (excess(pair) <= 0 or pair[0].loss(pair[1]) < _STAYS * lost):
             return 0.0
-    return lost
+    if excess(pair) <= 0:
+        return 0.0
+    return pair[0].loss(pair[1]) if as_whole else lost
 
 
 def _point_of(equilibrium: Equilibrium) -> _Point:
