@@ -178,7 +178,7 @@ def test_a_loss_that_falls_with_the_step_is_no_jump(
     assert named.size == jumps
     assert (coarse["jump_energy"].values[named] > 0).all()
     for index in named:
-        parts = np.linspace(*depths[index - 1 : index + 1], 17)
+        parts = np.linspace(depths[index - 1], depths[index], 17)
         fine = path([*depths[: index - 1], *parts]).isel(step=slice(index - 1, None))
         force, depth, energy = (fine[name].values for name in ("force", "depth", "energy"))
         work = float((0.5 * (force[1:] + force[:-1]) * np.diff(depth)).sum())

@@ -218,7 +218,7 @@ class Bump(pl.Indenter):
 )
 def test_a_body_anywhere_is_its_nearest_image(name: str, x: float, y: float) -> None:
     """Its profile is that at the distance from its nearest image, half a period off at most."""
-    body = pl.Run(
+    body: Any = pl.Run(
         grid=PERIODIC,
         kernel=tensed(1.0, 0.05),
         indenter=_moved(BODIES[name], x, y),
@@ -246,7 +246,7 @@ def test_bodies_that_repeat_are_moved_where_they_repeat() -> None:
     free = pl.Grid(points=CELLS, size=1.0)
     for name in ("rough", "heights"):
         run = {"kernel": tensed(1.0, 0.05), "loading": {"depth": 0.01}}
-        body = pl.Run(grid=PERIODIC, indenter=_moved(BODIES[name], half, 0.0), **run).indenter
+        body: Any = pl.Run(grid=PERIODIC, indenter=_moved(BODIES[name], half, 0.0), **run).indenter
         with pytest.raises(pl.ConfigError, match="move the other parts of a sum"):
             profile_of(body, free)
         if name == "heights":
