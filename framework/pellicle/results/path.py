@@ -92,3 +92,10 @@ def with_path(table: Dataset) -> Dataset:
     return table.assign(
         {name: (dims, column, VARIABLES[name].attributes) for name, column in columns.items()}
     )
+
+
+def with_events(steps: xr.Dataset) -> xr.Dataset:
+    """Return the steps of a run with the variables of its path that are known, not NaN."""
+    whole = with_path(steps)
+    unknown = [name for name, value in path_variables(steps).items() if np.isnan(value)]
+    return whole.drop_vars(unknown)

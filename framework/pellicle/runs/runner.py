@@ -24,7 +24,7 @@ from pellicle.config.run import Run
 from pellicle.errors import ConfigError, ConvergenceWarning
 from pellicle.grid import Grid
 from pellicle.plugins import registry
-from pellicle.results.path import with_path
+from pellicle.results.path import with_events
 from pellicle.results.result import Result
 from pellicle.results.runs import StoredRuns
 from pellicle.results.step import Steps
@@ -170,7 +170,7 @@ def execute(
             ) from None
         finally:
             if steps:
-                result = Result(with_path(steps.joined()))
+                result = Result(with_events(steps.joined()))
                 if journal:
                     calls = [journal.close, *writers(outputs, runs, journal.stem, run)]
                     files = tuple(chain(*all_done(calls)))

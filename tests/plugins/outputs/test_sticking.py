@@ -96,9 +96,9 @@ def test_pull_off_on_few_cells_has_its_error_beside_it(bead: tuple[Path, pl.Resu
     assert "6.0 cells" in message
     summary = result.path_summary
     for data in (result.dataset, pl.load(folder).dataset):
-        assert {name: data[name].item() for name in names_of("path")} == pytest.approx(
-            summary, rel=0, nan_ok=True
-        )
+        known = {name: value for name, value in summary.items() if not np.isnan(value)}
+        assert {"pull_off", "work"} <= known.keys()
+        assert {name: data[name].item() for name in names_of("path") if name in data} == known
     assert -summary["pull_off"] * 0.05 < summary["pull_off_accuracy"] < -summary["pull_off"] * 0.2
     assert message in " ".join(
         CliRunner().invoke(app, ["show", str(folder / "run.h5")]).output.split()
