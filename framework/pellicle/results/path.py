@@ -94,7 +94,7 @@ def with_path(table: Dataset) -> Dataset:
     )
 
 
-def with_events(steps: xr.Dataset) -> xr.Dataset:
+def with_events(steps: Dataset) -> Dataset:
     """Return the steps of a run with the variables of its path that are known, not NaN."""
     whole = with_path(steps)
     unknown = [name for name, value in path_variables(steps).items() if np.isnan(value)]
