@@ -42,7 +42,9 @@ class Flaw(Enum):
     OFFSET = "the force before contact is not 0"
     DRIFT = "the force before contact has a slope"
     DIP = "the force dips before contact: something attracts, or the baseline bends"
-    MISFIT = "in contact the misfit exceeds the noise of the baseline"
+    MISFIT = (
+        "in contact the misfit exceeds the noise of the baseline or, without one, of neighbours"
+    )
     PATTERN = "in contact the misfit follows a pattern"
     SPIKES = "single points lie far from their neighbours and shift the fit"
     SLOW = "the noise before contact is correlated; intervals take it so"
@@ -108,6 +110,9 @@ def judged(
     if before.sum() < FEWEST:
         left = max(residuals.size - jacobian.shape[1], 1)
         noise = Noise(max(float(np.sqrt(np.sum(residuals**2) / left)), least), left)
+        # Without a baseline neighbours tell the noise.
+        if noise.exceeds(neighbour_noise(residuals, least)):
+            flaws.add(Flaw.MISFIT)
         return Judged(noise, frozenset(flaws), noise.deviation)
     # Towards contact, on a retraction too.
     rows = np.flatnonzero(before)[:: -1 if curve.moves_out[before][0] else 1]

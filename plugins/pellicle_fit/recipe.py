@@ -116,7 +116,9 @@ class Answer:
         highs = [e.high for e in found if e.high is not None]
         low = min(lows) if len(lows) == len(tied) else None
         high = max(highs) if len(highs) == len(found) else None
-        return Estimate(common_value(found), low, high, found[0].unit)
+        # Of what some of them lack, and need not lack, no value is one that all allow.
+        shared = len(found) == len(tied) or self.verdict is Verdict.NO_SIGN
+        return Estimate(common_value(found) if shared else np.nan, low, high, found[0].unit)
 
 
 class Agreement(NamedTuple):

@@ -222,28 +222,37 @@ def read_table(
         roles = guessed([head for head in heads if "tip" not in head.name.lower()], {})
         if "height" in roles:
             known = {c.name: role for role, c in roles.items() if c.name != UNKNOWN}
-    columns = {}
-    for name, text in known.items():
+    columns, chosen = {}, dict[str, int]()
+    for name in known:
         matches = [index for index, head in enumerate(heads) if head.is_called(name)]
         if not matches and name.isdecimal() and 1 <= int(name) <= len(heads):
             matches = [int(name) - 1]
         if len(matches) == 1:
-            role, _, unit = text.partition(" ")
-            head, texts = heads[matches[0]], [row[matches[0]].strip() for row in rows]
-            values = _numbers(texts, separator, f"{path}: column {head.name}")
-            # Heads that are doubled do not tell which column is which.
-            is_doubled = sum(other.text == head.text for other in heads) > 1
-            unit = unit if unit and is_doubled else head.unit_beside(unit, path)
-            columns[role] = head._replace(unit=unit, values=values)
+            chosen[name] = matches[0]
+    # Decimals of one column tell what a mark means in another.
+    cells = {place: [row[place].strip() for row in rows] for place in chosen.values()}
+    decimals = [cell for texts in cells.values() for cell in texts if "." in cell]
+    for name, place in chosen.items():
+        role, _, unit = known[name].partition(" ")
+        head = heads[place]
+        values = _numbers(cells[place], decimals, separator, f"{path}: column {head.name}")
+        # Heads that are doubled do not tell which column is which.
+        is_doubled = sum(other.text == head.text for other in heads) > 1
+        unit = unit if unit and is_doubled else head.unit_beside(unit, path)
+        columns[role] = head._replace(unit=unit, values=values)
     return {"": columns}, heads, _constants(stated, is_export)
 
 
-def _numbers(cells: list[str], separator: str, column: str) -> Array:
-    """Return numbers; NaN where a cell holds none.  A comma in them is decimal, or refused."""
+def _numbers(cells: list[str], decimals: list[str], separator: str, column: str) -> Array:
+    """Return numbers; NaN where a cell holds none.
+
+    A comma in them is decimal, or refused, as beside ``decimals`` with a point in any column.
+    """
     digits = [cell for cell in cells if _is_number(re.sub("[.,]", "", cell))]
     commas, beside = ([cell for cell in digits if mark in cell] for mark in ",.")
     if commas and all(map(_GROUPED.fullmatch, commas)):
         beside += filter(_WHOLE.fullmatch, digits)
+    beside += (cell for cell in decimals if _is_number(cell.replace(".", "")))
     if commas and (beside or separator == ","):
         raise ConfigError(
             f"{column} has {commas[0]!r} beside {[*beside, *digits][0]!r}, so its commas may be "

@@ -110,7 +110,9 @@ class Row:
             return found
         of = "reduced_modulus" if name == "youngs_modulus" else name
         ratio = self.curve["data"]["poissons_ratio"] if of != name else 0.0
-        return replace(found, value=(1 - ratio**2) * self.fit["parameters"][of]["value"])
+        # An explanation without the quantity has none of it.
+        chosen = self.fit["parameters"].get(of, {"value": 0.0})
+        return replace(found, value=(1 - ratio**2) * chosen["value"])
 
     def has_no_sign(self, name: str) -> bool:
         """Return whether there is no sign of what was asked for, which has the quantity."""

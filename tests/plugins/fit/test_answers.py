@@ -417,6 +417,17 @@ def test_noise_and_checks_say_the_same(kind: str, rivals: list[str]) -> None:
     assert bool(flaws(found)) != is_right
 
 
+def test_a_curve_without_a_baseline_is_checked_too() -> None:
+    """An offset that moves the contact before the first row leaves more than neighbours differ."""
+    position, force = curve()
+    for model in ([], ["tension"]):
+        moved = fit(position, force + 3 * force.max(), model=model)
+        assert moved.verdict is Verdict.UNDESCRIBED
+        assert Flaw.MISFIT in flaws(moved)
+    inside = position > 1e-6 + 0.1 * TOP
+    assert holds(fit(position[inside], force[inside]).reduced_modulus, MODULUS)
+
+
 def test_an_offset_is_told_as_an_offset() -> None:
     """Not as a baseline with a slope, which bends it as well; the next step says what it is."""
     position, force = curve()

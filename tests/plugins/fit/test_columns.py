@@ -285,6 +285,11 @@ def test_thousands_that_may_be_decimals_are_refused(tmp_path: Path) -> None:
     path.write_text("position [nm]\tforce [nN]\n" + "\n".join(lines))
     with pytest.raises(pl.ConfigError, match="column position has '1,000' beside '50', so"):
         curves(path)
+    # Where all rows have four digits, the other column tells.
+    for rows in ("2,500;-0.01\n3,500;0.5\n", "2.500;-0,01\n3.500;0,5\n"):
+        path.write_text(f"position [nm];force [nN]\n{rows}")
+        with pytest.raises(pl.ConfigError, match="may be those of decimals or of thousands"):
+            curves(path)
     path.write_text("position [um]\tforce [nN]\n0\t1\n0,125\t2\n1,125\t3\n")
     assert curves(path)[""].position.tolist() == pytest.approx([0, 0.125e-6, 1.125e-6])
 
