@@ -30,6 +30,7 @@ from pellicle.plugins import registry
 from pellicle.results import storage
 from pellicle.results.dimensions import with_paths, with_python_names
 from pellicle.results.runs import StoredRuns, progress_of
+from pellicle.results.soundness import check, sound
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.memory_estimate import memory_of
@@ -328,7 +329,10 @@ def read(path: Path) -> tuple[xr.Dataset, Path]:
     A kill may leave finished steps out of the table, until the study is run again.
     """
     whole = path / "study.h5" if is_folder(path) else path
-    return with_paths(storage.table(whole)), whole.parent
+    found = storage.table(whole)
+    with sound(whole):
+        check(found)
+        return with_paths(found), whole.parent
 
 
 def is_table(path: Path) -> bool:
