@@ -6,6 +6,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from typing import NamedTuple
 
+_TOLD, _PATH = 10, 200
+"""Problems that a message tells, and letters of the path of a field."""
+
 
 def shown(value: object) -> str:
     """Return ``value`` as text for a message, at most 60 characters long."""
@@ -31,7 +34,8 @@ class Problem(NamedTuple):
     """The value, the allowed values and the remedy."""
 
     def __str__(self) -> str:
-        return f"{self.field}: {self.message}" if self.field else self.message
+        field = self.field if len(self.field) <= _PATH else f"{self.field[: _PATH - 1]}…"
+        return f"{field}: {self.message}" if field else self.message
 
 
 class ConfigError(PellicleError, ValueError):
@@ -49,7 +53,9 @@ class ConfigError(PellicleError, ValueError):
         self.problems: tuple[Problem, ...] = (
             (Problem(field, problems),) if isinstance(problems, str) else tuple(problems)
         )
-        super().__init__("\n".join(map(str, self.problems)))
+        told, more = self.problems[:_TOLD], len(self.problems) - _TOLD
+        ending = [f"and {more} more"] if more > 0 else []
+        super().__init__("\n".join([*map(str, told), *ending]))
 
     def __reduce__(self) -> tuple[type[ConfigError], tuple[tuple[Problem, ...]]]:
         return type(self), (self.problems,)

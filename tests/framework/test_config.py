@@ -228,3 +228,16 @@ def test_library_raises_config_error() -> None:
         pl.Run()  # type: ignore[call-arg]
     assert isinstance(caught.value, ValueError)
     assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
+
+
+def test_a_message_has_an_end() -> None:
+    """Of 2000 unknown keys ten are told, and how many more; a path of 1e5 letters is cut."""
+    with pytest.raises(pl.ConfigError) as raised:
+        pl.Run(**BASE | {"grid": BASE["grid"] | {f"k{number}": 1 for number in range(2000)}})
+    told = str(raised.value).splitlines()
+    assert len(told) == 11
+    assert told[-1] == "and 1990 more"
+    assert len(raised.value.problems) == 2000
+    with pytest.raises(pl.ConfigError) as raised:
+        pl.Run(**BASE | {"k" * 100_000: 1})
+    assert len(str(raised.value)) < 500

@@ -30,6 +30,7 @@ NAMES = {"kernel.tension": 0.5, "kernel.reduced_modulus": 1e4, "depth": 3.0, "gr
         ("abs(-depth)", 3.0),
         ("grid.size.0**2", 4.0),
         ("  depth ", 3.0),
+        ("1" + "+1" * 300, 301.0),
     ],
 )
 def test_is_arithmetic(text: str, value: float) -> None:
@@ -78,6 +79,12 @@ def test_undefined_values_are_not_a_number() -> None:
         ("τ * 2", "'τ' in"),
         ("(" * 249 + "1" + ")" * 249, "not arithmetic"),
         ("~" * 499 + "1", "is not allowed"),
+        *((text, "more than 300 operations") for text in ("1" + "+1" * 301, "-" * 100_000 + "1")),
+        *((f"{text}1", "is not arithmetic") for text in ("~" * 100_000, "not " * 100_000)),
+        *(
+            (text, "is not arithmetic")
+            for text in ("℘5", "depth * ℘0", "℮9", "ᢅ5", "e\u0301", "a·b")
+        ),
         ("1" * 400, "cannot be evaluated|not arithmetic"),
     ],
 )

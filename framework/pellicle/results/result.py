@@ -32,6 +32,7 @@ from pellicle.variables import CAVEATS, COORDINATES, REQUIRED
 from . import storage
 from .derived import configuration_of
 from .path import has_interaction, label_of_step, oscillations_of, path_variables, with_events
+from .soundness import check, sound
 
 _NO_CONTACT = "0.93"
 _STEEPEST = 1.0
@@ -243,4 +244,6 @@ def load(path: str | Path) -> Result:
     if missing := {*COORDINATES, *REQUIRED} - {*map(str, dataset.variables)}:
         lost = ", ".join(sorted(missing))
         raise StorageError(f"{path}: lacks {lost}, so it is damaged; run it again")
+    with sound(Path(path)):
+        check(dataset)
     return Result(with_events(dataset))

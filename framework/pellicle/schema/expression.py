@@ -45,6 +45,8 @@ _TOKEN = re.compile(
 _RAISED = str.maketrans("23456789", "²³⁴⁵⁶⁷⁸⁹")
 _SIGNS = {"**": "^", "*": "·", "/": "/"}
 _GREEK = {"pi": "π"}
+_LONGEST = 300
+"""Operations of an expression, each of which may nest in the one before."""
 _ALLOWED = f"+ - * / ** ( ), {', '.join(FUNCTIONS)} and {', '.join(CONSTANTS)}"
 
 
@@ -97,9 +99,13 @@ def evaluate(
     dotted: list[str] = _NAME.findall(text)
     count = iter(range(len(dotted)))
     code = _NAME.sub(lambda _: f"_{next(count)}", text).strip()
+    if sum(map(code.count, "+-*/(")) > _LONGEST:
+        raise ConfigError(f"{shown(text)} has more than {_LONGEST} operations; give fewer")
     try:
+        # Python takes letters for names that are none in a regular expression, such as ℘.
+        code.encode("ascii")
         tree = ast.parse(code, mode="eval")
-    except (SyntaxError, ValueError):
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise ConfigError(f"{shown(text)} is not arithmetic; write it with {_ALLOWED}") from None
 
     def value(node: ast.AST) -> Any:

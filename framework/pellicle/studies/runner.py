@@ -33,6 +33,7 @@ from pellicle.plugins import registry
 from pellicle.results import storage
 from pellicle.results.dimensions import with_paths, with_python_names
 from pellicle.results.runs import StoredRuns, progress_of
+from pellicle.results.soundness import check, sound
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.memory_estimate import memory_of
@@ -334,7 +335,10 @@ def read(path: Path) -> tuple[xr.Dataset, Path]:
     A kill may leave finished steps out of the table; they are read from the files of the runs.
     """
     whole = path / "study.h5" if is_folder(path) else path
-    rows = with_paths(storage.table(whole))
+    found = storage.table(whole)
+    with sound(whole):
+        check(found)
+        rows = with_paths(found)
     if Status.NOT_RUN.name in rows["status_code"].values:
         # Where a file that the study names is gone, the table is shown as it was left.
         with suppress(PellicleError):
