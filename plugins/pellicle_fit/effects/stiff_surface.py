@@ -44,7 +44,8 @@ class StiffSurface(Bends, title="a surface stiffer or softer than the bulk"):
             deep = np.maximum(depth, 0.0)
             table = bare.tabulated(1.01 * float(np.max(deep)))
             depths = deep[:, None] * _ROOTS**2
-            radius = table.radius(depths.ravel()).reshape(depths.shape)
+            # Interpolated, that of a body flat at its tip may be less than none.
+            radius = np.maximum(table.radius(depths.ravel()), 0.0).reshape(depths.shape)
             excess = 4 * gain * radius * np.exp(-radius / reach) * _ROOTS @ _WEIGHTS
             return table.area(depth, 0.0) + deep * excess
 

@@ -44,14 +44,14 @@ def truth(columns: int, rows: int) -> dict[str, NDArray[np.float64]]:
 
 
 def recordings(columns: int, rows: int) -> list[instruments.Recording]:
-    """Return what an instrument sees at each pixel, with noise of 0.3 %."""
+    """Return what an instrument sees at each pixel, with noise in which each tension is seen."""
     random = np.random.default_rng(7)
     bead, depth = Paraboloid(radius=10e-6), np.linspace(-0.5e-6, 1.5e-6, 60)
     images = [truth(columns, rows)[name].ravel().tolist() for name in NAMES]
     result = []
     for number, (modulus, tension, height) in enumerate(zip(*images, strict=True)):
         force = modulus * bead.force_curve(depth, 2 * tension / modulus).force
-        noise = 0.003 * force.max() * random.standard_normal(depth.size)
+        noise = 0.001 * force.max() * random.standard_normal(depth.size)
         seen = instruments.record(depth - height, force, noise, spring_constant=0.05)
         place = 0.5e-6 * (number % columns), 0.5e-6 * (number // columns)
         result.append(replace(seen, place=place))
