@@ -246,9 +246,8 @@ def _on(run: Run, grid: Grid) -> Run:
 
 def _at_edge(result: xr.Dataset) -> tuple[int, ...]:
     """Return the numbers of the steps whose contact or zone reaches an edge where it must not."""
-    codes = [Status.CONTACT_AT_EDGE.name, Status.ZONE_AT_EDGE.name]
-    reaches = np.isin(result["status_code"].values.astype(str), codes)
-    return tuple(result["step"].values[reaches].tolist())
+    steps = zip(result["step"].values.tolist(), result["status_code"].values, strict=True)
+    return tuple(step for step, code in steps if Status[code].at_edge)
 
 
 def _extent(contact: Mask, grid: Grid) -> tuple[float, float]:

@@ -12,6 +12,7 @@ from pellicle.arrays import Array
 
 from .curve import Curve
 from .effect import Effect, quantities
+from .explanation import Explanation
 from .intervals import Estimate
 from .noise import Flaw, Judged, judged
 from .objective import MODULUS, Minimum, Objective
@@ -73,18 +74,21 @@ class Candidate:
         """Whether E* is that of the solid."""
         return all(effect.holds_modulus for effect in self.objective.explanation.effects)
 
+    @cached_property
+    def known(self) -> list[Explanation]:
+        """The explanation of each curve, with the values of its quantities."""
+        return [self.objective.known(self.minimum.at, i) for i in range(len(self.whole))]
+
     @property
     def contact_points(self) -> list[float]:
         """Position of the base at first touch on each curve [m]."""
-        at, curves = self.minimum.at, enumerate(self.whole)
-        known = ((self.objective.known(at, i), curve) for i, curve in curves)
-        return [float((curve.base - one.base_depth(curve))[0]) for one, curve in known]
+        pairs = zip(self.known, self.whole, strict=True)
+        return [float((curve.base - known.base_depth(curve))[0]) for known, curve in pairs]
 
     @property
     def depths(self) -> list[Array]:
         """Depth of the tip [m] in each row of each curve, negative before contact."""
-        at, curves = self.minimum.at, enumerate(self.whole)
-        return [self.objective.known(at, i).depth(curve) for i, curve in curves]
+        return [known.depth(curve) for known, curve in zip(self.known, self.whole, strict=True)]
 
     @cached_property
     def of_rows(self) -> Objective:
@@ -92,9 +96,14 @@ class Candidate:
         return replace(self.objective, curves=self.whole)
 
     @cached_property
+    def squares(self) -> list[float]:
+        """χ² of all rows of each curve, then the square of each term of what is weighed."""
+        return [float(np.sum(term**2)) for term in self.of_rows.terms(self.minimum.at)]
+
+    @property
     def chi_squared(self) -> float:
         """χ² of all rows."""
-        return self.of_rows.chi_squared(self.minimum.at)
+        return sum(self.squares)
 
     @property
     def without_memory(self) -> Candidate:
@@ -103,9 +112,9 @@ class Candidate:
 
     def chi_squared_of(self, widened: Sequence[float]) -> float:
         """Return χ² of all rows at noise that was widened by a factor in each curve, as it was."""
-        terms = self.of_rows.terms(self.minimum.at)
-        factors = [*widened, *[1.0] * (len(terms) - len(widened))]
-        return sum(float(f**2 * np.sum(t**2)) for f, t in zip(factors, terms, strict=True))
+        squares = self.squares
+        factors = [*widened, *[1.0] * (len(squares) - len(widened))]
+        return sum(f**2 * square for f, square in zip(factors, squares, strict=True))
 
     def forces(self) -> list[Array]:
         """Return the force [N] at all rows of each curve."""
@@ -115,7 +124,7 @@ class Candidate:
         """Return the same with the modulus after another time of loading [s]."""
         old, at, k = self.objective, self.minimum.at.copy(), self.objective.index(MODULUS)
         if k is not None:
-            known = old.known(at, 0)
+            known = self.known[0]
             at[k] += np.log(known.relaxed(time) / known.relaxed(old.loading_time))
         objective, minimum = replace(old, loading_time=time), self.minimum._replace(at=at)
         return replace(self, objective=objective, minimum=minimum)
@@ -129,18 +138,18 @@ class Candidate:
     @cached_property
     def judgements(self) -> list[Judged]:
         """Noise and flaws of each curve under it, from all rows."""
-        at, memory = self.minimum.at, self.objective.memory
-        objective, forces = replace(self.of_rows, memory=()), self.forces()
+        at, forces = self.minimum.at, self.forces()
+        objective = replace(self.of_rows, memory=())
         jacobian = objective.jacobian(at, range(at.size))
         # A coordinate at its limit is none that the fit could use.
         low, high = objective.limits
         jacobian = jacobian[:, (at > low) & (at < high)]
         # Behind the rows of all curves stand those of what is weighed.
         by_curve = np.split(jacobian, np.cumsum([force.size for force in forces]))[:-1]
-        rows_of, found = zip(objective.curves, forces, objective.noise, by_curve, strict=True), []
-        for i, (curve, force, noise, derivatives) in enumerate(rows_of):
-            known = objective.known(at, i)
-            depth, d = known.base_depth(curve), memory[i] if memory else 0.0
+        memory = self.objective.memory or [0.0] * len(forces)
+        columns, found = (self.known, self.whole, forces, objective.noise, by_curve, memory), []
+        for known, curve, force, noise, derivatives, d in zip(*columns, strict=True):
+            depth = known.base_depth(curve)
             one = judged(curve, curve.force - force, derivatives * noise, depth, d)
             if np.max(known.depth(curve)) > known.contact(curve).depth_limit:
                 one = one._replace(flaws=one.flaws | {Flaw.TOO_DEEP})

@@ -51,7 +51,7 @@ class Curve:
         return self.position + self.force / self.stiffness if self.stiffness else self.position
 
     @cached_property
-    def free_force(self) -> float:
+    def shallow_force(self) -> float:
         """Force where the base is shallowest [N], as before contact if any row is."""
         count = max(self.force.size // _SHALLOW, 1)
         return float(np.median(self.force[np.argpartition(self.base, count - 1)[:count]]))

@@ -144,14 +144,14 @@ class Sizes(NamedTuple):
     time: float
     """Duration [s]; 1 without times."""
     rows: int
-    free_force: float = 0.0
+    shallow_force: float = 0.0
     """Force before contact [N]."""
 
     @classmethod
     def of_curve(cls, curve: Curve) -> Sizes:
         """Return those of a curve."""
         time = 1.0 if curve.time is None else float(curve.time[-1] - curve.time[0])
-        return cls(curve.span, curve.largest, time, curve.position.size, curve.free_force)
+        return cls(curve.span, curve.largest, time, curve.position.size, curve.shallow_force)
 
     def of(self, unit: str) -> float:
         """Return the order of magnitude of a quantity with a unit."""

@@ -96,7 +96,7 @@ def _foretold(truth: Candidate, guess: Candidate, other: Curve) -> tuple[Objecti
 
     It predicts the first curve again and another, which have no noise and touch at 0.
     """
-    curve, known = truth.whole[0], truth.objective.known(truth.minimum.at, 0)
+    curve, known = truth.whole[0], truth.known[0]
     means, (point, *_) = curve.binned(_ROWS), truth.contact_points
     again = replace(means, position=means.base - point, stiffness=None, fixed_touch=False)
     # Each row of a forecast stands for as many as the curve has.

@@ -254,7 +254,7 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
     """Fit a curve in a worker, and return JSON data of the fit, with what a population adds."""
     fit = task.problem.fit()
     chosen, (member,), (force,) = fit.answer.chosen, fit.members, fit.forces()
-    load = force - chosen.objective.known(chosen.minimum.at, 0).free_force(member.curve)
+    load = force - chosen.known[0].free_force(member.curve)
     measured, position = member.curve.force, member.curve.position
     scatter = measured - np.mean(measured)
     drawn = sketch(position=position, force=measured, fit=force)
@@ -263,7 +263,7 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
         own = [calibration_of(fit)] if fit.config.uncertainty else []
         beside = f"common error, beside the medians alone: {shares(task.common)}"
         kept["calibration"] = "; ".join([*own, beside])
-        moved = kept["common_errors"] = common_errors(fit.answer.chosen, task.common)
+        moved = kept["common_errors"] = common_errors(chosen, task.common)
         if MODULUS in moved and (ratio := fit.poissons_ratio) is not None:
             of_youngs = {name: (1 - ratio**2) * error for name, error in moved[MODULUS].items()}
             moved["youngs_modulus"] = of_youngs

@@ -127,7 +127,7 @@ class Objective:
             if slot.name == CONTACT_POINT and slot.curve is not None:
                 curve = self.curves[slot.curve]
                 # A free cantilever may be bent, if the force before contact is one.
-                bent = np.array([0.0, curve.free_force / (curve.stiffness or np.inf)])
+                bent = np.array([0.0, curve.shallow_force / (curve.stiffness or np.inf)])
                 low = float(curve.position.min() + bent.min() - _BEFORE * curve.span)
                 high = float(curve.position.max() + bent.max())
             elif q.log:

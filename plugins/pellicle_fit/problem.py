@@ -76,22 +76,22 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
             if len(sources) == 1 or isinstance(error, MissingInputError):
                 raise
             raise source.named(error, "; leave it out") from None
-    fix, depths = dict(config.fix), {curve.is_depth for curve in measured}
+    depths = {curve.is_depth for curve in measured}
     if len(depths) > 1:
         raise ConfigError("some are of depths and some of positions; fit them apart", "curves")
-    if len(measured) > 1 and CONTACT_POINT in fix:
+    if len(measured) > 1 and CONTACT_POINT in config.fix:
         raise ConfigError(
             "is not shared, each curve has its own; leave it out", "fix.contact_point"
         )
-    if True in depths:
-        fix[CONTACT_POINT] = 0.0
-    for one in measured if CONTACT_POINT in fix else ():
-        if not (deepest := float(one.position.max())) > fix[CONTACT_POINT]:
+    point = 0.0 if True in depths else config.fix.get(CONTACT_POINT)
+    fix = config.fix if point is None else {**config.fix, CONTACT_POINT: point}
+    for measurement in measured:
+        deepest = float(measurement.position.max())
+        if point is not None and not deepest > point:
             reason = f"no position reaches it, the deepest is {readable(deepest, 'm', 4)}"
             raise ConfigError(f"{reason}; give the position of first touch", CONTACT_POINT)
-    bodies, layers, ratio = _on_solid(config, indenters, measured, progress)
-    members = []
-    touch = CONTACT_POINT in fix
+    bodies, layers, ratio = _on_solid(config, indenters, measured, point, progress)
+    members, touch = [], point is not None
     for source, one, body in zip(sources, measured, bodies, strict=True):
         curve = Curve(one.position, one.force, body, one.time, one.unloading, one.stiffness, touch)
         members.append(Member(source.name, curve, one, data_of(one, config)))
@@ -116,9 +116,13 @@ def _on_solid(
     config: FitConfig,
     indenters: Sequence[Indenter | HasForceCurve],
     measured: Sequence[Measurement],
+    point: float | None,
     progress: bool,
 ) -> tuple[list[Any], list[Effect], float | None]:
-    """Return what has the force curve of each indenter, a layer beside it, and Poisson's ratio."""
+    """Return what has the force curve of each indenter, a layer beside it, and Poisson's ratio.
+
+    A given contact ``point`` [m] is reached by each curve.
+    """
     kernel, ratio, thickness = config.kernel, config.poissons_ratio, config.thickness
     if thickness == "free":
         return [*indenters], [_effect("layer", poissons_ratio=ratio)], ratio
@@ -142,12 +146,9 @@ def _on_solid(
             reason = "cannot be given with a force curve, which includes its solid"
             raise ConfigError(reason, "kernel")
         of = solid(kernel or "tensed_membrane", config.poissons_ratio)
-        ratio, span = of.poissons_ratio, float(np.ptp(curve.position))
-        point = 0.0 if curve.is_depth else config.fix.get(CONTACT_POINT)
-        reach = _REACH * span if point is None else float(curve.position.max()) - point
+        ratio, deepest = of.poissons_ratio, float(curve.position.max())
+        reach = _REACH * float(np.ptp(curve.position)) if point is None else deepest - point
         options = {name: getattr(config, name) for name in ("cache", "executor", "grid_points")}
-        # If no position reaches contact, the fit itself reports it.
-        reach = reach if reach > 0 else span
         bodies.append(simulated_curve(indenter, of, reach, **options, progress=progress))
     return bodies, [], ratio
 

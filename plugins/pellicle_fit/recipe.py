@@ -98,9 +98,9 @@ class Answer:
         """Return modulus (at the end of the loading) or tension over all that is tied.
 
         The interval is the least that contains theirs; without a lower end if one of them has none.
-        The value is the one that all of them allow, or nearly.  A tension that none of them has is
-        held at 0 and has no ends: they do not bound it.  Where there is no sign of what is asked
-        for, the modulus is that without it.
+        The value is the one that all of them allow, NaN if there is none.  A tension that none of
+        them has is held at 0 and has no ends: they do not bound it.  Where there is no sign of what
+        is asked for, the modulus is that without it.
         """
         lacking = self.question.word if name == MODULUS and self.verdict is Verdict.NO_SIGN else ()
         tied = tied or [fit for fit in self.tied if not lacking or not lacking <= fit.types]
@@ -242,8 +242,8 @@ def with_estimates(
     """Return an explanation with the estimates of some of its quantities, or of all."""
     objective, minimum = fit.objective, fit.minimum
     accuracy = max(
-        objective.known(minimum.at, i).accuracy(curve) * curve.largest / noise
-        for i, (curve, noise) in enumerate(zip(objective.curves, objective.noise, strict=True))
+        known.accuracy(curve) * curve.largest / noise
+        for known, curve, noise in zip(fit.known, objective.curves, objective.noise, strict=True)
     )
     if extra:
         objective, at = fit.beside(extra)

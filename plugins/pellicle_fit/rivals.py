@@ -72,10 +72,8 @@ def comparison(
     Noise that is correlated counts as such, unless the best explanation then fails: a bent baseline
     is no noise, and differences of it would remove the contact.
     """
-    noise, sizes = (
-        tuple(neighbour_noise(curve.force).deviation for curve in curves),
-        Sizes.of_curve(curves[0]),
-    )
+    noise = tuple(neighbour_noise(curve.force).deviation for curve in curves)
+    sizes = Sizes.of_curve(curves[0])
     of = Objective(candidates[NONE], curves, noise, sizes, memory, sizes.time)
     rows = _ROWS if len(candidates) > _FEW else _ROWS_OF_FEW
     means = tuple(curve.binned(rows) for curve in curves)
@@ -84,13 +82,12 @@ def comparison(
     best = best_of(simple.values())
     if not memory and any(found := tuple(judged.memory for judged in best.judgements)):
         fits = comparison(word, candidates, curves, found)
-        best = best_of(fits.values())
+        other = best_of(fits.values())
         # What a wrong explanation leaves before contact may look like noise with a memory.
-        if all(judged.describes for judged in best.judgements) and any(
-            judged.memory for judged in best.without_memory.judgements
+        if all(judged.describes for judged in other.judgements) and any(
+            judged.memory for judged in other.without_memory.judgements
         ):
             return fits
-        best = best_of(simple.values())
     # Another noise only scales χ²; at last it is that of the best.
     fits = _sought(candidates, word, simple, best.of_rows, means)
     fits = at_common_noise({types: _restarted(fit, fits) for types, fit in fits.items()})

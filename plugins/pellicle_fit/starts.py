@@ -52,7 +52,7 @@ def pooled(objective: Objective) -> list[Array]:
         return scanned(objective)
     each = []
     for curve, noise in zip(objective.curves, objective.noise, strict=True):
-        sizes = objective.sizes._replace(free_force=curve.free_force)
+        sizes = objective.sizes._replace(shallow_force=curve.shallow_force)
         alone = replace(objective, curves=(curve,), noise=(noise,), sizes=sizes, memory=())
         minima = [alone.minimise(at, steps=ROUGH).at for at in scanned(alone)]
         each.append([{name: v for (name, _), v in alone.values(at).items()} for at in minima])

@@ -94,8 +94,7 @@ def run(
             outcome, files, resumed = runner.execute(
                 configuration, journal, outputs, bar, threads=threads
             )
-            at_edge = {Status.CONTACT_AT_EDGE.name, Status.ZONE_AT_EDGE.name}
-            if at_edge & {*outcome.dataset["status_code"].values}:
+            if any(Status[code].at_edge for code in outcome.dataset["status_code"].values):
                 echo(sentences.larger_domain(file, folder), err=True)
     except KeyboardInterrupt:
         finished = "runs" if isinstance(configuration, Study) else "steps"

@@ -141,6 +141,11 @@ class Status(Enum):
         return _GRAVEST_FIRST.index(self) >= _GRAVEST_FIRST.index(Status.NEAREST_AREA)
 
     @property
+    def at_edge(self) -> bool:
+        """Whether the domain is too small."""
+        return self in (Status.CONTACT_AT_EDGE, Status.ZONE_AT_EDGE)
+
+    @property
     def verdict(self) -> str:
         """The status in one or two words, for tables."""
         usual = "converged" if self.converged else "NOT CONVERGED"

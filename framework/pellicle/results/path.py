@@ -96,6 +96,8 @@ def with_path(table: Dataset) -> Dataset:
 
 def with_events(steps: Dataset) -> Dataset:
     """Return the steps of a run with the variables of its path that are known, not NaN."""
-    whole = with_path(steps)
-    unknown = [name for name, value in path_variables(steps).items() if np.isnan(value)]
-    return whole.drop_vars(unknown)
+    variables = path_variables(steps)
+    known = {name: value for name, value in variables.items() if not np.isnan(value)}
+    return steps.drop_vars(variables.keys() - known.keys(), errors="ignore").assign(
+        {name: ((), value, VARIABLES[name].attributes) for name, value in known.items()}
+    )

@@ -10,9 +10,6 @@ from typing import Any
 
 import numpy as np
 
-_HDF5 = b"\x89HDF\r\n\x1a\n"
-_USER_BLOCK = 512
-"""Size of the text that precedes the HDF5 content of version 7.3 [bytes]."""
 _COMPRESSED = 15
 """Type of a compressed variable of version 5."""
 
@@ -30,9 +27,11 @@ def read_mat(path: Path) -> dict[str, Any]:
     ValueError
         The file is not a MATLAB file, or takes values from other files.
     """
-    if _is_hdf5(path):
-        return _read_hdf5(path)
+    import h5py
     from scipy.io import loadmat
+
+    if h5py.is_hdf5(path):
+        return _read_hdf5(path)
 
     try:
         content = loadmat(path, simplify_cells=True)
@@ -46,10 +45,10 @@ def read_mat(path: Path) -> dict[str, Any]:
 
 def unpacked_size(path: Path) -> int:
     """Return the size [bytes] that the compressed variables of a MATLAB file state."""
-    sizes = []
-    if _is_hdf5(path):
-        import h5py
+    import h5py
 
+    sizes = []
+    if h5py.is_hdf5(path):
         with h5py.File(path) as content:
             content.visititems(lambda _, item: sizes.append(getattr(item, "nbytes", 0)))
         return sum(sizes)
@@ -63,12 +62,6 @@ def unpacked_size(path: Path) -> int:
                 sizes.append(struct.unpack(order, head)[1])
             file.seek(size, 1)
     return sum(sizes)
-
-
-def _is_hdf5(path: Path) -> bool:
-    with path.open("rb") as file:
-        head = file.read(_USER_BLOCK + len(_HDF5))
-    return _HDF5 in (head[: len(_HDF5)], head[_USER_BLOCK:])
 
 
 def _plain(value: Any) -> Any:

@@ -16,7 +16,7 @@ class Offset(Records, title="an offset"):
 
     def starts(self, sizes: Sizes) -> Iterable[Values]:
         """Yield the force before contact, which may be far from 0."""
-        yield {"offset": sizes.free_force}
+        yield {"offset": sizes.shallow_force}
 
     def recorded(self, force: Array, curve: Curve) -> Array:
         """Return F + F₀ [N]."""

@@ -108,12 +108,18 @@ def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
         groups = whole.groupby("group", sort=False) if len(curves) > 1 else ()
         parts = [(label(group), curves[group], part) for group, part in groups]
         for group, count, part in (*parts, ("all", len(rows), whole)):
-            line = {"group": group, "parameter": name, "unit": part["unit"].iloc[0]}
-            counts = {name: int(part[name].sum()) for name in ("open", "no_sign", "outlier")}
             quartiles = part["value"].quantile([0, 0.25, 0.5, 0.75, 1]).tolist()
-            line |= {"curves": count, "n": len(part), "open": counts["open"]}
-            line |= {"no_sign": counts["no_sign"], "outliers": counts["outlier"]}
-            line |= zip(QUARTILES, quartiles, strict=True)
+            line = {
+                "group": group,
+                "parameter": name,
+                "unit": part["unit"].iloc[0],
+                "curves": count,
+                "n": len(part),
+                "open": int(part["open"].sum()),
+                "no_sign": int(part["no_sign"].sum()),
+                "outliers": int(part["outlier"].sum()),
+                **dict(zip(QUARTILES, quartiles, strict=True)),
+            }
             lines.append(line | common_error(part["row"], name))
     return lines
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from functools import cache, partial
 from math import ceil, floor
 from typing import Annotated, ClassVar, Literal, Self, get_args
 
@@ -204,6 +205,7 @@ class Topography(FromHeights):
         is_periodic = boundary_of_run() == "periodic"
         level = self.level or ("mean" if is_periodic else "tilt")
         degree = _LEVELS.index(level) - 1
+        fitted = cache(partial(_polynomial, heights, measured))
         if not measured.all():
             share = 1 - float(measured.mean())
             if share > self.fill or not measured.any():
@@ -214,16 +216,16 @@ class Topography(FromHeights):
                     "fill",
                 )
             # On a tilt, heights that are filled before levelling would be those at the rim.
-            trend = _polynomial(heights, measured, max(degree, 1))
+            trend = fitted(max(degree, 1))
             left = np.ma.masked_array(np.where(measured, heights - trend, 0.0), mask=~measured)
             scan = library(self.path).Topography(left, left.shape)
             # The missing heights solve Laplace's equation.
             filled = scan.interpolate_undefined_data_with_harmonic_function().heights()
             heights = np.where(measured, heights, np.ma.getdata(filled) + trend)
-        levelled = heights - _polynomial(heights, measured, degree)
+        levelled = heights - fitted(degree)
         if is_periodic:
             other: _Level = "tilt" if degree < 1 else "mean"
-            rest = heights - _polynomial(heights, measured, _LEVELS.index(other) - 1)
+            rest = heights - fitted(_LEVELS.index(other) - 1)
             self._warn_of_seam({level: levelled, other: rest})
         return -levelled if self.invert else levelled
 
