@@ -327,7 +327,9 @@ def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
             try:
                 kernel = Tabulated(checked_call(kernel, "compliance"), shortest, longest)
             except ConfigError as error:
-                raise _of_wide_cells(kernel, grid) or error from None
+                # An error of the kernel itself names its field.
+                of_table = error.problems[0].field == "kernel"
+                raise (of_table and _of_wide_cells(kernel, grid)) or error from None
         return FreeOperator(kernel, grid)
 
 
