@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import inspect
 import os
+import re
 from collections.abc import Callable, Collection, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -95,8 +96,11 @@ class Registry:
                 f"{nearest(family, self.components)}{hint}"
             )
         article = "an" if family[0] in "aeiou" else "a"
+        word = re.sub("[^a-z0-9]", "", str(type_).lower())
+        near = [name for name, known in types.items() if word in known.component.also]
+        lead = f"what comes nearest is {' or '.join(map(repr, near))}. " if near else ""
         raise ConfigError(
-            f"{type_!r} is not {article} {family}; {nearest(type_, types)}{hint}", "type"
+            f"{shown(type_)} is not {article} {family}; {lead}{nearest(type_, types)}{hint}", "type"
         )
 
     def versions(self, used: Collection[type[Component]]) -> dict[str, str]:

@@ -98,3 +98,23 @@ def test_study_with_steep_slopes(tmp_path: Path, quiet: list[str]) -> None:
         done = CliRunner().invoke(app, command)
         assert done.exit_code == 0, done.output
         assert done.output.count("of 2 runs, in 1 slopes in contact are beyond the theory") == 1
+
+
+@pytest.mark.parametrize(
+    ("word", "nearest"),
+    [
+        ("dmt", "dugdale"),
+        ("Maugis-Dugdale", "dugdale"),
+        ("maugis", "dugdale"),
+        ("lj93", "exponential"),
+        ("vdw", "exponential"),
+        ("Lennard_Jones", "exponential"),
+        ("griffith", "jkr"),
+    ],
+)
+def test_words_of_the_field_lead_to_what_comes_nearest(word: str, nearest: str) -> None:
+    """What is looked for under another name is named."""
+    with pytest.raises(
+        pl.ConfigError, match=f"not an interaction; what comes nearest is '{nearest}'"
+    ):
+        pl.registry().find("interaction", word)

@@ -25,6 +25,9 @@ class Component(Model):
     libraries: ClassVar[tuple[str, ...]] = ()
     """Distributions that it uses besides numpy and scipy; results record their versions."""
 
+    also: ClassVar[tuple[str, ...]] = ()
+    """Other words for it, or for what it comes nearest to, with which a message leads to it."""
+
     @property
     def type_name(self) -> str:
         """The component's type, such as ``half_space``."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -18,6 +18,9 @@ _CUTOFF = 1e-6
 class Exponential(Interaction):
     """Energy −w e^(−g/range), smooth for every gap; the strength is w over the range."""
 
+    also: ClassVar[tuple[str, ...]] = (
+        *("lj", "lj93", "lj126", "lennardjones", "vdw", "vanderwaals", "morse", "rst", "smooth"),
+    )
     type: Literal["exponential"] = "exponential"
     examples = ({"work_of_adhesion": "50 mJ/m^2", "range": "1 um"},)
     work_of_adhesion: WorkOfAdhesion = Field(

@@ -145,6 +145,7 @@ class Dugdale(Adhesive):
     averaged: ClassVar[bool] = True
     _SHAPE: ClassVar[float] = 1.0
 
+    also: ClassVar[tuple[str, ...]] = ("dmt", "maugis", "maugisdugdale", "md", "squarewell")
     type: Literal["dugdale"] = "dugdale"
     examples = ({"work_of_adhesion": "50 mJ/m^2", "range": "2 um"},)
 

@@ -39,6 +39,7 @@ class JKR(Interaction):
     averaged: ClassVar[bool] = True
     least_cells: ClassVar[float] = 1.25
 
+    also: ClassVar[tuple[str, ...]] = ("griffith", "adhesion", "johnsonkendallroberts")
     type: Literal["jkr"] = "jkr"
     examples = ({"work_of_adhesion": "50 mJ/m^2"},)
     work_of_adhesion: WorkOfAdhesion = Field(
