@@ -72,7 +72,7 @@ BROKEN: dict[str, Any] = {
     ),
     "search_goes_one_way": [
         target("in words", "returned 'much'", searches(measure=lambda step: "much")),
-        Broken("searches the wrong way", Marked("CONTACT_AT_EDGE"), target=falling),
+        Broken("searches the wrong way", Marked("NOT_REACHED"), target=falling),
     ],
     "step_has_what_is_prescribed": Broken(
         "means another volume", OWN, target=lambda f, setting, value: f(setting, 0.6 * value)
