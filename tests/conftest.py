@@ -23,16 +23,17 @@ if TYPE_CHECKING:
 
 LONGEST = (
     "tests/docs/test_blocks.py",
+    "tests/plugins/solvers/test_active_set.py",
     "tests/physics/test_adhesion.py",
+    "tests/plugins/fit/test_answers.py",
     "tests/contracts/test_kit.py",
+    "tests/framework/broken/test_catalogue.py",
     "tests/framework/test_study.py",
-    "tests/plugins/fit/test_rivals.py",
+    "tests/packaging/test_strangers.py",
     "tests/physics/frozen/test_fits.py",
     "tests/framework/sentences/test_sentences.py",
     "tests/framework/test_memory.py",
-    "tests/plugins/solvers/test_active_set.py",
-    "tests/packaging/test_strangers.py",
-    "tests/plugins/fit/test_checks.py",
+    "tests/plugins/executors/test_processes.py",
     "tests/framework/test_study_killed.py",
 )
 """The longest files, of the slow tests too; longest first."""

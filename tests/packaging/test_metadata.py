@@ -52,3 +52,10 @@ def test_conda_recipe_has_the_dependencies(project: dict[str, Any]) -> None:
         name, limit = re.fullmatch(r"([\w-]+)(.*)", dependency).groups()  # type: ignore[union-attr]
         expected.add(CONDA_NAMES.get(name, name) + limit)
     assert recipe == expected
+
+
+def test_the_files_that_tests_begin_with_exist() -> None:
+    """A file that is renamed or split keeps its place among the longest."""
+    listed = re.findall(r'^    "(tests/.*\.py)",$', text("tests/conftest.py"), re.MULTILINE)
+    assert len(listed) > 9
+    assert [name for name in listed if not (ROOT / name).exists()] == []
