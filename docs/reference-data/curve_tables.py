@@ -7,7 +7,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -93,7 +92,7 @@ def change_by_layer(shape: Shape, length: float, confinement: float) -> Array:
 
 def main() -> None:
     """Solve all nodes and write both files."""
-    np.savez_compressed(Path(str(reciprocity.FILE)), **punches())
+    np.savez_compressed(reciprocity.FILE, **punches())
     tables: dict[str, Any] = {}
     for shape in SHAPES:
         rows = [on_half_space(shape, length) for length in layer_curves.HALF_SPACE_LENGTHS.tolist()]
@@ -106,7 +105,7 @@ def main() -> None:
         rounded = np.round(np.array(changes) / _STEP) * _STEP
         # The axes are ν, s/h, a/h and the columns of a row.
         tables[f"{shape}_layer"] = np.moveaxis(rounded.astype(np.float32), 2, 0)
-    np.savez_compressed(Path(str(layer_curves.FILE)), **tables)
+    np.savez_compressed(layer_curves.FILE, **tables)
 
 
 if __name__ == "__main__":

@@ -227,8 +227,6 @@ WALL_PRESSURE = "wall_pressure"
 """The field that a result has beside `FIELDS` if there is an interaction."""
 CAVEATS: Final = "caveats"
 """Text of the caveats of a step, for programs: `pellicle.contact.caveats` reads it."""
-BEYOND_THEORY: Final = "beyond_theory"
-"""Text in the table of a study: what `Result.beyond_theory` says of a run, if it says so of any."""
 REQUIRED = (*names_of("field", "status"), "depth", "force", "contact_area", "iterations")
 """Variables in every result file."""
 CONTACT_AREA: Final = "contact area"

@@ -24,6 +24,8 @@ VALUES: dict[str, float | str] = {
     "end": "jump",
     "remedy": "larger domain",
     "loss": "known",
+    "off": "known error",
+    "error": 0.1,
     "stop": "ITERATION_LIMIT",
     "prescribed": "depth",
     "reason": "no memory",

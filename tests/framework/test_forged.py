@@ -80,7 +80,6 @@ RESULT = {
     "another grid": configured(grid={"points": 7, "size": 1.0, "boundary": "free"}),
     "fields the other way": lambda data: data.transpose("y", "x", "step"),
     "coordinates of text": put("x", TEXT),
-    "depth to base in words": attribute("depth_to_base", "deep"),
 }
 TABLE = {
     "axes no JSON": attribute("axes", "{"),

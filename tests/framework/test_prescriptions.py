@@ -12,7 +12,7 @@ from pydantic import Field
 import pellicle as pl
 from pellicle import plugins
 from pellicle.plugins import checked_type
-from pellicle.runs import steps
+from pellicle.runs import solve as solving
 from pellicle.units import Quantity
 from tests.framework.broken.catalogue import Broken, Taken, make
 from tests.framework.broken.prescriptions import PRESCRIPTIONS
@@ -70,7 +70,7 @@ def test_resumes_in_the_middle(
     """A run that was interrupted goes on at its next step, from the state of the one before."""
     run = pl.Run(**BASE, loading=loading, outputs=[], title="path")
     whole = pl.run(run, directory=tmp_path / "whole", progress=False).dataset
-    solve, calls = steps.solve_step, []
+    solve, calls = solving.solve_step, []
 
     def once(*arguments: Any) -> Any:
         calls.append(arguments)
@@ -78,7 +78,7 @@ def test_resumes_in_the_middle(
             raise KeyboardInterrupt
         return solve(*arguments)
 
-    monkeypatch.setattr(steps, "solve_step", once)
+    monkeypatch.setattr(solving, "solve_step", once)
     with pytest.raises(KeyboardInterrupt):
         pl.run(run, directory=tmp_path / "parts", progress=False)
     resumed = pl.run(run, directory=tmp_path / "parts", progress=False).dataset

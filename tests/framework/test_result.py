@@ -128,8 +128,11 @@ def test_beyond_the_theory(kernel: dict[str, Any], depth: float, message: str) -
             result = pl.run(run, progress=False)
     else:
         result = pl.run(run, progress=False)
-        assert result.beyond_theory() == {}
-    assert set(result.dataset["status_code"].values) == {"CONVERGED"}
+        assert not result.warnings()
+    told = "THROUGH_LAYER" if kernel["type"] != "half_space" else "STEEP"
+    codes = ["CONVERGED", told if message else "CONVERGED"]
+    assert result.dataset["status_code"].values.tolist() == codes
+    assert result.converged
 
 
 def test_study_beyond_the_theory(tmp_path: Path) -> None:
@@ -143,20 +146,21 @@ def test_study_beyond_the_theory(tmp_path: Path) -> None:
         "study": {"vary": {"loading.depth.1": ["1.2 um", "4 um", "5 um"]}},
     }
     for _ in ("solved", "resumed"):
-        with pytest.warns(UserWarning, match="far beyond the theory") as caught:
+        with pytest.warns(UserWarning, match="pressed through a layer") as caught:
             table = pl.run_study(study, tmp_path, progress=False)
         (message,) = (str(warned.message) for warned in caught)
         assert message.startswith(
-            "of 3 runs, in 2 a contact is far beyond the theory or its cells; "
+            "of 3 runs, in 2 the surface is pressed through a layer to its rigid base; "
         )
         assert re.search(
             r"depth 2 4 µm \(file \w+…\), step 2: .* through a layer .* thick", message
         )
-        none, first, second = table["beyond_theory"].values
-        assert none == ""
-        assert (message.endswith(first), second.startswith("step 2: ")) == (True, True)
+        none, first, second = table["status_code"].values.tolist()
+        assert none == ["CONVERGED", "CONVERGED"]
+        assert first == second == ["CONVERGED", "THROUGH_LAYER"]
         with (tmp_path / "study.csv").open(encoding="utf-8", newline="") as file:
-            texts = [row["beyond_theory"] for row in csv.DictReader(file)]
-        assert texts == ["", "", first, first, second, second]
+            texts = [row["status"] for row in csv.DictReader(file)]
+        assert texts[:3] == ["converged"] * 3
+        assert message.endswith(f"step 2: {texts[3]}")
     shown = CliRunner().invoke(app, ["show", str(tmp_path)])
     assert message in shown.stderr

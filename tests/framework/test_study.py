@@ -457,11 +457,7 @@ def test_long_runs_go_to_processes(
         clock += pace[task.index[0]]
         return solved.copy()
 
-    solved = (
-        pl.run(RUN, progress=False)
-        .dataset.drop_dims(["x", "y"])
-        .assign_attrs(warnings=[], beyond_theory="")
-    )
+    solved = pl.run(RUN, progress=False).dataset.drop_dims(["x", "y"]).assign_attrs(warnings=[])
     monkeypatch.setattr(study_module, "solve", solve)
     monkeypatch.setattr(study_module, "time", SimpleNamespace(monotonic=lambda: clock))
     monkeypatch.setattr(Processes, "map", processes)

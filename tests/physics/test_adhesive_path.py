@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 from pellicle.contact.load_step import end_of
-from pellicle.results.step import Steps
+from pellicle.results.record import Steps
 from tests.adhesive_paths import solved
 
 # In these units slopes are large.

@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, lru_cache, partial
-from importlib.resources import as_file, files
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
@@ -27,7 +27,7 @@ from pellicle.components import ForceCurve, LayerForceCurve
 
 from . import master_curves
 from .depth_curves import touching
-from .splines import Interpolant, stretched_spline
+from .splines import Interpolant, stretched_spline, table_in
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline
@@ -52,7 +52,7 @@ HALF_SPACE_LENGTHS: Array = HALF_SPACE_SCALE * np.expm1(np.arange(0.0, 23.1, 0.1
 """Nodes s/a."""
 _FILLED = 0.8
 """Largest contact radius over the end of the profile."""
-FILE = files("pellicle.axisymmetric").joinpath("layer_curves.npz")
+FILE = Path(__file__).with_name("layer_curves.npz")
 Shape = Literal["smooth", "pointed", "punch"]
 """An indenter of revolution with a smooth apex, with a corner there, or with a flat end."""
 
@@ -216,22 +216,18 @@ def cone_profile(half_angle: float) -> Profile:
 
 
 @cache
-def _table() -> dict[str, Array]:
-    with as_file(FILE) as path, np.load(path) as table:
-        return {name: np.asarray(table[name], dtype=np.float64) for name in table.files}
-
-
-@cache
 def _half_space(shape: Shape) -> Interpolant:
     """Return the interpolant over s/a of the columns that ``curve_tables.row`` describes."""
-    return stretched_spline(HALF_SPACE_LENGTHS, _table()[f"{shape}_half_space"], HALF_SPACE_SCALE)
+    return stretched_spline(
+        HALF_SPACE_LENGTHS, table_in(FILE)[f"{shape}_half_space"], HALF_SPACE_SCALE
+    )
 
 
 @lru_cache(maxsize=16)
 def _layer(shape: Shape, poissons_ratio: float) -> Interpolant:
     """Return the interpolant over s/h of the changes by a layer, of shape (n, a/h, columns)."""
     z = 1 - 2 * np.log1p((1 - 2 * poissons_ratio) / _SPREAD) / np.log1p(1 / _SPREAD)
-    change = chebyshev.chebval(z, _table()[f"{shape}_layer"])
+    change = chebyshev.chebval(z, table_in(FILE)[f"{shape}_layer"])
     return stretched_spline(LENGTHS, change, LENGTH_SCALE)
 
 

@@ -20,8 +20,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache, lru_cache
-from importlib.resources import as_file, files
 from itertools import pairwise
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -30,7 +30,7 @@ from pellicle.arrays import Array
 from pellicle.components import HasAbelSlope
 
 from .equation import kinks_of
-from .splines import Interpolant, stretched_spline
+from .splines import Interpolant, stretched_spline, table_in
 
 LENGTH_SCALE = 1e-8
 LENGTHS: Array = LENGTH_SCALE * np.expm1(np.linspace(0.0, np.log1p(1e8 / LENGTH_SCALE), 245))
@@ -40,7 +40,7 @@ ANGLES: Array = np.minimum(
     ANGLE_SCALE * np.expm1(np.linspace(0.0, np.log1p(np.pi / 2 / ANGLE_SCALE), 201)), np.pi / 2
 )
 """Nodes η of the table."""
-FILE = files("pellicle.axisymmetric").joinpath("punches.npz")
+FILE = Path(__file__).with_name("punches.npz")
 _STEPS = 0.06 * np.arange(-60, 61)
 """Nodes of the quadrature before its substitution."""
 
@@ -64,7 +64,7 @@ def contacts(body: HasAbelSlope, radius: Array, length: float) -> Contacts:
     """Return the contacts of radii [m], of shape (n,), for s = ``length`` [m]."""
     integral, slope = _moments(body, radius.tobytes())
     ratio = length / radius
-    values, rates = _shares()(ratio)
+    values, rates = _over_lengths(with_shares=True)(ratio)
     stiffness = 2 * np.exp(values[:, 0])
     rate = stiffness * rates[:, 0]
     shares, by_ratio = values[:, 1:], rates[:, 1:] + rates[:, :1] * values[:, 1:]
@@ -79,7 +79,7 @@ def contacts(body: HasAbelSlope, radius: Array, length: float) -> Contacts:
 
 def punch_stiffness(ratio: Array) -> tuple[Array, Array]:
     """Return log(k/2E*a) of flat punches at s/a = ratio, of shape (n,), and its derivative."""
-    return _stiffness()(ratio)
+    return _over_lengths(with_shares=False)(ratio)
 
 
 def punch_slope(ratio: Array) -> Array:
@@ -89,27 +89,16 @@ def punch_slope(ratio: Array) -> Array:
 
 
 @cache
-def _table() -> dict[str, Array]:
-    with as_file(FILE) as path, np.load(path) as table:
-        return {name: table[name] for name in table.files}
-
-
-@cache
-def _shares() -> Interpolant:
-    """Return the interpolant over s/a of log(k/2E*a) and of the shares of the modes."""
-    return stretched_spline(LENGTHS, _table()["shares"], LENGTH_SCALE)
-
-
-@cache
-def _stiffness() -> Interpolant:
-    """Return the interpolant over s/a of log(k/2E*a) alone."""
-    return stretched_spline(LENGTHS, _table()["shares"][:, 0], LENGTH_SCALE)
+def _over_lengths(*, with_shares: bool) -> Interpolant:
+    """Return the interpolant over s/a of log(k/2E*a), alone or with the shares of the modes."""
+    columns = table_in(FILE)["shares"]
+    return stretched_spline(LENGTHS, columns if with_shares else columns[:, 0], LENGTH_SCALE)
 
 
 @cache
 def _modes() -> Interpolant:
     """Return the interpolant over η of the modes of φ sin η / k."""
-    return stretched_spline(ANGLES, _table()["modes"], ANGLE_SCALE)
+    return stretched_spline(ANGLES, table_in(FILE)["modes"], ANGLE_SCALE)
 
 
 # Those of one body serve at each tension.

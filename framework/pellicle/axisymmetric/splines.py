@@ -1,9 +1,11 @@
-"""Splines on a variable that is linear in x at first and logarithmic beyond a scale."""
+"""Tables, and splines on a variable that is linear in x at first, logarithmic beyond a scale."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from math import factorial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +18,13 @@ if TYPE_CHECKING:
 
 Interpolant = Callable[[Array], tuple[Array, Array]]
 """Values and their derivative in x ≥ 0; for x of shape (n,), those of nodes have trailing axes."""
+
+
+@cache
+def table_in(file: Path) -> dict[str, Array]:
+    """Return the arrays of a file of the package by name."""
+    with np.load(file) as table:
+        return {name: np.asarray(table[name], dtype=np.float64) for name in table.files}
 
 
 def stretched_spline(x: ArrayLike, values: ArrayLike, scale: float) -> Interpolant:

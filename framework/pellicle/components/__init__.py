@@ -9,6 +9,7 @@ its objects can be pickled to workers. A concrete component declares
 from pellicle.contact.problem import Depth as Depth
 from pellicle.contact.problem import Force as Force
 from pellicle.contact.time_step import Branch as Branch
+from pellicle.grid import Boundary as Boundary
 from pellicle.grid import boundary_of_run as boundary_of_run
 from pellicle.grid import pair as pair
 from pellicle.grid import shape_of_run as shape_of_run
@@ -57,7 +58,6 @@ from .output import Runs as Runs
 from .prescription import Prescription as Prescription
 from .prescription import Search as Search
 from .prescription import Setting as Setting
-from .solver import HasMemory as HasMemory
 from .solver import IterativeSolver as IterativeSolver
 from .solver import Monitor as Monitor
 from .solver import Solver as Solver

@@ -8,7 +8,7 @@ from typing import ClassVar
 from pellicle.arrays import Mask
 from pellicle.checks import component_name, errors_attributed_to, read_only, real_number
 from pellicle.errors import PluginError
-from pellicle.grid import Grid
+from pellicle.grid import Boundary, Grid
 
 from .base import Component
 
@@ -23,27 +23,19 @@ class AreaCorrection(Component):
     place: ClassVar[str] = "corrections[]"
 
     @abstractmethod
-    def area(self, contact: Mask, spacing: tuple[float, float]) -> float:
+    def area(self, contact: Mask, spacing: tuple[float, float], boundary: Boundary) -> float:
         """Return the area of contact [m²].
 
         ``contact``, of shape (nx, ny), is true for cells in contact; ``spacing`` is the size of a
-        cell along x and y [m].
+        cell along x and y [m]. With the ``boundary`` "periodic" opposite edges touch.
         """
-
-    def periodic_area(self, contact: Mask, spacing: tuple[float, float]) -> float:
-        """Return the area of contact [m²] on a periodic domain, whose opposite edges touch.
-
-        The default is `area`; a correction that compares neighbouring cells overrides this.
-        """
-        return self.area(contact, spacing)
 
 
 def corrected_area(correction: AreaCorrection, contact: Mask, grid: Grid) -> float:
     """Return the corrected area of contact [m²]."""
-    method = correction.periodic_area if grid.boundary == "periodic" else correction.area
-    call = f"{method.__name__}(contact, spacing)"
+    call = "area(contact, spacing, boundary)"
     with errors_attributed_to(correction):
-        value = method(read_only(contact), grid.spacing)
+        value = correction.area(read_only(contact), grid.spacing, grid.boundary)
     area = real_number(correction, call, value)
     largest = grid.area if contact.any() else 0.0
     if not 0 <= area <= largest * (1 + _ROUNDING):

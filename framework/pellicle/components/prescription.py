@@ -86,6 +86,8 @@ class Search:
     """Relative width of the interval of controls to which a jump is located."""
     guess: float | None = None
     """Control of the first trial [m or N]; None to start from that of the last step."""
+    in_cells: bool = False
+    """Whether the quantity is that of a whole number of cells."""
     quantity: str = "quantity"
     """Name of the quantity in messages."""
     unit: str = ""

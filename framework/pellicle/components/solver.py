@@ -6,7 +6,7 @@ from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import replace
 from numbers import Integral
-from typing import Annotated, Any, ClassVar, Protocol, runtime_checkable
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import Field
@@ -27,18 +27,9 @@ Monitor = Callable[[int, float], None]
 
 # A stagnating residual up to this multiple of the rounding of one application counts as rounding.
 _ROUNDINGS = 30.0
-
-
-@runtime_checkable
-class HasMemory(Protocol):
-    """A solver that states its memory, for the estimate before a run."""
-
-    def arrays(self, grid: Grid) -> float:
-        """Return the number of arrays of the grid's shape that a solve needs at its peak.
-
-        Arrays of eight bytes per cell, in addition to operator and indenter.
-        """
-        ...
+# Peak memory of active_set in full contact, measured on Linux with glibc; on a periodic grid with
+# half an array for figures that the collector has not freed yet.
+_ARRAYS = {"free": 11.5, "periodic": 9.25}
 
 
 class Solver(Component):
@@ -59,6 +50,14 @@ class Solver(Component):
         The default refuses a law that acts across the gap.
         """
         return "cannot solve with an interaction; use active_set" if problem.law else ""
+
+    def arrays(self, grid: Grid) -> float:
+        """Return the number of arrays of the grid's shape that a solve needs at its peak.
+
+        Arrays of eight bytes per cell, in addition to operator and indenter; by default those of
+        active_set in full contact.
+        """
+        return _ARRAYS[grid.boundary]
 
     @abstractmethod
     def solve(self, problem: Problem, start: State | None, monitor: Monitor) -> Solution:

@@ -21,7 +21,7 @@ from pellicle.plugins import Origin, registry
 from pellicle.units import parts_of, quantity_of, readable
 from pellicle.variables import words_of_name
 
-from .load_steps import LoadSteps, legs_with
+from .legs import LoadSteps, legs_with
 from .loading import Loading, keys_of, prescription_in
 
 

@@ -32,7 +32,7 @@ from pellicle.schema.messages import nearest
 from pellicle.schema.model import Model
 from pellicle.units import Quantity
 
-from .load_steps import Leg, LoadSteps, Sample, sampled
+from .legs import Leg, LoadSteps, Sample, sampled
 
 # Messages name these first.
 _USUAL = "depth", "force", "mean_pressure"

@@ -19,7 +19,6 @@ def provenance(run: Run) -> dict[str, Any]:
         "configuration": run.to_json(),
         "identity": run.identity,
         **facts_of([run]),
-        "depth_to_base": run.kernel.depth_to_base(),
         **now_with([run]),
     }
 

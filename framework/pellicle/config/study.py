@@ -21,7 +21,7 @@ from pellicle.schema.expression import CONSTANTS, FUNCTIONS, evaluate, names_in
 from pellicle.schema.from_file import FromFile, overridden, paths_relative_to, read_toml
 from pellicle.schema.model import get, python_names, replaced
 from pellicle.schema.ranges import Axes, expand
-from pellicle.variables import BEYOND_THEORY, FIELDS, VARIABLES
+from pellicle.variables import FIELDS, VARIABLES
 
 from .coordinates import Coordinate, as_json, coordinate, short, tell_apart
 from .run import Run
@@ -230,7 +230,7 @@ class Study(FromFile):
         """Refuse expressions with names that the table will not have, before any run is solved."""
         run = self.points[0].run
         texts = {name for name, variable in VARIABLES.items() if variable.type == "text"}
-        allowed = {*FIELDS, *constants(json.loads(run.to_json()))} | {
+        allowed = {*FIELDS, *constants(run)} | {
             variable.name
             for point in self.points
             for variable in point.run.variables
@@ -238,7 +238,7 @@ class Study(FromFile):
         }
         allowed |= {*self._parameters}
         names = python_names(self._parameters).values()
-        columns = {*texts, *names, BEYOND_THEORY, "run", "step", "x", "y"}
+        columns = {*texts, *names, "run", "step", "x", "y"}
         reserved = {*FUNCTIONS, *CONSTANTS, *columns}
         varying = self.varying if self.derived else set()
         with all_problems() as within:

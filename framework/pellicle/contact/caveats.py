@@ -122,6 +122,12 @@ class Status(Enum):
         "{most:g}: force and area are those of the model, not of the experiment",
         "slopes in contact are beyond the theory",
     )
+    THROUGH_LAYER = (
+        "converged, but the surface is pressed down by {deepest:m}, through a layer {thickness:m} "
+        "thick to its rigid base: the numbers are those of the equations, not of an experiment; "
+        "press in less far",
+        "the surface is pressed through a layer to its rigid base",
+    )
     SMALL_DOMAIN = (
         "converged, but the domain of {size_x:m} × {size_y:m} is small for a skin on a solid that "
         "relaxes: what the solid carries beyond it is known in sum only, and force and depth may "
@@ -132,6 +138,11 @@ class Status(Enum):
         "converged; a part of the contact jumped after the last step{loss:variant}: in between it "
         "is not in equilibrium; smaller steps show where it jumps",
         "a part of the contact jumped",
+    )
+    FEW_AT_PULL_OFF = (
+        "converged, but at pull-off the radius of the contact has {cells:.1f} cells, so the "
+        "pull-off force {off:variant}; use more points, or a smaller grid.size",
+        "the pull-off force is that of a contact of few cells",
     )
     CONVERGED = "converged"
 
@@ -157,35 +168,6 @@ class Status(Enum):
         }.get(self, usual)
 
 
-class Limit(NamedTuple):
-    """A limit that a whole run exceeds by far."""
-
-    template: str
-    """That of its sentence, which names a load step."""
-    phrase: str
-    """What is limited, as the subject of a sentence of its own."""
-
-    def sentence(self, values: Mapping[str, float | str]) -> str:
-        """Return the message to the user, given the values that it states."""
-        return _Sentence(values).format(self.template)
-
-
-AT_PULL_OFF = Limit(
-    "step {step:.0f}: at pull-off the radius of the contact has {cells:.1f} cells, so the "
-    "pull-off force {off:variant}; use more points, or a smaller grid.size",
-    "the pull-off force is that of a contact of few cells",
-)
-THROUGH_LAYER = Limit(
-    "step {step:.0f}: the surface is pressed down by {deepest:m}, through a layer "
-    "{thickness:m} thick to its rigid base: the numbers are those of the equations, not of an "
-    "experiment; press in less far",
-    "the surface is pressed through a layer to its rigid base",
-)
-SLOPES = Limit(
-    "step {step:.0f}: slopes in contact reach {slope:.1f}, and the theory is for slopes up to "
-    "0.3: force and area are those of the equations, not of an experiment; press in less far",
-    "slopes in contact are far beyond the theory",
-)
 _GRAVEST_FIRST: Final = tuple(Status)
 _VARIANTS: Final = {
     "nothing nearer": "nothing nearer can be resolved: use more points",

@@ -256,14 +256,12 @@ def measure_stiffness(
 
     The footprint of the punch is ``contact``: cells that join as the depth grows carry no pressure
     at first, so dF/dδ is that of a flat punch (Pharr, Oliver & Brotzen 1992 for axisymmetric
-    indenters). The operator is applied once. The value is 2 Σq − Σq·Aq times the area of a cell,
-    stationary at the solution, so its error is quadratic in that of q.
+    indenters); it has a cell at least. The operator is applied once. The value is 2 Σq − Σq·Aq
+    times the area of a cell, stationary at the solution, so its error is quadratic in that of q.
 
     With an ``attraction`` the traction off the contact follows the gap, q = dσ/dg (A q − 1), and
     counts towards the force.
     """
-    if not contact.any():
-        return Stiffness(0.0, 0.0)
     opened = problem.operator.with_spring(0.0)(pressure) - 1.0
     missed = -opened[contact]
     total = float(pressure.sum()) + float((pressure[contact] * missed).sum())

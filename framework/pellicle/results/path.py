@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from itertools import chain
+from math import isfinite, nan, sqrt
 
 import numpy as np
 
 from pellicle.analysis import Oscillation, oscillations, path_summary
 from pellicle.arrays import Dataset
+from pellicle.contact.caveats import Caveat, Status, from_text, ranked, to_text
+from pellicle.grid import Grid
 from pellicle.units import DIGITS, readable
-from pellicle.variables import VARIABLES
+from pellicle.variables import CAVEATS, VARIABLES
 
+from .derived import configuration_of
 from .dimensions import parts
 from .wording import column_of
+
+FEW_CELLS = 12
+"""Contact radius in cells below which force and radius may be off by more than 2 %."""
 
 
 def has_interaction(data: Dataset) -> bool:
@@ -95,9 +103,32 @@ def with_path(table: Dataset) -> Dataset:
 
 
 def with_events(steps: Dataset) -> Dataset:
-    """Return the steps of a run with the variables of its path that are known, not NaN."""
+    """Return the steps of a run with the known variables of its path, and the caveat of these."""
     variables = path_variables(steps)
     known = {name: value for name, value in variables.items() if not np.isnan(value)}
-    return steps.drop_vars(variables.keys() - known.keys(), errors="ignore").assign(
+    steps = steps.drop_vars(variables.keys() - known.keys(), errors="ignore").assign(
         {name: ((), value, VARIABLES[name].attributes) for name, value in known.items()}
     )
+    for index, caveat in _few_at_pull_off(steps, variables):
+        # Texts that were read from a file have a fixed length.
+        caveats = steps[CAVEATS].astype(object)
+        others = (c for c in from_text(caveats.values[index]) if c.status is not caveat.status)
+        caveats.values[index] = to_text(ranked([*others, caveat]))
+        steps = steps.assign({CAVEATS: caveats})
+    return steps
+
+
+def _few_at_pull_off(steps: Dataset, path: Mapping[str, float]) -> Iterator[tuple[int, Caveat]]:
+    """Yield index and caveat of the step at pull-off if its contact has few cells.
+
+    No error of the force is known of an interaction with a range that is not that of the cells.
+    """
+    if "force_error" not in steps or not path.get("pull_off", nan) < 0:
+        return
+    grid = Grid(**configuration_of(steps)["grid"])
+    cells = path["pull_off_radius"] / sqrt(grid.cell_area)
+    if 0 < cells < FEW_CELLS and min(grid.shape) > 1:
+        error = path["pull_off_accuracy"] / -path["pull_off"]
+        off = "known error" if isfinite(error) else "unknown error"
+        caveat = Caveat(Status.FEW_AT_PULL_OFF, {"cells": cells, "error": error, "off": off})
+        yield int(path["pull_off_step"]) - 1, caveat

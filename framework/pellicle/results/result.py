@@ -4,25 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import isfinite, nan, sqrt
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from pellicle.analysis import Oscillation
-from pellicle.analysis.steepness import steepest
 from pellicle.arrays import Dataset
-from pellicle.contact.caveats import (
-    AT_PULL_OFF,
-    SLOPES,
-    THROUGH_LAYER,
-    Caveat,
-    Limit,
-    Status,
-    by_phrase,
-    from_text,
-)
+from pellicle.contact.caveats import Caveat, Status, by_phrase, from_text
 from pellicle.errors import ConfigError, StorageError, first_of
 from pellicle.files import for_document, is_folder
 from pellicle.grid import Grid
@@ -31,14 +18,10 @@ from pellicle.variables import CAVEATS, COORDINATES, REQUIRED
 
 from . import storage
 from .derived import configuration_of
-from .path import has_interaction, label_of_step, oscillations_of, path_variables, with_events
+from .path import label_of_step, oscillations_of, path_variables, with_events
 from .soundness import check, sound
 
 _NO_CONTACT = "0.93"
-_STEEPEST = 1.0
-"""Slope above which a contact without interaction is warned of; the theory is for 0.3."""
-FEW_CELLS = 12
-"""Contact radius in cells below which force and radius may be off by more than 2 %."""
 
 
 @dataclass(frozen=True)
@@ -112,39 +95,9 @@ class Result:
         """Return number and status of each step whose domain is small for the solid's memory."""
         return self._of(Status.SMALL_DOMAIN)
 
-    def beyond_theory(self) -> dict[str, str]:
-        """Return the limits that the largest contact, or that at pull-off, exceeds by far.
-
-        The values are messages with the step and its numbers. The equations are solved all the
-        same, so the statuses do not show it. Slopes under an interaction are left out: they have a
-        status. So is pull-off by a range that is not that of the cells: no error of its force is
-        known.
-        """
-        limits = dict[Limit, dict[str, float | str]]()
-        summary, grid = self.path_summary, self.grid
-        cells = summary.get("pull_off_radius", nan) / sqrt(grid.cell_area)
-        if "force_error" in self.dataset and 0 < cells < FEW_CELLS and min(grid.shape) > 1:
-            step, error = summary["pull_off_step"], summary["pull_off_accuracy"]
-            known = "known error" if isfinite(error) else "unknown error"
-            error /= -summary["pull_off"]
-            limits[AT_PULL_OFF] = {"step": step, "cells": cells, "error": error, "off": known}
-        last = self.dataset.isel(step=int(np.argmax(self.dataset["contact_area"].values)))
-        contact, displacement = last["contact"].values, last["displacement"].values
-        if contact.any() and np.isfinite(displacement).all():
-            of_step = {"step": int(last["step"])}
-            thickness, deepest = last.attrs["depth_to_base"], float(displacement[contact].max())
-            if deepest > thickness:
-                limits[THROUGH_LAYER] = {**of_step, "deepest": deepest, "thickness": thickness}
-            slope = steepest(displacement, contact, grid)
-            # As it is told: an indenter of that very slope is not beyond it by rounding.
-            if round(slope, 1) > _STEEPEST and not has_interaction(self.dataset):
-                limits[SLOPES] = {**of_step, "slope": slope}
-        return {limit.phrase: limit.sentence(values) for limit, values in limits.items()}
-
     def warnings(self) -> list[str]:
         """Return a message for each kind of caveat, with the first step that has it."""
-        groups = by_phrase(self.caveats()).values()
-        return [*map(first_message, groups), *self.beyond_theory().values()]
+        return [*map(first_message, by_phrase(self.caveats()).values())]
 
     def _of(self, *statuses: Status) -> list[tuple[int, str]]:
         return [(number, c.sentence) for number, c in self.caveats() if c.status in statuses]

@@ -63,10 +63,8 @@ def check(data: Dataset) -> None:
     _ = [Status[code] for code in data["status_code"].values.ravel() if code]
     _ = int(attributes["planned_steps"]), isnan(attributes["tolerance"])
     _ = [attributes[name].strip() for name in ("boundary", "prescribed", "title")]
-    if not is_table:
-        _ = isnan(attributes["depth_to_base"])
-    elif data["run"].dims != data["status"].dims[:-1]:
-        raise ValueError("run")
-    else:
+    if is_table:
+        if data["run"].dims != data["status"].dims[:-1]:
+            raise ValueError("run")
         _ = [name[:1] for name in data["run"].values.ravel()], [*json.loads(attributes[VARYING])]
         _ = {**json.loads(attributes[DERIVED]), **json.loads(attributes["axes"])}

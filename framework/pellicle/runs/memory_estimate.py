@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pellicle.components import HasMemory
 from pellicle.components.kernel import branches_of
 from pellicle.config.run import Run
 from pellicle.contact.time_step import TimeStep
@@ -14,9 +13,6 @@ from .relaxation import KEPT, rounded_stiffness
 _OPERATOR = {"free": 9.0, "periodic": 4.75}
 # The same on a line of cells along x, whose transforms are twice as long and need tables.
 _LINE = 14.0
-# The solver active_set in full contact, and any solver without `HasMemory`; on a periodic grid with
-# half an array for figures that the collector has not freed yet.
-_SOLVER = {"free": 11.5, "periodic": 9.25}
 # An interaction adds eight iterates of three fields, from which the next one is extrapolated, and
 # the fields of two iterations.
 _STICKS = 39.0
@@ -40,16 +36,14 @@ def memory_of(run: Run) -> float:
 
     The peak occurs in the last solve, when earlier steps and their file are in memory too. The size
     of the contact is unknown, so full contact is assumed, which takes up to a third more memory
-    than a small contact. A solver that is not a `HasMemory` counts as active_set. The history of a
+    than a small contact. The history of a
     solid that relaxes is its branches, twice as they are brought forward, what they leave behind
     and the profile that it displaces; under a skin also the strain and the operators that are kept.
     """
     grid, solver, branches = run.grid, run.solver, branches_of(run.kernel)
     cells = grid.points[0] * grid.points[1]
     operator = _LINE if grid.points[1] == 1 else _OPERATOR[grid.boundary]
-    iterating = solver.arrays(grid) if isinstance(solver, HasMemory) else _SOLVER[grid.boundary]
-    if run.interaction:
-        iterating += _STICKS
+    iterating = solver.arrays(grid) + (_STICKS if run.interaction else 0.0)
     history = 2 * len(branches) + 3.0 if branches else 0.0
     if branches and run.kernel.without_skin() != run.kernel:
         steps = {TimeStep.of(branches, duration) for duration in run.loading.durations}

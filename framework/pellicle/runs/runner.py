@@ -25,16 +25,16 @@ from pellicle.errors import ConfigError, ConvergenceWarning
 from pellicle.grid import Grid
 from pellicle.plugins import registry
 from pellicle.results.path import with_events
+from pellicle.results.record import Steps
 from pellicle.results.result import Result
 from pellicle.results.runs import StoredRuns
-from pellicle.results.step import Steps
 
 from .compose import compose
 from .journal import Journal
 from .lock import locked
 from .memory_estimate import memory_of
 from .progress import Bar, Report, RunProgress
-from .steps import solve_steps
+from .solve import solve_steps
 
 STANDARD_OUTPUTS = ("csv", "figures")
 """Types of the outputs of a configuration that names none."""
@@ -84,8 +84,7 @@ def run(
     Warns
     -----
     ConvergenceWarning
-        A step of the result did not converge or has a caveat, or the largest contact is far outside
-        the theory.
+        A step of the result did not converge or has a caveat.
     UserWarning
         A value is out of scale with the others, as one without its unit is.
     """

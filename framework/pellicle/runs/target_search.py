@@ -77,9 +77,8 @@ def _not_met(trials: _Trials, *, jumps: bool) -> Iterator[Caveat]:
     values: dict[str, float | str] = {"quantity": search.quantity, "measure": trials.missed}
     if jumps and not met:
         values |= {"below": trials.below, "above": trials.above, "unit": search.unit}
-    of_area = search.quantity == "contact area"
     if jumps and not met and is_near:
-        yield Caveat(Status.NEAREST_AREA if of_area else Status.NEAREST, values)
+        yield Caveat(Status.NEAREST_AREA if search.in_cells else Status.NEAREST, values)
         return
     end = "not found"
     if met:
@@ -87,7 +86,7 @@ def _not_met(trials: _Trials, *, jumps: bool) -> Iterator[Caveat]:
     elif jumps:
         end = "jump with a law" if trials.setting.law else "jump"
     values |= {"tolerance": _NEAR, "end": end}
-    yield Caveat(Status.AREA if of_area else Status.NOT_REACHED, values)
+    yield Caveat(Status.AREA if search.in_cells else Status.NOT_REACHED, values)
 
 
 def _stride(excess: float, trials: int) -> float:

@@ -20,7 +20,7 @@ from pellicle.results.result import Result, first_message
 from pellicle.results.runs import axes_of, by_run, runs_of, short_files, statuses_of
 from pellicle.results.wording import column_of, has_one_shape, is_periodic
 from pellicle.units import decimal, readable
-from pellicle.variables import BEYOND_THEORY, CAVEATS, VARIABLES
+from pellicle.variables import CAVEATS, VARIABLES
 
 if TYPE_CHECKING:
     from pellicle.runs.validation import CheckedCase
@@ -43,7 +43,6 @@ _FAILURES = {
     "not run": "were not finished",
 }
 """Phrases for messages such as "3 did not converge", by verdict."""
-_BEYOND = "a contact is far beyond the theory or its cells"
 
 
 def sentence_of_step(data: Dataset, index: int) -> str:
@@ -99,10 +98,9 @@ def status_of_run(result: Result) -> tuple[str, bool | None, list[str]]:
     count = "The load step" if done == 1 else f"All {done} load steps"
     bad = f"{len(failed)} of {done} load steps did not converge: do not rely on them."
     sentences.append(bad if failed else f"{count} converged.")
-    groups, beyond = by_phrase(result.caveats()), result.beyond_theory()
+    groups = by_phrase(result.caveats())
     sentences += [f"In {len(steps)} of {done} {phrase}." for phrase, steps in groups.items()]
-    sentences += [f"{subject[0].upper()}{subject[1:]}." for subject in beyond]
-    lines = *failed_steps(result), *map(first_message, groups.values()), *beyond.values()
+    lines = *failed_steps(result), *map(first_message, groups.values())
     details = [f"{line[0].upper()}{line[1:]}" for line in lines]
     is_good = None if details else True
     return " ".join(sentences), is_good if done == total and not failed else False, details
@@ -251,20 +249,13 @@ def caveats(table: Dataset) -> Iterator[str]:
         for run, step in zip(*np.nonzero(texts), strict=True)
         for caveat in from_text(texts[run, step])
     )
-    kinds = {
-        phrase: [(run, f"step {step}: {caveat.sentence}") for (run, step), caveat in group]
-        for phrase, group in by_phrase(steps).items()
-    }
-    if BEYOND_THEORY in table:
-        beyond = enumerate(table[BEYOND_THEORY].values.ravel())
-        kinds[_BEYOND] = [(run, text) for run, text in beyond if text]
     names, files = run_names(table), short_files(table)
-    for phrase, messages in kinds.items():
-        for run, message in messages[:1]:
-            yield (
-                f"of {len(names)} runs, in {len({run for run, _ in messages})} {phrase}; "
-                f"{names[run]} (file {files[run]}), {message}"
-            )
+    for phrase, group in by_phrase(steps).items():
+        (run, step), caveat = group[0]
+        yield (
+            f"of {len(names)} runs, in {len({run for (run, _), _ in group})} {phrase}; "
+            f"{names[run]} (file {files[run]}), step {step}: {caveat.sentence}"
+        )
 
 
 def caption_of_steps(data: Dataset, fields: Sequence[str], shown: int) -> str:

@@ -32,6 +32,7 @@ from pellicle.files import check_writable, is_file, is_folder
 from pellicle.plugins import registry
 from pellicle.results import storage
 from pellicle.results.dimensions import with_paths, with_python_names
+from pellicle.results.path import with_events
 from pellicle.results.runs import StoredRuns, progress_of
 from pellicle.results.soundness import check, sound
 from pellicle.runs import runner
@@ -39,7 +40,6 @@ from pellicle.runs.journal import Journal
 from pellicle.runs.memory_estimate import memory_of
 from pellicle.runs.progress import reporting
 from pellicle.show.sentences import caveats, failures, run_names, shared
-from pellicle.variables import BEYOND_THEORY
 
 from . import table
 
@@ -198,7 +198,6 @@ def execute(
                 verdict = rows.fail(task.index, reason)
             else:
                 rows.put(task.index, outcome)
-                rows.beyond_theory[task.index] = outcome.attrs[BEYOND_THEORY]
                 messages.update(dict.fromkeys(outcome.attrs[_WARNINGS]))
                 _, _, verdict = progress_of(outcome)
             # On a full disk all later runs would fail: writing the table at once detects that.
@@ -242,7 +241,7 @@ def _begun(
     if not overwrite and path.exists():
         # A file that is not the table of a study is not replaced.
         try:
-            rows.recall(storage.table(path))
+            storage.table(path)
         except StorageError as error:
             raise StorageError(f"{error}; {storage.REPLACING}") from None
     tasks = planned(study, path)
@@ -298,8 +297,7 @@ def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
         )
     messages = [str(warning.message) for warning in caught]
     numbers = executed.result.dataset.drop_dims(["x", "y"])
-    beyond = "; ".join(executed.result.beyond_theory().values())
-    return numbers.assign_attrs({_WARNINGS: messages, BEYOND_THEORY: beyond})
+    return numbers.assign_attrs({_WARNINGS: messages})
 
 
 @contextmanager
@@ -325,7 +323,7 @@ def _collect(task: RunTask, rows: table.StudyTable) -> int:
     # A run whose file cannot be used will fail with a message that names the remedy.
     numbers, count, _ = task.stored()
     if numbers is not None:
-        rows.put(task.index, numbers)
+        rows.put(task.index, with_events(numbers))
     return count
 
 
@@ -350,7 +348,6 @@ def _completed(earlier: xr.Dataset, path: Path) -> xr.Dataset:
     """Return an unfinished table with all steps that the files of its runs hold."""
     study = Study.from_mapping(json.loads(earlier.attrs["configuration"]))
     rows, statuses = table.StudyTable(study), earlier["status"].values
-    rows.recall(earlier)
     for task in planned(study, path):
         _collect(task, rows)
         failed = earlier["status_code"].values[task.index] == Status.FAILED.name

@@ -24,7 +24,7 @@ from pellicle.results.dimensions import with_python_names
 from pellicle.results.path import with_path
 from pellicle.results.runs import StoredRuns
 from pellicle.show.numbers import write_csv
-from pellicle.variables import BEYOND_THEORY, CAVEATS, FIELDS, VARIABLES, WALL_PRESSURE
+from pellicle.variables import CAVEATS, FIELDS, VARIABLES, WALL_PRESSURE
 
 _SHARE_OF_WRITING = 0.05
 _TEXTS = "status_code", "status", CAVEATS
@@ -56,8 +56,6 @@ class StudyTable:
             self._values["status"][point.position][:count] = Status.NOT_RUN.value
             self._values["status_code"][point.position][:count] = Status.NOT_RUN.name
             self._runs[point.position] = point.run.identity[:16]
-        self.beyond_theory = np.full(study.shape, "", dtype=object)
-        """What is far beyond the theory in each run."""
         self._descriptions: dict[str, dict[str, str]] = {}
         self._next_write = 0.0
         self.files: tuple[Path, ...] = ()
@@ -71,14 +69,6 @@ class StudyTable:
             missing = False if variable.dtype == bool else np.nan
             empty = np.full(self._values["status"].shape, missing)
             self._values.setdefault(str(name), empty)[index][:count] = variable.values
-
-    def recall(self, earlier: xr.Dataset) -> None:
-        """Take over what an earlier table of the same runs says to be beyond the theory."""
-        if BEYOND_THEORY in earlier:
-            columns = (earlier[name].values.ravel() for name in ("run", BEYOND_THEORY))
-            texts = dict(zip(*columns, strict=True))
-            for index, name in np.ndenumerate(self._runs):
-                self.beyond_theory[index] = texts.get(name, "")
 
     def fail(self, index: tuple[int, ...], reason: str) -> str:
         """Record why the remaining steps of a run are missing, and return it as a sentence."""
@@ -101,9 +91,6 @@ class StudyTable:
             variables[name] = dimensions, whole, self._descriptions.get(name, {})
         description = {"long_name": "name of the run's file"}
         variables["run"] = dimensions[:-1], self._runs.copy(), description
-        if self.beyond_theory.astype(bool).any():
-            described = {"long_name": "what is far beyond the theory, or the cells"}
-            variables[BEYOND_THEORY] = dimensions[:-1], self.beyond_theory.copy(), described
         coordinates: dict[str, Any] = {
             key: (dimension, *coordinate)
             for key, (dimension, coordinate) in self._study.coordinates().items()

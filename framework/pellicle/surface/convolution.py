@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextvars import copy_context
 from functools import lru_cache
+from threading import Lock
 from typing import Any, Final, TypeVar
 
 import numpy as np
@@ -115,10 +116,15 @@ def shared(work: Callable[[Block], Result], blocks: Sequence[Block]) -> list[Res
     if threads == 1:
         return [work(block) for block in blocks]
     results: dict[int, Result] = {}
-    remaining = enumerate(blocks)
+    remaining, drawing = enumerate(blocks), Lock()
 
     def drain() -> None:
-        for index, block in remaining:
+        while True:
+            # Without the GIL an iterator may give two threads the same block.
+            with drawing:
+                index, block = next(remaining, (-1, None))
+            if block is None:
+                return
             results[index] = work(block)
 
     # The handling of floating-point errors is a context variable of numpy.

@@ -7,6 +7,7 @@ a test framework; under pytest a plain function is enough::
     def test_contract():
         check_kernel(Graded(reduced_modulus="10 kPa", length="0.1 mm", exponent=0.5))
 
+The rules of a family are the other functions of its module; ``docs/families.md`` lists them all.
 A family that a plugin brings has its check in the package of its base class, made of `check`.
 """
 

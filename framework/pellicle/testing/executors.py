@@ -25,13 +25,7 @@ _DURATION = 0.1
 
 
 def check_executor(executor: Executor) -> None:
-    """Check that an executor keeps its contract.
-
-    Besides the rules of all components: ``map`` executes each task once and yields it with the
-    value or exception of its work; a failure or the death of a worker process stops no other task;
-    ``report`` receives the messages of the work with their task, in the calling thread; and if the
-    iterator is closed early, no task continues.
-    """
+    """Check that an executor keeps its contract: the rules below, and those of all components."""
     check(executor, Executor, rules_of(__name__))
 
 

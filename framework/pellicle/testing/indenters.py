@@ -16,13 +16,10 @@ from .small_runs import solved
 
 
 def check_indenter(indenter: Indenter, grid: Grid | None = None) -> None:
-    """Check that an indenter keeps its contract.
+    """Check that an indenter keeps its contract: the rules below, and those of all components.
 
-    Besides the rules of all components: ``profile`` returns float heights ≤ 0 of the grid's shape,
-    0 at the lowest point; it is pure; each height depends on its own point only, unless the
-    indenter ends with the domain; a force curve, if the indenter has one, rises and agrees with its
-    partial derivatives; and a small indentation converges. The points of ``grid`` suit the
-    indenter, its lowest point among them; they are 13 × 11 on 1.3 mm × 1.1 mm if None.
+    The points of ``grid`` suit the indenter, its lowest point among them; they are 13 × 11 on
+    1.3 mm × 1.1 mm if None.
     """
     check(
         indenter,

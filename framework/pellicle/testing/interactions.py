@@ -20,13 +20,10 @@ _RADIUS = 1e-3
 
 
 def check_interaction(interaction: Interaction) -> None:
-    """Check that an interaction keeps its contract.
+    """Check that an interaction keeps its contract: the rules of its family and of all components.
 
-    Besides the rules of all components: energy, traction and slope are vectorised, pure and finite
-    up to the cutoff, where the energy has risen to 0; the traction is the derivative of the energy,
-    and the slope that of the traction; what `resolved` returns does the same with the same work of
-    adhesion w on every grid; and a small run under a pulling force converges, for which
-    ``active_set`` asks that the attraction is strongest at a closed gap and falls from there.
+    For a run under a pulling force ``active_set`` asks that the attraction is strongest at a closed
+    gap and falls from there.
     """
     check(interaction, Interaction, rules_of(__name__), cases=_cases(interaction))
 

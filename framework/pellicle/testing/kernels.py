@@ -24,14 +24,10 @@ _CASES = [
 
 
 def check_kernel(kernel: Kernel) -> None:
-    """Check that a kernel keeps its contract.
+    """Check that a kernel keeps its contract: the rules of kernels, and those of all components.
 
-    Besides the rules of all components: on grids of 1 mm, 1 µm and 10 cm ``compliance`` is
-    vectorised, pure, positive and finite, and does not grow towards ever shorter waves; a closed
-    form, if the kernel has one, agrees with it; so does the operator of a free boundary; a small
-    indentation converges on both boundaries. A kernel with ``branches`` has valid ones, and its
-    ``scaled`` kernels are those of a stiffer or softer solid under the same skin; the indentation
-    is then that of ``scaled(1)``.
+    They are asked on grids of 1 mm, 1 µm and 10 cm; of a kernel that relaxes ``scaled(1)`` is
+    indented.
     """
     check(kernel, Kernel, rules_of(__name__), cases=_CASES)
 

@@ -40,12 +40,7 @@ _RUN: dict[str, Any] = {
 
 
 def check_output(output: Output) -> None:
-    """Check that an output keeps its contract.
-
-    Besides the rules of all components: it leaves exactly the files that it returns, with
-    its `suffixes`, also if a run is interrupted and repeated; an output of scope ``"run"`` shows
-    every step; and it works in the runs and studies of its scope.
-    """
+    """Check that an output keeps its contract: the rules below, and those of all components."""
     check(output, Output, rules_of(__name__))
 
 

@@ -13,7 +13,7 @@ from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.load_step import LoadStep
 from pellicle.contact.solution import Stop
 from pellicle.errors import ConfigError
-from pellicle.results.step import step_dataset
+from pellicle.results.record import step_dataset
 from pellicle.runs.compose import compose
 from pellicle.runs.target_search import reach, solved
 
@@ -25,12 +25,7 @@ _NEAR = 0.05
 
 
 def check_prescription(prescription: Prescription, values: Sequence[float] = ()) -> None:
-    """Check that a prescription keeps its contract.
-
-    Besides the rules of all components: ``target`` is pure and returns finite numbers; a value
-    that cannot be reached raises a ConfigError; ``report`` has the declared variables; the quantity
-    of a search grows with the force, or falls if it is not ``increasing``; and prescribing the
-    value of a known step reproduces that step.
+    """Check that a prescription keeps its contract: the rules below, and those of all components.
 
     The steps are of a rough surface of 1 mm × 1 mm and 10 µm root mean square height on a periodic
     half-space of 10 kPa, under 0.1 and 0.2 mN. ``values`` are the prescribed quantity [its unit]

@@ -45,14 +45,7 @@ _CONDITION = 1e4
 
 
 def check_solver(solver: Solver) -> None:
-    """Check that a solver keeps its contract.
-
-    Besides the rules of all components: a paraboloid, a punch and a rough surface, on free and
-    periodic grids, with depth, force and mean pressure prescribed, are solved to the solver's
-    ``tolerance``, with pressure ≥ 0 and arguments unchanged; the solution depends on neither the
-    step before nor the unit of stiffness; the monitor is called; and ``response`` is that of a
-    flat punch.
-    """
+    """Check that a solver keeps its contract: the rules below, and those of all components."""
     check(solver, Solver, rules_of(__name__))
 
 

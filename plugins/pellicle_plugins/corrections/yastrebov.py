@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import ConfigDict
 
 from pellicle.arrays import Mask
-from pellicle.components import AreaCorrection
+from pellicle.components import AreaCorrection, Boundary
 
 
 class Yastrebov(AreaCorrection):
@@ -20,24 +20,17 @@ class Yastrebov(AreaCorrection):
     type: Literal["yastrebov"] = "yastrebov"
     examples = ({},)
 
-    def area(self, contact: Mask, spacing: tuple[float, float]) -> float:
+    def area(self, contact: Mask, spacing: tuple[float, float], boundary: Boundary) -> float:
         """Return A − (π − 1 + ln 2)/24 · S·Δ [m²].
 
         S·Δ sums, over all switches between contact and no contact along x and y, the switched
-        cell edge times the spacing across it: both give dx·dy.
+        cell edge times the spacing across it: both give dx·dy. Those across a periodic edge count.
         """
-        along_x = np.count_nonzero(contact[1:] != contact[:-1])
-        along_y = np.count_nonzero(contact[:, 1:] != contact[:, :-1])
-        return _area(contact, int(along_x + along_y), spacing)
-
-    def periodic_area(self, contact: Mask, spacing: tuple[float, float]) -> float:
-        """Return the same on a periodic domain, including switches across its edges [m²]."""
-        along_x, along_y = (
-            np.count_nonzero(contact != np.roll(contact, 1, axis)) for axis in (0, 1)
-        )
-        return _area(contact, int(along_x + along_y), spacing)
-
-
-def _area(contact: Mask, switches: int, spacing: tuple[float, float]) -> float:
-    covered = np.count_nonzero(contact)
-    return spacing[0] * spacing[1] * (covered - (pi - 1 + log(2)) / 24 * switches)
+        switches = 0
+        for axis in (0, 1):
+            lines = np.moveaxis(contact, axis, 0)
+            switches += int(np.count_nonzero(lines[1:] != lines[:-1]))
+            if boundary == "periodic":
+                switches += int(np.count_nonzero(lines[0] != lines[-1]))
+        covered = np.count_nonzero(contact)
+        return spacing[0] * spacing[1] * (covered - (pi - 1 + log(2)) / 24 * switches)

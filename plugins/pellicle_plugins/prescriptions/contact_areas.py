@@ -90,6 +90,7 @@ def _area_search(setting: Setting, area: float) -> Force | Search:
         resolution=cell / 2,
         width=1e-4,
         guess=guess,
+        in_cells=True,
         quantity="contact area",
         unit="m2",
     )

@@ -20,7 +20,7 @@ def test_output_folder_that_cannot_be_written(
     def fail(*arguments: object) -> None:
         raise AssertionError("solved in vain")
 
-    monkeypatch.setattr("pellicle.runs.steps.solve_step", fail)
+    monkeypatch.setattr("pellicle.runs.solve.solve_step", fail)
     outputs = f"outputs=[{{type='{type_}'}}]"
     outcome = cli("run", "start.toml", "-o", "out", "--set", outputs)
     assert outcome.exit_code == 2

@@ -28,38 +28,42 @@ def _apart(correction: Any, _: Any) -> str:
 
 def constant(fault: str, area: Any, *words: str) -> Broken:
     """Return a correction whose area is always the same."""
-    methods: Any = dict.fromkeys(("area", "periodic_area"), lambda f, c, h: area)
-    return Broken(fault, Refused(*words), **methods)
+    return Broken(fault, Refused(*words), area=lambda f, c, h, b: area)
 
 
-def across_x(f: Any, c: Any, h: Any) -> Any:
+def across_x(f: Any, c: Any, h: Any, b: Any) -> Any:
     return h[0] * h[1] * (np.count_nonzero(c) - 0.1 * np.count_nonzero(c[1:] != c[:-1]))
 
 
-# Methods take contact c and spacing h [m].
+# Methods take contact c, spacing h [m] and boundary b.
 BROKEN: dict[str, Any] = {
     "no_contact_has_no_area": [
         *(constant(repr(value), value, "a real number") for value in (np.nan, "1 mm^2", True)),
-        Broken("marks cells", GIVEN, "free", area=lambda f, c, h: f(np.logical_or(c, 1, out=c), h)),
+        Broken(
+            "marks cells",
+            GIVEN,
+            "free",
+            area=lambda f, c, h, b: f(np.logical_or(c, 1, out=c), h, b),
+        ),
         constant("negative", -1.0, "-1 m²; it has to be between 0 and 4.8e-08 m²"),
         constant("a square metre", 1.0, "1 m²; it has to be between 0 and 4.8e-08 m²"),
-        Broken("one cell", NONE, "apart", area=lambda f, c, h: max(f(c, h), h[0] * h[1])),
+        Broken("one cell", NONE, "apart", area=lambda f, c, h, b: max(f(c, h, b), h[0] * h[1])),
     ],
-    "full_contact_is_the_domain": Broken("less", NEAR, area=lambda f, c, h: 0.99 * f(c, h)),
+    "full_contact_is_the_domain": Broken("less", NEAR, area=lambda f, c, h, b: 0.99 * f(c, h, b)),
     "area_is_near_the_count": Broken(
-        "twice", NEAR, area=lambda f, c, h: f(c, h) * (1 + (0 < c.mean() < 1))
+        "twice", NEAR, area=lambda f, c, h, b: f(c, h, b) * (1 + (0 < c.mean() < 1))
     ),
     "area_scales_with_the_cells": Broken(
         "takes off cells of a size that it knows",
         NEAR,
-        area=lambda f, c, h: f(c, h) - 1e-12 * (0 < c.mean() < 1) * (h[0] * h[1] > 1e-12),
+        area=lambda f, c, h, b: f(c, h, b) - 1e-12 * (0 < c.mean() < 1) * (h[0] * h[1] > 1e-12),
     ),
     "area_does_not_depend_on_the_view": Broken("boundaries across x", NEAR, area=across_x),
     "periodic_area_has_no_seam": Broken(
-        "edge is a border", NEAR, periodic_area=lambda f, c, h: f.__self__.area(c, h)
+        "edge is a border", NEAR, area=lambda f, c, h, b: f(c, h, "free")
     ),
     "goes_into_the_result": Broken(
-        "ignores wide cells", NEAR, area=lambda f, c, h: f(c, h) if h[0] < 3e-5 else 0.0
+        "ignores wide cells", NEAR, area=lambda f, c, h, b: f(c, h, b) if h[0] < 3e-5 else 0.0
     ),
 }
 CORRECTIONS = Family(

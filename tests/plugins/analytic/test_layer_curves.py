@@ -11,7 +11,7 @@ from layer_equation import half_space, moments
 from numpy.typing import NDArray
 
 import pellicle as pl
-from pellicle.axisymmetric import layer_curves
+from pellicle.axisymmetric import layer_curves, splines
 from tests.layered_contact import layered_contact, tensed_layer_contact
 
 Array = NDArray[np.float64]
@@ -92,7 +92,7 @@ def test_the_table_is_what_its_script_makes(
 ) -> None:
     """A node of the table, made anew, is that of the file, which is rounded."""
     s, a = layer_curves.LENGTHS[length], layer_curves.CONFINEMENTS[confinement]
-    shipped = layer_curves._table()[f"{shape}_layer"][:, length, confinement]
+    shipped = splines.table_in(layer_curves.FILE)[f"{shape}_layer"][:, length, confinement]
     assert curve_tables.change_by_layer(shape, s, a) == pytest.approx(shipped, abs=2.0**-24)
 
 

@@ -20,7 +20,7 @@ import pytest
 import xarray as xr
 
 import pellicle as pl
-from pellicle.runs import steps
+from pellicle.runs import solve as solving
 from pellicle_plugins.outputs.step_figures import cross_section
 from tests.plugins.outputs.shared import bead
 
@@ -290,7 +290,7 @@ def test_values_that_are_not_numbers(tmp_path: Path) -> None:
 
 def test_interrupted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The page of the steps that are there says that they are not all."""
-    solve, calls = steps.solve_step, []
+    solve, calls = solving.solve_step, []
 
     def once(*arguments: Any) -> Any:
         calls.append(arguments)
@@ -298,7 +298,7 @@ def test_interrupted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
             raise KeyboardInterrupt
         return solve(*arguments)
 
-    monkeypatch.setattr(steps, "solve_step", once)
+    monkeypatch.setattr(solving, "solve_step", once)
     with pytest.raises(KeyboardInterrupt):
         page_of(tmp_path)
     page = Page(tmp_path / "odd.html")
@@ -338,7 +338,7 @@ def test_study_without_a_finished_step(
     def fails(*_: Any) -> Any:
         raise ValueError("the disk is on fire")
 
-    monkeypatch.setattr(steps, "solve_step", fails)
+    monkeypatch.setattr(solving, "solve_step", fails)
     outputs = [{"type": name} for name in ("html", "figures", "curves", "profiles", "maps")]
     study = {**RUN, "outputs": outputs, "study": {"vary": {"indenter.radius": ["1 mm", "2 mm"]}}}
     pl.run_study(study, tmp_path, progress=False, threads=1)

@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 
 import pellicle as pl
-from pellicle.runs import steps
+from pellicle.runs import solve as solving
 from tests.plugins.outputs.shared import PUNCH, bead, rows
 
 EVERYTHING: list[dict[str, Any]] = [
@@ -122,7 +122,7 @@ class Recording(pl.Output):
 
 def test_steps_come_once_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Outputs have each finished step while the next is solved; a later process repeats them."""
-    solve, counts, seen = steps.solve_step, list[int](), Recording.seen
+    solve, counts, seen = solving.solve_step, list[int](), Recording.seen
 
     def look_and_solve(*arguments: Any) -> Any:
         path = tmp_path / "two-steps.h5"
@@ -133,7 +133,7 @@ def test_steps_come_once_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
     run = _run([Recording(), {"type": "csv"}])
     with monkeypatch.context() as context:
-        context.setattr(steps, "solve_step", look_and_solve)
+        context.setattr(solving, "solve_step", look_and_solve)
         with pytest.raises(KeyboardInterrupt):
             pl.run(run, directory=tmp_path, progress=False)
     assert counts == [0, 1]

@@ -92,7 +92,8 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, xr.Dataset]:
 def test_pull_off_on_few_cells_has_its_error_beside_it(bead: tuple[Path, pl.Result]) -> None:
     """Six cells in the radius are warned of on terminal and page."""
     folder, result = bead
-    (message,) = result.beyond_theory().values()
+    ((_, few),) = (pair for pair in result.caveats() if pair[1].status.name == "FEW_AT_PULL_OFF")
+    message = few.sentence
     assert "6.0 cells" in message
     summary = result.path_summary
     for data in (result.dataset, pl.load(folder).dataset):

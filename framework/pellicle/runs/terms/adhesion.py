@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from pellicle.analysis.steepness import steepest
 from pellicle.components import Force, Monitor
 from pellicle.components.interaction import law_of
 from pellicle.components.solver import solution_of
@@ -34,10 +32,6 @@ _WEIGHT: Final = 0.5
 _CELLS_ERROR: Final = 0.55
 # Halvings of the interval of forces in which the contact is lost.
 _HALVINGS: Final = 6
-# Slope beyond which the theory of small slopes does not hold.
-_STEEPEST: Final = 0.3
-# Relative change of G(q) q² over a decade below which it is the limit of short waves.
-_CONSTANT: Final = 0.05
 # Share of |ΔF Δδ|/2 by which the trapezoidal rule may miss the work of a step without a jump. It
 # is 1/3 for F ∝ √(δ − δ₀), the steepest that a force falls before it jumps.
 _MISSED: Final = 0.5
@@ -51,7 +45,7 @@ _UNCERTAIN: Final = 0.01
 
 
 def adhesion(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
-    """Add jumps, the limit of the force, and whether zone and slopes are those of the theory."""
+    """Add jumps, the limit of the force, and whether its zone has few cells."""
     setting, equilibrium = surroundings.setting, step.equilibrium
     if step.stop is Stop.PULLED_OFF:
         step = step.having({}, [_pulled_off(run, step, surroundings)])
@@ -64,34 +58,14 @@ def adhesion(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
     step = step.having({"jumped": jumped, "jump_energy": lost, **limit})
     if not step.converged:
         return step
-    caveats = [*_limits(run, equilibrium)]
+    caveats, cells = [], equilibrium.zone_width / run.grid.cell_size
+    assert run.interaction
+    if cells < (fewest := run.interaction.least_cells):
+        caveats.append(Caveat(Status.COARSE_ZONE, {"cells": cells, "least": fewest}))
     if jumped and not as_whole and equilibrium.contact.any():
         loss = "known" if lost > 0 else "unknown"
         caveats.append(Caveat(Status.JUMPED, {"lost": lost, "loss": loss}))
     return step.having({}, caveats)
-
-
-def _limits(run: Run, equilibrium: Equilibrium) -> Iterator[Caveat]:
-    """Yield whether the zone has too few cells, and whether slopes are beyond the theory.
-
-    With a surface tension τ₀, the limit of 1/(G q²) for short waves, the energy per area w that is
-    released bends the surface at the rim by an angle √(2w/τ₀) (Young–Dupré at small slopes).
-    Without one the slope of the theory has no bound, and depends on the range of the interaction.
-    """
-    law = equilibrium.problem.law
-    assert run.interaction
-    assert law
-    cells, fewest = equilibrium.zone_width / run.grid.cell_size, run.interaction.least_cells
-    if cells < fewest:
-        yield Caveat(Status.COARSE_ZONE, {"cells": cells, "least": fewest})
-    slope = steepest(equilibrium.problem.heights, equilibrium.contact, run.grid)
-    if equilibrium.contact.any():
-        q = 1e3 * np.pi / min(run.grid.spacing) * np.array([1.0, 10.0])
-        a, b = run.kernel.compliance(q) * q**2
-        if abs(b / a - 1) < _CONSTANT:
-            slope = max(slope, float(np.sqrt(2 * law.work_of_adhesion() * b)))
-    if slope > _STEEPEST:
-        yield Caveat(Status.STEEP, {"slope": slope, "most": _STEEPEST})
 
 
 def _force_limit(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> dict[str, Value]:

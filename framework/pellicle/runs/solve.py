@@ -15,7 +15,7 @@ from pellicle.components.prescription import target_of
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
 from pellicle.contact.load_step import FinishedStep, LoadStep, end_of
-from pellicle.results.step import Steps, step_dataset
+from pellicle.results.record import Steps, step_dataset
 
 from .relaxation import Relaxation
 from .target_search import reach, solved
@@ -24,6 +24,7 @@ from .terms.adhesion import adhesion
 from .terms.contact import contact
 from .terms.relaxation import relaxation
 from .terms.requested import corrections, prescription, stiffness
+from .terms.theory import theory
 
 
 class Physics:
@@ -39,6 +40,7 @@ class Physics:
             stiffness: run.loading.stiffness,
             relaxation: self.memory or run.loading.times,
             adhesion: run.interaction,
+            theory: True,
         }
         self.terms: tuple[Term, ...] = tuple(partial(t, run) for t, has in named.items() if has)
 
