@@ -13,6 +13,8 @@ from pellicle.components import Footprint, FromRegistry, Indenter, Lattice
 from pellicle.errors import ConfigError, problems_within
 from pellicle.units import Quantity
 
+_Shift = Annotated[float, Quantity("m")]
+
 
 class Composed(Indenter):
     """Base class of the indenters made of others, each of which repeats on a periodic grid."""
@@ -25,9 +27,9 @@ class Composed(Indenter):
 class Transformed(Composed):
     """Base class of the indenters that change one other, their ``part``."""
 
-    part: Annotated[
-        Indenter, FromRegistry(), Field(description="the indenter to change: a table with type")
-    ]
+    part: Annotated[Indenter, FromRegistry()] = Field(
+        description="the indenter to change: a table with type"
+    )
 
     @property
     def footprint(self) -> Footprint:
@@ -40,12 +42,8 @@ class Shifted(Transformed):
 
     type: Literal["shifted"] = "shifted"
     examples = ({"part": {"type": "paraboloid", "radius": "1 mm"}, "x": "0.1 mm", "y": "-0.2 mm"},)
-    x: Annotated[
-        float, Quantity("m"), Field(title="shift along x", description="shift along x [m]")
-    ] = 0.0
-    y: Annotated[
-        float, Quantity("m"), Field(title="shift along y", description="shift along y [m]")
-    ] = 0.0
+    x: _Shift = Field(0.0, title="shift along x", description="shift along x [m]")
+    y: _Shift = Field(0.0, title="shift along y", description="shift along y [m]")
 
     def repeated(self, x: Array, y: Array, lattice: Lattice | None) -> Array:
         """Return f(x − x₀, y − y₀) [m]."""
@@ -65,9 +63,9 @@ class Rotated(Transformed):
     examples = (
         {"part": {"type": "quadric", "radius_x": "1 mm", "radius_y": "2 mm"}, "angle": "30 degree"},
     )
-    angle: Annotated[
-        float, Quantity("rad"), Field(description="angle [rad] from x towards y, or as '30 degree'")
-    ]
+    angle: Annotated[float, Quantity("rad")] = Field(
+        description="angle [rad] from x towards y, or as '30 degree'"
+    )
 
     @model_validator(mode="after")
     def _part_is_unbounded(self) -> Self:
@@ -93,11 +91,9 @@ class Scaled(Transformed):
     examples = (
         {"part": {"type": "heights", "path": "heights.txt", "unit": "1 um"}, "factor": 0.5},
     )
-    factor: Annotated[
-        float,
-        Quantity("1", at_least=0),
-        Field(title="height factor", description="factor of the heights; 0 is flat"),
-    ]
+    factor: Annotated[float, Quantity("1", at_least=0)] = Field(
+        title="height factor", description="factor of the heights; 0 is flat"
+    )
 
     def repeated(self, x: Array, y: Array, lattice: Lattice | None) -> Array:
         """Return factor · f [m], or −inf where f is −inf."""
@@ -130,10 +126,9 @@ class Sum(Composed):
             ]
         },
     )
-    parts: Annotated[
-        tuple[Annotated[Indenter, FromRegistry()], ...],
-        Field(min_length=1, description="the indenters to add: tables with type"),
-    ]
+    parts: tuple[Annotated[Indenter, FromRegistry()], ...] = Field(
+        min_length=1, description="the indenters to add: tables with type"
+    )
 
     @property
     def footprint(self) -> Footprint:

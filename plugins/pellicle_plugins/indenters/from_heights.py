@@ -59,9 +59,9 @@ class FromHeights(Indenter):
 
     footprint: ClassVar[Footprint] = "domain"
 
-    sha256: Annotated[
-        str | None, Field(title="hash", description="hash of the file or array; verified if given")
-    ] = None
+    sha256: str | None = Field(
+        None, title="hash", description="hash of the file or array; verified if given"
+    )
     _heights: Array = PrivateAttr()
     _digest: str = PrivateAttr()
 

@@ -37,26 +37,21 @@ class Heights(FromHeights):
 
     type: Literal["heights"] = "heights"
     examples = ({"path": "heights.txt", "unit": "1 um"},)
-    path: Annotated[
-        InputPath | None,
-        Field(
-            title="file",
-            description="file with a 2-D array [along x, along y]: .npy, text (.txt, .csv, .dat) "
-            "with blanks, commas or semicolons, .h5 or .mat",
-        ),
-    ] = None
-    unit: Annotated[
-        HeightUnit, Field(description="length that a height of 1 in the data stands for [m]: 'um'")
-    ]
-    dataset: Annotated[
-        str | None, Field(description="name of the array in a file that holds several")
-    ] = None
+    path: InputPath | None = Field(
+        None,
+        title="file",
+        description="file with a 2-D array [along x, along y]: .npy, text (.txt, .csv, .dat) "
+        "with blanks, commas or semicolons, .h5 or .mat",
+    )
+    unit: HeightUnit = Field(
+        description="length that a height of 1 in the data stands for [m]: 'um'"
+    )
+    dataset: str | None = Field(None, description="name of the array in a file that holds several")
     # An array is replaced by its checked copy, which the caller cannot change.
     values: Annotated[
         Any,
         AfterValidator(lambda raw: None if raw is None else _checked(raw, "the array", "")),
-        Field(description="array of heights, from the library only", exclude=True, repr=False),
-    ] = None
+    ] = Field(None, description="array of heights, from the library only", exclude=True, repr=False)
 
     @model_validator(mode="after")
     def _read(self) -> Self:

@@ -41,7 +41,7 @@ class Sphere(BodyOfRevolution):
 
     type: Literal["sphere"] = "sphere"
     examples = ({"radius": "0.4 mm"}, {"radius": "0.4 mm", "flat_radius": "0.05 mm"})
-    radius: Annotated[Length, Field(description="radius R [m]")]
+    radius: Length = Field(description="radius R [m]")
     flat_radius: Length | None = Field(default=None, description="radius b of a worn tip [m]")
 
     @model_validator(mode="after")
@@ -111,7 +111,7 @@ class Paraboloid(BodyOfRevolution):
 
     type: Literal["paraboloid"] = "paraboloid"
     examples = ({"radius": "1 mm"}, {"radius": "1 mm", "flat_radius": "0.1 mm"})
-    radius: Annotated[Length, Field(description="radius of curvature R at the tip [m]")]
+    radius: Length = Field(description="radius of curvature R at the tip [m]")
     flat_radius: Length | None = Field(default=None, description="radius b of a worn tip [m]")
 
     def profile(self, x: Array, y: Array) -> Array:
@@ -155,13 +155,9 @@ class Cone(BodyOfRevolution):
 
     type: Literal["cone"] = "cone"
     examples = ({"half_angle": "70 degree"}, {"half_angle": "20 degree", "tip_radius": "20 nm"})
-    half_angle: Annotated[
-        float,
-        Quantity("rad", above=0, below=pi / 2),
-        Field(
-            title="half-angle", description="angle between axis and side [rad], or as '70 degree'"
-        ),
-    ]
+    half_angle: Annotated[float, Quantity("rad", above=0, below=pi / 2)] = Field(
+        title="half-angle", description="angle between axis and side [rad], or as '70 degree'"
+    )
     tip_radius: Length | None = Field(
         default=None, description="radius of curvature R of a blunt tip [m]"
     )
@@ -228,7 +224,7 @@ class FlatPunch(Indenter):
 
     type: Literal["flat_punch"] = "flat_punch"
     examples = ({"radius": "0.3 mm"},)
-    radius: Annotated[Length, Field(description="radius of the flat end [m]")]
+    radius: Length = Field(description="radius of the flat end [m]")
 
     def profile(self, x: Array, y: Array) -> Array:
         """Return 0 under the punch and −inf beside it [m]."""

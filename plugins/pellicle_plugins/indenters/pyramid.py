@@ -55,14 +55,10 @@ class Pyramid(Indenter):
         {"half_angle": "70 degree"},
         {"half_angle": "75 degree", "angle_of": "edges", "sides": 3, "tip_radius": "20 nm"},
     )
-    half_angle: Annotated[
-        float,
-        Quantity("rad", above=0, below=pi / 2),
-        Field(
-            title="half-angle",
-            description="angle between axis and faces, or edges [rad], or as '70 degree'",
-        ),
-    ]
+    half_angle: Annotated[float, Quantity("rad", above=0, below=pi / 2)] = Field(
+        title="half-angle",
+        description="angle between axis and faces, or edges [rad], or as '70 degree'",
+    )
     angle_of: Literal["faces", "edges"] = Field(
         default="faces", description="whether half_angle is that of the faces or of the edges"
     )

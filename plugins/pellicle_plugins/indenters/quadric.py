@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
 from pydantic import Field
 
@@ -16,14 +16,12 @@ class Quadric(Indenter):
 
     type: Literal["quadric"] = "quadric"
     examples = ({"radius_x": "1 mm", "radius_y": "2 mm"},)
-    radius_x: Annotated[
-        Length,
-        Field(title="radius along x", description="radius of curvature in the x–z plane [m]"),
-    ]
-    radius_y: Annotated[
-        Length,
-        Field(title="radius along y", description="radius of curvature in the y–z plane [m]"),
-    ]
+    radius_x: Length = Field(
+        title="radius along x", description="radius of curvature in the x–z plane [m]"
+    )
+    radius_y: Length = Field(
+        title="radius along y", description="radius of curvature in the y–z plane [m]"
+    )
 
     def profile(self, x: Array, y: Array) -> Array:
         """Return −(x²/2R_x + y²/2R_y) [m]."""

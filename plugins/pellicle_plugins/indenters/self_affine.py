@@ -32,31 +32,23 @@ class SelfAffine(Indenter):
     footprint: ClassVar[Footprint] = "domain"
     type: Literal["self_affine"] = "self_affine"
     examples = ({"rms_height": "10 um", "hurst": 0.7, "cutoff_wavelength": "0.4 mm", "seed": 3},)
-    rms_height: Annotated[Length, Field(description="root mean square of the heights [m]")]
-    hurst: Annotated[
-        float,
-        Quantity("1", at_least=0, at_most=1),
-        Field(title="Hurst exponent", description="Hurst exponent H"),
-    ]
-    cutoff_wavelength: Annotated[
-        Length,
-        Field(
-            title="cut-off wavelength",
-            description="shortest wavelength 2π/q_s [m]",
-            json_schema_extra={"role": "shortest wave"},
-        ),
-    ]
-    roll_off_wavelength: Annotated[
-        Length | None,
-        Field(
-            title="roll-off wavelength",
-            description="longest wavelength 2π/q₀ [m]; the longer edge of the domain if absent",
-        ),
-    ] = None
-    seed: Annotated[
-        int,
-        Field(ge=0, description="seed of the random phases", json_schema_extra={"role": "seed"}),
-    ] = 0
+    rms_height: Length = Field(description="root mean square of the heights [m]")
+    hurst: Annotated[float, Quantity("1", at_least=0, at_most=1)] = Field(
+        title="Hurst exponent", description="Hurst exponent H"
+    )
+    cutoff_wavelength: Length = Field(
+        title="cut-off wavelength",
+        description="shortest wavelength 2π/q_s [m]",
+        json_schema_extra={"role": "shortest wave"},
+    )
+    roll_off_wavelength: Length | None = Field(
+        None,
+        title="roll-off wavelength",
+        description="longest wavelength 2π/q₀ [m]; the longer edge of the domain if absent",
+    )
+    seed: int = Field(
+        0, ge=0, description="seed of the random phases", json_schema_extra={"role": "seed"}
+    )
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:

@@ -46,51 +46,42 @@ class Topography(FromHeights):
 
     type: Literal["topography"] = "topography"
     examples = ({"path": "patch.x3p", "fill": 0.01},)
-    path: Annotated[
-        InputPath,
-        Field(title="file", description="text, or a file that SurfaceTopography can read"),
-    ]
-    channel: Annotated[
-        str | None, Field(description="name of the data set in a file that holds several")
-    ] = None
-    unit: Annotated[
-        HeightUnit | None,
-        Field(description="length that 1 stands for [m], where the file has no unit: 'um'"),
-    ] = None
+    path: InputPath = Field(
+        title="file", description="text, or a file that SurfaceTopography can read"
+    )
+    channel: str | None = Field(
+        None, description="name of the data set in a file that holds several"
+    )
+    unit: HeightUnit | None = Field(
+        None, description="length that 1 stands for [m], where the file has no unit: 'um'"
+    )
     size: Annotated[
         tuple[Length, Length] | None,
         BeforeValidator(pair, json_schema_input_type=Length | tuple[Length, Length] | None),
-        Field(
-            description="edge length of the scan [m], if the file does not state it: one, or two "
-            "as [along x, along y]"
-        ),
-    ] = None
-    centre: Annotated[
-        tuple[_Position, _Position] | None,
-        Field(
-            description="point of the scan, from its first corner, that lies at the centre of the "
-            "domain [m]; the middle of the scan if absent"
-        ),
-    ] = None
-    level: Annotated[
-        _Level | None,
-        Field(
-            description="shape subtracted by least squares: the mean height, which has no effect "
-            "since only differences matter, a plane or a paraboloid; if absent, 'tilt', or 'mean' "
-            "on a periodic grid, whose edges a plane would part"
-        ),
-    ] = None
-    fill: Annotated[
-        float,
-        Quantity("1", at_least=0, below=1),
-        Field(
-            description="largest share of missing points to fill in, after levelling, "
-            "harmonically from their neighbours; 0 refuses any"
-        ),
-    ] = 0.0
-    invert: Annotated[
-        bool, Field(description="true if the valleys of the scan are what touches, not its peaks")
-    ] = False
+    ] = Field(
+        None,
+        description="edge length of the scan [m], if the file does not state it: one, or two "
+        "as [along x, along y]",
+    )
+    centre: tuple[_Position, _Position] | None = Field(
+        None,
+        description="point of the scan, from its first corner, that lies at the centre of the "
+        "domain [m]; the middle of the scan if absent",
+    )
+    level: _Level | None = Field(
+        None,
+        description="shape subtracted by least squares: the mean height, which has no effect "
+        "since only differences matter, a plane or a paraboloid; if absent, 'tilt', or 'mean' "
+        "on a periodic grid, whose edges a plane would part",
+    )
+    fill: Annotated[float, Quantity("1", at_least=0, below=1)] = Field(
+        0.0,
+        description="largest share of missing points to fill in, after levelling, "
+        "harmonically from their neighbours; 0 refuses any",
+    )
+    invert: bool = Field(
+        False, description="true if the valleys of the scan are what touches, not its peaks"
+    )
     _size: tuple[float, float] = PrivateAttr()
     _missing: str = PrivateAttr()
 
