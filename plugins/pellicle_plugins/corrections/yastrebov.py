@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import log, pi
 from typing import Literal
 
@@ -26,11 +27,9 @@ class Yastrebov(AreaCorrection):
         S·Δ sums, over all switches between contact and no contact along x and y, the switched
         cell edge times the spacing across it: both give dx·dy. Those across a periodic edge count.
         """
-        switches = 0
+        periodic, switches = boundary == "periodic", 0
         for axis in (0, 1):
-            lines = np.moveaxis(contact, axis, 0)
-            switches += int(np.count_nonzero(lines[1:] != lines[:-1]))
-            if boundary == "periodic":
-                switches += int(np.count_nonzero(lines[0] != lines[-1]))
+            before = np.roll(contact, 1, axis) != contact
+            switches += np.count_nonzero(before if periodic else np.diff(contact, axis=axis))
         covered = np.count_nonzero(contact)
         return spacing[0] * spacing[1] * (covered - (pi - 1 + log(2)) / 24 * switches)

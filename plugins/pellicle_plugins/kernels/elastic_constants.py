@@ -6,7 +6,6 @@ from typing import Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from pellicle.components import Kernel
 from pellicle.schema import Model
 from pellicle.units import Modulus, PoissonsRatio
 
@@ -57,10 +56,6 @@ class ElasticModulus(Model):
                 "reduced_modulus alone, or youngs_modulus and poissons_ratio"
             )
         return self
-
-
-class ElasticSolid(ElasticModulus, Kernel):
-    """A kernel whose solid is given by E*, or by E and ν."""
 
 
 class ElasticConstants(ElasticModulus):

@@ -8,13 +8,14 @@ import numpy as np
 from pydantic import ConfigDict, Field
 
 from pellicle.arrays import Array
+from pellicle.components import Kernel
 from pellicle.units import Tension
 
-from .elastic_constants import ElasticSolid
+from .elastic_constants import ElasticModulus
 from .struve import struve_minus_bessel, struve_minus_bessel_primitive
 
 
-class HalfSpace(ElasticSolid):
+class HalfSpace(ElasticModulus, Kernel):
     """Elastic half-space without surface tension (Boussinesq 1885)."""
 
     model_config = ConfigDict(title="half-space")
@@ -35,7 +36,7 @@ class HalfSpace(ElasticSolid):
         return r / (np.pi * self.contact_modulus)
 
 
-class TensedMembrane(ElasticSolid):
+class TensedMembrane(ElasticModulus, Kernel):
     """Elastic half-space under a skin of constant equi-biaxial tension (Hajji 1978)."""
 
     type: Literal["tensed_membrane"] = "tensed_membrane"

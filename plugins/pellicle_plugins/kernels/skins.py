@@ -10,7 +10,7 @@ from pellicle.arrays import Array
 from pellicle.components import FromRegistry, Kernel, KernelOf
 from pellicle.units import BendingStiffness, Tension
 
-from .elastic_constants import ElasticConstants, ElasticSolid
+from .elastic_constants import ElasticConstants, ElasticModulus
 
 
 class Skin(Kernel):
@@ -33,7 +33,7 @@ class Skin(Kernel):
         return (self.tension + self.bending * q**2) * q**2
 
 
-class BendingSkin(Skin, ElasticSolid):
+class BendingSkin(Skin, ElasticModulus):
     """Elastic half-space under a skin with tension and bending stiffness (Kirchhoff plate).
 
     Waves with 1/q below (2B/E*)^⅓ are carried by the bending stiffness. Without it this is

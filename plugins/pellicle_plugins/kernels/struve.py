@@ -40,26 +40,20 @@ _PRIMITIVE = _ODD / (_POWER + 1.0), _LOG / _POWER, _EVEN / _POWER + _LOG / _POWE
 
 def struve_minus_bessel(z: Array) -> Array:
     """H0(z) - Y0(z) for an array of any shape with z > 0."""
-
-    def below(z: Array) -> Array:
-        return _series(z, _ODD, _LOG, _EVEN)
-
-    def above(z: Array) -> Array:
-        return _tail(z, -0.5) * (2.0 / np.pi) / z
-
-    return _blockwise(z, below, above)
+    return _blockwise(
+        z,
+        lambda z: _series(z, _ODD, _LOG, _EVEN),
+        lambda z: _tail(z, -0.5) * (2.0 / np.pi) / z,
+    )
 
 
 def struve_minus_bessel_primitive(z: Array) -> Array:
     """Integral of t (H0(t) - Y0(t)) over 0 < t < z, that is z (H1(z) - Y1(z)) - 2/pi, z >= 0."""
-
-    def below(z: Array) -> Array:
-        return z * z * _series(z, *_PRIMITIVE)
-
-    def above(z: Array) -> Array:
-        return (z * _tail(z, 0.5) - 1.0) * (2.0 / np.pi)
-
-    return _blockwise(z, below, above)
+    return _blockwise(
+        z,
+        lambda z: z * z * _series(z, *_PRIMITIVE),
+        lambda z: (z * _tail(z, 0.5) - 1.0) * (2.0 / np.pi),
+    )
 
 
 def _blockwise(z: Array, below: Callable[[Array], Array], above: Callable[[Array], Array]) -> Array:
@@ -68,10 +62,8 @@ def _blockwise(z: Array, below: Callable[[Array], Array], above: Callable[[Array
     flat = z.reshape(-1)
     result = np.empty(flat.size)
     for start in range(0, flat.size, _BLOCK):
-        block, target = flat[start : start + _BLOCK], result[start : start + _BLOCK]
-        small = block < _SPLIT
-        target[small] = below(block[small])
-        target[~small] = above(block[~small])
+        block = flat[start : start + _BLOCK]
+        result[start : start + _BLOCK] = np.piecewise(block, [block < _SPLIT], [below, above])
     return result.reshape(z.shape)
 
 
