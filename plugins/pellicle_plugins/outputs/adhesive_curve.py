@@ -16,9 +16,8 @@ from pellicle.analysis.steepness import steepest
 from pellicle.arrays import Dataset
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
 from pellicle.errors import ConfigError
+from pellicle.results import Result, is_periodic
 from pellicle.results.path import FEW_CELLS
-from pellicle.results.result import Result
-from pellicle.results.wording import is_periodic
 from pellicle.units import Quantity
 from pellicle_plugins.validation.adhesive_path import curve_of
 

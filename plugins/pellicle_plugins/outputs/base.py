@@ -12,20 +12,17 @@ from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field
 
+from pellicle import Run
 from pellicle.arrays import Dataset
 from pellicle.components import Axis, Output, Runs
 from pellicle.config.describe import words_at
-from pellicle.config.run import Run
 from pellicle.errors import ConfigError, StorageError
+from pellicle.results import Result, StoredRuns, column_of
 from pellicle.results.derived import configuration_of, names
-from pellicle.results.result import Result
-from pellicle.results.runs import StoredRuns
-from pellicle.results.wording import column_of
-from pellicle.schema.expression import evaluate, formula
-from pellicle.schema.messages import nearest
-from pellicle.show.fields import without_round_off
-from pellicle.show.saving import write_charts
-from pellicle.show.style import FigureStyle, is_ordered
+from pellicle.schema import evaluate, nearest
+from pellicle.schema.expression import formula
+from pellicle.show import FigureStyle, without_round_off, write_charts
+from pellicle.show.style import is_ordered
 from pellicle.units import DIGITS, Quantity, readable
 from pellicle.variables import words_of_name
 

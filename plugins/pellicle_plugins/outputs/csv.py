@@ -19,11 +19,7 @@ class Csv(Output):
     examples = ({},)
     scope: ClassVar[Literal["run"]] = "run"
     shares_stem: ClassVar[bool] = True
-
-    @property
-    def suffixes(self) -> tuple[str, ...]:
-        """Suffix of the table."""
-        return (".csv",)
+    suffixes: ClassVar[tuple[str, ...]] = (".csv",)
 
     def step(self, record: Dataset, stem: Path) -> None:
         """Write the row of the step, the first with a header."""

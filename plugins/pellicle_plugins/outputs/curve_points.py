@@ -12,7 +12,7 @@ from pellicle.analysis import Leg, extrapolate, legs
 from pellicle.arrays import DataArray, Dataset
 from pellicle.components import Look, Series
 from pellicle.errors import ConfigError
-from pellicle.results.path import has_interaction, has_path, has_times
+from pellicle.results import has_interaction, has_path, has_times
 
 from .base import MOST_LEGS
 

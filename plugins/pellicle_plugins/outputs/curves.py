@@ -15,9 +15,8 @@ from pydantic import Field, model_validator
 from pellicle.arrays import DataArray, Dataset
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown
 from pellicle.errors import ConfigError
-from pellicle.results.path import has_path
-from pellicle.schema.expression import names_in
-from pellicle.schema.model import Model
+from pellicle.results import has_path
+from pellicle.schema import Model, names_in
 from pellicle.show.style import is_log_spaced, is_ordered
 from pellicle.units import printed, readable
 from pellicle.variables import FIELDS, WALL_PRESSURE
@@ -168,9 +167,7 @@ class Curves(TableFigure):
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
         """Yield the curves."""
-        yield "", self._chart(self.shown(runs))
-
-    def _chart(self, runs: Runs) -> Chart:
+        runs = self.shown(runs)
         table = runs.table
         require_axes(table.sizes, self.by, "by")
         require_axes(table.sizes, [self.over] if self.over else [], "over")
@@ -200,7 +197,7 @@ class Curves(TableFigure):
             band = Series(_NONE, _NONE, legend=_SPREADS[self.spread], low=_NONE, high=_NONE)
             series.append(replace(band, look=Look(None)))
         titles = [label(None, table.isel(cell), panels, table) for cell in along(table, panels)]
-        return Chart(
+        chart = Chart(
             replace(axis_of(self.x, self.x_label, table), log="x" in log, column="x"),
             [replace(y_axis, log="y" in log, column="y")] * count,
             series,
@@ -209,6 +206,7 @@ class Curves(TableFigure):
             ordered=is_ordered(table, by[0] if by else None),
             titles=[title.words.replace(", ", "\n") for title in titles] if panels else (),
         )
+        yield "", chart
 
     def _y_axis(self, ys: Sequence[DataArray], table: Dataset) -> tuple[Axis, Sequence[str]]:
         """Return the vertical axis, and the name of each y.

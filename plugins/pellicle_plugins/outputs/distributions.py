@@ -11,7 +11,7 @@ from pydantic import Field
 from pellicle import analysis
 from pellicle.arrays import Dataset
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
-from pellicle.results.path import has_interaction
+from pellicle.results import has_interaction
 from pellicle.units import axis_unit
 
 from .base import Label, Log, TableFigure

@@ -13,12 +13,9 @@ import numpy as np
 from pellicle.analysis import legs
 from pellicle.arrays import DataArray, Dataset
 from pellicle.components import Axis, Chart, Fields, Look, Output, Runs, Series
-from pellicle.results.path import has_interaction, has_times
-from pellicle.results.result import Result
-from pellicle.results.runs import StoredRuns
-from pellicle.results.wording import column_of, is_periodic
-from pellicle.show.saving import write_charts
-from pellicle.show.style import FigureStyle, is_seed
+from pellicle.results import Result, StoredRuns, column_of, has_interaction, has_times, is_periodic
+from pellicle.show import FigureStyle, write_charts
+from pellicle.show.style import is_seed
 from pellicle.variables import CONTACT_AREA, CORRECTED_AREA
 
 from .base import MOST_LEGS, Formats, StyleField
@@ -107,7 +104,7 @@ def over_time(result: Result) -> Chart:
         for number, name in enumerate(_OVER_TIME)
     ]
     axes = [_axis(data[name], signed=True) for name in _OVER_TIME]
-    return Chart(_axis(data["time"]), axes, series, _title(data), hues=len(_OVER_TIME))
+    return Chart(_axis(data["time"]), axes, series, data.attrs["title"], hues=len(_OVER_TIME))
 
 
 def study_curves(runs: Runs, variable: str) -> Chart:
@@ -129,7 +126,7 @@ def study_curves(runs: Runs, variable: str) -> Chart:
         x = max(numbers, key=lambda axis: (not is_seed(table[axis]), table.sizes[axis]))
     rest = [axis for axis in axes if axis != x]
     seeds = [axis for axis in rest[1:] if is_seed(table[axis])][:1]
-    remarks = [_title(table)]
+    remarks = [table.attrs["title"]]
     for axis in rest[:1]:
         if (count := table.sizes[axis]) > _MOST_NAMED:
             table = table.isel({axis: slice(None, None, -(-count // _MOST_NAMED))})
@@ -159,7 +156,7 @@ def _curves(result: Result, labels: dict[str, str], against: str) -> Chart:
     ]
     first = next(iter(labels))
     x, y = _axis(data[against], signed=pulls), _axis(data[first], signed=pulls)
-    return Chart(x, [y], series, _title(data), hues=len(labels))
+    return Chart(x, [y], series, data.attrs["title"], hues=len(labels))
 
 
 def _series(data: Dataset, x: str, y: str, look: Look) -> Series:
@@ -174,8 +171,3 @@ def _axis(variable: DataArray, *, signed: bool = False) -> Axis:
     unit = str(variable.attrs.get("units", "1"))
     start = None if signed else 0.0
     return Axis(column_of(variable).words, unit, limits=(start, None), signed=signed)
-
-
-def _title(data: Dataset) -> str:
-    title: str = data.attrs.get("title", "")
-    return title

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar, Literal
@@ -13,49 +13,33 @@ import numpy as np
 import tomli_w
 from pydantic import Field
 
-from pellicle import Grid, Run
+from pellicle import Run, show
 from pellicle.arrays import Dataset
 from pellicle.components import Output, Runs, Table
 from pellicle.config.describe import FieldRow, inputs
 from pellicle.errors import StorageError
 from pellicle.files import atomic_write
+from pellicle.results import Result, has_interaction, label_of_step
 from pellicle.results.derived import FIRST_RUN
-from pellicle.results.path import has_interaction, label_of_step
-from pellicle.results.result import Result
 from pellicle.results.runs import axes_of, progress_of, runs_of
-from pellicle.show import tables
+from pellicle.show import Code, Frame, Maps, Notice, Picture, Section, Text, sentences, tables
 from pellicle.show.drawing import DIVERGING
-from pellicle.show.fields import default_step, without_round_off
-from pellicle.show.html import Code, Notice, Picture, Section, Text, page
-from pellicle.show.maps import Field as MapField
-from pellicle.show.maps import Frame, Maps, frame, side
+from pellicle.show.fields import default_step
 from pellicle.show.methods import methods
-from pellicle.show.sentences import (
-    aim_of_path,
-    caption_of_runs,
-    caption_of_setup,
-    caption_of_steps,
-    range_of_path,
-    run_names,
-    sentence_of_step,
-    sentence_of_study,
-    status_of_run,
-    status_of_study,
-)
 from pellicle.variables import WALL_PRESSURE
 
 from .html_curves import curves_of_outputs, curves_of_run, curves_of_study, picture
 from .step_figures import cross_section
 
-FIELDS = {
-    "pressure": MapField("contact pressure", "Pa", blank=True),
-    "gap": MapField("gap", "m", "Blues", power=0.5),
+_FIELDS = {
+    "pressure": show.Field("contact pressure", "Pa", blank=True),
+    "gap": show.Field("gap", "m", "Blues", power=0.5),
 }
 """The variables that are mapped."""
 _STICKING = {
-    "pressure": MapField("pressure", "Pa", DIVERGING, blank=True, centred=True),
-    WALL_PRESSURE: MapField("wall pressure", "Pa", blank=True),
-    "gap": FIELDS["gap"],
+    "pressure": show.Field("pressure", "Pa", DIVERGING, blank=True, centred=True),
+    WALL_PRESSURE: show.Field("wall pressure", "Pa", blank=True),
+    "gap": _FIELDS["gap"],
 }
 """The variables that are mapped where there is an interaction."""
 
@@ -70,6 +54,7 @@ class Html(Output):
     type: Literal["html"] = "html"
     examples = ({}, {"points": 8, "frames": 1})
     shares_stem: ClassVar[bool] = True
+    suffixes: ClassVar[tuple[str, ...]] = (".html",)
     points: int = Field(
         512,
         ge=8,
@@ -83,11 +68,6 @@ class Html(Output):
         description="largest number of load steps of a run, or runs of a study, that are "
         "mapped; of more, evenly spaced ones up to the last",
     )
-
-    @property
-    def suffixes(self) -> tuple[str, ...]:
-        """Suffix of the page."""
-        return (".html",)
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the page."""
@@ -109,7 +89,9 @@ class Html(Output):
         date = table.attrs["date"].replace("T", " ").replace("+00:00", " UTC")
         kind = "Run" if runs.axes is None else "Study"
         with atomic_write(path) as part:
-            text = page(table.attrs["title"] or stem.name, sections, f"{kind} of pellicle, {date}")
+            text = show.page(
+                table.attrs["title"] or stem.name, sections, f"{kind} of pellicle, {date}"
+            )
             part.write_text(text, encoding="utf-8")
         return (path,)
 
@@ -119,12 +101,12 @@ class Html(Output):
         data = result.dataset
         maps, chosen = self._maps_of_steps(result)
         step_shown = default_step(data) % data.sizes["step"]
-        first, label = sentence_of_step(data, step_shown), label_of_step(data, step_shown)
+        first, label = sentences.sentence_of_step(data, step_shown), label_of_step(data, step_shown)
         section = cross_section(data.isel(step=step_shown))
-        setup = picture(section, caption_of_setup(configuration, label))
-        aim = aim_of_path(data, result.path_summary)
-        lead, rest = (aim, first) if aim else (first, range_of_path(data))
-        sentences = [Text(lead, lead=True), *([Text(rest)] if rest else [])]
+        setup = picture(section, sentences.caption_of_setup(configuration, label))
+        aim = sentences.aim_of_path(data, result.path_summary)
+        lead, rest = (aim, first) if aim else (first, sentences.range_of_path(data))
+        in_short = [Text(lead, lead=True), *([Text(rest)] if rest else [])]
         of_steps, off = tables.all_steps(data), data["contact_area"].values == 0
         if off.any() and not off.all():
             apart, *_ = tables.all_steps(data.isel(step=off))
@@ -132,7 +114,7 @@ class Html(Output):
             of_steps = [*tables.all_steps(data.isel(step=~off))[:-1], apart, of_steps[-1]]
         numbers = [*tables.path(data), *of_steps, *tables.oscillations(data)]
         return [
-            Section("In short", [*sentences, Notice(*status_of_run(result))]),
+            Section("In short", [*in_short, Notice(*sentences.status_of_run(result))]),
             Section("Maps", [maps]),
             Section("Curves", curves_of_run(result, chosen, maps.begin)),
             Section("Outputs", [*curves_of_outputs(runs, configuration, chosen)]),
@@ -142,12 +124,10 @@ class Html(Output):
 
     def _sections_of_study(self, runs: Runs, first_run: dict[str, Any]) -> list[Section]:
         table = runs.table
-        rows, names_of_runs = list(runs_of(table)), run_names(table)
+        rows, names_of_runs = list(runs_of(table)), sentences.run_names(table)
         frames, setups = dict[int, Frame](), list[Picture]()
-        mapped = _STICKING if has_interaction(table) else FIELDS
         solved = [index for index, row in enumerate(rows) if progress_of(row)[0]]
-        chosen = self._chosen(len(solved))
-        points = side(self.points, len(chosen) * len(mapped))
+        chosen, mapped, frame_of = self._mapped(table, len(solved))
         for index in (solved[number] for number in chosen):
             try:
                 run = runs.open(rows[index]["run"].item())
@@ -156,20 +136,18 @@ class Html(Output):
             step, label = run.isel(step=default_step(run)), names_of_runs[index]
             if WALL_PRESSURE not in step:
                 step = step.assign({WALL_PRESSURE: step["pressure"]})
-            shown = without_round_off(step)
-            frames[index] = _frame(label, Result(step).grid, shown, mapped, points)
+            frames[index] = frame_of(label, step)
             if not setups:
-                caption = caption_of_setup(first_run, label)
+                caption = sentences.caption_of_setup(first_run, label)
                 setups.append(picture(cross_section(step), caption))
-        sentence = sentence_of_study(table, len(rows))
+        sentence = sentences.sentence_of_study(table, len(rows))
         lead = [Text(sentence, lead=True)] if sentence else []
-        caption = caption_of_runs(table, len(frames))
-        maps = Maps(caption, "run", tuple(mapped.values()), list(frames.values()))
-        of_runs = tables.runs(table, mapped=list(frames))
-        numbers = [of_runs, *tables.paths_of_runs(table)]
+        caption = sentences.caption_of_runs(table, len(frames))
+        maps = Maps(caption, "run", mapped, list(frames.values()))
+        numbers = [tables.runs(table, mapped=list(frames)), *tables.paths_of_runs(table)]
         given = tables.inputs_of_study(table, inputs(first_run, Run))
         return [
-            Section("In short", [*lead, Notice(*status_of_study(table))]),
+            Section("In short", [*lead, Notice(*sentences.status_of_study(table))]),
             Section("Maps", [maps] if frames else []),
             Section("Curves", [*curves_of_study(runs)]),
             Section("Outputs", [*curves_of_outputs(runs, first_run)]),
@@ -179,36 +157,38 @@ class Html(Output):
 
     def _maps_of_steps(self, result: Result) -> tuple[Maps, list[int]]:
         """Return the maps of load steps, and the indices of the steps."""
-        data, grid = result.dataset, result.grid
-        steps = data.sizes["step"]
-        chosen = self._chosen(steps)
-        mapped = _STICKING if has_interaction(data) else FIELDS
-        points = side(self.points, len(chosen) * len(mapped))
-        frames = []
+        data, steps, frames = result.dataset, result.dataset.sizes["step"], []
+        chosen, mapped, frame_of = self._mapped(data, steps)
         for index in chosen:
-            step = without_round_off(data.isel(step=index))
+            step = data.isel(step=index)
             label = f"{index + 1}: {label_of_step(data, index)}"
             label += "" if step["converged"].item() else ", NOT CONVERGED"
-            note = sentence_of_step(data, index)
-            frames.append(replace(_frame(label, grid, step, mapped, points), note=note))
-        step_shown = default_step(data) % steps
-        begin = int(np.searchsorted(chosen, step_shown, side="right")) - 1
-        names = [field.name for field in mapped.values()]
-        caption = caption_of_steps(data, names, len(chosen))
-        return Maps(caption, "load step", tuple(mapped.values()), frames, max(begin, 0)), chosen
+            note = sentences.sentence_of_step(data, index)
+            frames.append(replace(frame_of(label, step), note=note))
+        begin = int(np.searchsorted(chosen, default_step(data) % steps, side="right")) - 1
+        caption = sentences.caption_of_steps(data, [field.name for field in mapped], len(chosen))
+        return Maps(caption, "load step", mapped, frames, max(begin, 0)), chosen
 
-    def _chosen(self, count: int) -> list[int]:
-        """Return the indices that are mapped: all, or evenly spaced ones up to the last."""
+    def _mapped(
+        self, data: Dataset, count: int
+    ) -> tuple[list[int], tuple[show.Field, ...], Callable[[str, Dataset], Frame]]:
+        """Return which of ``count`` steps or runs are mapped, the fields, and what maps a step.
+
+        All are, or evenly spaced ones up to the last.
+        """
         number = min(count, self.frames)
-        return [(count * (index + 1) + number - 1) // number - 1 for index in range(number)]
+        fields = _STICKING if has_interaction(data) else _FIELDS
+        points = show.side(self.points, number * len(fields))
+        signed = any(field.centred for field in fields.values())
+        empty = [index for index, field in enumerate(fields.values()) if signed and field.blank]
 
+        def frame_of(label: str, step: Dataset) -> Frame:
+            shown = show.without_round_off(step)
+            values = [shown[name].values for name in fields]
+            return show.frame(label, Result(step).grid, values, points, empty)
 
-def _frame(
-    label: str, grid: Grid, step: Dataset, mapped: dict[str, MapField], points: int
-) -> Frame:
-    signed = any(field.centred for field in mapped.values())
-    empty = [index for index, field in enumerate(mapped.values()) if signed and field.blank]
-    return frame(label, grid, [step[name].values for name in mapped], points, empty)
+        chosen = [(count * (index + 1) + number - 1) // number - 1 for index in range(number)]
+        return chosen, tuple(fields.values()), frame_of
 
 
 def _inputs(fields: Iterable[FieldRow]) -> Table:

@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from pellicle import registry
 from pellicle.components import Chart, Fields, Output, Runs, Table
-from pellicle.results.path import label_of_step
-from pellicle.results.result import Result
-from pellicle.results.wording import column_of
+from pellicle.results import Result, column_of, label_of_step
 from pellicle.show import Picture, figure_of, svg
 from pellicle.show.drawing import SIZE, Drawn, marks_of
 
@@ -63,7 +61,7 @@ def curves_of_study(runs: Runs) -> Iterator[Picture]:
     """Yield a figure for each variable that is drawn over a study."""
     for name, chart in figures_of_study(runs):
         words = column_of(runs.table[name]).words.capitalize()
-        title = runs.table.attrs.get("title", "")
+        title = runs.table.attrs["title"]
         remarks = [line for line in chart.title.splitlines() if line != title]
         yield picture(chart, f"{', '.join([f'{words} over the study', *remarks])}.")
 

@@ -9,10 +9,8 @@ from pydantic import Field
 
 from pellicle.arrays import Mask
 from pellicle.components import Axis, Fields, Panel, Runs, Shown
-from pellicle.results.derived import as_array
-from pellicle.results.path import has_interaction
-from pellicle.results.result import Result
-from pellicle.schema.expression import names_in
+from pellicle.results import Result, as_array, has_interaction
+from pellicle.schema import names_in
 from pellicle.show.fields import contact_and_zone
 from pellicle.variables import WALL_PRESSURE, words_of_name
 

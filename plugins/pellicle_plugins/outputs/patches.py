@@ -10,7 +10,7 @@ import numpy as np
 from pellicle import analysis
 from pellicle.arrays import Dataset
 from pellicle.components import Axis, Chart, Fields, Look, Panel, Runs, Series, Shown, Table
-from pellicle.results.result import Result
+from pellicle.results import Result
 
 from .base import Label, TableFigure
 

@@ -11,10 +11,9 @@ from pydantic import Field
 
 from pellicle.arrays import DataArray, Dataset
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
-from pellicle.results.derived import as_array
-from pellicle.results.path import has_interaction
-from pellicle.schema.expression import names_in
-from pellicle.show.fields import with_rim
+from pellicle.results import as_array, has_interaction
+from pellicle.schema import names_in
+from pellicle.show import with_rim
 from pellicle.variables import FIELDS, WALL_PRESSURE
 from pellicle_plugins.validation.reference import exact_line
 

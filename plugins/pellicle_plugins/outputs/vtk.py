@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 from pellicle.arrays import Dataset
 from pellicle.components import Output, Runs
 from pellicle.files import atomic_write, storage_errors
-from pellicle.results.path import has_times
+from pellicle.results import has_times
 from pellicle.variables import FIELDS, WALL_PRESSURE
 
 _TYPES = {"f8": "Float64", "i8": "Int64", "b1": "UInt8"}
@@ -44,11 +44,7 @@ class Vtk(Output):
 
     scope: ClassVar[Literal["run"]] = "run"
     shares_stem: ClassVar[bool] = True
-
-    @property
-    def suffixes(self) -> tuple[str, ...]:
-        """Suffixes of the list and of the steps."""
-        return ".pvd", "-*.vts"
+    suffixes: ClassVar[tuple[str, ...]] = (".pvd", "-*.vts")
 
     def step(self, record: Dataset, stem: Path) -> None:
         """Write the file of the step; the first one removes those of an earlier run."""
@@ -59,12 +55,12 @@ class Vtk(Output):
                 if re.fullmatch(r"-\d{4,}\.vts", old.name.removeprefix(stem.name)):
                     with storage_errors(old):
                         old.unlink()
-        _write_step(record, _file(stem, number))
+        _write_step(record, Path(f"{stem}-{number:04d}.vts"))
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the list of the steps; return all files."""
         path, table, last = Path(f"{stem}.pvd"), runs.table, -np.inf
-        files = [_file(stem, number) for number in table["step"].values.tolist()]
+        files = [Path(f"{stem}-{number:04d}.vts") for number in table["step"].values.tolist()]
         times = table["time" if has_times(table) else "step"].values.tolist()
         with _writer(path, "Collection") as xml:
             for time, file in zip(times, files, strict=True):
@@ -73,10 +69,6 @@ class Vtk(Output):
                 with _element(xml, "DataSet", timestep=repr(last), file=file.name):
                     pass
         return (*files, path)
-
-
-def _file(stem: Path, number: int) -> Path:
-    return Path(f"{stem}-{number:04d}.vts")
 
 
 def _write_step(step: Dataset, path: Path) -> None:

@@ -10,7 +10,7 @@ from pellicle import Run, analysis
 from pellicle.arrays import Dataset
 from pellicle.components import Kernel
 from pellicle.errors import ConfigError
-from pellicle.results.result import Result
+from pellicle.results import Result
 
 _ROUND = 0.02
 """Relative difference of a circle's semi-axes, or of its area from the ellipse's, beyond a cell."""

@@ -13,9 +13,8 @@ from pellicle.arrays import Dataset
 from pellicle.axisymmetric import AxisymmetricContact, indent, kinks_of
 from pellicle.components import HasAbelSlope, Runs
 from pellicle.errors import ConfigError
+from pellicle.results import Result, StoredRuns
 from pellicle.results.derived import DERIVED, derive
-from pellicle.results.result import Result
-from pellicle.results.runs import StoredRuns
 from pellicle.variables import CORRECTED_AREA, CORRECTED_FRACTION, names_of
 from pellicle_plugins.kernels.half_spaces import HalfSpace, TensedMembrane
 
