@@ -189,7 +189,10 @@ def _curve(
         own = Calibration(spring_constant=constant, speed=given.speed)
         if lacks := lacking(columns, own):
             raise MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in lacks})
-        curve, site = from_columns(columns, own), _site(metadata)
+        curve, site = from_columns(columns, own), None
+        # Files that were converted may hold a text with a unit.
+        with suppress(ValueError):
+            site = Site(*(Quantity("m")(metadata.get(f"position {letter}")) for letter in "xy"))
     origin = curve.origin._replace(sensitivity=metadata.get("sensitivity"), library="afmformats")
     messages, pause = (_NT_MDT,) if is_nt_mdt else (), _pause(data, metadata)
     curve = replace(curve, origin=origin, site=site, messages=messages, pause=pause)
@@ -207,11 +210,3 @@ def _pause(data: Mapping[str, Any], metadata: Mapping[str, Any]) -> Mask | None:
     if count == 2 and "duration intermediate" in metadata:
         pauses = (int("duration approach" in metadata),)
     return np.isin(place, pauses) if pauses else None
-
-
-def _site(metadata: Mapping[str, Any]) -> Site | None:
-    try:
-        # Files that were converted may hold a text with a unit.
-        return Site(*(Quantity("m")(metadata.get(f"position {letter}")) for letter in "xy"))
-    except ValueError:
-        return None

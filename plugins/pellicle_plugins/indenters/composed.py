@@ -153,8 +153,7 @@ class Sum(Composed):
             else:
                 smooth += profile
         total = smooth + rough
-        at = np.unravel_index(np.argmax(total), shape)
-        top = float(total[at])
+        top = float(total.max())
         if not np.isfinite(top):
             raise ConfigError("do not overlap anywhere; shift them so that they do", "parts")
         hidden += self._summit(x, y, smooth, lattice) - float(smooth.max())
