@@ -60,7 +60,8 @@ def metres(unit: str) -> float | None:
 
 
 def chosen(channels: Sequence[Channel], name: str | None, path: Path) -> Channel:
-    """Return the channel of heights with a name; the first of all if it is None."""
+    """Return the channel of heights with a name; the first of them if it is None."""
+    channels = sorted(channels, key=lambda channel: not channel.is_height)
     names = dict.fromkeys(repr(channel.name) for channel in channels if channel.is_height)
     heights = ", ".join(names) or "none"
     by_name = {channel.name: channel for channel in channels}

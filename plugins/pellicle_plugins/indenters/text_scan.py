@@ -40,16 +40,8 @@ _SIZE_TOLERANCE = 0.02
 """Allowed relative difference between the size in the header and that of the coordinates."""
 
 
-def text_channels(tables: Mapping[str, TextTable], path: Path) -> list[Channel]:
-    """Return what tables and their headers state, heights first.
-
-    Their rows are lines along x, or points x, y, z on a regular grid.
-    """
-    channels = [_channel(name, table, path) for name, table in tables.items()]
-    return sorted(channels, key=lambda channel: not channel.is_height)
-
-
-def _channel(name: str, table: TextTable, path: Path) -> Channel:
+def text_channel(name: str, table: TextTable, path: Path) -> Channel:
+    """Return what a table and its header state: lines along x, or points x, y, z on a grid."""
     # Of two lines with one label the later counts.
     entries = {
         entry: match[1]

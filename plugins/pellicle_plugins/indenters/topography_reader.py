@@ -19,13 +19,18 @@ from pellicle.errors import ConfigError
 from .contents import contents, unit_of_image
 from .file_checks import HDF5, datasets, require_file, require_memory, require_unpacked
 from .scan import Channel, Scan, chosen, edge_lengths, height_scale, known
-from .text_scan import text_channels
+from .text_scan import text_channel
 from .text_table import FORMAT_MARKS, read_tables, text_in
 
 _BEYOND = 1e9
 """Height [m] that no surface has; files mark missing points with numbers of this size and more."""
 _ARRAYS = 9
 """Peak memory while a scan is read, in arrays of its points; 8 were measured at 2000² points."""
+_UNKNOWN = (
+    "is damaged or in an unknown format; give a file that SurfaceTopography reads (gwy, opd, sdf, "
+    "sur, x3p, …), text with a row of numbers, separated by blanks, commas or semicolons, on each "
+    "line, or an array as type = 'heights'"
+)
 
 
 def read_scan(
@@ -84,7 +89,7 @@ def _channels(file: BinaryIO, path: Path) -> list[Channel]:
         with suppress(ValueError):
             text = text_in(path)
     if not text.startswith(FORMAT_MARKS) and (tables := read_tables(text, path)):
-        return text_channels(tables, path)
+        return [text_channel(name, table, path) for name, table in tables.items()]
     require_unpacked(path)
     if head.startswith(HDF5):
         with datasets(path):
@@ -101,16 +106,8 @@ def _channels(file: BinaryIO, path: Path) -> list[Channel]:
             if reader.format() == "nc":
                 _require_whole(reader, path)
             channels = (reader.default_channel, *reader.channels)
-            listed = [_library_channel(channel, reader, path) for channel in channels]
-            return sorted(listed, key=lambda channel: not channel.is_height)
-    if content := contents(path, {}):
-        raise ConfigError(f"{path} {content}", "path")
-    raise ConfigError(
-        f"{path} is damaged or in an unknown format; give a file that SurfaceTopography reads "
-        "(gwy, opd, sdf, sur, x3p, …), text with a row of numbers, separated by blanks, commas or "
-        "semicolons, on each line, or an array as type = 'heights'",
-        "path",
-    )
+            return [_library_channel(channel, reader, path) for channel in channels]
+    raise ConfigError(f"{path} {contents(path, {}) or _UNKNOWN}", "path")
 
 
 def _library_channel(channel: Any, reader: Any, path: Path) -> Channel:

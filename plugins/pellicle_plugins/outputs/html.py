@@ -73,21 +73,18 @@ class Html(Output):
         """Write the page."""
         table, path = runs.table, Path(f"{stem}.html")
         configuration = json.loads(runs.configuration)
-        varied: tuple[str, ...] = ()
+        kind, run, varied = "Run", configuration, list[str]()
         if runs.axes is None:
-            run = configuration
             sections = self._sections_of_run(Result(runs.open()), run, runs)
         else:
-            run = json.loads(table.attrs[FIRST_RUN])
-            varied = tuple(axes_of(table))
+            kind, run, varied = "Study", json.loads(table.attrs[FIRST_RUN]), axes_of(table)
             sections = self._sections_of_study(runs, run)
         sections += [
-            Section("Methods", [Text(methods(run, table.attrs, varied))]),
+            Section("Methods", [Text(methods(run, table.attrs, tuple(varied)))]),
             Section("Provenance", tables.origin(table.attrs, inputs(run, Run))),
             Section("How to reproduce it", [*_reproduce(configuration, stem)]),
         ]
         date = table.attrs["date"].replace("T", " ").replace("+00:00", " UTC")
-        kind = "Run" if runs.axes is None else "Study"
         with atomic_write(path) as part:
             text = show.page(
                 table.attrs["title"] or stem.name, sections, f"{kind} of pellicle, {date}"
