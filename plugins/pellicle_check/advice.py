@@ -196,10 +196,9 @@ def _expected(
     compared = (area > 0).all(axis=0)
     cells = np.where(compared, np.sqrt(area[-1]) / run.grid.cell_size, math.nan)
     # A path with an interaction crosses 0; what is asked of it is its pull-off.
-    sizes_of_forces = np.abs(force[-1])
-    of_forces = (
-        np.full_like(sizes_of_forces, sizes_of_forces.max()) if run.interaction else sizes_of_forces
-    )
+    of_forces, of_depths = np.abs(force[-1]), np.full(cells.shape, np.abs(depth[-1]).max())
+    if run.interaction:
+        of_forces[:] = of_forces.max()
 
     def errors(values: Array, scale: Array, rule: _Rule) -> list[float]:
         # A quantity that is prescribed is equal on all grids and has no error.
@@ -219,11 +218,7 @@ def _expected(
         force[-1].tolist(),
         [max(_extent(contact, grids[-1])) for contact in results[-1]["contact"].values],
         errors(force, of_forces, _SMOOTH if smooth else _OTHER),
-        errors(
-            depth,
-            np.full(cells.shape, np.abs(depth[-1]).max()),
-            _SMOOTH_DEPTH if smooth else _OTHER,
-        ),
+        errors(depth, of_depths, _SMOOTH_DEPTH if smooth else _OTHER),
         errors(area, area[-1], _AREA),
         strict=True,
     )

@@ -49,12 +49,10 @@ def _of_input(answer: Answer) -> Iterator[Step]:
             why = "the depth of {} is {} times the radius of {}".format(*sizes)
             yield Step("check radius and units", why)
             break
-    for of_rows in depths:
-        count = np.sum(of_rows < 0)
-        if CONTACT_POINT in chosen.estimates and count < FEWEST:
-            why = f"only {count} rows lie before it, so that no check can contradict the fit"
-            yield Step("begin curves before contact", why)
-            break
+    few = [count for of_rows in depths if (count := np.sum(of_rows < 0)) < FEWEST]
+    if CONTACT_POINT in chosen.estimates and few:
+        why = f"only {few[0]} rows lie before it, so that no check can contradict the fit"
+        yield Step("begin curves before contact", why)
     for name, (least, most) in PLAUSIBLE.items():
         if (found := answer.chosen.estimates.get(name)) is None:
             continue
