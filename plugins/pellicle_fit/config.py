@@ -39,7 +39,7 @@ from .files.columns import Calibration
 from .files.measurement import Segment
 from .files.missing import OPTIONS, MissingInputError
 from .files.sources import PLACE, Curves, Source, expanded, gather
-from .population.judgement import rules
+from .population.judgement import Rule
 from .simulated.simulation import GRID_POINTS
 from .simulated.solid import solid
 
@@ -210,9 +210,11 @@ class FitConfig(FromFile, Calibration):
         "one value for each file",
     )
     pool: bool = Field(False, description="whether all curves share one modulus and one tension")
-    accept: Annotated[tuple[str, ...], _list(tuple[str, ...] | str), AfterValidator(rules)] = Field(
-        (), description="rules for the curves of a population, such as r_squared > 0.95"
-    )
+    accept: Annotated[
+        tuple[str, ...],
+        _list(tuple[str, ...] | str),
+        AfterValidator(lambda texts: tuple(Rule(text).text for text in texts)),
+    ] = Field((), description="rules for the curves of a population, such as r_squared > 0.95")
     rejected: InputPath | None = Field(
         None, description="file that names curves that are rejected, one on each line, and why"
     )

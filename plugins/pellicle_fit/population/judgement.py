@@ -83,11 +83,6 @@ class Rule:
         return f"{', '.join(texts)}, against {self.text}"
 
 
-def rules(texts: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the texts of rules; it raises what `Rule` does."""
-    return tuple(Rule(text).text for text in texts)
-
-
 class Names:
     """A list of curves in a text file: a name on each line, and after a comma a reason."""
 

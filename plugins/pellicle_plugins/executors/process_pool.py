@@ -35,11 +35,11 @@ class Worker:
 
     def __init__(self, environment: Mapping[str, str]) -> None:
         self.connection, theirs = get_context("loky").Pipe()
-        self._process = get_context("loky").Process(  # type: ignore[attr-defined]
+        self.process = get_context("loky").Process(  # type: ignore[attr-defined]
             target=_serve, args=(theirs,), daemon=True, env=dict(environment)
         )
         with theirs, _interrupts_blocked():
-            self._process.start()
+            self.process.start()
 
     def start(self, payload: bytes) -> None:
         """Send a packed task."""
@@ -55,24 +55,19 @@ class Worker:
         try:
             message = self.connection.recv_bytes()
         except (EOFError, OSError):
-            self._process.join()
-            code = self._process.exitcode
+            self.process.join()
+            code = self.process.exitcode
             cause = f"exit code {code}" if code >= 0 else signal.Signals(-code).name
             if cause == "SIGKILL":
                 cause += ", as when the system is out of memory"
             return True, PellicleError(f"its worker died: {cause}; the other runs go on")
         return message[:1] == _OUTCOME, pickle.loads(message[1:])
 
-    @property
-    def alive(self) -> bool:
-        """Whether the process can take a task."""
-        return bool(self._process.is_alive())
-
     def end(self) -> None:
         """Terminate the process and wait for its end."""
         self.connection.close()
-        self._process.terminate()
-        self._process.join()
+        self.process.terminate()
+        self.process.join()
 
 
 @contextmanager
@@ -175,7 +170,7 @@ class ProcessPool(Generic[AnyTask]):
                         "fewer points or fewer steps"
                     )
                 payload = pack(self._work, task)
-                while self._idle and not self._idle[-1].alive:
+                while self._idle and not self._idle[-1].process.is_alive():
                     self._idle.pop().end()
                 worker = self._idle.pop() if self._idle else Worker(self._environment)
             except Exception as error:

@@ -44,7 +44,7 @@ class Figures(Output):
     @property
     def suffixes(self) -> tuple[str, ...]:
         """Suffixes of the figures of a run and of a study."""
-        names = dict.fromkeys((*FIGURES, *STUDY_FIGURES))
+        names = *FIGURES, *STUDY_FIGURES
         return tuple(f"-{name}.{format_}" for name in names for format_ in self.formats)
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Chart | Fields]]:
