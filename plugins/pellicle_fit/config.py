@@ -22,7 +22,7 @@ from pydantic.fields import FieldInfo
 
 from pellicle import registry
 from pellicle.components import Component, Executor, FromRegistry, HasForceCurve, Indenter
-from pellicle.errors import ConfigError, PellicleError, all_problems, problems_within
+from pellicle.errors import ConfigError, PellicleError, all_problems, problems_within, shown
 from pellicle.schema import (
     FromFile,
     InputPath,
@@ -114,7 +114,10 @@ def _share(value: object) -> float:
     """Return a share; "5 %" is one of 0.05."""
     percent = isinstance(value, str) and value.endswith("%")
     number = Quantity("1", above=0)(str(value)[:-1] if percent else value)
-    return number / 100 if percent else number
+    if (share := number / 100 if percent else number) > 1:
+        text = f"{shown(value)} is a share of {100 * share:.6g} %, beyond 100 %"
+        raise ConfigError(f'{text}; 10 % is 0.1 or "10 %"')
+    return share
 
 
 def _recorded(path: Path) -> Any:

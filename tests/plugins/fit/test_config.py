@@ -161,6 +161,8 @@ def test_options_of_the_question(cli: Cli) -> None:
         ({"uncertainty": {"mass": 0.1}}, "Known: radius, sensitivity, spring_constant"),
         ({"uncertainty": {"radius": "3 N"}}, "uncertainty.radius: '3 N'"),
         ({"uncertainty": {"radius": "-3 %"}}, "uncertainty.radius"),
+        ({"uncertainty": {"radius": 10}}, "10 is a share of 1000 %, beyond 100 %; 10 % is 0.1 or"),
+        ({"uncertainty": {"radius": "200 %"}}, "share of 200 %, beyond 100 %; 10 % is 0.1"),
     ],
 )
 def test_bad_options(options: dict[str, Any], words: str) -> None:
