@@ -35,6 +35,8 @@ _PAIR = re.compile(
     r"([^\s\"';,]*)"
 )
 """Name, unit, value and, in place of the first, unit of a constant in a line above a table."""
+_AMOUNT = re.compile(r"([-+]?[\d.,]+(?:[eE][-+]?\d+)?)(\s*[^\d\s]*)")
+"""A number, and perhaps its unit."""
 _CONSTANTS = {
     **dict.fromkeys(("k", "springconstant", "cantileverspringconstant"), "spring_constant"),
     **dict.fromkeys(("sensitivity", "deflectionsensitivity", "invols"), "sensitivity"),
@@ -75,9 +77,41 @@ def read_list(path: Path, mapped: Mapping[str, str]) -> list[dict[str, str]]:
                 rows = [[" ".join(row)] for row in rows]
             place = names.index(FILE)
             if rows and all(len(r) >= len(heads) and not _is_number(r[place]) for r in rows):
-                cells = [zip(heads, map(str.strip, row), strict=False) for row in rows]
+                rows = [list(map(str.strip, row)) for row in rows]
+                if separator == ",":
+                    wide = [row for row in rows if any(map(_AMOUNT.fullmatch, row[len(heads) :]))]
+                    _check_width(wide, len(heads), path, of="cells")
+                else:
+                    _set_points(rows, [k for k in range(len(heads)) if k != place], heads, path)
+                cells = [zip(heads, row, strict=False) for row in rows]
                 return [{h.name.lower(): f"{c} {h.unit}".strip() for h, c in r if c} for r in cells]
     return []
+
+
+def _check_width(
+    wide: Sequence[Sequence[str]], named: int, path: Path, *, of: str, remedy: str = ""
+) -> None:
+    """Raise if there are rows of more numbers than ``named`` columns."""
+    for row in wide:
+        raise ConfigError(
+            f"{path}: has {len(row)} {of} below {named} names ({','.join(row)}), as where commas "
+            "are decimal and separate columns too; export it with semicolons, tabs or decimal "
+            f"points{remedy}"
+        )
+
+
+def _set_points(
+    rows: list[list[str]], places: Sequence[int], heads: Sequence[Column], path: Path
+) -> None:
+    """Replace decimal commas in some columns of a list of files, whose numbers may have units."""
+    amounts = {k: [_AMOUNT.fullmatch(row[k]) for row in rows] for k in places}
+    numbers = {k: [m[1] for m in of if m and _is_number(m[1])] for k, of in amounts.items()}
+    decimals = [number for of in numbers.values() for number in of if "." in number]
+    for k in places:
+        _check_commas(numbers[k], decimals, f"{path}: column {heads[k].name}")
+        for row, match in zip(rows, amounts[k], strict=True):
+            if match and _is_number(match[1]):
+                row[k] = match[1].replace(",", ".") + match[2]
 
 
 def _rows(lines: Sequence[str], data: Sequence[int], header: int) -> tuple[list[list[str]], str]:
@@ -208,14 +242,9 @@ def read_table(
     names = [head.name.lower() for head in heads]
     if not mapped and separator == "," and is_curve({*names}):
         named = sum(bool(head.text) for head in heads)
-        for row in rows:
-            if len(row) > named and all(map(_is_number, row)):
-                raise ConfigError(
-                    f"{path}: has {len(row)} numbers below {named} names ({','.join(row)}), "
-                    "as where commas are decimal and separate columns too; export it with "
-                    "semicolons, tabs or decimal points, or choose columns by their numbers "
-                    "(--columns on the command line)"
-                )
+        wide = [row for row in rows if len(row) > named and all(map(_is_number, row))]
+        remedy = ", or choose columns by their numbers (--columns on the command line)"
+        _check_width(wide, named, path, of="numbers", remedy=remedy)
     known = mapped or {name: name for name in names if name in NAMES}
     if is_export and not mapped:
         # The position of the tip is that of a height, and time, unlike seriesTime, begins anew.
@@ -246,17 +275,24 @@ def read_table(
 def _numbers(cells: list[str], decimals: list[str], separator: str, column: str) -> Array:
     """Return numbers; NaN where a cell holds none.
 
-    A comma in them is decimal, or refused, as beside ``decimals`` with a point in any column.
+    A comma in them is decimal, or refused, as where commas separate columns.
     """
+    _check_commas(cells, decimals, column, is_separator=separator == ",")
+    return np.array([float(c.replace(",", ".")) if _is_number(c) else np.nan for c in cells])
+
+
+def _check_commas(
+    cells: Sequence[str], decimals: Sequence[str], column: str, *, is_separator: bool = False
+) -> None:
+    """Raise if commas in cells may not be decimal: beside ``decimals`` with a point, say."""
     digits = [cell for cell in cells if _is_number(re.sub("[.,]", "", cell))]
     commas, beside = ([cell for cell in digits if mark in cell] for mark in ",.")
     if commas and all(map(_GROUPED.fullmatch, commas)):
         beside += filter(_WHOLE.fullmatch, digits)
     beside += (cell for cell in decimals if _is_number(cell.replace(".", "")))
-    if commas and (beside or separator == ","):
+    if commas and (beside or is_separator):
         raise ConfigError(
             f"{column} has {commas[0]!r} beside {[*beside, *digits][0]!r}, so its commas may be "
             "those of decimals or of thousands; export it without separators of thousands, and "
             "with decimals in all rows"
         )
-    return np.array([float(c.replace(",", ".")) if _is_number(c) else np.nan for c in cells])

@@ -91,6 +91,40 @@ def test_tables(tmp_path: Path, name: str) -> None:
     assert is_the_curve(curve)
 
 
+@pytest.mark.parametrize("mark", [";", "\t"])
+def test_decimal_commas_in_a_list_of_files(tmp_path: Path, mark: str) -> None:
+    """They are read as in tables of curves, with units in the header or in the cells."""
+    for name in "ab":
+        (tmp_path / f"{name}.csv").write_text(f"position [um],force [nN]\n{rows()}")
+    path = tmp_path / "list.csv"
+    lines = "file;radius [um];spring_constant;x;y;day\na.csv;2,5;0,05 N/m;1,0 um;0 m;1,2,3\n"
+    path.write_text(f"{lines}b.csv;10;50,5 mN/m;-2,5e-1 mm;0 m;Monday\n".replace(";", mark))
+    config = pl.FitConfig.merged(indenter="sphere", curves=path, group_by="day")
+    first, second = config.sources()
+    assert config.indenter_of(first) == pl.indenter("sphere", radius="2.5 um")
+    assert config.indenter_of(second) == pl.indenter("sphere", radius="10 um")
+    for source, stiffness, x in ((first, 0.05, 1e-6), (second, 0.0505, -2.5e-4)):
+        assert isinstance(source.curve, Measurement)
+        assert source.curve.stiffness == pytest.approx(stiffness)
+        assert source.curve.site == pytest.approx((x, 0))
+    assert [source.fields["day"] for source in (first, second)] == ["1,2,3", "Monday"]
+    path.write_text("file;radius [um]\na.csv;1,250\nb.csv;500\n".replace(";", mark))
+    with pytest.raises(pl.ConfigError, match="those of decimals or of thousands"):
+        next(config.sources())
+
+
+@pytest.mark.parametrize("row", ["a.csv,2,5", "a.csv,2,5,0.05 N/m", "a.csv,2,5,0,05"])
+def test_decimal_commas_between_commas_in_a_list_of_files(tmp_path: Path, row: str) -> None:
+    """They are refused: 2,5 was a radius of 2."""
+    (tmp_path / "a.csv").write_text(f"position [um],force [nN]\n{rows()}")
+    path = tmp_path / "list.csv"
+    path.write_text(f"file,radius [um]{',spring_constant' * (row.count(',') > 2)}\n{row}\n")
+    with pytest.raises(pl.ConfigError, match="as where commas are decimal and separate columns"):
+        pl.read_curves(path)
+    path.write_text("file,radius [um]\na.csv,2.5,a remark\n")
+    assert is_the_curve(*pl.read_curves(path).values())
+
+
 @pytest.mark.parametrize("mark", ["\t", ";", ","])
 @pytest.mark.parametrize("cell", ["1,000", "-1,234,567.5", "1,5"])
 def test_commas_beside_points_are_refused(tmp_path: Path, mark: str, cell: str) -> None:
