@@ -119,14 +119,23 @@ class Column(NamedTuple):
         """Return whether a user who writes ``name`` may mean this column."""
         return plain(name).lower() in (self.text.lower(), self.name.lower())
 
+    def contradicts(self, unit: str) -> bool:
+        """Return whether a unit is given that is not its own, if it has one."""
+        si = si_unit(self.unit)
+        factors = {si_unit(u) == si and Quantity(si)(f"1 {u}") for u in (unit, self.unit) if si}
+        return bool(unit) and len(factors) > 1
+
+    def takes(self, unit: str) -> bool:
+        """Return whether a text is a unit that a column of this name may have."""
+        si, name = si_unit(unit), self.name.lower()
+        return bool(si) and (name not in NAMES or si in UNITS.get(name, "m"))
+
     def unit_beside(self, given: str, path: Path) -> str:
         """Return a unit that is ``given`` for the column, or else its own.
 
         One that contradicts its own is a ConfigError.
         """
-        si = si_unit(self.unit)
-        factors = {si_unit(u) == si and Quantity(si)(f"1 {u}") for u in (given, self.unit) if si}
-        if given and len(factors) > 1:
+        if self.contradicts(given):
             raise ConfigError(
                 f"{path}: column {self.name!r} is in {self.unit} by its header, and {given} was "
                 "given for it; leave the unit out of columns, or correct the header"

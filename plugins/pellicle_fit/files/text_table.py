@@ -128,6 +128,37 @@ def _with_units(heads: Sequence[Column], units: Sequence[str]) -> list[Column]:
     return [h._replace(unit=h.unit or unit) for h, unit in zip(heads, units, strict=False)]
 
 
+def _agreed(
+    heads: Sequence[Column], words: Sequence[Column], path: Path, *, is_below: bool = False
+) -> list[Column]:
+    """Return columns with the units of another line, which may be a header or a row of units.
+
+    One that names another column, or another unit, is a ConfigError.  Some words of the line right
+    ``below`` the header may be no units.
+    """
+    names, others = ([column.name.lower() for column in of] for of in (heads, words))
+    is_header = names == others or (is_curve({*names}) and is_curve({*others}))
+    units = [word.unit or word.name for word in words]
+    text, same = ", ".join(word.text for word in words), len(names) == len(others)
+    if is_header:
+        pairs = zip(names, others, strict=True) if same else ()
+        swapped = any(a != b and {a, b} <= {*NAMES} for a, b in pairs)
+        if swapped or {*others} & {*NAMES} - {*names, "time"}:
+            raise ConfigError(f"{path}: has two headers, of which one is {text!r}; delete one")
+        by_name = {word.name.lower(): word.unit for word in words}
+        units = [w.unit for w in words] if same else [by_name.get(name, "") for name in names]
+    units = [u if h.takes(u) else "" for h, u in zip(heads, units, strict=False)]
+    if not (is_header or is_below or (same and all(units))):
+        return [*heads]
+    for head, unit in zip(heads, units, strict=False):
+        if head.contradicts(unit):
+            raise ConfigError(
+                f"{path}: column {head.name!r} is in {head.unit} by one line and in {unit} by "
+                f"another, {text!r}; delete the one that is wrong"
+            )
+    return _with_units(heads, units)
+
+
 def _constants(lines: Sequence[str], is_export: bool) -> dict[str, float]:
     """Return the constants that lines state with their units; JPK's export has them in SI."""
     found: dict[str, set[float]] = {}
@@ -186,7 +217,11 @@ def _heads(line: str) -> list[Column]:
         line = match[2]
     line = line.lstrip("".join(_COMMENT))
     separator = _separator(line)
-    cells = _WORD.findall(line) if separator == " " else _split([line], separator)[0]
+    return _named(_WORD.findall(line) if separator == " " else _split([line], separator)[0])
+
+
+def _named(cells: Sequence[str]) -> list[Column]:
+    """Return columns by the cells of a header."""
     heads = []
     for text in map(plain, cells):
         match = _HEAD.fullmatch(text)
@@ -228,9 +263,14 @@ def read_table(
     lines, data = _lines(path)
     header, heads = _header(lines, data, mapped)
     rows, separator = _rows(lines, data, header)
+    above = sorted({*range(data[-1])} - {n for n in data if n >= header})
+    stated = [lines[n] for n in above]
+    others = [_heads(lines[n]) for n in above if n != header and not _EXPORT.match(lines[n])]
+    others += [_named(row) for row in rows[1:] if not any(map(_is_number, row))]
     if rows and not any(map(_is_number, rows[0])):
-        heads = _with_units(heads, [plain(cell).strip("[]()") for cell in rows.pop(0)])
-    stated = [lines[n] for n in sorted({*range(data[-1])} - {n for n in data if n >= header})]
+        heads = _agreed(heads, _named(rows.pop(0)), path, is_below=True)
+    for words in others:
+        heads = _agreed(heads, words, path)
     exported: dict[str, list[str]] = {}
     for match in filter(None, map(_EXPORT.match, stated)):
         if exported.setdefault(match[1], cells := match[2].split()) != cells:

@@ -91,6 +91,57 @@ def test_tables(tmp_path: Path, name: str) -> None:
     assert is_the_curve(curve)
 
 
+UNITS = "position [um],force [nN]"
+TWO_LINES: dict[str, tuple[str, str | None]] = {
+    "units, then remarks": (f"position,force\num,nN\nbead 1,bead 1\n{rows()}", None),
+    "remarks, then units": (f"position,force\nbead 1,bead 1\num,nN\n{rows()}", None),
+    "remarks that may be units": (f"{UNITS}\nA,A\n{rows()}", None),
+    "a remark with a unit": (f"# force N\n{UNITS}\n{rows()}", None),
+    "units above names": (f"um,nN\nposition,force\n{rows()}", None),
+    "units in a comment": (f"# position force\n# um nN\n{rows(' ')}", None),
+    "units twice": (f"{UNITS}\nµm,nN\n{rows()}", None),
+    "a header twice": (f"position,force\n{UNITS}\n{rows()}", None),
+    "a header below": (f"{UNITS}\n{rows()}{UNITS}\n", None),
+    "names of the user": (f"Z,F\nremark,remark\num,nN\n{rows()}", "Z = position, F = force"),
+}
+
+
+@pytest.mark.parametrize("name", TWO_LINES)
+def test_two_lines_that_agree(tmp_path: Path, name: str) -> None:
+    """Units are read of whichever line states them."""
+    text, columns = TWO_LINES[name]
+    (tmp_path / "a.csv").write_text(text, encoding="utf-8")
+    curve = curves(tmp_path / "a.csv", columns)[""]
+    finite = np.isfinite(curve.force)
+    assert is_the_curve(Measurement(curve.position[finite], curve.force[finite]))
+
+
+@pytest.mark.parametrize(
+    ("text", "columns"),
+    [
+        ("position,force\num,nN\nnm,pN\n{}", None),
+        (f"{UNITS}\nnm,pN\n{{}}", None),
+        (f"{UNITS}\nnm,pN,remark\n{{}}", None),
+        (f"{UNITS}\nposition [nm],force [nN]\n{{}}", None),
+        (f"# position [um] force [pN]\n{UNITS}\n{{}}", None),
+        (f"# nm nN\n{UNITS}\n{{}}", None),
+        (f"{UNITS}\n{{}}position [nm],force [pN]\n{{}}", None),
+        (f"{UNITS},time [s]\n{{}}position [nm],force [nN]\n{{}}", None),
+        (f"height [um],force [nN]\n{UNITS}\n{{}}", None),
+        (f"{UNITS}\nforce [nN],position [um]\n{{}}", None),
+        (f"{UNITS},time [s]\nextension [um],force [nN]\n{{}}", None),
+        ("extension [um],deflection [nm]\num,V\n{}", None),
+        ("Z [um],F [nN]\nZ [nm],F [nN]\n{}", "Z = position, F = force"),
+        ("Z,F\num,nN\nnm,nN\n{}", "Z = position, F = force"),
+    ],
+)
+def test_two_lines_that_do_not_agree(tmp_path: Path, text: str, columns: str | None) -> None:
+    """They are refused, where the first won without a word."""
+    (tmp_path / "a.csv").write_text(text.format(*[rows()] * text.count("{}")), encoding="utf-8")
+    with pytest.raises(pl.ConfigError, match=r"has two headers|by one line and in .* by another"):
+        curves(tmp_path / "a.csv", columns)
+
+
 @pytest.mark.parametrize("mark", [";", "\t"])
 def test_decimal_commas_in_a_list_of_files(tmp_path: Path, mark: str) -> None:
     """They are read as in tables of curves, with units in the header or in the cells."""
