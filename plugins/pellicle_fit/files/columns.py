@@ -28,6 +28,9 @@ _SIGNALS = ("force", "deflection")
 """Names of columns of which one gives the force."""
 NAMES = (*_OF_TIP, *_OF_BASE, *_SIGNALS, "time")
 """Names of the columns that are read."""
+_CONSTANT = 0.01
+_FEWEST = 3
+"""Part by which columns, or spring constants, differ by rounding, and rows that may tell."""
 UNITS = {"force": "N", "deflection": "mVA", "time": "s"}
 """SI units, each a letter, of columns that are not lengths."""
 
@@ -180,7 +183,8 @@ def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
 
     Force is ``force``, or the spring constant times ``deflection``, which may be in volts or
     amperes if the sensitivity is known.  Position is ``position`` or ``depth``, or else that of the
-    cantilever's base, ``extension`` or minus ``height``, less the deflection.
+    cantilever's base, ``extension`` or minus ``height``, less the deflection.  The spring constant
+    of the curve is that of its columns, if they contradict the one of the calibration.
     """
     used = []
 
@@ -197,18 +201,25 @@ def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
     sizes = {column.name: column.values.size for column in columns.values()}
     if len({*sizes.values()}) > 1:
         raise ConfigError(f"columns differ in length ({sizes}); give a value for each row")
-    stiffness = calibration.spring_constant or np.nan
+    stiffness = calibration.spring_constant
     name = next(name for name in (*_OF_TIP, *_OF_BASE) if name in columns)
-    force = si("force") if "force" in columns else stiffness * si("deflection")
+    signal = si_unit(columns["deflection"].unit) if "deflection" in columns else ""
+    is_read = signal == "m" or (signal and calibration.sensitivity is not None)
+    deflection = si("deflection") if is_read else None
+    force = si("force") if "force" in columns else (stiffness or np.nan) * si("deflection")
     position = si(name)
+    if deflection is not None and "force" in columns:
+        own = _constant_of(force, deflection, name in _OF_BASE)
+        if own and stiffness and abs(own / stiffness - 1) > _CONSTANT:
+            stiffness = own
     if name in _OF_BASE:
-        deflection = si("deflection") if "deflection" in columns else force / stiffness
-        position = (position if name == "extension" else -position) - deflection
+        bend = force / (stiffness or np.nan) if deflection is None else deflection
+        position = (position if name == "extension" else -position) - bend
     return Measurement(
         position,
         force,
         name == "depth",
-        stiffness=calibration.spring_constant,
+        stiffness=stiffness,
         time=si("time") if "time" in columns else None,
         speed=calibration.speed,
         origin=Origin(
@@ -216,6 +227,28 @@ def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
             sensitivity=used[0] if used else None,
         ),
     )
+
+
+def _constant_of(force: Array, deflection: Array, is_subtracted: bool) -> float:
+    """Return the spring constant [N/m] that two columns hold, or 0 if they are no multiples.
+
+    A constant of either does not count.  If the deflection ``is_subtracted``, one that falls as the
+    force grows is a ConfigError.
+    """
+    rows = np.isfinite(force) & np.isfinite(deflection)
+    if np.sum(rows) < _FEWEST:
+        return 0.0
+    force, deflection = (values[rows] - np.mean(values[rows]) for values in (force, deflection))
+    constant = float(force @ deflection / (deflection @ deflection or np.nan))
+    if not np.std(force - constant * deflection) < _CONSTANT * np.std(force):
+        return 0.0
+    if constant < 0 and is_subtracted:
+        raise ConfigError(
+            "falls as the force grows; change the sign of one of the columns, or leave it out "
+            "and give spring_constant",
+            "deflection",
+        )
+    return float(f"{abs(constant):.4g}")
 
 
 def check_signal(sensitivity: float, unit: str) -> None:

@@ -7,7 +7,10 @@ from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
+import numpy as np
+
 from pellicle.errors import ConfigError, StorageError
+from pellicle.units import readable
 
 from . import afm
 from .columns import (
@@ -67,7 +70,15 @@ def read(path: Path, calibration: Calibration | None = None) -> Readers:
     def curve(label: str, columns: Columns) -> Measurement:
         if not wrong and not lacking(columns, known):
             own = known.model_copy(update={**stated, "sensitivity": known.sensitivity})
-            return recalibrated(from_columns(columns, own), calibration, is_own=bool(stated))
+            measured, given = from_columns(columns, own), calibration.spring_constant
+            if given is None and own.spring_constant and measured.stiffness != own.spring_constant:
+                first, other = own.spring_constant, measured.stiffness or np.nan
+                raise ConfigError(
+                    f"{path}: states {readable(first, 'N/m')}, and its force is "
+                    f"{readable(other, 'N/m')} times its deflection; give the one that holds",
+                    "spring_constant",
+                )
+            return recalibrated(measured, calibration, is_own=bool(stated))
         where = f"{path}: curve {label}" if label else str(path)
         raise missing_in(f"{where}:", heads, wrong, columns, known)
 

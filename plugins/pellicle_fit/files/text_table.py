@@ -159,12 +159,17 @@ def _agreed(
     return _with_units(heads, units)
 
 
+def _key(name: str) -> str:
+    """Return the letters of a name."""
+    return re.sub("[^a-z]", "", name.lower())
+
+
 def _constants(lines: Sequence[str], is_export: bool) -> dict[str, float]:
-    """Return the constants that lines state with their units; JPK's export has them in SI."""
+    """Return constants that lines state with their units; JPK's export has them in SI."""
     found: dict[str, set[float]] = {}
     for match in filter(None, (_PAIR.match(plain(text[:200]).lstrip('#%\\*" ')) for text in lines)):
         key, unit, number, other = match.groups(default="")
-        name, unit = _CONSTANTS.get(re.sub("[^a-z]", "", key.lower())), unit or other
+        name, unit = _CONSTANTS.get(_key(key)), unit or other
         with suppress(ValueError):
             number = number.replace(",", ".")
             value = float(number) if is_export and not unit else f"{number} {unit}"
@@ -254,8 +259,9 @@ def _is_number(cell: str) -> bool:
 def read_table(
     path: Path, mapped: Mapping[str, str]
 ) -> tuple[dict[str, Columns], list[Column], dict[str, float]]:
-    """Return columns of the curve of a table, all heads, and constants that the lines above state.
+    """Return columns of the curve of a table, all heads, and constants that it states.
 
+    These stand in lines above it, or are the same in all rows of a column.
     The columns are those with known names, or ``mapped`` ones, or those of JPK's text export.  A
     row of units may follow the header, and the columns of a table without one have numbers.  What
     is no text, or has a cell that is longer than any number, is a csv.Error.
@@ -279,6 +285,11 @@ def read_table(
     width = max(map(len, rows[:1]), default=0)
     heads += [Column("", str(index + 1), "") for index in range(len(heads), width)]
     rows = [row + [""] * (len(heads) - len(row)) for row in rows]
+    stated += [
+        f"{head.name} [{head.unit}] = {rows[0][place]}"
+        for place, head in enumerate(heads)
+        if _key(head.name) in _CONSTANTS and len({row[place] for row in rows}) == 1
+    ]
     names = [head.name.lower() for head in heads]
     if not mapped and separator == "," and is_curve({*names}):
         named = sum(bool(head.text) for head in heads)

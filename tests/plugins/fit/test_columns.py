@@ -278,6 +278,65 @@ def test_constants_above_a_table(tmp_path: Path, preamble: str) -> None:
         curves(path)
 
 
+LONG = np.linspace(0.0, 1.0, 40)
+
+
+def _both(place: str, deflection: str = "deflection [nm]", k: float = 0.05) -> str:
+    """Return a table with force and deflection, of a cantilever with an offset, of 1 N/m."""
+    force = 50 * LONG**1.5 - 3
+    bend = force / k * (0.01 if "[V]" in deflection else 1.0) + 7
+    moved = {"position": 1.0, "height": -1.0}[place] * LONG
+    moved = moved - (force / k * 1e-3 if place == "height" else 0.0)
+    rows = [f"{z:.6f},{f:.4f},{d:.4f}" for z, f, d in zip(moved, force, bend, strict=True)]
+    return "\n".join([f"{place} [um],force [nN],{deflection}", *rows])
+
+
+@pytest.mark.parametrize("place", ["position", "height"])
+@pytest.mark.parametrize(
+    ("deflection", "options"),
+    [("deflection [nm]", {}), ("deflection [V]", {"sensitivity": "100 nm/V"})],
+)
+def test_a_spring_constant_that_contradicts_columns(
+    tmp_path: Path, place: str, deflection: str, options: dict[str, str]
+) -> None:
+    """Force over deflection is the file's own; one that is given scales the force, and is told."""
+    path = tmp_path / "a.csv"
+    path.write_text(_both(place, deflection))
+    own = curves(path, **options)[""]
+    same = curves(path, spring_constant="0.05 N/m", **options)[""]
+    assert same.stiffness == 0.05
+    assert "scaled" not in str(same.messages)
+    changed = curves(path, spring_constant="0.1 N/m", **options)[""]
+    np.testing.assert_allclose(changed.force, 2 * own.force)
+    np.testing.assert_allclose(changed.position, own.position)
+    assert changed.stiffness == 0.1
+    assert "in place of the file's 50 mN/m: the force is scaled by 2" in str(changed.messages)
+    path.write_text(f"# spring constant: 0.06 N/m\n{_both(place, deflection)}")
+    with pytest.raises(pl.ConfigError, match="states 60 mN/m, and its force is 50 mN/m times"):
+        curves(path, **options)
+    chosen = curves(path, spring_constant="0.05 N/m", **options)[""]
+    np.testing.assert_allclose(chosen.force, own.force)
+
+
+def test_a_deflection_of_the_other_sign(tmp_path: Path) -> None:
+    """It would be added where it has to be subtracted."""
+    (tmp_path / "a.csv").write_text(_both("height", k=-0.05))
+    with pytest.raises(pl.ConfigError, match="deflection: falls as the force grows"):
+        curves(tmp_path / "a.csv")
+
+
+def test_a_spring_constant_in_a_column(tmp_path: Path) -> None:
+    """It is that of the file if all rows have it."""
+    path = tmp_path / "a.csv"
+    lines = [f"{z + 20e-3 * f},{20 * f},0.05" for z, f in zip(Z, F, strict=True)]
+    path.write_text("extension [um],deflection [nm],k [N/m]\n" + "\n".join(lines))
+    assert is_the_curve(curves(path)[""])
+    assert "scaled by 2" in str(curves(path, spring_constant="0.1 N/m")[""].messages)
+    path.write_text("extension [um],deflection [nm],k [N/m]\n" + "\n".join(lines) + "1")
+    with pytest.raises(pl.ConfigError, match="missing: spring_constant"):
+        curves(path)
+
+
 def test_a_unit_that_contradicts_the_header(tmp_path: Path) -> None:
     """It is refused, in tables and in trees; one that is the same, or left out, is not."""
     path = tmp_path / "a.csv"
