@@ -90,7 +90,7 @@ def fit(
     from pellicle_fit.print_fits import print_fit, print_fits
     from pellicle_fit.report.figures import save_figure
     from pellicle_fit.report.page import save_report
-    from pellicle_fit.stored import exit_by_fits
+    from pellicle_fit.stored import StoredFit, exit_by_fits
 
     curves = [*(files or ())]
     is_first = bool(curves) and curves[0].suffix.lower() in (".toml", ".json")
@@ -128,6 +128,8 @@ def fit(
         print_fit(result, quiet=quiet, details=details, si=si)
     if directory is not None and not isinstance(result, ManyFits):
         written.append(write_json(result.to_dict(), directory / f"{name}.json"))
+        if len(result.members) == 1:
+            written.append(StoredFit.write(result, directory / f"{name}.h5"))
         written += save_figure(result, directory / name, kinds)
     if report:
         written.append(save_report(result, (directory or Path()) / f"{name}.html", title))
@@ -141,7 +143,7 @@ def fit(
 @pl.hookimpl
 def register_commands(register: pl.RegisterCommand) -> None:
     """Register the command."""
-    written = "pellicle_fit.stored:StoredFits"
+    written = "pellicle_fit.stored:stored"
     register(fit, file="pellicle_fit.config:FitConfig", written=written)
 
 

@@ -1,20 +1,72 @@
-"""Fits of many curves as ``pellicle fit`` left them in a folder, to be shown and drawn again."""
+"""Fits of one curve and of many as ``pellicle fit`` left them, to be shown and drawn again."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from json import loads
 from pathlib import Path
 
+import h5py
 import typer
+import xarray as xr
 
+from pellicle import results
 from pellicle.cli import NOT_CONVERGED, echo, print_json
+from pellicle.errors import StorageError
 
+from .config import FitConfig
 from .population.fits import ManyFits
 from .population.images import force_maps
 from .population.row import Row
 from .print_fits import print_fits
+from .problem import problem
+from .report.figures import save_figure
 from .report.population import save_population
+from .result import Fit
 from .sealed import read_sealed
+from .words.story import told
+
+
+def stored(file: Path) -> StoredFit | StoredFits:
+    """Return what shows a file that ``pellicle fit`` wrote of one curve or of many."""
+    with h5py.File(file) as content:
+        attributes = dict(content.attrs)
+    return StoredFit(file.stem, attributes) if "fit" in attributes else StoredFits(file)
+
+
+class StoredFit:
+    """The fit of one curve: a file with its JSON, and what was printed of it."""
+
+    @staticmethod
+    def write(fit: Fit, path: Path) -> Path:
+        """Write the file of a fit, and return its path."""
+        texts = {f"told{'_si' * si}": "\n".join(told(fit, si=si)) for si in (False, True)}
+        record = {"configuration": fit.config.to_json(), "versions": str(fit.record["versions"])}
+        results.write(
+            xr.Dataset(attrs={**record, **texts, "command": "fit", "fit": fit.to_json()}), path
+        )
+        return path
+
+    def __init__(self, name: str, attributes: Mapping[str, str]) -> None:
+        self.name, self.attributes, self.fit = name, attributes, loads(attributes["fit"])
+
+    def show(self, *, si: bool, json: bool) -> None:
+        """Print numbers, verdict and next step, then warnings."""
+        if json:
+            print_json(self.fit)
+            return
+        echo(self.attributes["told_si" if si else "told"])
+        for text in self.fit["messages"]:
+            if text not in self.fit["notes"]:
+                echo(f"warning: {text}", err=True)
+
+    def plot(self, directory: Path, formats: Sequence[str]) -> Iterable[Path]:
+        """Fit the curve again, whose file must not have changed, and write the figure."""
+        config = FitConfig(**self.fit["configuration"])
+        again, was = problem(config, [*config.sources()]).fit(), self.fit["curves"][0]
+        if again.members[0].data["sha256"] != was["data"]["sha256"]:
+            raise StorageError(f"{was['name']}: has changed since it was fitted; fit it again")
+        return save_figure(again, directory / self.name, formats)
 
 
 class StoredFits:

@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from click.testing import Result
 from matplotlib import pyplot
+from typer.testing import CliRunner, Result
 
 import pellicle as pl
+from pellicle.cli.app import app
 from tests.pictures import drawn_width
 
 Cli = Callable[..., Result]
@@ -200,3 +201,27 @@ def test_read_curves_and_draw_them(tmp_path: Path) -> None:
     pyplot.close("all")
     with pytest.raises(pl.ConfigError, match="missing: one column 'Z'"):
         pl.read_curves(tmp_path / "b.csv", **reading)
+
+
+@pytest.mark.usefixtures("no_rivals")
+def test_the_folder_of_one_fit_is_shown_and_drawn(cli: Cli) -> None:
+    """It shows what was printed; a curve that has changed is not drawn as if it had not."""
+    measure(FILE)
+    printed = cli(str(FILE), *OPTIONS, "-o", "out")
+    told, _, files = printed.stdout.partition("wrote ")
+    assert "out/Bead 1 µ-fit.h5" in files
+
+    def call(*arguments: str, code: int = 0) -> Result:
+        result = CliRunner().invoke(app, [*arguments])
+        assert result.exit_code == code, result.output
+        return result
+
+    assert call("show", "out").stdout == told
+    assert " Pa (" in call("show", "out", "--si").stdout
+    content = Path("out/Bead 1 µ-fit.json").read_text(encoding="ascii")
+    assert call("show", "out", "--json").stdout == content
+    call("plot", "out", "-o", "again", "--format", "svg")
+    assert Path("again/Bead 1 µ-fit.svg").is_file()
+    with FILE.open("a") as file:
+        file.write("9,9\n")
+    assert "has changed since it was fitted" in call("plot", "out", code=2).stderr
