@@ -50,14 +50,15 @@ def _lines(path: Path) -> list[str]:
 
 def require(needed: float, grid: Grid, steps: int) -> None:
     """Refuse a run that needs more memory [bytes] than is available."""
+    subject = "{} × {}".format(*grid.points) + f" with {steps} step{'s' * (steps > 1)}"
+    require_for(needed, subject, "use fewer points or fewer steps", "grid.points")
+
+
+def require_for(needed: float, subject: str, remedy: str, field: str = "") -> None:
+    """Refuse what needs more memory [bytes] than is available."""
     limit = available()
     if limit is not None and needed > limit:
-        nx, ny = grid.points
-        raise ConfigError(
-            f"{nx} × {ny} with {steps} step{'s' * (steps > 1)} needs about "
-            f"{shortage(needed, limit)}; use fewer points or fewer steps",
-            "grid.points",
-        )
+        raise ConfigError(f"{subject} needs about {shortage(needed, limit)}; {remedy}", field)
 
 
 def shortage(needed: float, limit: float) -> str:

@@ -47,7 +47,7 @@ _NT_MDT = (
 def is_instrument(path: Path) -> bool:
     """Return whether a file is known to be an instrument's, from its suffix or from its content."""
     suffix = path.suffix.lower()
-    with suppress(OSError):
+    with suppress(OSError, RuntimeError):
         if suffix in _HDF5:
             return bool(_exports(path))
         if suffix in _MARKS:
@@ -74,9 +74,9 @@ def read_instrument(path: Path, calibration: Calibration) -> Readers:
         recordings = _calibrated(path, calibration, is_nt_mdt)
         if not recordings:
             raise ValueError("no curve")
+        numbers = [str(recording["metadata"]["enum"]) for recording in recordings]
     readers: dict[str, partial[Measurement]] = {}
     # HDF5 lists curve 10 before curve 2, and the curves of an archive may share a number.
-    numbers = [str(recording["metadata"]["enum"]) for recording in recordings]
     pairs = zip(numbers, recordings, strict=True)
     for number, recording in sorted(pairs, key=lambda pair: (len(pair[0]), pair[0])):
         others = (f"{number} ({copy})" for copy in count(2))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import os
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -10,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from pellicle.errors import ConfigError, StorageError
+from pellicle.files import is_file, is_folder
 from pellicle.units import readable
 
 from . import afm
@@ -43,6 +45,8 @@ def read(path: Path, calibration: Calibration | None = None) -> Readers:
     """
     calibration = calibration or Calibration()
     suffix, mapped = path.suffix.lower(), calibration.columns or {}
+    if os.path.exists(path) and not (is_file(path) or is_folder(path)):
+        raise StorageError(f"{path}: is a pipe or a device; give a file")
     if suffix not in TEXT and not mapped and afm.is_instrument(path):
         return afm.read_instrument(path, calibration)
     # The columns of a table can be named though it is an instrument's.

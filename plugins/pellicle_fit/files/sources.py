@@ -5,16 +5,17 @@ from __future__ import annotations
 import hashlib
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from glob import glob, has_magic
+from os.path import exists
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from numpy.typing import ArrayLike
 
 from pellicle.errors import ConfigError, PellicleError, all_problems
+from pellicle.files import is_file, is_folder
 from pellicle.units import Quantity
 
 from .columns import Calibration
@@ -118,7 +119,7 @@ def _listed(
 def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
     """Return the files that match a pattern such as ``"beads/*.csv"``; any other path as it is."""
     path = Path(folder, pattern)
-    if path.exists() or not has_magic(str(pattern)):
+    if exists(path) or not has_magic(str(pattern)):
         return [path]
     files = glob(str(pattern), root_dir=folder or None, recursive=True)
     if not files:
@@ -132,19 +133,16 @@ def _files(path: Path, mapped: Mapping[str, str]) -> list[tuple[Path, dict[str, 
     A list is a table with a header such as ``file,radius [um]``, one of whose files exists, or all
     of whose files have the suffix of a curve; its empty cells are left out.
     """
-    if path.is_dir():
+    if is_folder(path):
         files = [file for file in sorted(path.glob("[!.]*")) if file.suffix.lower() in SUFFIXES]
         if not files:
             raise ConfigError(f"{path}: holds no file of a known kind ({', '.join(SUFFIXES)})")
         return [(file, {}, file) for file in files]
-    is_table = path.suffix.lower() in TEXT and path.is_file()
+    is_table = path.suffix.lower() in TEXT and is_file(path)
     rows = read_list(path, mapped) if is_table else []
     files = [path.parent / name for row in rows if (name := row.pop(FILE, ""))]
     is_list = bool(files) and all(file.suffix.lower() in SUFFIXES for file in files)
-    # What is no name may be too long for one.
-    with suppress(OSError, ValueError):
-        is_list = is_list or any(file.is_file() for file in files)
-    if not is_list:
+    if not is_list and not any(map(is_file, files)):
         return [(path, {}, path)]
     if len(files) < len(rows):
         raise ConfigError(f"{path}: has a row without a file; name one in each row")

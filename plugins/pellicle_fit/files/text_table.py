@@ -6,6 +6,7 @@ import csv
 import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError, StorageError
 from pellicle.files import read_text
+from pellicle.memory import require_for
 
 from .columns import EXAMPLE, NAMES, Calibration, Column, Columns, is_curve, plain, si_unit
 from .missing import UNKNOWN, guessed
@@ -25,6 +27,8 @@ _WORD = re.compile(r"[^\s\[(]+(?:\s?[\[(][^\])]*[\])])?")
 _WHOLE = re.compile(r"[-+]?[1-9]\d{0,2}")
 _GROUPED = re.compile(rf"{_WHOLE.pattern}(?:,\d{{3}})+")
 """A number whose thousands may be separated by commas."""
+_PER_BYTE, _PER_CELL = 3.0, 300.0
+"""Memory [bytes] that a text takes for each of its bytes, and at most for each cell."""
 _COMMENT = ("#", "%")
 _PREAMBLE = 200
 """Lines in which a header is sought."""
@@ -46,12 +50,16 @@ _CONSTANTS = {
 
 def _lines(path: Path) -> tuple[list[str], list[int]]:
     """Return the lines of a text, and the numbers of those without comments."""
+    wanted = f"{path} as a text", "export a part of it"
+    with suppress(OSError):
+        require_for(_PER_BYTE * path.stat().st_size, *wanted)
     try:
         text = read_text(path)
     except OSError as error:
         raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
     except ValueError as error:
         raise csv.Error from error
+    require_for(_PER_CELL * sum(map(text.count, ",;\t \n")), *wanted)
     lines = [line for line in text.splitlines() if line.strip()]
     data = [number for number, line in enumerate(lines) if not line.startswith(_COMMENT)]
     if not data:
@@ -271,11 +279,11 @@ def read_table(
     rows, separator = _rows(lines, data, header)
     above = sorted({*range(data[-1])} - {n for n in data if n >= header})
     stated = [lines[n] for n in above]
-    others = [_heads(lines[n]) for n in above if n != header and not _EXPORT.match(lines[n])]
-    others += [_named(row) for row in rows[1:] if not any(map(_is_number, row))]
+    others = (_heads(lines[n]) for n in above if n != header and not _EXPORT.match(lines[n]))
+    below = (_named(row) for row in rows if not any(map(_is_number, row)))
     if rows and not any(map(_is_number, rows[0])):
         heads = _agreed(heads, _named(rows.pop(0)), path, is_below=True)
-    for words in others:
+    for words in chain(others, below):
         heads = _agreed(heads, words, path)
     exported: dict[str, list[str]] = {}
     for match in filter(None, map(_EXPORT.match, stated)):

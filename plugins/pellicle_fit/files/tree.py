@@ -13,10 +13,14 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError, StorageError
-from pellicle.schema import read_mat
+from pellicle.memory import require_for
+from pellicle.schema import read_mat, unpacked_size
 
 from .columns import NAMES, Column, Columns
 from .missing import SHOWN
+
+_BYTES_PER_ROW = 100
+"""Memory that a row takes until it is fitted."""
 
 
 def read_tree(
@@ -31,6 +35,8 @@ def read_tree(
 
     is_matlab = path.suffix.lower() == ".mat"
     try:
+        if is_matlab:
+            _require(unpacked_size(path), path)
         with nullcontext(read_mat(path)) if is_matlab else h5py.File(path) as root:
             arrays = dict(_arrays(root if is_matlab else root["/"]))
             heads = [Column(name, name, _unit(arrays[name])) for name in islice(arrays, SHOWN + 1)]
@@ -55,10 +61,16 @@ def _arrays(node: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
             if isinstance(child, Mapping):
                 if getattr(child, "id", id(child)) not in entered:
                     yield from walk(child, f"{folder}{name}/")
-            elif getattr(getattr(child, "dtype", None), "kind", "") in ("f", "i", "u"):
+            # A type with a name has a dtype, too.
+            elif hasattr(child, "ndim") and getattr(child, "dtype", np.dtype("O")).kind in "fiu":
                 yield f"{folder}{name}", child
 
     return walk(node, "")
+
+
+def _require(needed: float, path: Path) -> None:
+    """Refuse a file whose arrays need more memory [bytes] than is available."""
+    require_for(needed, f"{path} with all that it unpacks to", "export a part of it")
 
 
 def _unit(array: Any) -> str:
@@ -76,6 +88,7 @@ def _curves(
     """
     own = {name: name for name in NAMES if name in arrays and arrays[name].ndim == 1}
     channels: dict[str, dict[str, Column]] = {}
+    total = 0
     for pattern, text in (mapped or own or {f"*/{name}": name for name in NAMES}).items():
         role, _, unit = text.partition(" ")
         labelled = channels.setdefault(role, {})
@@ -87,6 +100,8 @@ def _curves(
             match = named.fullmatch(name)
             if match is None or not (mapped or array.ndim == 1):
                 continue
+            total += array.size
+            _require(8.0 * total + _BYTES_PER_ROW * max(array.shape, default=1), file)
             values: Array = np.asarray(array, dtype=float)
             rows = {"": values.ravel()}
             if values.squeeze().ndim > 1:

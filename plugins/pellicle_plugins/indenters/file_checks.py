@@ -26,10 +26,7 @@ def require_file(path: Path) -> None:
 
 def require_memory(needed: float, subject: str) -> None:
     """Check that the available memory [bytes] suffices to read what a file holds."""
-    available = memory.available()
-    if available is not None and needed > available:
-        shortage = memory.shortage(needed, available)
-        raise ConfigError(f"{subject} needs about {shortage}; export a part of it", "path")
+    memory.require_for(needed, subject, "export a part of it", "path")
 
 
 def require_unpacked(path: Path) -> None:

@@ -28,7 +28,7 @@ from pellicle.variables import words_of_name
 
 MOST_LEGS = 4
 """Largest number of legs of a path in time that are told apart."""
-_PLACEHOLDER = re.compile(r"\{([^{}:]+)(?::(\.\d+[fg]))?\}")
+_PLACEHOLDER = re.compile(r"\{([^{}:]+)(?::(\.\d{1,2}[fg]))?\}")
 
 
 Texts = Annotated[
