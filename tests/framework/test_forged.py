@@ -56,6 +56,7 @@ def configured(**changed: Any) -> Any:
 
 BOTH = {
     "configuration no JSON": attribute("configuration", "{"),
+    "configuration deep": attribute("configuration", "[" * 100_000 + "]" * 100_000),
     "configuration a list": attribute("configuration", "[]"),
     "configuration a number": attribute("configuration", 7),
     "no grid": configured(grid=None),

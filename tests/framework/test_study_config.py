@@ -218,3 +218,23 @@ def test_identity_of_equal_runs() -> None:
     }
     del other["solver"]
     assert pl.Run(**other).identity == run.identity == pl.Run.from_json(run.to_json()).identity
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"vary": {"kernel" + ".substrate" * 20_000: [1, 2]}}, "leads through 20000 tables; give"),
+        ({"vary": {f"kernel.k{n}": [1] for n in range(100_000)}}, "vary: has 100000 entries; giv"),
+        ({"vary": {f"kernel.k{n}": list(range(99)) for n in range(900)}}, "more than 10¹⁸ runs"),
+        (
+            {"vary": {TENSION: [1, 2]}, "derived": {f"d{n}": "force" for n in range(100_000)}},
+            "derived: has 100000 entries; give 1000 at most",
+        ),
+        ({"run": RUN | {"title": "t" * 2000}, "vary": {TENSION: [1, 2]}}, "title: 'ttt"),
+    ],
+)
+def test_studies_without_end_are_refused(changed: dict[str, Any], words: str) -> None:
+    """What would take hours is refused in a short message."""
+    with pytest.raises(pl.ConfigError, match=words) as refused:
+        Study(**{"run": RUN, **changed})
+    assert len(str(refused.value)) < 300

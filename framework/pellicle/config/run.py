@@ -58,7 +58,7 @@ _TENSED_CELLS = 3.0
 class Run(FromFile):
     """One contact problem with its load steps."""
 
-    title: str = Field("", description="a line for figures and listings")
+    title: str = Field("", max_length=1000, description="a line for figures and listings")
     grid: Grid = Field(description="the domain and its cells")
     kernel: Annotated[Kernel, FromRegistry()] = Field(description="how the surface yields")
     indenter: Annotated[Indenter, FromRegistry()] = Field(description="what is pressed in")

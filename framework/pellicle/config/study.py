@@ -29,6 +29,8 @@ from .run import Run
 DEFAULT_EXECUTOR = "serial"
 _MOST = 100_000
 """Largest number of runs, which are all created before the first is solved."""
+_MOST_NAMES = 1000
+"""Largest number of parameters that vary, and of derived columns."""
 
 
 class Point(NamedTuple):
@@ -216,6 +218,13 @@ class Study(FromFile):
     def _check_axes(self) -> None:
         if not self._parameters:
             raise ConfigError("varies nothing; give at least one axis", "vary")
+        for name, of in (("vary", self._parameters), ("derived", self.derived)):
+            if len(of) > _MOST_NAMES:
+                raise ConfigError(f"has {len(of)} entries; give {_MOST_NAMES} at most", name)
+        for parameter in self._parameters:
+            with problems_within("vary"):
+                # Raises for one that is too long, which the message of a run would begin with.
+                replaced({}, parameter, None)
         for first, other in itertools.combinations(self._parameters, 2):
             if first == other or first.startswith(f"{other}.") or other.startswith(f"{first}."):
                 short, long = sorted((first, other), key=len)
@@ -224,7 +233,9 @@ class Study(FromFile):
                     f"vary.{long}",
                 )
         if (count := math.prod(self.shape)) > _MOST:
-            raise ConfigError(f"gives {count} runs; give values for {_MOST} at most", "vary")
+            # Python does not write whole numbers of more than 4300 digits.
+            text = count if count < 10**18 else "more than 10¹⁸"
+            raise ConfigError(f"gives {text} runs; give values for {_MOST} at most", "vary")
 
     def _check_derived(self) -> None:
         """Refuse expressions with names that the table will not have, before any run is solved."""

@@ -65,29 +65,32 @@ def derive(table: Dataset, expressions: Mapping[str, str], units: Mapping[str, s
     Its unit follows from those of its variables and of the fields of the configuration, which
     ``units`` has by dotted path; it has none where they do not agree.
     """
+    per_run = {
+        str(name)
+        for name, variable in table.data_vars.items()
+        if "step" not in variable.dims and variable.dtype.kind == "f"
+    }
+    known, columns = names(table), dict[str, DataArray]()
+    all_units = {**units, **{str(n): v.attrs.get("units", "1") for n, v in table.variables.items()}}
     for name, text in expressions.items():
-        per_run = {
-            str(name)
-            for name, variable in table.data_vars.items()
-            if "step" not in variable.dims and variable.dtype.kind == "f"
-        }
         like = table["converged"]
         if names_in(text) & per_run:
             like = like.isel(step=0, drop=True)
-        table = table.assign({name: 0.0 * like + evaluate(text, names(table))})
-        table[name].attrs = {"long_name": text, "units": _unit_of(text, table, units)}
-    return table
+        known[name] = columns[name] = column = 0.0 * like + evaluate(text, known)
+        if "step" not in column.dims:
+            per_run.add(name)
+        all_units[name] = _unit_of(text, all_units)
+        column.attrs = {"long_name": text, "units": all_units[name]}
+    return table.assign(columns)
 
 
-def _unit_of(text: str, table: Dataset, units: Mapping[str, str]) -> str:
-    """Return the SI unit of an expression over a table; ``"1"`` also where there is none."""
-    of_table = {str(name): v.attrs.get("units", "1") for name, v in table.variables.items()}
-    all_units = {**units, **of_table}
+def _unit_of(text: str, units: Mapping[str, str]) -> str:
+    """Return the SI unit of an expression over names with units; ``"1"`` where there is none."""
     quantities = {}
     try:
         for name in names_in(text):
             # An exponent that varies, so that a power has no unit, is NaN here.
-            quantities[name] = math.nan * one(all_units.get(name, "1"))
+            quantities[name] = math.nan * one(units.get(name, "1"))
         return si_unit(evaluate(text, quantities))
     except (ConfigError, ValueError):
         # Units that differ, or that of a stranger's variable that pint does not know.

@@ -28,7 +28,10 @@ def sound(path: Path) -> Iterator[None]:
     """Raise a `StorageError` if what is read in the block has another type or form."""
     try:
         yield
-    except (*(TypeError, ValueError, LookupError, AttributeError, ArithmeticError), ConfigError):
+    except (
+        *(TypeError, ValueError, LookupError, AttributeError, ArithmeticError),
+        *(RecursionError, ConfigError),
+    ):
         raise StorageError(
             f"{path}: its numbers, texts or configuration are not those of a result, so it is "
             "damaged; run it again"

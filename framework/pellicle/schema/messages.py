@@ -109,6 +109,7 @@ _WANTED = {
     "less_than_equal": "a value ≤ {le}",
     "too_short": "a list of {min_length} or more",
     "too_long": "a list of {max_length} or fewer",
+    "string_too_long": "a text of {max_length} letters or fewer",
 }
 """Allowed values, by the type of pydantic's error."""
 

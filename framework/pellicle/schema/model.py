@@ -15,6 +15,9 @@ from pellicle.errors import ConfigError, shown
 
 from .messages import problems
 
+_DEEPEST = 100
+"""Most tables through which a path leads."""
+
 
 class Model(BaseModel):
     """A frozen model that refuses unknown fields with a `ConfigError` naming field and remedy."""
@@ -102,8 +105,10 @@ def replaced(data: Any, path: str, value: object) -> Any:
     Raises
     ------
     ConfigError
-        The path leads into a value that is not a table, or beyond the end of a list.
+        The path leads into a value that is not a table, beyond the end of a list, or too deep.
     """
+    if (depth := path.count(".")) > _DEEPEST:
+        raise ConfigError(f"{shown(path)} leads through {depth} tables; give {_DEEPEST} at most")
     return _replaced(data, path.split("."), value, "")
 
 

@@ -9,7 +9,7 @@ import xarray as xr
 from pellicle.components import Axis
 from pellicle.config.coordinates import Coordinate, tell_apart
 from pellicle.results.wording import column_of
-from pellicle_plugins.outputs.base import axis_of
+from pellicle_plugins.outputs.base import axis_of, label
 
 
 def coordinate(values: list[float], unit: str, name: str = "odd.thing") -> xr.DataArray:
@@ -72,3 +72,10 @@ def test_the_label_of_an_expression_has_no_wrong_unit() -> None:
     assert axis_of("force", None, table) == Axis("force", "N")
     assert axis_of("force / 3", None, table) == Axis("force / 3", as_given=True)
     assert axis_of("force", "pull [N]", table) == Axis("pull [N]", as_given=True)
+
+
+def test_a_label_has_no_endless_number() -> None:
+    """More than 99 digits are no format of a number."""
+    data = xr.Dataset({"force": ((), 0.5)}, attrs={"configuration": "{}"})
+    assert label("{force:.2f} N", data, (), data).words == "0.50 N"
+    assert label("{force:.999f} N", data, (), data).words == "{force:.999f} N"
