@@ -24,7 +24,7 @@ import argparse
 import re
 import subprocess
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property, partial
 from importlib.metadata import version
@@ -143,19 +143,19 @@ def contact_mechanics(case: Case, tolerance: float) -> Answer:
     return outcome.jac / substrate.area_per_pt, outcome.nit, outcome.nfev
 
 
-def aspher(case: Case, tolerance: float, **options: bool) -> Answer:
+def aspher(options: Sequence[str], case: Case, tolerance: float) -> Answer:
     """Solve on nested grids, operator and preconditioner by FFT: the quickest of its own here."""
     import aspher as peer
 
     if case.skin_length:
         raise UnsolvedError("has no tension")
     backend = "fft" if case.boundary == "free" else "periodic"
-    if options.get("active_set"):
+    if "active_set" in options:
         if backend == "periodic":
             raise UnsolvedError("has active_set on free boundaries only")
         backend = "h2"  # the only operator of active_set
     nesting = {"backend": backend, "coarsest": 32, "precond_engine": "fft", "tol": tolerance}
-    nesting |= options
+    nesting |= dict.fromkeys(options, True)
     gap, load = -case.problem.profile.ravel(), case.problem.value
     outcome = peer.solve_nested(case.points, gap, load, **nesting)
     if not outcome.converged:
@@ -168,7 +168,7 @@ def tensed(compliance: Any, skin_length: float) -> Any:
     return compliance**2 / (compliance + 2 * skin_length + (compliance == 0))
 
 
-OPTIONS = ["active_set"], ["single_precision"], ["active_set", "single_precision"]
+OPTIONS = [], ["active_set"], ["single_precision"], ["active_set", "single_precision"]
 EIGEN = "apt-get install -y g++ libeigen3-dev && "
 PEERS = {
     "tamaas": Code("tamaas", tamaas, 1.5e-5, "tamaas==2.9.0"),
@@ -178,10 +178,10 @@ PEERS = {
     **{
         " ".join(["ASPHER", *options]): Code(
             "aspher",
-            partial(aspher, **dict.fromkeys(options, True)),
+            partial(aspher, options),
             *(1.6e-5, "ASPHER==0.1.3.post1", True, EIGEN),
         )
-        for options in ([], *OPTIONS)
+        for options in OPTIONS
     },
 }
 
