@@ -168,7 +168,12 @@ def tensed(compliance: Any, skin_length: float) -> Any:
     return compliance**2 / (compliance + 2 * skin_length + (compliance == 0))
 
 
-OPTIONS = [], ["active_set"], ["single_precision"], ["active_set", "single_precision"]
+OPTIONS: tuple[list[str], ...] = (
+    [],
+    ["active_set"],
+    ["single_precision"],
+    ["active_set", "single_precision"],
+)
 EIGEN = "apt-get install -y g++ libeigen3-dev && "
 PEERS = {
     "tamaas": Code("tamaas", tamaas, 1.5e-5, "tamaas==2.9.0"),
