@@ -118,7 +118,9 @@ def guessed(heads: Sequence[Column], known: Columns) -> dict[str, Column]:
     role, place = found.setdefault("place", ("height", Column("", UNKNOWN, "")))
     if role == "height" and role not in known and place.name != UNKNOWN:
         # Most heights fall as the tip goes down, and most others grow; which it is shows in a fit.
-        if signal == "force" and not _OF_BASE.search(place.name.lower()):
+        # Beside a deflection, in whatever unit, the place is that of the base.
+        is_bent = any(re.search(_ROLES["deflection"], head.name.lower()) for head in heads)
+        if signal == "force" and not is_bent and not _OF_BASE.search(place.name.lower()):
             found["place"] = "position", place
         elif "height" not in place.name.lower():
             found["place"] = "extension", place

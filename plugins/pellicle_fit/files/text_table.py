@@ -261,7 +261,8 @@ def _is_number(cell: str) -> bool:
         float(cell.replace(",", ".", 1))
     except ValueError:
         return False
-    return True
+    # Python takes 1_0 for 10.
+    return "_" not in cell
 
 
 def read_table(

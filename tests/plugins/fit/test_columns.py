@@ -415,11 +415,11 @@ def test_one_message_for_each_kind_of_header(tmp_path: Path) -> None:
 
 def test_a_depth_and_a_cell_without_a_number(tmp_path: Path) -> None:
     """Between semicolons a comma is decimal, and what is empty is no number."""
-    (tmp_path / "a.csv").write_text("depth [nm];force [nN]\n1,5;2,25\n2,5;\n")
+    (tmp_path / "a.csv").write_text("depth [nm];force [nN]\n1,5;2,25\n2,5;\n3,5;1_0\n")
     curve = curves(tmp_path / "a.csv")[""]
     assert curve.is_depth
-    assert curve.position == pytest.approx([1.5e-9, 2.5e-9])
-    assert curve.force == pytest.approx([2.25e-9, np.nan], nan_ok=True)
+    assert curve.position == pytest.approx([1.5e-9, 2.5e-9, 3.5e-9])
+    assert curve.force == pytest.approx([2.25e-9, np.nan, np.nan], nan_ok=True)
 
 
 def test_thousands_that_may_be_decimals_are_refused(tmp_path: Path) -> None:
@@ -468,6 +468,8 @@ EXPORTS = {
     "Z (nm);Defl_nm": "Z = extension nm, Defl_nm = deflection nm",
     "ZSnsr (nm)\tDefl (nm)\tTime (s)": "ZSnsr = extension nm, Defl = deflection nm, Time = time s",
     "Ramp_nm\tDefl_pN_Ex\tDefl_V_Ex": "Ramp_nm = extension nm, Defl_pN_Ex = force pN",
+    "Z-Axis [um];Deflection [nN]": "Z-Axis = extension um, Deflection = force nN",
+    "Z (um);Load (nN);Bending (nm)": "Z = extension um, Load = force nN",
     "k: 7\n\nZ (um);Load (nN);Load (nN)": "Z = position um, 2 = force nN",
     "# columns: height vDeflection t": "height = height <unit>, vDeflection = deflection <unit>",
     "a,F [nN]": "<column> = height <unit>, F = force nN",
