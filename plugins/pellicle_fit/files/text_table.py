@@ -9,14 +9,12 @@ from contextlib import suppress
 from itertools import chain
 from pathlib import Path
 
-import numpy as np
-
-from pellicle.arrays import Array
 from pellicle.errors import ConfigError, StorageError
 from pellicle.files import read_text
 from pellicle.memory import require_for
 
 from .columns import EXAMPLE, NAMES, Calibration, Column, Columns, is_curve, plain, si_unit
+from .decimal_commas import is_amount, is_number, numbers, refuse_wide, set_points
 from .missing import UNKNOWN, guessed
 
 FILE = "file"
@@ -24,9 +22,6 @@ FILE = "file"
 _HEAD = re.compile(r"([^\[(]*)(?:[\[(]([^\])]*)[\])])?")
 _WORD = re.compile(r"[^\s\[(]+(?:\s?[\[(][^\])]*[\])])?")
 """A column's name and unit in a header whose columns are separated by spaces."""
-_WHOLE = re.compile(r"[-+]?[1-9]\d{0,2}")
-_GROUPED = re.compile(rf"{_WHOLE.pattern}(?:,\d{{3}})+")
-"""A number whose thousands may be separated by commas."""
 _PER_BYTE, _PER_CELL = 3.0, 300.0
 """Memory [bytes] that a text takes for each of its bytes, and at most for each cell."""
 _COMMENT = ("#", "%")
@@ -39,8 +34,6 @@ _PAIR = re.compile(
     r"([^\s\"';,]*)"
 )
 """Name, unit, value and, in place of the first, unit of a constant in a line above a table."""
-_AMOUNT = re.compile(r"([-+]?[\d.,]+(?:[eE][-+]?\d+)?)(\s*[^\d\s]*)")
-"""A number, and perhaps its unit."""
 _CONSTANTS = {
     **dict.fromkeys(("k", "springconstant", "cantileverspringconstant"), "spring_constant"),
     **dict.fromkeys(("sensitivity", "deflectionsensitivity", "invols"), "sensitivity"),
@@ -84,42 +77,17 @@ def read_list(path: Path, mapped: Mapping[str, str]) -> list[dict[str, str]]:
             if separator == " " and len(heads) == 1:
                 rows = [[" ".join(row)] for row in rows]
             place = names.index(FILE)
-            if rows and all(len(r) >= len(heads) and not _is_number(r[place]) for r in rows):
+            if rows and all(len(r) >= len(heads) and not is_number(r[place]) for r in rows):
                 rows = [list(map(str.strip, row)) for row in rows]
                 if separator == ",":
-                    wide = [row for row in rows if any(map(_AMOUNT.fullmatch, row[len(heads) :]))]
-                    _check_width(wide, len(heads), path, of="cells")
+                    wide = [row for row in rows if any(map(is_amount, row[len(heads) :]))]
+                    refuse_wide(wide, len(heads), path)
                 else:
-                    _set_points(rows, [k for k in range(len(heads)) if k != place], heads, path)
+                    of = {k: f"{path}: column {name}" for k, name in enumerate(names) if k != place}
+                    set_points(rows, of)
                 cells = [zip(heads, row, strict=False) for row in rows]
                 return [{h.name.lower(): f"{c} {h.unit}".strip() for h, c in r if c} for r in cells]
     return []
-
-
-def _check_width(
-    wide: Sequence[Sequence[str]], named: int, path: Path, *, of: str, remedy: str = ""
-) -> None:
-    """Raise if there are rows of more numbers than ``named`` columns."""
-    for row in wide:
-        raise ConfigError(
-            f"{path}: has {len(row)} {of} below {named} names ({','.join(row)}), as where commas "
-            "are decimal and separate columns too; export it with semicolons, tabs or decimal "
-            f"points{remedy}"
-        )
-
-
-def _set_points(
-    rows: list[list[str]], places: Sequence[int], heads: Sequence[Column], path: Path
-) -> None:
-    """Replace decimal commas in some columns of a list of files, whose numbers may have units."""
-    amounts = {k: [_AMOUNT.fullmatch(row[k]) for row in rows] for k in places}
-    numbers = {k: [m[1] for m in of if m and _is_number(m[1])] for k, of in amounts.items()}
-    decimals = [number for of in numbers.values() for number in of if "." in number]
-    for k in places:
-        _check_commas(numbers[k], decimals, f"{path}: column {heads[k].name}")
-        for row, match in zip(rows, amounts[k], strict=True):
-            if match and _is_number(match[1]):
-                row[k] = match[1].replace(",", ".") + match[2]
 
 
 def _rows(lines: Sequence[str], data: Sequence[int], header: int) -> tuple[list[list[str]], str]:
@@ -222,7 +190,7 @@ def _candidates(lines: Sequence[str], data: Sequence[int]) -> dict[int, list[Col
     exported = [n for n in above if (match := _EXPORT.match(lines[n])) and match[1] == "columns"]
     likely = [*exported, *data[:_PREAMBLE]]
     cells = {number: re.split(r"[\s;,]+", lines[number].strip()) for number in [*likely, *above]}
-    return {n: _heads(lines[n]) for n in cells if not all(map(_is_number, filter(None, cells[n])))}
+    return {n: _heads(lines[n]) for n in cells if not all(map(is_number, filter(None, cells[n])))}
 
 
 def _heads(line: str) -> list[Column]:
@@ -256,15 +224,6 @@ def _split(lines: Sequence[str], separator: str) -> list[list[str]]:
     return list(csv.reader(lines, delimiter=separator))
 
 
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell.replace(",", ".", 1))
-    except ValueError:
-        return False
-    # Python takes 1_0 for 10.
-    return "_" not in cell
-
-
 def read_table(
     path: Path, mapped: Mapping[str, str]
 ) -> tuple[dict[str, Columns], list[Column], dict[str, float]]:
@@ -281,8 +240,8 @@ def read_table(
     above = sorted({*range(data[-1])} - {n for n in data if n >= header})
     stated = [lines[n] for n in above]
     others = (_heads(lines[n]) for n in above if n != header and not _EXPORT.match(lines[n]))
-    below = (_named(row) for row in rows if not any(map(_is_number, row)))
-    if rows and not any(map(_is_number, rows[0])):
+    below = (_named(row) for row in rows if not any(map(is_number, row)))
+    if rows and not any(map(is_number, rows[0])):
         heads = _agreed(heads, _named(rows.pop(0)), path, is_below=True)
     for words in chain(others, below):
         heads = _agreed(heads, words, path)
@@ -302,9 +261,8 @@ def read_table(
     names = [head.name.lower() for head in heads]
     if not mapped and separator == "," and is_curve({*names}):
         named = sum(bool(head.text) for head in heads)
-        wide = [row for row in rows if len(row) > named and all(map(_is_number, row))]
-        remedy = ", or choose columns by their numbers (--columns on the command line)"
-        _check_width(wide, named, path, of="numbers", remedy=remedy)
+        wide = [row for row in rows if len(row) > named and all(map(is_number, row))]
+        refuse_wide(wide, named, path)
     known = mapped or {name: name for name in names if name in NAMES}
     if is_export and not mapped:
         # The position of the tip is that of a height, and time, unlike seriesTime, begins anew.
@@ -324,35 +282,9 @@ def read_table(
     for name, place in chosen.items():
         role, _, unit = known[name].partition(" ")
         head = heads[place]
-        values = _numbers(cells[place], decimals, separator, f"{path}: column {head.name}")
+        values = numbers(cells[place], decimals, separator, f"{path}: column {head.name}")
         # Heads that are doubled do not tell which column is which.
         is_doubled = sum(other.text == head.text for other in heads) > 1
         unit = unit if unit and is_doubled else head.unit_beside(unit, path)
         columns[role] = head._replace(unit=unit, values=values)
     return {"": columns}, heads, _constants(stated, is_export)
-
-
-def _numbers(cells: list[str], decimals: list[str], separator: str, column: str) -> Array:
-    """Return numbers; NaN where a cell holds none.
-
-    A comma in them is decimal, or refused, as where commas separate columns.
-    """
-    _check_commas(cells, decimals, column, is_separator=separator == ",")
-    return np.array([float(c.replace(",", ".")) if _is_number(c) else np.nan for c in cells])
-
-
-def _check_commas(
-    cells: Sequence[str], decimals: Sequence[str], column: str, *, is_separator: bool = False
-) -> None:
-    """Raise if commas in cells may not be decimal: beside ``decimals`` with a point, say."""
-    digits = [cell for cell in cells if _is_number(re.sub("[.,]", "", cell))]
-    commas, beside = ([cell for cell in digits if mark in cell] for mark in ",.")
-    if commas and all(map(_GROUPED.fullmatch, commas)):
-        beside += filter(_WHOLE.fullmatch, digits)
-    beside += (cell for cell in decimals if _is_number(cell.replace(".", "")))
-    if commas and (beside or is_separator):
-        raise ConfigError(
-            f"{column} has {commas[0]!r} beside {[*beside, *digits][0]!r}, so its commas may be "
-            "those of decimals or of thousands; export it without separators of thousands, and "
-            "with decimals in all rows"
-        )
