@@ -29,6 +29,7 @@ class Yastrebov(AreaCorrection):
         periodic, switches = boundary == "periodic", 0
         for axis in (0, 1):
             before = np.roll(contact, 1, axis) != contact
-            switches += np.count_nonzero(before if periodic else np.diff(contact, axis=axis))
+            switched = before if periodic else np.diff(contact, axis=axis)
+            switches += int(np.count_nonzero(switched))
         covered = np.count_nonzero(contact)
         return spacing[0] * spacing[1] * (covered - (pi - 1 + log(2)) / 24 * switches)
