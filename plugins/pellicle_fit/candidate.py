@@ -15,7 +15,8 @@ from .effect import Effect, quantities
 from .explanation import Explanation
 from .intervals import Estimate
 from .noise import Flaw, Judged, judged
-from .objective import MODULUS, Minimum, Objective
+from .objective import MODULUS, Objective
+from .search import Minimum
 
 Types = frozenset[str]
 """Types of a set of effects."""
@@ -96,9 +97,11 @@ class Candidate:
         return replace(self.objective, curves=self.whole)
 
     @cached_property
-    def squares(self) -> list[float]:
-        """χ² of all rows of each curve, then the square of each term of what is weighed."""
-        return [float(np.sum(term**2)) for term in self.of_rows.terms(self.minimum.at)]
+    def squares(self) -> tuple[float, ...]:
+        """χ² of all rows of each curve, then that of each term of what is weighed."""
+        if all(a is b for a, b in zip(self.whole, self.objective.curves, strict=True)):
+            return self.minimum.squares
+        return self.of_rows.squares(self.of_rows.terms(self.minimum.at))
 
     @property
     def chi_squared(self) -> float:
@@ -112,9 +115,7 @@ class Candidate:
 
     def chi_squared_of(self, widened: Sequence[float]) -> float:
         """Return χ² of all rows at noise that was widened by a factor in each curve, as it was."""
-        squares = self.squares
-        factors = [*widened, *[1.0] * (len(squares) - len(widened))]
-        return sum(f**2 * square for f, square in zip(factors, squares, strict=True))
+        return sum(_scaled(self.squares, widened))
 
     def forces(self) -> list[Array]:
         """Return the force [N] at all rows of each curve."""
@@ -130,10 +131,18 @@ class Candidate:
         return replace(self, objective=objective, minimum=minimum)
 
     def at_noise(self, noise: Sequence[float]) -> Candidate:
-        """Return the same at another noise [N] of each curve."""
+        """Return the same at another noise [N] of each curve, which scales χ² and no more."""
+        was = self.objective.noise
+        factors = [old / new for old, new in zip(was, noise, strict=True)]
+        found = self.minimum._replace(squares=_scaled(self.minimum.squares, factors))
         objective = replace(self.objective, noise=tuple(noise))
-        minimum = self.minimum._replace(chi_squared=objective.chi_squared(self.minimum.at))
-        return replace(self, objective=objective, minimum=minimum)
+        new = replace(self, objective=objective, minimum=found)
+        new.__dict__["squares"] = _scaled(self.squares, factors)
+        return new
+
+    def polished(self) -> Candidate:
+        """Return the same at its least χ² to all digits."""
+        return replace(self, minimum=self.objective.minimise(self.minimum.at))
 
     @cached_property
     def judgements(self) -> list[Judged]:
@@ -155,6 +164,12 @@ class Candidate:
                 one = one._replace(flaws=one.flaws | {Flaw.TOO_DEEP})
             found.append(one)
         return found
+
+
+def _scaled(squares: Sequence[float], factors: Sequence[float]) -> tuple[float, ...]:
+    """Return χ² of each curve at noise over a factor, then what is weighed as it is."""
+    all_factors = [*factors, *[1.0] * (len(squares) - len(factors))]
+    return tuple(f**2 * square for f, square in zip(all_factors, squares, strict=True))
 
 
 def best_of(candidates: Iterable[Candidate]) -> Candidate:

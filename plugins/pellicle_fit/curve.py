@@ -12,6 +12,8 @@ from pellicle.arrays import Array, Mask
 from pellicle.components import HasForceCurve
 from pellicle.errors import ConfigError
 
+from .contact import Contact
+
 _BRIEFEST = 0.01
 """Least time in contact over that of the approach."""
 _DEEP, _LASTS = 0.02, 0.1
@@ -22,6 +24,8 @@ _NEIGHBOURS = 4
 """Rows on each side over which forces are smoothed."""
 _CLEAR, _WAYS = 0.2, 3.0
 """Part of the forces that is no noise, and the way that touches over that beyond it."""
+_COARSE = 60
+"""Means for each pass that rough searches see."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +44,8 @@ class Curve:
     """Whether a row is taken while the indenter moves out; by default, after the deepest row."""
     stiffness: float | None = None
     """Spring constant of the cantilever [N/m]; None if it is stiff or not known."""
-    fixed_touch: bool = False
-    """Whether the contact point is given: as a position that is read, which an offset shifts."""
+    touch: float | None = None
+    """Contact point [m] if it is given: as a position that is read, which an offset shifts."""
     counts: Array | None = None
     """How many measured rows each row is the mean of; None if one."""
 
@@ -86,7 +90,7 @@ class Curve:
         """Rows of the approach, or of the retraction if there is nothing else."""
         return ~self.moves_out if not np.all(self.moves_out) else self.moves_out
 
-    @property
+    @cached_property
     def passes(self) -> list[NDArray[np.intp]]:
         """The rows of each pass, that of the approach first."""
         return [np.flatnonzero(rows) for rows in (~self.moves_out, self.moves_out) if rows.any()]
@@ -119,17 +123,35 @@ class Curve:
             smoothed[rows] = (sums[row + wide + 1] - sums[row - wide]) / (2 * wide + 1)
         return smoothed
 
-    @property
+    @cached_property
+    def contact(self) -> Contact:
+        """The contact with a half-space of modulus 1 Pa.
+
+        It is tabulated down to a depth that no trial of a contact point exceeds.
+        """
+        deepest = 2 * max(float(np.ptp(self.base)), self.span)
+        if self.touch is not None:
+            # A given point may lie before any row.
+            bent = self.largest / (self.stiffness or np.inf)
+            deepest = max(deepest, float(np.max(self.position)) - self.touch + bent)
+        return Contact.on_half_space(self.indenter, 1.0, deepest)
+
+    @cached_property
+    def coarse(self) -> Curve:
+        """Few means, which tell where a minimum is."""
+        return self.binned(_COARSE)
+
+    @cached_property
     def span(self) -> float:
         """Range of the positions [m]."""
         return float(np.ptp(self.position))
 
-    @property
+    @cached_property
     def largest(self) -> float:
         """Range of the forces [N]."""
         return float(np.ptp(self.force))
 
-    @property
+    @cached_property
     def weights(self) -> Array:
         """Square root of the rows that each row stands for, by which residuals are multiplied."""
         return np.ones_like(self.force) if self.counts is None else np.sqrt(self.counts)

@@ -114,7 +114,14 @@ class Fittable(Component):
 
     def at(self, values: Values) -> Self:
         """Return the component with values of its open quantities."""
-        return self.model_copy(update={name: values[name] for name in self.open})
+        return self.of_values({name: values[name] for name in self.open})
+
+    def of_values(self, values: Mapping[str, Any]) -> Self:
+        """Return the component with values of some quantities, as often as a search asks."""
+        known = type(self).__new__(type(self))
+        state = {**self.__getstate__(), "__dict__": {**self.__dict__, **values}}
+        known.__setstate__(state)
+        return known
 
 
 @cache

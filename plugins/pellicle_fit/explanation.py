@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -14,24 +14,45 @@ from pellicle.errors import ConvergenceError
 
 from .contact import Contact
 from .curve import Curve
-from .effect import Adds, Bends, Effect, Records, Responds, Sizes, Solid, Yields, quantities
+from .effect import (
+    Adds,
+    Bends,
+    Effect,
+    Records,
+    Responds,
+    Response,
+    Sizes,
+    Solid,
+    Yields,
+    quantities,
+)
+from .strangers import takes_columns
 
 _Kind = TypeVar("_Kind", bound=Effect)
-_BALANCE, _HALVED = 1e-6, 1e-9
-"""Last step over the largest way: of Newton's method, which leaves about its square, and of
-halvings."""
+_BALANCE, _HALVED, _LOST = 1e-5, 1e-9, 1e-3
+"""Last step over the largest way: of Newton's method, which leaves about its square, and one more
+step the square of that; of halvings; and of what does not balance."""
 _DIFFERENCE = 1e-6
 """Step of slopes by √δ over the root of that way."""
 _LONGEST, _FAR = 4.0, 1e6
 """Longest step, over the root of the depth or of the way, and the greatest root over the latter."""
 _STEPS = 80
 """Most steps of a search for a balance."""
-_NODES = 200
-"""Nodes of the table from which searches for a balance start."""
-_SHALLOW = 1e-6
-"""Least depth that is tabulated, over the range of positions."""
-_DEEPER = 2.0
-"""Depth up to which the force is known while a balance is sought, over the deepest of the path."""
+_LEAST = 0.05
+"""Least depth from which a balance is sought, over that of the base."""
+
+
+class Balance(NamedTuple):
+    """Forces and depths of a curve, of shape (n,), or (k, n) of k trials."""
+
+    recorded: Array
+    """Recorded force [N]."""
+    force: Array
+    """True force [N]."""
+    depth: Array
+    """Depth of the solid [m]."""
+    rate: Array
+    """Derivative of the true force by the depth of the base [N/m]."""
 
 
 @dataclass(frozen=True)
@@ -51,14 +72,17 @@ class Explanation:
         """Types of the effects."""
         return frozenset(effect.type_name for effect in self.effects)
 
+    @cached_property
+    def _ordered(self) -> list[Effect]:
+        return sorted(self.effects, key=lambda effect: (effect.rank, effect.type_name))
+
     def of(self, kind: type[_Kind]) -> list[_Kind]:
         """Return the effects in one of the five places, in the order in which they act."""
-        found = [effect for effect in self.effects if isinstance(effect, kind)]
-        return sorted(found, key=lambda effect: (effect.rank, effect.type_name))
+        return [effect for effect in self._ordered if isinstance(effect, kind)]
 
     def contact(self, curve: Curve) -> Contact:
         """Return the contact of the curve's indenter, of known quantities."""
-        contact = Contact.on_half_space(curve.indenter, self.solid.reduced_modulus)
+        contact = replace(curve.contact, modulus=self.solid.reduced_modulus)
         for effect in self.of(Bends):
             contact = effect.contact(contact)
         return contact
@@ -74,7 +98,7 @@ class Explanation:
         if any(effect.balances for effect in responds) and self.of(Yields):
             return "nothing may be in series with what balances the cantilever itself"
         for curve in curves:
-            contact = Contact.on_half_space(curve.indenter, 1.0)
+            contact = curve.contact
             for effect in (*bends, *(e for e in self.effects if e not in bends)):
                 if excuse := effect.excuse(contact, curve, self.types - {effect.type_name}):
                     return excuse
@@ -106,44 +130,107 @@ class Explanation:
 
     def base_depth(self, curve: Curve) -> Array:
         """Return the depth of the base over that of first touch [m], in each row."""
-        touch = self.solid.contact_point
-        if curve.fixed_touch and curve.stiffness is not None:
+        touch: float | Array = self.solid.contact_point
+        if curve.touch is not None and curve.stiffness is not None:
             nearest = int(np.argmin(np.abs(curve.position - touch)))
-            touch += float(self.free_force(curve)[nearest]) / curve.stiffness
-        return curve.base - touch
+            touch = touch + self.free_force(curve)[..., [nearest]] / curve.stiffness
+        return np.asarray(curve.base - touch)
 
     def force(self, curve: Curve) -> Array:
         """Return the force [N] that is recorded in each row, of known quantities.
 
         If the solid and what is in series with it do not balance, it is a ConvergenceError.
         """
-        stiffness, records = curve.stiffness, self.of(Records)
-        if stiffness is not None:
-            for effect in records:
-                stiffness = effect.stiffness(stiffness)
-        force = self._pushed(curve, 1 / stiffness if stiffness else 0.0)
-        for effect in records:
+        force = self.balance(curve).recorded
+        if not np.isfinite(force).all():
+            raise ConvergenceError(
+                "the forces of the cantilever and the solid do not balance; is the spring "
+                "constant right?"
+            )
+        return force
+
+    def balance(
+        self, curve: Curve, start: Array | None = None, *, together: bool | None = None
+    ) -> Balance:
+        """Return forces and depths of a curve in balance, NaN where none balances.
+
+        Quantities are numbers, or columns of shape (k, 1) of k trials, by default together if all
+        effects take columns.  ``start`` are depths from which the balance is sought.
+        """
+        if self._one_by_one if together is None else not together:
+            each = [known.balance(curve) for known in self._each()]
+            return Balance(*map(np.array, zip(*each, strict=True)))
+        of, step = self._forces(curve), _DIFFERENCE * curve.contact.deepest
+        depth = of.base
+        if of.give is not None:
+            depth = balanced(of.pushed, of.give, of.base, of.near if start is None else start)
+        force = of.pushed(depth)
+        rate = (of.pushed(depth + step) - force) / step
+        if of.give is not None:
+            way = of.give(force)
+            stretch = 1 + (of.give(force + step * rate) - way) / step
+            left, rate = of.base - depth - way, rate / stretch
+            force, depth = force + rate * left, depth + left / stretch
+        return Balance(self.recorded(force, curve), force, depth, rate)
+
+    def beside(self, curve: Curve, near: Balance) -> Array:
+        """Return the recorded forces [N] beside a balance at quantities that differ little."""
+        if self._one_by_one:
+            rows = enumerate(self._each())
+            return np.array([k.beside(curve, Balance(*(x[i] for x in near))) for i, k in rows])
+        of = self._forces(curve)
+        if of.give is None:
+            return self.recorded(of.pushed(of.base), curve)
+        force = of.pushed(near.depth)
+        left = of.base - near.depth - of.give(force)
+        return self.recorded(force + near.rate * left, curve)
+
+    def recorded(self, force: Array, curve: Curve) -> Array:
+        """Return what the instrument makes of a true force [N] in each row."""
+        for effect in self.of(Records):
             force = effect.recorded(force, curve)
         return force
 
-    def _pushed(self, curve: Curve, softness: float) -> Array:
-        """Return the true force [N] in each row; the softness is the cantilever's [m/N]."""
-        contact, depth = self.contact(curve), self.base_depth(curve)
+    @cached_property
+    def takes_columns(self) -> bool:
+        """Whether its quantities may be columns, of many trials."""
+        return all(takes_columns(type(effect)) for effect in self.effects)
+
+    @property
+    def _one_by_one(self) -> bool:
+        """Whether its quantities are columns that an effect does not take."""
+        values = (getattr(part, name) for part in self.parts for name in quantities(type(part)))
+        return any(map(np.ndim, values)) and not self.takes_columns
+
+    def _each(self) -> Iterator[Explanation]:
+        """Yield the explanation of each trial, of quantities that are numbers."""
+        own = [{n: getattr(part, n) for n in quantities(type(part))} for part in self.parts]
+        for row in range(max(np.size(v) for values in own for v in values.values())):
+            of_row = [
+                {n: float(np.ravel(v)[row % np.size(v)]) for n, v in vs.items()} for vs in own
+            ]
+            pairs = zip(self.parts, of_row, strict=True)
+            parts: list[Any] = [part.of_values(values) for part, values in pairs]
+            yield Explanation(parts[0], tuple(parts[1:]))
+
+    def _forces(self, curve: Curve) -> _Forces:
+        """Return what pushes and what gives way along the path of a curve."""
+        stiffness, softness = curve.stiffness, 0.0
+        if stiffness is not None:
+            for record in self.of(Records):
+                stiffness = record.stiffness(stiffness)
+            softness = 1 / stiffness
+        contact, base = self.contact(curve), self.base_depth(curve)
         adds, yields, responds = self.of(Adds), self.of(Yields), self.of(Responds)
-        balances = any(effect.balances for effect in responds)
 
         def give(force: Array) -> Array:
             return sum((effect.give(force) for effect in yields), start=softness * force)
 
-        in_series = bool(softness or yields)
-        path = depth
-        if in_series and responds and not balances:
-            path = depth - give(curve.smoothed - self.free_force(curve))
-        if in_series:
-            # A search may try contact points that no row reaches.
-            deepest = max(float(np.max(np.maximum(depth, path))), _SHALLOW * curve.span)
-            contact = contact.tabulated(min(_DEEPER * deepest, contact.depth_limit))
-        response: Callable[[Array], Array] = contact.force
+        is_free = curve.stiffness is None and not yields
+        balances = is_free or any(effect.balances for effect in responds)
+        # The way that the measured forces leave.
+        path = base if balances else base - give(curve.smoothed - self.free_force(curve))
+        response: Response = contact.force
         for effect in responds:
             response = effect.response(contact, curve, path, softness)
 
@@ -151,48 +238,56 @@ class Explanation:
             beside = (add.force(contact, curve, depth) for add in adds)
             return sum(beside, start=response(depth))
 
-        if balances or not in_series:
-            return pushed(depth)
-        # Without memory and additions the depths in balance are those of a table.
-        root = np.sqrt(contact.depth_limit) * np.linspace(0.0, 1.0, _NODES)
-        start = np.interp(depth, root**2 + give(contact.force(root**2)), root) ** 2
-        return pushed(balanced(pushed, give, depth, np.where(depth > 0, start, depth)))
+        near = np.where(base > 0, np.maximum(path, _LEAST * base), base)
+        return _Forces(base, near, pushed, None if balances else give)
+
+
+class _Forces(NamedTuple):
+    """What a solid and what is in series with it do along a path."""
+
+    base: Array
+    """Depths of the base [m]."""
+    near: Array
+    """Depths [m] from which a balance is sought."""
+    pushed: Response
+    """True force [N] of each row at its depth [m]."""
+    give: Callable[[Array], Array] | None
+    """Way [m] of what is in series; None if nothing is, or what responds has it."""
 
 
 def balanced(
     pushed: Callable[[Array], Array], give: Callable[[Array], Array], base: Array, start: Array
 ) -> Array:
-    """Return the depth δ [m] at which δ + u(P(δ)) is that of the base, shape (n,).
+    """Return the depth δ [m] at which δ + u(P(δ)) is that of the base, shape (n,) or (k, n).
 
     The sum grows with δ, so that there is one root, which Newton's method finds from a good start;
-    a step that leaves what brackets it halves that.  If there is no root, it is a ConvergenceError.
+    a step that leaves what brackets it halves that.  NaN if there is no root.
     """
-    way = np.sqrt(max(float(np.ptp(base)), 1e-300))
+    way = np.sqrt(max(float(np.max(np.ptp(base, axis=-1))), 1e-300))
     step, far = _DIFFERENCE * way, _FAR * way
 
     def depth_of(root: Array) -> Array:
         return root * np.abs(root)
 
     def excess(root: Array) -> Array:
-        return depth_of(root) + give(pushed(depth_of(root))) - base
+        depth = depth_of(root)
+        return depth + give(pushed(depth)) - base
 
     # In √δ a toe that is infinitely soft at first touch has a slope.
     root = np.sign(start) * np.sqrt(np.abs(start))
-    low, high = np.full(base.shape, -far), np.full(base.shape, far)
+    low, high = np.full(root.shape, -far), np.full(root.shape, far)
     for _ in range(_STEPS):
         above = excess(root)
-        low, high = np.where(above < 0, root, low), np.where(above > 0, root, high)
         slope = (excess(root + step) - above) / step
+        low, high = np.where(above < 0, root, low), np.where(above > 0, root, high)
         longest = _LONGEST * np.maximum(np.abs(root), way)
         new: Array = root - np.clip(above / np.maximum(slope, 1e-6 * step), -longest, longest)
         is_out = (new < low) | (new > high)
         new = np.where(is_out, (low + high) / 2, new)
         change = np.abs(depth_of(new) - depth_of(root))
-        is_near = np.all(change <= np.where(is_out, _HALVED, _BALANCE) * way**2)
-        # Without a root halvings end at the end of the bracket.
-        if is_near and np.max(np.abs(new)) < 0.99 * far:
-            return depth_of(new)
         root = new
-    raise ConvergenceError(
-        "the forces of the cantilever and the solid do not balance; is the spring constant right?"
-    )
+        if np.all(change <= np.where(is_out, _HALVED, _BALANCE) * way**2):
+            break
+    # Without a root halvings end at the end of the bracket.
+    is_lost = (np.abs(root) >= 0.99 * far) | (change > _LOST * way**2)
+    return np.where(is_lost, np.nan, depth_of(root))

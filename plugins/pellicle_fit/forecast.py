@@ -16,7 +16,7 @@ from pellicle.units import readable
 from .candidate import Candidate
 from .curve import Curve
 from .explanation import Explanation
-from .objective import CONTACT_POINT, ROUGH, Objective
+from .objective import CONTACT_POINT, Objective
 
 _ROWS = 150
 """Rows of each pass of a forecast."""
@@ -26,6 +26,8 @@ _USELESS = 1.0
 """Expected Δχ² below which a measurement is not proposed."""
 _DEEPEST = 0.5
 """Largest depth over radius that is proposed, roughly the limit of linear elasticity."""
+_ROUGH = 20
+"""Steps of a search for what a measurement is worth."""
 _MANY = 30
 """Largest number of curves that is proposed."""
 
@@ -46,7 +48,7 @@ def telling(asked: Candidate, others: Sequence[Candidate]) -> tuple[str, int]:
             least = 0.0
             with suppress(PellicleError):
                 objective, start = _foretold(truth, guess, measurement)
-                least = objective.minimise(start, steps=ROUGH).chi_squared
+                least = objective.minimise(start, steps=_ROUGH).chi_squared
             worth = min(worth, least)
             if worth < _USELESS:
                 break
@@ -98,7 +100,7 @@ def _foretold(truth: Candidate, guess: Candidate, other: Curve) -> tuple[Objecti
     """
     curve, known = truth.whole[0], truth.known[0]
     means, (point, *_) = curve.binned(_ROWS), truth.contact_points
-    again = replace(means, position=means.base - point, stiffness=None, fixed_touch=False)
+    again = replace(means, position=means.base - point, stiffness=None, touch=None)
     # Each row of a forecast stands for as many as the curve has.
     counts = np.full(other.position.size, curve.passes[0].size / _ROWS)
     known = replace(known, solid=known.solid.model_copy(update={CONTACT_POINT: 0.0}))

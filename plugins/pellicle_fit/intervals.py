@@ -8,10 +8,12 @@ from itertools import permutations
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 from scipy.special import stdtrit
 
-from .objective import Minimum, Objective
+from pellicle.arrays import Array
+
+from .objective import Objective
+from .search import Minimum, descend
 
 CONFIDENCE = 0.95
 _WIDE = 2.0
@@ -19,11 +21,16 @@ _REACH = np.log(100.0)
 """Change of a logarithm up to which an end is sought."""
 _FAR = 100.0
 """Change of another coordinate likewise, over its value or its size."""
-_ACCURACY = 2e-3
-"""Accuracy of an end over its distance from the best value."""
-_IMPROVEMENT = 1e-3
+_NEAR, _SMALL, _STEPS = 0.02, 0.1, 40
+"""Last step over the distance, and last excess over the rise, whose squares are the error of an
+end; and most steps."""
+_PROFILE = 5e-4
+"""Fall of χ² that is left on a profile, small beside the threshold."""
+_IMPROVEMENT = 2e-3
 """Decrease of χ² by which another minimum counts as better."""
 _RESTARTS = 5
+_ALIKE = 1e-5
+"""Least singular value of derivatives of unit length that are not alike."""
 
 
 @dataclass(frozen=True)
@@ -83,10 +90,6 @@ def common_value(estimates: Sequence[Estimate]) -> float:
     return value if furthest(value) <= 1 else np.nan
 
 
-class Better(Exception):  # noqa: N818 - not an error: the search continues from there
-    """A profile has reached a smaller χ², its argument, than the minimum from which it starts."""
-
-
 def threshold_of(freedom: float) -> float:
     """Return Δχ² at the ends of an interval, for noise of that many degrees of freedom.
 
@@ -102,61 +105,127 @@ def estimates(
 
     A quantity of one of several curves has the number of the curve behind its name.
     """
-    left = _RESTARTS
-    while True:
+    wanted = [k for k, slot in enumerate(objective.slots) if not names or slot.name in names]
+    for left in range(_RESTARTS, -1, -1):
+        jacobian = objective.jacobian(minimum.at, range(minimum.at.size))
+        pairs = [(k, sign) for k in wanted for sign in (-1, 1)]
+        ways = [_Way(objective, minimum, jacobian, *pair, threshold) for pair in pairs]
         # Where χ² jumps, every way may end a little lower.
-        improvement, found = _IMPROVEMENT if left else np.inf, {}
-        try:
-            for k, slot in enumerate(objective.slots):
-                if not names or slot.name in names:
-                    estimate = _estimate(objective, minimum, k, threshold, improvement)
-                    found[slot.full_name] = estimate
-            return minimum, found
-        except Better as better:
-            minimum, left = objective.minimise(better.args[0].at), left - 1
+        better = _followed(objective, minimum, ways, _IMPROVEMENT if left else np.inf)
+        if better is None:
+            break
+        minimum = objective.minimise(better.at)
+    found = {}
+    for k, low, high in zip(wanted, ways[::2], ways[1::2], strict=True):
+        slot = objective.slots[k]
+        value = slot.value(minimum.at[k])
+        found[slot.full_name] = Estimate(value, low.end, high.end, slot.quantity.unit)
+    return minimum, found
 
 
-def _estimate(
-    objective: Objective, minimum: Minimum, k: int, threshold: float, improvement: float
-) -> Estimate:
-    """Return a quantity, with the ends at which χ² has risen by the threshold.
+class _Way:
+    """The way from a minimum to one end of an interval, on which a coordinate is held."""
 
-    If χ² is smaller on the way, by the improvement, that is raised.
-    """
-    at, slot = minimum.at, objective.slots[k]
-    jacobian = objective.jacobian(at, range(at.size))
-    others = [i for i in range(at.size) if i != k]
-    # Along a profile the other coordinates move, to first order, as this makes χ² least.
-    along = np.zeros(at.size)
-    along[k] = 1.0
-    if others:
-        along[others] = -np.linalg.lstsq(jacobian[:, others], jacobian[:, k], rcond=1e-12)[0]
-    # To first order an end lies here.
-    first = threshold**0.5 / max(float(np.linalg.norm(jacobian @ along)), 1e-12)
-    far = _REACH if slot.quantity.log else _FAR * max(abs(at[k]), 1.0)
+    def __init__(
+        self,
+        objective: Objective,
+        minimum: Minimum,
+        jacobian: Array,
+        k: int,
+        sign: int,
+        threshold: float,
+    ) -> None:
+        at, self.slot = minimum.at, objective.slots[k]
+        self.minimum, self.k, self.sign, self.rise = minimum, k, sign, threshold**0.5
+        others = [i for i in range(at.size) if i != k]
+        # Along a profile the other coordinates move, to first order, as this makes χ² least.
+        self.along = np.zeros(at.size)
+        self.along[k] = 1.0
+        if others:
+            # What another coordinate does as well is left out.
+            sizes = np.maximum(np.linalg.norm(jacobian[:, others], axis=0), 1e-300)
+            scaled = jacobian[:, others] / sizes
+            least = np.linalg.lstsq(scaled, jacobian[:, k], rcond=_ALIKE)[0]
+            self.along[others] = -least / sizes
+        # To first order an end lies here.
+        first = self.rise / max(float(np.linalg.norm(jacobian @ self.along)), 1e-12)
+        far = _REACH if self.slot.quantity.log else _FAR * max(abs(at[k]), 1.0)
+        self.limit = min(abs(objective.limits[(sign + 1) // 2][k] - at[k]), far)
+        self.distance = min(first, self.limit)
+        self.below, self.above = (0.0, -self.rise, at), (np.inf, 0.0, at)
+        self.before = self.below
+        self.ended = not (self.limit > 0 and np.isfinite(threshold))
+        self.end: float | None = None
 
-    def excess(distance: float, sign: int, reached: dict[float, Minimum]) -> float:
-        if distance not in reached:
-            near = max(d for d in reached if d <= distance)
-            start = reached[near].at + sign * (distance - near) * along
-            start[k] = at[k] + sign * distance
-            reached[distance] = objective.minimise(start, (k,))
-        chi_squared = reached[distance].chi_squared
-        if chi_squared < minimum.chi_squared - improvement:
-            raise Better(reached[distance])
-        return float(np.sqrt(max(chi_squared - minimum.chi_squared, 0)) - threshold**0.5)
+    @property
+    def start(self) -> Array:
+        """Coordinates from which the next point of the profile is sought."""
+        near, _, at = self.below if self.above[0] > self.distance else self.above
+        along, (first, _, known) = self.sign * self.along, self.before
+        if near > first:
+            # The way so far says more than its direction at the minimum.
+            along = (at - known) / (near - first)
+        start = at + (self.distance - near) * along
+        start[self.k] = self.minimum.at[self.k] + self.sign * self.distance
+        return np.asarray(start)
 
-    def end(sign: int) -> float | None:
-        limit = min(abs(objective.limits[(sign + 1) // 2][k] - at[k]), far)
-        distance, last, way = min(first, limit), 0.0, (sign, {0.0: minimum})
-        while limit > 0 and np.isfinite(threshold):
-            if excess(distance, *way) > 0:
-                accuracy = _ACCURACY * distance
-                distance = brentq(excess, last, distance, way, xtol=accuracy)
-                return slot.value(at[k] + sign * distance)
-            if distance >= limit:
-                return None
-            last, distance = distance, min(1.3 * distance, limit)
-        return None
+    def reached(self, found: Minimum) -> None:
+        """Go on from the least χ² at the present distance, by a secant of the root of its rise."""
+        rise = float(np.sqrt(max(found.chi_squared - self.minimum.chi_squared, 0.0)))
+        here, excess, last = self.distance, rise - self.rise, self.below
+        if excess > 0:
+            self.above = here, excess, found.at
+        else:
+            self.before, self.below = last, (here, excess, found.at)
+            if here >= self.limit:
+                self.ended = True
+                return
+        bracketed = np.isfinite(self.above[0])
+        one, other = (self.below, self.above) if bracketed else (last, self.below)
+        slope = (other[1] - one[1]) / (other[0] - one[0])
+        new = one[0] - one[1] / slope if slope > 0 else np.inf
+        is_close = abs(excess) <= _SMALL * self.rise
+        if bracketed:
+            low, high = self.below[0], self.above[0]
+            # A secant that creeps along a wall is halved.
+            margin = 0.1 * (high - low)
+            if not is_close and not low + margin < new < high - margin:
+                new = (low + high) / 2
+        else:
+            new = min(new, 1.5 * here, self.limit)
+        self.distance = new
+        if is_close and abs(new - here) <= _NEAR * here and new <= self.limit:
+            self.ended = True
+            if new < self.limit or excess > 0:
+                self.end = self._value
 
-    return Estimate(slot.value(at[k]), end(-1), end(1), slot.quantity.unit)
+    @property
+    def _value(self) -> float:
+        """The quantity at the present distance, in SI."""
+        return self.slot.value(self.minimum.at[self.k] + self.sign * self.distance)
+
+    def stop(self) -> None:
+        """Take what brackets an end for it, where χ² jumps."""
+        if not self.ended and np.isfinite(self.above[0]):
+            self.distance = self.above[0]
+            self.end = self._value
+
+
+def _followed(
+    objective: Objective, minimum: Minimum, ways: Sequence[_Way], improvement: float
+) -> Minimum | None:
+    """Follow all ways to their ends; return a lower minimum than theirs if one meets it."""
+    for _ in range(_STEPS):
+        going = [way for way in ways if not way.ended]
+        if not going:
+            return None
+        held = np.zeros((len(going), minimum.at.size), dtype=bool)
+        held[np.arange(len(going)), [way.k for way in going]] = True
+        found = descend(objective, np.array([way.start for way in going]), held, fall=_PROFILE)
+        for way, one in zip(going, found, strict=True):
+            if one.chi_squared < minimum.chi_squared - improvement:
+                return one
+            way.reached(one)
+    for way in ways:
+        way.stop()
+    return None

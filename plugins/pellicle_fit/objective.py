@@ -2,30 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property, lru_cache
-from typing import NamedTuple
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.optimize import least_squares
+from numpy.typing import NDArray
 
 from pellicle.arrays import Array
 
 from .curve import Curve
-from .effect import Fitted, Sizes, Weighed
-from .explanation import Explanation
+from .effect import Fitted, Records, Responds, Sizes, Weighed
+from .explanation import Balance, Explanation
 from .long_memory import differenced
+from .search import Minimum, descend
 
 _STEP = 1e-6
 """Step of derivatives by differences, in coordinates of the order of 1."""
-_SEARCHES = (("dogbox", 12), ("trf", 400))
-"""Optimisers in the order in which they are tried, and their largest numbers of steps."""
-_TOLERANCE, _ROUGHLY = 1e-8, 1e-4
-ROUGH = 20
-"""Steps of a search that tells whether a start is worth another."""
-_HALVING = ((4, 2), (16, 1))
-"""Steps from all starts that are left, and how many of the best are kept."""
 _BEFORE = 1.0
 """How far before the first row a contact may lie, over the range of positions."""
 _DECADES = 6.0
@@ -61,13 +55,32 @@ class Slot(NamedTuple):
         return value / self.scale
 
 
-class Minimum(NamedTuple):
-    """A minimum of χ²."""
+class Trials(NamedTuple):
+    """Trials of coordinates of shape (k, coordinates)."""
 
-    at: Array
-    """Coordinates."""
-    chi_squared: float
-    """An upper bound of it where the search did not end, in a valley without end."""
+    terms: Array
+    """(recorded − measured)/noise of all curves, then the terms of what is weighed, (k, terms).
+
+    NaN where forces do not balance.
+    """
+    balances: tuple[Balance, ...]
+    """Forces and depths of each curve, of shape (k, n)."""
+
+    def of(self, rows: NDArray[Any]) -> Trials:
+        """Return some of the trials."""
+        balances = (Balance(*(part[rows] for part in balance)) for balance in self.balances)
+        return Trials(self.terms[rows], tuple(balances))
+
+    def put(self, rows: NDArray[Any], others: Trials) -> None:
+        """Put others in the places of some."""
+        self.terms[rows] = others.terms
+        for mine, other in zip(self.balances, others.balances, strict=True):
+            for part, new in zip(mine, other, strict=True):
+                part[rows] = new
+
+
+def _recorded(known: Explanation, curve: Curve, near: Balance) -> Array:
+    return known.recorded(near.force, curve)
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,45 +154,142 @@ class Objective:
         owner = self.beads[curve] if slot.quantity.scope == "indenter" else curve
         return slot.curve in (None, owner)
 
+    @cached_property
+    def _scales(self) -> tuple[NDArray[np.intp], Array]:
+        """Which coordinates are logarithms, and all scales."""
+        logs = np.flatnonzero([slot.quantity.log for slot in self.slots])
+        return logs, np.array([slot.scale for slot in self.slots])
+
+    @cached_property
+    def _acting(self) -> list[list[int]]:
+        """The coordinates of each curve."""
+        slots = [*enumerate(self.slots)]
+        return [[k for k, s in slots if self.acts(s, i)] for i in range(len(self.curves))]
+
     def known(self, at: Array, curve: int) -> Explanation:
-        """Return the explanation of a curve with values of its open quantities."""
-        values: list[dict[str, float]] = [{} for _ in self.explanation.parts]
-        for slot, coordinate in zip(self.slots, at, strict=True):
-            if self.acts(slot, curve):
-                values[slot.part][slot.name] = slot.value(coordinate)
+        """Return the explanation of a curve with values of its open quantities.
+
+        Of coordinates of shape (k, coordinates) they are columns of shape (k, 1).
+        """
+        logs, scales = self._scales
+        numbers = at * scales
+        if logs.size:
+            numbers[..., logs] = np.exp(at[..., logs]) * scales[logs]
+        of = numbers.T[:, :, None] if at.ndim > 1 else numbers.tolist()
+        values: list[dict[str, Any]] = [{} for _ in self.explanation.parts]
+        for k in self._acting[curve]:
+            values[self.slots[k].part][self.slots[k].name] = of[k]
         pairs = zip(self.explanation.effects, values[1:], strict=True)
-        effects = tuple(effect.at(known) for effect, known in pairs)
-        known = Explanation(self.explanation.solid, effects)
-        if MODULUS in values[0]:
-            values[0][MODULUS] /= known.relaxed(self.loading_time)
-        return Explanation(known.solid.at(values[0]), effects)
+        effects = tuple(effect.of_values(known) if known else effect for effect, known in pairs)
+        for effect in effects if MODULUS in values[0] else ():
+            if isinstance(effect, Responds):
+                values[0][MODULUS] = values[0][MODULUS] / effect.relaxed(self.loading_time)
+        return Explanation(self.explanation.solid.of_values(values[0]), effects)
 
     def forces(self, at: Array) -> list[Array]:
         """Return the force [N] of each curve that the explanation records."""
         return [self.known(at, i).force(curve) for i, curve in enumerate(self.curves)]
 
-    def terms(self, at: Array, known: Mapping[int, Array] | None = None) -> list[Array]:
-        """Return (recorded − measured)/noise of each curve, and the terms of what is weighed.
+    def trials(self, at: Array, near: Trials | None = None) -> Trials:
+        """Return trials of coordinates of shape (k, coordinates), sought from others near them."""
+        terms, balances = [], []
+        for i, curve in enumerate(self.curves):
+            start = None if near is None else near.balances[i].depth
+            shape = (len(at), curve.force.size)
+            found = self.known(at, i).balance(curve, start)
+            balance = Balance(*(np.array(np.broadcast_to(part, shape)) for part in found))
+            terms.append(self._term(balance.recorded - curve.force, i))
+            balances.append(balance)
+        for k, slot, given in self._weighed:
+            values = np.array([slot.value(coordinate) for coordinate in at[:, k]])
+            terms.append((values[:, None] - given) / given.deviation)
+        return Trials(np.concatenate(terms, axis=1), tuple(balances))
 
-        Of some curves they may be known.
+    def _term(self, difference: Array, i: int) -> Array:
+        """Return differences of the forces of a curve [N], of shape (k, n), over its noise."""
+        term = self.curves[i].weights * difference / self.noise[i]
+        if self.memory and self.memory[i]:
+            term = differenced(term.T, self.memory[i]).T
+        return np.asarray(term)
+
+    @cached_property
+    def _weighed(self) -> list[tuple[int, Slot, Weighed]]:
+        """Coordinates of what is weighed, and its values."""
+        parts = self.explanation.parts
+        given = [(k, s, getattr(parts[s.part], s.name)) for k, s in enumerate(self.slots)]
+        return [entry for entry in given if isinstance(entry[2], Weighed)]
+
+    def derivatives(self, at: Array, trials: Trials) -> Array:
+        """Return the derivatives of the terms of trials, of shape (k, coordinates, terms)."""
+        found = np.zeros((*at.shape, trials.terms.shape[1]))
+        steps = np.where(at + _STEP <= self.limits[1], _STEP, -_STEP)
+        end = 0
+        for i, (curve, balance) in enumerate(zip(self.curves, trials.balances, strict=True)):
+            of_instrument, touches, others = self._kinds[i]
+            begin, end = end, end + curve.force.size
+            for some, forces in ((of_instrument, _recorded), (others, Explanation.beside)):
+                if some:
+                    moved = np.repeat(at, len(some), axis=0)
+                    step = steps[:, some].ravel()
+                    moved[np.arange(step.size), np.tile(some, len(at))] += step
+                    near = Balance(*(np.repeat(part, len(some), axis=0) for part in balance))
+                    change = forces(self.known(moved, i), curve, near) - near.recorded
+                    rates = self._term(change / step[:, None], i)
+                    found[:, some, begin:end] = rates.reshape(len(at), len(some), -1)
+            if touches:
+                known = self.known(at, i)
+                change = known.recorded(balance.force - _STEP * balance.rate, curve)
+                scale = self.slots[touches[0]].scale / _STEP
+                rates = self._term(scale * (change - balance.recorded), i)
+                found[:, touches[0], begin:end] = rates
+        for number, (k, slot, given) in enumerate(self._weighed):
+            move = [slot.value(x + _STEP) - slot.value(x - _STEP) for x in at[:, k]]
+            found[:, k, end + number] = np.array(move) / (2 * _STEP * given.deviation)
+        return found
+
+    @cached_property
+    def _kinds(self) -> list[tuple[list[int], list[int], list[int]]]:
+        """Coordinates of each curve: of its instrument, of its contact point, and all others.
+
+        The former move what is recorded and no balance; a contact point moves depths of the base
+        and nothing else.
         """
-        terms = []
-        for i, (curve, noise) in enumerate(zip(self.curves, self.noise, strict=True)):
-            if (term := (known or {}).get(i)) is None:
-                force = self.known(at, i).force(curve)
-                term = curve.weights * (force - curve.force) / noise
-                if self.memory and self.memory[i]:
-                    term = differenced(term, self.memory[i])
-            terms.append(term)
-        for slot, coordinate in zip(self.slots, at, strict=True):
-            given = getattr(self.explanation.parts[slot.part], slot.name)
-            if isinstance(given, Weighed):
-                terms.append(np.array([(slot.value(coordinate) - given) / given.deviation]))
-        return terms
+        found = []
+        responds = bool(self.explanation.of(Responds))
+        for curve, acting in zip(self.curves, self._acting, strict=True):
+            kinds: tuple[list[int], list[int], list[int]] = [], [], []
+            for k in acting:
+                part = self.explanation.parts[self.slots[k].part]
+                is_record = isinstance(part, Records) and (
+                    curve.stiffness is None
+                    or not (
+                        responds
+                        or curve.touch is not None
+                        or type(part).stiffness is not Records.stiffness
+                    )
+                )
+                is_touch = self.slots[k].name == CONTACT_POINT and not responds
+                single = not self.explanation.takes_columns
+                kinds[2 if single else 0 if is_record else 1 if is_touch else 2].append(k)
+            found.append(kinds)
+        return found
+
+    def terms(self, at: Array) -> Array:
+        """Return the terms of coordinates; if forces do not balance, it is a ConvergenceError."""
+        (terms,) = self.trials(np.asarray(at)[None]).terms
+        if not np.isfinite(terms).all():
+            self.forces(at)
+        return np.asarray(terms)
+
+    def squares(self, terms: Array) -> tuple[float, ...]:
+        """Return χ² of each curve, then of each term of what is weighed."""
+        ends = np.cumsum([curve.force.size for curve in self.curves])
+        parts = np.split(terms, [*ends, *range(ends[-1] + 1, terms.size)])
+        return tuple(float(part @ part) for part in parts if part.size)
 
     def chi_squared(self, at: Array) -> float:
         """Return χ²."""
-        return float(np.sum(np.concatenate(self.terms(at)) ** 2))
+        return float(np.sum(self.terms(at) ** 2))
 
     def criterion(self, chi_squared: float) -> float:
         """Return Akaike's criterion, less a constant of the curves."""
@@ -187,21 +297,10 @@ class Objective:
         searched = sum(effect.searched(curve) for effect in effects for curve in self.curves)
         return chi_squared + 2 * (len(self.slots) + searched)
 
-    def jacobian(self, at: Array, free: Sequence[int], here: list[Array] | None = None) -> Array:
-        """Return the derivatives of the residuals by some coordinates, from differences.
-
-        ``here`` are the terms at the coordinates, where they are known.
-        """
-        here, columns = here or self.terms(at), []
-        for k in free:
-            step = _STEP if at[k] + _STEP <= self.limits[1][k] else -_STEP
-            moved = at.copy()
-            moved[k] += step
-            # A quantity of one curve leaves the others as they are.
-            same = {i: here[i] for i in range(len(self.curves)) if not self.acts(self.slots[k], i)}
-            change = np.concatenate(self.terms(moved, same)) - np.concatenate(here)
-            columns.append(change / step)
-        return np.column_stack(columns)
+    def jacobian(self, at: Array, free: Sequence[int]) -> Array:
+        """Return the derivatives of the terms by some coordinates, of shape (terms, free)."""
+        at = np.asarray(at)[None]
+        return np.asarray(self.derivatives(at, self.trials(at))[0][[*free]].T)
 
     def deviations(self, at: Array) -> Array:
         """Return the Cramér–Rao bound of each coordinate; infinite if it is not determined."""
@@ -209,57 +308,24 @@ class Objective:
         variances = np.diag(np.linalg.pinv(jacobian.T @ jacobian, rcond=1e-14))
         return np.where(variances > 0, np.sqrt(np.abs(variances)), np.inf)
 
+    @cached_property
+    def coarse(self) -> Objective:
+        """χ² of a few means, unless no mean stands for rows."""
+        if any(self.memory) or any(effect.jumps for effect in self.explanation.effects):
+            return self
+        return replace(self, curves=tuple(curve.coarse for curve in self.curves))
+
     def minimise(self, start: Array, held: Sequence[int] = (), *, steps: int = 0) -> Minimum:
         """Return the minimum of χ² near a start, where the coordinates ``held`` stay.
 
-        With a number of ``steps``, roughly.
+        With a number of ``steps``, roughly.  If forces do not balance there, it is a
+        ConvergenceError.
         """
-        free = [k for k in range(len(self.slots)) if k not in held]
-        low, high = (ends[free] for ends in self.limits)
-
-        def full(some: Array) -> Array:
-            at = np.array(start, dtype=float)
-            at[free] = some
-            return at
-
-        at = np.clip(np.asarray(start, dtype=float)[free], low, high)
-        if not free:
-            return Minimum(full(at), self.chi_squared(full(at)))
-        # Derivatives are asked for where the residuals were last.
-        terms = lru_cache(maxsize=1)(lambda some: self.terms(full(np.frombuffer(some))))
-        tolerance = _ROUGHLY if steps else _TOLERANCE
-        # Away from the limits the latter is quicker.
-        for method, most in ((_SEARCHES[-1][0], steps),) if steps else _SEARCHES:
-            found = least_squares(
-                lambda some: np.concatenate(terms(some.tobytes())),
-                at,
-                lambda some: self.jacobian(full(some), free, terms(some.tobytes())),
-                (low, high),
-                method=method,
-                max_nfev=most,
-                xtol=tolerance,
-                ftol=tolerance,
-                gtol=tolerance,
-            )
-            at = found.x
-            if found.success:
-                break
-        return Minimum(full(at), 2 * float(found.cost))
-
-    def best(
-        self, starts: Iterable[Array], idle: tuple[float, float] = (np.inf, np.inf)
-    ) -> Minimum:
-        """Return the least minimum from several starts: few steps of all, more of the best.
-
-        One whose χ² is then in an ``idle`` range is not sought to the end.
-        """
-        left = list(starts)
-        for steps, kept in _HALVING:
-            minima = [self.minimise(start, steps=steps) for start in left]
-            minima.sort(key=lambda minimum: minimum.chi_squared)
-            left = [minimum.at for minimum in minima[:kept]]
-        low, high = idle
-        return minima[0] if low < minima[0].chi_squared < high else self.minimise(left[0])
+        stays = np.isin(np.arange(len(self.slots)), [*held])
+        (found,) = descend(self, np.asarray(start, dtype=float)[None], stays[None], steps=steps)
+        if not np.isfinite(found.chi_squared):
+            self.forces(found.at)
+        return found
 
     def values(self, at: Array) -> dict[tuple[str, int | None], float]:
         """Return values in SI by name, and curve of what is not shared."""

@@ -91,9 +91,9 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
             reason = f"no position reaches it, the deepest is {readable(deepest, 'm', 4)}"
             raise ConfigError(f"{reason}; give the position of first touch", CONTACT_POINT)
     bodies, layers, ratio = _on_solid(config, indenters, measured, point, progress)
-    members, touch = [], point is not None
+    members = []
     for source, one, body in zip(sources, measured, bodies, strict=True):
-        curve = Curve(one.position, one.force, body, one.time, one.unloading, one.stiffness, touch)
+        curve = Curve(one.position, one.force, body, one.time, one.unloading, one.stiffness, point)
         members.append(Member(source.name, curve, one, data_of(one, config)))
     model = _known(config.model, fix, ratio)
     # What is given leaves nothing to ask.

@@ -240,6 +240,7 @@ def with_estimates(
     fit: Candidate, threshold: float, extra: Sequence[Effect], names: Sequence[str]
 ) -> Candidate:
     """Return an explanation with the estimates of some of its quantities, or of all."""
+    fit = fit.polished()
     objective, minimum = fit.objective, fit.minimum
     accuracy = max(
         known.accuracy(curve) * curve.largest / noise

@@ -196,6 +196,7 @@ class Fit:
             "chi_squared": answer.chi_squared(fit),
             "delta_aic": fit.aic - answer.explanations[0].aic,
             "tied": fit in answer.tied,
+            "given_up": fit.minimum.given_up,
             "holds_modulus": fit not in answer.not_held,
             "parameters": bare | {name: e.to_dict() for name, e in fit.sought.items()},
         }

@@ -2,28 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+
+from pellicle.arrays import Array
 
 from .candidate import NONE, Candidate, Types, best_of
 from .curve import Curve
 from .effect import Adds, Effect, Records, Sizes, Solid
 from .explanation import Explanation
 from .noise import neighbour_noise
-from .objective import ROUGH, Objective
+from .objective import Objective
+from .search import Minimum, cost_of, descend
 from .starts import starts
 from .verdict import Fits
 
 Explanations = Mapping[Types, Explanation]
-_SAME = 0.01
-"""Difference of χ² that decides nothing."""
 _ROWS, _FEW, _ROWS_OF_FEW = 400, 2, 12_000
 """Means that stand for the rows of each pass, where the force has no jumps, and those of a few
 explanations."""
-_FAR = 40.0
-"""Difference of AIC beyond which an explanation is not sought to the end."""
+_FAR, _NEAR, _LEADS, _BESIDE = 20.0, 4.0, 2.0, 1.0
+"""Differences of AIC to the best beyond which an explanation is given up, and not sought to all
+digits; of a pair to its parts, and to the best."""
+_FEW_STARTS, _STEPS, _KEPT = 6, 4, 2
+"""Starts from which searches go, their rough steps, and how many are sought to the end."""
+_LOWER = 0.1
+"""Fall of χ² that is worth another search."""
+_COMPARED = 2e-2
+"""Fall of χ² that is left where explanations are compared."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +86,7 @@ def comparison(
     rows = _ROWS if len(candidates) > _FEW else _ROWS_OF_FEW
     means = tuple(curve.binned(rows) for curve in curves)
     simple = _sought({types: candidates[types] for types in (NONE, word)}, word, {}, of, means)
-    simple = at_common_noise(simple)
+    simple = at_common_noise({types: fit.polished() for types, fit in simple.items()})
     best = best_of(simple.values())
     if not memory and any(found := tuple(judged.memory for judged in best.judgements)):
         fits = comparison(word, candidates, curves, found)
@@ -90,7 +98,10 @@ def comparison(
             return fits
     # Another noise only scales χ²; at last it is that of the best.
     fits = _sought(candidates, word, simple, best.of_rows, means)
-    fits = at_common_noise({types: _restarted(fit, fits) for types, fit in fits.items()})
+    fits = {types: _restarted(fit, word, fits) for types, fit in fits.items()}
+    ends = {t: _end(t, word, fits, _NEAR) for t in fits}
+    polished = {t: f.polished() if f.aic < ends[t] else f for t, f in fits.items()}
+    fits = at_common_noise(polished)
     # The modulus of the end of the loading is that after the time since the best first touch.
     best = best_of(fits.values())
     pairs = zip(best.whole, best.contact_points, strict=True)
@@ -116,27 +127,49 @@ def _sought(
         parts = [fit for part, fit in fits.items() if part < types]
         # A pair starts from its parts.
         at = starts(objective, parts, scan=not word < types or not word)
-        idle = [_idle(types, word, objective, fits)] if simple else []
-        fits[types] = Candidate(types, objective, objective.best(at, *idle), of.curves)
+        goal = np.inf
+        if simple:
+            goal = _end(types, word, fits, _FAR) - objective.criterion(0.0)
+        known = fits.get(word)
+        fits[types] = Candidate(types, objective, _least(objective, at, goal, known), of.curves)
     return fits
 
 
-def _idle(types: Types, word: Types, objective: Objective, fits: Fits) -> tuple[float, float]:
-    """Return between which χ² an explanation decides nothing.
+def _end(types: Types, word: Types, fits: Fits, far: float) -> float:
+    """Return the AIC above which an explanation decides nothing.
 
-    It is then far behind the best, or behind one of its parts; worse than nothing at all it cannot
-    be, which it mostly contains.
+    It is then far behind the best, or no better than nothing at all; or, of a pair, neither the
+    best nor ahead of its parts.
     """
-    low, contained = min(fit.aic for fit in fits.values()) + _FAR, [fits[NONE]]
-    if word < types:
-        contained = [fits[part] for part in (word, types - word) if part in fits]
-        low = min(low, *(fit.aic + 1 for fit in contained))
-    high = min(fit.chi_squared for fit in contained)
-    simple = fits[word]
-    is_whole = objective.curves is simple.whole
-    # Of means, χ² lacks the scatter of the rows about them.
-    scatter = 0.0 if is_whole else simple.chi_squared - simple.minimum.chi_squared
-    return low - objective.criterion(0.0) - scatter, high - scatter + _SAME
+    least = min(fit.aic for fit in fits.values())
+    if not word < types:
+        return min(least + far, fits[NONE].aic)
+    of_parts = min(fits[part].aic for part in (word, types - word) if part in fits) - _LEADS
+    return max(min(least + far, of_parts), least + _BESIDE)
+
+
+def _least(
+    objective: Objective, starts: Sequence[Array], goal: float, known: Candidate | None
+) -> Minimum:
+    """Return the least minimum from several starts: few steps of all, more of the best.
+
+    One that does not come below a goal for χ² of all rows is given up.
+    """
+    coarse, of_means, of_coarse = objective.coarse, goal, goal
+    if known is not None:
+        # Of means, χ² lacks the scatter of the rows about them.
+        whole, at = known.chi_squared, known.minimum.at
+        of_means -= whole - replace(known.objective, curves=objective.curves).chi_squared(at)
+        of_coarse -= whole - replace(known.objective, curves=coarse.curves).chi_squared(at)
+    left = np.array(starts)
+    if len(left) > _KEPT:
+        terms = coarse.trials(np.clip(left, *coarse.limits)).terms
+        left = left[np.argsort(cost_of(terms))[:_FEW_STARTS]]
+        minima = descend(coarse, left, steps=_STEPS, goal=of_coarse)
+        minima.sort(key=lambda minimum: minimum.chi_squared)
+        left = np.array([minimum.at for minimum in minima[:_KEPT]])
+    minima = descend(objective, left, goal=of_means, fall=_COMPARED, rivals=True)
+    return min(minima, key=lambda minimum: minimum.chi_squared)
 
 
 def at_common_noise(fits: Fits) -> Fits:
@@ -150,12 +183,13 @@ def at_common_noise(fits: Fits) -> Fits:
     return {types: fit.at_noise(noise) for types, fit in fits.items()}
 
 
-def _restarted(fit: Candidate, fits: Fits) -> Candidate:
+def _restarted(fit: Candidate, word: Types, fits: Fits) -> Candidate:
     """Return the least χ² from the minima of what it is a part of, too."""
-    found = [fit.minimum]
-    for whole in (other for types, other in fits.items() if fit.types and fit.types < types):
-        start = fit.objective.at_values(whole.objective.values(whole.minimum.at))
-        rough = fit.objective.minimise(start, steps=ROUGH)
-        if rough.chi_squared < fit.minimum.chi_squared - 0.1:
-            found.append(fit.objective.minimise(rough.at))
-    return replace(fit, minimum=min(found, key=lambda minimum: minimum.chi_squared))
+    wholes = [other for types, other in fits.items() if fit.types and fit.types < types]
+    if not wholes:
+        return fit
+    values = [whole.objective.values(whole.minimum.at) for whole in wholes]
+    at = np.array([fit.objective.at_values(known) for known in values])
+    goal = min(_end(fit.types, word, fits, _FAR) - fit.objective.criterion(0.0), fit.chi_squared)
+    found = _least(fit.objective, [*at], goal - _LOWER, fits[word])
+    return min(fit, replace(fit, minimum=found), key=lambda one: one.minimum.chi_squared)

@@ -12,10 +12,13 @@ from pellicle.arrays import Array
 
 from .candidate import Candidate
 from .effect import Records, powers
-from .objective import CONTACT_POINT, MODULUS, ROUGH, Objective, Slot
+from .objective import CONTACT_POINT, MODULUS, Objective, Slot
+from .search import descend
 
-_POINTS, _ROWS = 25, 120
-"""Contact points that are scanned, and rows of each pass that a scan sees."""
+_POINTS = 25
+"""Contact points that are scanned."""
+_ROUGH = 20
+"""Steps of a search on one curve of several."""
 _LAST = 0.05
 """Share of the range at whose end no contact begins."""
 _KEPT = 4
@@ -54,8 +57,9 @@ def pooled(objective: Objective) -> list[Array]:
     for curve, noise in zip(objective.curves, objective.noise, strict=True):
         sizes = objective.sizes._replace(shallow_force=curve.shallow_force)
         alone = replace(objective, curves=(curve,), noise=(noise,), sizes=sizes, memory=())
-        minima = [alone.minimise(at, steps=ROUGH).at for at in scanned(alone)]
-        each.append([{name: v for (name, _), v in alone.values(at).items()} for at in minima])
+        minima = descend(alone.coarse, np.array(scanned(alone)), steps=_ROUGH)
+        values = [alone.values(minimum.at).items() for minimum in minima]
+        each.append([{name: value for (name, _), value in of} for of in values])
 
     def value(slot: Slot, known: Sequence[dict[str, float]]) -> float:
         shared = float(np.median([values[slot.name] for values in known]))
@@ -71,39 +75,42 @@ def scanned(objective: Objective) -> list[Array]:
     With all forces of an explanation its recorded force grows: at each point one factor is linear.
     """
     (curve,) = objective.curves
-    curve = curve.binned(_ROWS)
-    means = replace(objective, curves=(curve,))
+    curve = curve.coarse
+    means = replace(objective, curves=(curve,), memory=())
     point, modulus = objective.index(CONTACT_POINT), objective.index(MODULUS)
     found = []
     for own in _own(means):
         # Noisy positions are taken as they are, where no force bends the cantilever.
         shift = means.known(own, 0).free_force(curve) / (curve.stiffness or np.inf)
         tip = replace(curve, position=curve.position + shift, stiffness=None)
-        last, trials = tip.position.max() - _LAST * tip.span, []
-        tips = replace(means, curves=(tip,))
-        for z in np.linspace(tip.position.min(), last, _POINTS if point is not None else 1):
-            at = own.copy()
-            if modulus is not None:
-                at[modulus] = 0.0
-            if point is not None:
-                at[point] = objective.slots[point].coordinate(z)
-            trials.append(_scaled(tips, at))
-        found.append(min(trials, key=lambda trial: trial[0]))
+        last = tip.position.max() - _LAST * tip.span
+        at = np.repeat(own[None], _POINTS if point is not None else 1, axis=0)
+        if modulus is not None:
+            at[:, modulus] = 0.0
+        if point is not None:
+            touches = np.linspace(tip.position.min(), last, _POINTS)
+            at[:, point] = touches / objective.slots[point].scale
+        misfits, scaled = _scaled(replace(means, curves=(tip,)), at)
+        best = int(np.argmin(misfits))
+        found.append((misfits[best], scaled[best]))
     return [at for _, at in sorted(found, key=lambda trial: trial[0])[:_KEPT]]
 
 
-def _scaled(objective: Objective, at: Array) -> tuple[float, Array]:
-    """Return the misfit [N²] of the best multiple of all forces, and its coordinates."""
-    (curve,), (force,) = objective.curves, objective.forces(at)
+def _scaled(objective: Objective, at: Array) -> tuple[Array, Array]:
+    """Return the misfits [N²] of the best multiples of all forces, and their coordinates."""
+    (curve,), at = objective.curves, at.copy()
+    (balance,) = objective.trials(at).balances
     free = objective.known(at, 0).free_force(curve)
-    measured, force = curve.weights * (curve.force - free), curve.weights * (force - free)
-    norm = float(force @ force)
-    factor = float(force @ measured) / norm if norm else 0.0
-    if factor <= 0:
-        # Where most of the measured force is negative, as far from 0 before contact.
-        factor = curve.largest / (float(np.ptp(force)) or curve.largest)
+    force = np.nan_to_num(balance.recorded) - free
+    measured, weighed = curve.weights * (curve.force - free), curve.weights * force
+    norm = np.sum(weighed**2, axis=1)
+    product = np.sum(weighed * measured, axis=1)
+    factor = np.divide(product, norm, out=np.zeros_like(norm), where=norm > 0)
+    # Where most of the measured force is negative, as far from 0 before contact.
+    span = np.ptp(force, axis=1)
+    factor = np.where(factor > 0, factor, curve.largest / np.where(span > 0, span, curve.largest))
     for k, slot in enumerate(objective.slots):
         is_load = not isinstance(objective.explanation.parts[slot.part], Records)
         if is_load and powers(slot.quantity.unit)[0] == 1:
-            at[k] = at[k] + np.log(factor) if slot.quantity.log else at[k] * factor
-    return float(np.sum((factor * force - measured) ** 2)), at
+            at[:, k] = at[:, k] + np.log(factor) if slot.quantity.log else at[:, k] * factor
+    return np.sum((factor[:, None] * weighed - measured) ** 2, axis=1), at

@@ -48,7 +48,7 @@ class Case(NamedTuple):
     @property
     def contact(self) -> Contact:
         """The contact of the indenter on a half-space."""
-        return Contact.on_half_space(self.curve.indenter, self.modulus)
+        return replace(self.curve.contact, modulus=self.modulus)
 
     def force(self, *effects: Effect, contact_point: float = 0.0) -> Array:
         """Return the force [N] that is recorded with some effects."""
@@ -291,7 +291,7 @@ def what_it_says_is_valid(case: Case) -> str:
 
 
 def _excuse(effect: Effect, curve: Curve) -> str:
-    return effect.excuse(Contact.on_half_space(curve.indenter, 1.0), curve, frozenset())
+    return effect.excuse(curve.contact, curve, frozenset())
 
 
 def _free(effect: Effect) -> Effect:
@@ -305,12 +305,38 @@ def _curves() -> Iterator[tuple[str, Curve]]:
     bodies: dict[str, Any] = {"a round tip": bead, "a cone": cone}
     passes = {"the approach": _DEPTHS, "both passes": np.append(_DEPTHS, _DEPTHS[-2::-1])}
     for (tip, body), (words, depth) in product(bodies.items(), passes.items()):
-        force = Contact.on_half_space(body, _MODULUS).force(depth)
+        force = Contact.on_half_space(body, _MODULUS, 2 * float(np.ptp(depth))).force(depth)
         way = np.abs(np.diff(depth + force / _STIFFNESS, prepend=depth[0]))
         curve = Curve(depth, force, body, np.cumsum(way) / _SPEED, stiffness=_STIFFNESS)
         for array in (depth, force, curve.clock, curve.base, curve.smoothed, curve.velocity):
             array.flags.writeable = False
         yield f"{words} of {tip}", curve
+
+
+def _columns_are_rows(effect: type[Effect]) -> bool:
+    """Return whether an effect takes columns of quantities, of many trials at once, as numbers.
+
+    Of columns of shape (k, 1) its results have the shape (k, n), and each row is that of the
+    numbers.  An effect that takes numbers alone is asked one by one.
+    """
+    for _, curve in _curves():
+        free, sizes = effect(), Sizes.of_curve(curve)
+        if _excuse(free, curve):
+            continue
+        known, solid = free.known(sizes), Solid(reduced_modulus=_MODULUS, contact_point=0.0)
+        factors = np.array([[1.0], [1.1], [0.9]])
+        own = {name: getattr(known, name) * factors for name in free.open}
+        moduli = {"reduced_modulus": _MODULUS * factors[::-1]}
+        columns = Explanation(solid.of_values(moduli), (known.of_values(own),))
+        try:
+            together = columns.balance(curve, together=True).recorded
+        except Exception:  # Of another author's code any may come.
+            return False
+        each = columns.balance(curve, together=False).recorded
+        far = np.inf if together.shape != each.shape else np.max(np.abs(together - each))
+        if not far <= _ROUNDING * np.max(np.abs(each)):
+            return False
+    return True
 
 
 QUICK = [

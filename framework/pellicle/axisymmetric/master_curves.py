@@ -84,9 +84,9 @@ def flat_punch(radius: float, depth: Array, length: float) -> ForceCurve:
     return spread(touches, force, np.full_like(d, stiffness[0]), force * rate / radius)
 
 
-def punch_radius(stiffness: Array, length: float) -> ContactRadius:
+def punch_radius(stiffness: Array, length: float | Array) -> ContactRadius:
     """Return the radius [m] of flat punches of stiffnesses k/E* [m] at s = ``length`` [m]."""
-    if not length:
+    if not np.any(length):
         return ContactRadius(stiffness / 2, np.full_like(stiffness, 2.0))
     first, last, inverse = _punch_radii()
     size = np.log(stiffness / length)

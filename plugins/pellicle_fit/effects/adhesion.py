@@ -1,10 +1,12 @@
 """Adhesion in equilibrium, under tension and with a cantilever."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
 from pellicle.arrays import Array, Mask
 from pellicle_fit.effect import Contact, Curve, Fitted, Responds, Response, Sizes, Values, fitted
@@ -58,62 +60,67 @@ class Adhesion(Responds):
 
     def searched(self, curve: Curve) -> int:
         """Return the cost of the rows that touch on passes where no jump tells them."""
-        return _CHANGE_POINT * (len(curve.passes) - len(list(jumps(curve))))
+        return _CHANGE_POINT * (len(curve.passes) - len(_jumps(curve)))
 
     def response(self, contact: Contact, curve: Curve, path: Array, softness: float) -> Response:
         """Return the force as a function of the base over the contact point."""
-        from scipy.interpolate import CubicSpline
-
         # A search may try a contact point that no row reaches.
-        deepest = max(float(np.max(path)), _SHALLOW * curve.span)
-        position, force = self._branch(contact, deepest, softness)
-        end = position[0]
+        deepest = np.maximum(np.max(path, axis=-1, keepdims=True), _SHALLOW * curve.span)
+        position, force = (np.atleast_2d(x) for x in self._branch(contact, deepest, softness))
+        end = position[:, :1]
         root = np.sqrt(np.maximum(position - end, 0.0))
-        keep = np.append(True, root[1:] > np.maximum.accumulate(root)[:-1] + 1e-9 * root[-1])
-        spline = back = CubicSpline(root[keep], force[keep])
+        splines = backs = [*map(_spline, root, force)]
         if np.any(np.diff(root) < 0):
-            # The edge of a worn tip: what is pulled off it jumps to it from a wider contact.
-            wider = np.minimum.accumulate(root[::-1])[::-1]
-            keep = np.append(root[:-1] < wider[1:] - 1e-9 * root[-1], True)
-            back = CubicSpline(root[keep], force[keep])
-        ramp = _RAMP * curve.span / curve.passes[0].size
+            backs = [*map(_spline_back, root, force)]
+        ramp, jumping = _RAMP * curve.span / curve.passes[0].size, _jumps(curve)
 
         def response(depth: Array) -> Array:
             beyond = depth - end
             over = np.where(curve.moves_out, beyond, depth)
-            touches, steep = np.clip(0.5 + over / ramp, 0.0, 1.0), np.zeros_like(depth)
-            for rows, touching in jumps(curve):
-                touches[rows] = touching
-                steep[rows] = _PENALTY * curve.largest / curve.span * np.minimum(beyond[rows], 0.0)
-            at = np.sqrt(np.clip(beyond, 0.0, root[-1] ** 2))
-            along = spline(at)
-            if back is not spline:
-                along = np.where(curve.moves_out, back(at), along)
-            return np.asarray(touches * (along + steep))
+            touches, steep = np.clip(0.5 + over / ramp, 0.0, 1.0), np.zeros_like(beyond)
+            for rows, touching in jumping:
+                touches[:, rows] = touching
+                penalty = _PENALTY * curve.largest / curve.span
+                steep[:, rows] = penalty * np.minimum(beyond[:, rows], 0.0)
+            at = np.sqrt(np.clip(beyond, 0.0, root[:, -1:] ** 2))
+            along = _each(splines, at)
+            if backs is not splines:
+                along = np.where(curve.moves_out, _each(backs, at), along)
+            force = touches * (along + steep)
+            return np.asarray(force if depth.ndim > 1 or len(force) > 1 else force[0])
 
         return response
 
-    def _branch(self, contact: Contact, deepest: float, softness: float) -> tuple[Array, Array]:
+    def _branch(self, contact: Contact, deepest: Array, softness: float) -> tuple[Array, Array]:
         """Return `_equilibria` of the stable branch, from its end to a position of the base [m]."""
-        scale = max(deepest, self.work_of_adhesion / contact.modulus)
-        top = np.log(scale) + np.arange(0, _HIGHER, 0.5)
-        reaches = self._equilibria(contact, np.exp(top), softness)[0] >= deepest
-        top = top[int(np.argmax(reaches)) if reaches.any() else -1]
-        grid = np.linspace(top - _DECADES * np.log(10), top, _SEARCHED)
+
+        def at(rows: Array, index: NDArray[np.intp]) -> Array:
+            return np.take_along_axis(rows, index[..., None], axis=-1)
+
+        scale = np.maximum(deepest, self.work_of_adhesion / contact.modulus)
+        tops = np.log(scale) + np.arange(0, _HIGHER, 0.5)
+        reaches = self._equilibria(contact, np.exp(tops), softness)[0] >= deepest
+        reaches[..., -1] = True
+        top = at(tops, np.argmax(reaches, axis=-1))
+        grid = first = top + np.linspace(-_DECADES * np.log(10), 0, _SEARCHED)
         position = self._equilibria(contact, np.exp(grid), softness)[0]
-        rise = position - position[0]
-        if 0 <= rise[1] < _LEVEL * abs(position[0]) and rise.min() >= 0:
-            # The edge of a flat end holds the rim until the punch lets go, at the depth 0.
-            leaves = grid[np.argmax(rise > _LEVEL * rise[-1])]
-            ends = np.append(grid[0], np.linspace(leaves, top, _NODES - 1))
-            return self._equilibria(contact, np.exp(ends), softness)
+        rise = position - position[..., :1]
+        # The edge of a flat end holds the rim until the punch lets go, at the depth 0.
+        level = np.abs(rise[..., 1]) < _LEVEL * np.abs(position[..., 0])
+        edge = (level & (rise.min(axis=-1) >= 0))[..., None]
         for _ in range(_REFINED):
-            least = int(np.argmin(self._equilibria(contact, np.exp(grid), softness)[0]))
-            low, high = grid[max(least - 1, 0)], grid[min(least + 1, _SEARCHED - 1)]
-            grid = np.linspace(low, high, _SEARCHED)
-        start = grid[_SEARCHED // 2]
-        nodes = np.exp(start + (top - start) * np.linspace(0, 1, _NODES) ** 2)
-        return self._equilibria(contact, nodes, softness)
+            least = np.argmin(self._equilibria(contact, np.exp(grid), softness)[0], axis=-1)
+            low = at(grid, np.maximum(least - 1, 0))
+            high = at(grid, np.minimum(least + 1, _SEARCHED - 1))
+            grid = low + (high - low) * np.linspace(0, 1, _SEARCHED)
+        start, ramp = grid[..., [_SEARCHED // 2]], np.linspace(0, 1, _NODES)
+        nodes = start + (top - start) * ramp**2
+        if edge.any():
+            leaves = at(first, np.argmax(rise > _LEVEL * rise[..., -1:], axis=-1))
+            ends = leaves + (top - leaves) * np.linspace(0, 1, _NODES - 1)
+            ends = np.concatenate([first[..., :1], ends], axis=-1)
+            nodes = np.where(edge, ends, nodes)
+        return self._equilibria(contact, np.exp(nodes), softness)
 
     def _equilibria(self, contact: Contact, depth: Array, softness: float) -> tuple[Array, Array]:
         """Return position of the base [m] and force [N] that without adhesion had depths [m]."""
@@ -121,6 +128,29 @@ class Adhesion(Responds):
         retraction = np.sqrt(4 * np.pi * self.work_of_adhesion * radius / slope)
         force = force - stiffness * retraction
         return depth - retraction + softness * force, force
+
+
+def _each(splines: Sequence[CubicSpline], at: Array) -> Array:
+    return np.array([spline(row) for spline, row in zip(splines, at, strict=True)])
+
+
+def _spline(root: Array, force: Array) -> CubicSpline:
+    """Return the force over the root of the way from the end, at nodes from which that grows."""
+    keep = np.append(True, root[1:] > np.maximum.accumulate(root)[:-1] + 1e-9 * root[-1])
+    return CubicSpline(root[keep], force[keep])
+
+
+def _spline_back(root: Array, force: Array) -> CubicSpline:
+    """Return the same where the indenter is pulled off."""
+    # The edge of a worn tip: what is pulled off it jumps to it from a wider contact.
+    wider = np.minimum.accumulate(root[::-1])[::-1]
+    keep = np.append(root[:-1] < wider[1:] - 1e-9 * root[-1], True)
+    return CubicSpline(root[keep], force[keep])
+
+
+@lru_cache(maxsize=16)
+def _jumps(curve: Curve) -> list[tuple[NDArray[np.intp], Mask]]:
+    return [*jumps(curve)]
 
 
 def jumps(curve: Curve) -> Iterable[tuple[NDArray[np.intp], Mask]]:

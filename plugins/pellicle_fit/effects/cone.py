@@ -1,5 +1,6 @@
 """A cone in place of a bead."""
 
+from dataclasses import replace
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -23,4 +24,4 @@ class Cone(Shape, title="a cone instead"):
 
     def contact(self, contact: Contact) -> Contact:
         """Return the contact of a cone."""
-        return in_place(contact, "cone", half_angle=float(np.pi / 4))
+        return in_place(replace(contact, size=1.0), "cone", half_angle=float(np.pi / 4))

@@ -29,8 +29,7 @@ class Dimitriadis(Layer, title="a thin layer by the polynomial of Dimitriadis"):
 
     def contact(self, contact: Contact) -> Contact:
         """Return the contact with the layer, F = 4/3 E* √R δ^(3/2) P(χ)."""
-        radius, thickness = contact.tip_radius, self.thickness
-        assert radius is not None
+        radius, thickness = contact.size * contact.own_radius, self.thickness
         coefficients = _coefficients(self.poissons_ratio)
 
         def area(depth: Array, _: float) -> Array:
@@ -38,7 +37,7 @@ class Dimitriadis(Layer, title="a thin layer by the polynomial of Dimitriadis"):
             hertz = 4 / 3 * np.sqrt(radius) * depth**1.5
             return np.asarray(hertz * polyval(np.sqrt(radius * depth) / thickness, coefficients))
 
-        limit = min(contact.depth_limit, thickness**2 / radius)
+        limit = np.minimum(contact.depth_limit, thickness**2 / radius)
         return replace(contact, area=area, depth_limit=limit, half_space=False)
 
 

@@ -1,17 +1,21 @@
 """A layer on a rigid base."""
 
 from dataclasses import replace
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
+import numpy as np
 from pydantic import Field
+from scipy.interpolate import CubicSpline
 
 from pellicle.components import HasLayerForceCurve
 from pellicle.units import Quantity
-from pellicle_fit.contact import checked_area
+from pellicle_fit.area_table import checked_area, cubic, layer
 from pellicle_fit.effect import Array, Bends, Contact, Curve, Fitted, fitted
 
 _ERROR = 1e-4
 """Of the tables of force curves on layers, over the largest force."""
+_STEPS, _NEAR = 64, 1e-4
+"""Steps in √δ of an area under a tension, and how near to each other trials share them."""
 
 
 class Layer(Bends, title="a thin layer"):
@@ -39,12 +43,34 @@ class Layer(Bends, title="a thin layer"):
         """Return the contact with the layer."""
         body, size, ratio = contact.indenter, contact.size, self.poissons_ratio
         assert isinstance(body, HasLayerForceCurve)
-        layer = self.thickness / size, ratio
+        thickness = np.asarray(self.thickness / size)
+        of_layer, limit = layer(body, contact.deepest, ratio)
 
         def area(depth: Array, length: float) -> Array:
             depth = depth / size
-            curve = body.layer_force_curve(depth, length / size, *layer)
-            return size**2 * checked_area(body, curve, depth)
+            if not np.any(length):
+                return np.asarray(size**2 * of_layer(depth, thickness))
+            pairs = np.broadcast_arrays(thickness, length / size)
+            known: list[tuple[float, float, float, Any]] = []
+            steps, values = [], []
+            for h, s in zip(*(pair.ravel().tolist() for pair in pairs), strict=True):
+                # Trials beside each other, as for derivatives, differ to first order.
+                near = (one for one in known if abs(one[0] - h) < _NEAR * h)
+                near = (one for one in near if abs(one[1] - s) < _NEAR * (s + _NEAR * h))
+                if (one := next(near, None)) is None:
+                    step = np.sqrt(min(contact.deepest, float(limit(h)))) / _STEPS
+                    depths = (step * np.arange(_STEPS + 1)) ** 2
+                    of = body.layer_force_curve(depths, s, h, ratio)
+                    checked_area(body, of, depths)
+                    one = h, s, step, of
+                    known.append(one)
+                h_, s_, step, of = one
+                steps.append(step)
+                values.append(of.force + of.by_thickness * (h - h_) + of.by_length * (s - s_))
+            spline = CubicSpline(np.arange(_STEPS + 1), np.array(values).T).c.transpose(0, 2, 1)
+            root = np.sqrt(np.maximum(depth, 0.0)) / np.reshape(steps, (-1, 1))
+            area = cubic(spline, np.minimum(root, _STEPS), 1.0)
+            return np.asarray(size**2 * area.reshape(np.shape(depth + length + thickness)))
 
-        limit = size * body.layer_depth_limit(*layer)
-        return replace(contact, area=area, depth_limit=limit, half_space=False, error=_ERROR)
+        deep: Any = size * limit(thickness)
+        return replace(contact, area=area, depth_limit=deep, half_space=False, error=_ERROR)

@@ -18,7 +18,8 @@ class PowerLaw(Relaxing, title="power-law relaxation"):
 
     def relaxed(self, time: float) -> float:
         """Return (t / 1 s)^−α."""
-        return float(time**-self.relaxation_exponent)
+        left: float = time**-self.relaxation_exponent
+        return left
 
     def primitive(self, time: Array) -> Array:
         """Return t^(1−α) / (1 − α) [s]."""

@@ -7,16 +7,22 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from pellicle_fit.effect import Array, Contact, Curve, Responds, Response
+from pellicle_fit.effect import Array, Contact, Curve, Responds, Response, quantities
 
 _NODES = 97
 """Nodes of the path while the indenter moves in; as many where it dwells or moves out."""
 _MODULI = 6
 """Effective moduli between which the force under a tension is interpolated."""
+_TOGETHER = 12
+"""Trials whose courses are computed at once, as memory near the processor holds them."""
+_GRAZING = 1e-3
+"""Depth over the way to which a path without a touch is raised."""
 _BESIDE_TENSION = 0.03
 """Error of the effective modulus beside a tension, against solutions of the whole problem."""
 _EARLIEST = 1e-4
 """Least time in contact over that of the loading; before it the response is that of then."""
+_POINTS = chebyshev.chebpts1(_MODULI)
+_FROM_NODES = np.linalg.inv(chebyshev.chebvander(_POINTS, _MODULI - 1))
 
 
 class Relaxing(Responds):
@@ -35,16 +41,16 @@ class Relaxing(Responds):
 
     def accuracy(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> float:
         """Return the error of the force over the largest one."""
-        return _BESIDE_TENSION if contact.tension else 1e-4
+        return _BESIDE_TENSION if np.any(contact.tension) else 1e-4
 
     def response(self, contact: Contact, curve: Curve, path: Array, softness: float) -> Response:
         """Return the force as a function of the depth."""
-        share, equal = self._course(replace(contact, tension=0.0), curve, path)
+        share, equal = self._courses(contact, curve, path)
 
         def response(depth: Array) -> Array:
             # While the contact shrinks, the path decides.
             depth = np.where(curve.moves_out, equal, depth)
-            if contact.tension:
+            if np.any(contact.tension):
                 return self._tensed(contact, share, depth)
             return share * contact.force(depth)
 
@@ -54,97 +60,149 @@ class Relaxing(Responds):
         """Return the force [N] of effective moduli, given over E*, under tension."""
         # The force over the effective modulus is a polynomial in the logarithm of that.
         at = np.log(share)
-        middle, half = (at.max() + at.min()) / 2, max(np.ptp(at) / 2, 1e-12)
-        nodes = chebyshev.chebpts1(_MODULI)
-        moduli = np.exp(middle + half * nodes)
-        forces = np.array(
-            [replace(contact, modulus=contact.modulus * m).force(depth) / m for m in moduli]
-        )
-        coefficients = chebyshev.chebfit(nodes, forces, _MODULI - 1)
-        basis = chebyshev.chebvander((at - middle) / half, _MODULI - 1)
-        return np.asarray(share * np.sum(basis * coefficients.T, axis=1))
+        high, low = at.max(axis=-1, keepdims=True), at.min(axis=-1, keepdims=True)
+        middle, half = (high + low) / 2, np.maximum((high - low) / 2, 1e-12)
+        moduli = [np.exp(middle + half * node) for node in _POINTS]
+        forces = [replace(contact, modulus=contact.modulus * m).force(depth) / m for m in moduli]
+        basis = chebyshev.chebvander((at - middle) / half, _MODULI - 1) @ _FROM_NODES
+        return np.asarray(share * sum(basis[..., i] * force for i, force in enumerate(forces)))
 
-    def _course(self, contact: Contact, curve: Curve, depth: Array) -> tuple[Array, Array]:
+    def _courses(self, contact: Contact, curve: Curve, path: Array) -> tuple[Array, Array]:
         """Return the effective modulus over E*, and depths [m] of growing contacts of equal size.
 
-        Both are of shape (n,), for a path of depths [m]; the contact is that without tension.
+        Both have shape (n,) or (k, n), for paths of depths [m]; the contact is that without
+        tension.
         """
-        loading = ~curve.moves_out
-        time, z = curve.clock[loading], np.maximum.accumulate(depth[loading])
-        if z[-1] <= 0:
-            return np.ones_like(depth), depth
-        start = np.interp(0.0, z, time) if z[0] <= 0 else time[0] - z[0] * np.ptp(time) / np.ptp(z)
-        later = time > start
-        times, z = np.append(start, time[later]), np.append(0.0, z[later])
+        names = [*quantities(type(self))]
+        columns = [np.reshape(getattr(self, name), (-1,)) for name in names]
+        count = max(len(path) if path.ndim > 1 else 1, *(column.size for column in columns))
+        paths = np.broadcast_to(path, (count, path.shape[-1]))
+        values = np.array([np.broadcast_to(column, count) for column in columns]).T
+        # Trials of a modulus alone have one course.
+        alone = contact.is_own and isinstance(contact.size, float)
+        keys = [
+            (p.tobytes(), v.tobytes()) if alone else i
+            for i, (p, v) in enumerate(zip(paths, values, strict=True))
+        ]
+        first = {key: row for row, key in reversed([*enumerate(keys)])}
+        rows = np.array([*first.values()])
+        numbers = {key: number for number, key in enumerate(first)}
+        bare, found = replace(contact, tension=0.0), []
+        # Of another contact rows belong together, each with its own.
+        for part in np.array_split(rows, -(-rows.size // _TOGETHER) if alone else 1):
+            own = dict(zip(names, values[part].T[:, :, None, None], strict=True))
+            found.append(self.model_copy(update=own)._course(bare, curve, paths[part]))
+        shares, depths = (np.concatenate(parts) for parts in zip(*found, strict=True))
+        back = np.array([numbers[key] for key in keys])
+        if path.ndim == 1 and count == 1:
+            return shares[0], depths[0]
+        return shares[back], depths[back]
+
+    def _course(self, contact: Contact, curve: Curve, depth: Array) -> tuple[Array, Array]:
+        """Return the same of paths of shape (k, n), with quantities of shape (k, 1, 1)."""
+        loading, clock = ~curve.moves_out, curve.clock
+        time, whole = clock[loading], depth
+        z = np.maximum.accumulate(depth[:, loading], axis=1)
+        touches = z[:, -1:] > 0
+        # A path without a touch, which counts for nothing, is raised until it has one.
+        lift = np.where(touches, 0.0, _GRAZING * np.ptp(z, axis=1, keepdims=True) - z[:, -1:])
+        z, depth = z + lift, depth + lift
+        before = time[0] - z[:, 0] * np.ptp(time) / np.maximum(np.ptp(z, axis=1), 1e-300)
+        crossing = np.array([np.interp(0.0, row, time) for row in z])
+        start, end = np.where(z[:, 0] <= 0, crossing, before)[:, None], time[-1]
         # Dense after first touch, and after the start of a dwell.
-        top, end = times[int(np.argmax(z >= 0.98 * z[-1]))], times[-1]
+        top = time[np.argmax(z >= 0.98 * z[:, -1:], axis=1)][:, None]
+        dwells = end - top >= 0.1 * (top - start)
+        top = np.where(dwells, top, end)
         ramp = np.linspace(0, 1, _NODES)
-        if end - top < 0.1 * (top - start):
-            top = end
-        nodes: Array = start + (top - start) * ramp**2
-        if top < end:
-            nodes = np.append(nodes, top + (end - top) * ramp[1:] ** 2)
-        path = np.interp(nodes, times, z)
-        area: Array = contact.area(path, 0.0)
-        weights = self._weights(nodes[1:], nodes)
-        share = (weights @ _rates(nodes, area)) / np.maximum(area[1:], 1e-300)
-        earliest = _EARLIEST * (nodes[-1] - start)
-        at = np.log(np.maximum(curve.clock - start, earliest))
-        shares = np.exp(np.interp(at, np.log(nodes[1:] - start), np.log(np.maximum(share, 1e-12))))
+        nodes = start + (top - start) * ramp**2
+        if dwells.any():
+            nodes = np.append(nodes, top + (end - top) * ramp[1:] ** 2, axis=1)
+        path = np.empty_like(nodes)
+        for k, row in enumerate(z):
+            first = ([], []) if row[0] <= 0 else (start[k], [0.0])
+            path[k] = np.interp(nodes[k], np.append(first[0], time), np.append(first[1], row))
+        area = np.broadcast_to(contact.area(path, 0.0), path.shape)
+        weights = self._weights(nodes[:, 1:], nodes)
+        share = np.einsum("kat,kt->ka", weights, _rates(nodes, area))
+        share = np.log(np.maximum(share / np.maximum(area[:, 1:], 1e-300), 1e-12))
+        earliest = _EARLIEST * (nodes[:, -1:] - start)
+        at, known = np.log(np.maximum(clock - start, earliest)), np.log(nodes[:, 1:] - start)
+        shares = np.exp([np.interp(*row) for row in zip(at, known, share, strict=True)])
         if curve.moves_out.any():
-            rows = curve.moves_out
-            depth = depth.copy()
-            back = curve.clock[rows], depth[rows]
-            shares[rows], depth[rows] = self._shrinking(nodes, path, area, back)
-        return shares, depth
+            out = curve.moves_out
+            back = clock[out], depth[:, out]
+            shares[:, out], depth[:, out] = self._shrinking(nodes, path, area, back)
+        return np.where(touches, shares, 1.0), np.where(touches, depth, whole)
 
     def _shrinking(
         self, t: Array, z: Array, area: Array, back: tuple[Array, Array]
     ) -> tuple[Array, Array]:
         """Return the same while the contact shrinks, for ``back``: times [s] and depths [m].
 
-        The loading has times t [s], depths z [m] and F/E* [m²].  ∫ E(t − t′) dδ from the time of
-        equal contact on is 0.
+        The loading has times t [s], depths z [m] and F/E* [m²], all of shape (k, nodes).
+        ∫ E(t − t′) dδ from the time of equal contact on is 0.
         """
-        end = back[0][-1]
-        u = t[-1] + (end - t[-1]) * np.linspace(0, 1, _NODES)[1:] ** 1.5
-        out = np.append(t[-1], u)
-        down = np.interp(out, np.append(t[-1], back[0]), np.append(z[-1], back[1]))
-        weights = self._weights(u, t)
-        unloaded = (self._weights(u, out) * _rates(out, down)).sum(axis=1)
-        none = np.zeros((u.size, 1))
-        to_end = np.append(none, np.cumsum((weights * _rates(t, z))[:, ::-1], axis=1), axis=1)
-        force = np.append(none, np.cumsum(weights * _rates(t, area), axis=1), axis=1)
-        row = np.arange(u.size)
+        turn, end = t[0, -1], back[0][-1]
+        u = turn + (end - turn) * np.linspace(0, 1, _NODES)[1:] ** 1.5
+        out, before = np.append(turn, u), np.append(turn, back[0])
+        ways = np.append(z[:, -1:], back[1], axis=1)
+        down = np.array([np.interp(out, before, way) for way in ways])
+        weights = self._weights(u[None], t)
+        own = self._weights(u[None], out[None])
+        unloaded = np.einsum("kat,kt->ka", own, _rates(out[None], down))
+        none = np.zeros((len(t), u.size, 1))
+        by_depth = weights * _rates(t, z)[:, None]
+        to_end = np.append(none, np.cumsum(by_depth[:, :, ::-1], axis=2), axis=2)
+        force = np.append(none, np.cumsum(weights * _rates(t, area)[:, None], axis=2), axis=2)
         index, part = _at(to_end, -unloaded)
-        back_in_time = t[::-1]
-        earlier = back_in_time[index] + part * (back_in_time[index + 1] - back_in_time[index])
-        index, part = _at(np.broadcast_to(t, force.shape), earlier)
-        total = force[row, index] + part * (force[row, index + 1] - force[row, index])
-        grown_area = np.interp(earlier, t, area)
-        counts = grown_area > 1e-9 * area[-1]
-        first = (self._weights(t[-1:], t) @ _rates(t, area))[0] / area[-1]
-        share = np.append(first, np.where(counts, total / np.where(counts, grown_area, 1.0), 0.0))
+        earlier = _between(t[:, ::-1], index, part)
+        index, part = _at(t[:, None], earlier)
+        left, right = (
+            np.take_along_axis(force, i[:, :, None], 2)[:, :, 0] for i in (index, index + 1)
+        )
+        total = left + part * (right - left)
+        grown_area, equal = _between(area, index, part), _between(z, index, part)
+        counts = grown_area > 1e-9 * area[:, -1:]
+        first = np.einsum("kat,kt->ka", self._weights(t[:, -1:], t), _rates(t, area)) / area[:, -1:]
+        share = np.append(
+            first, np.where(counts, total / np.where(counts, grown_area, 1.0), 0.0), axis=1
+        )
         # As the contact ends, the modulus is the last that there was.
-        last = np.maximum.accumulate(np.where(np.append(True, counts), np.arange(share.size), 0))
-        share, equal = share[last], np.append(z[-1], np.interp(earlier, t, z))
-        return np.interp(back[0], out, share), np.interp(back[0], out, equal)
+        counts = np.append(np.ones_like(counts[:, :1]), counts, axis=1)
+        last = np.maximum.accumulate(np.where(counts, np.arange(share.shape[1]), 0), axis=1)
+        share = np.take_along_axis(share, last, axis=1)
+        equal = np.append(z[:, -1:], equal, axis=1)
+        index = np.clip(np.searchsorted(out, back[0]) - 1, 0, out.size - 2)
+        step = np.where(out[index + 1] > out[index], out[index + 1] - out[index], 1.0)
+        part = np.clip((back[0] - out[index]) / step, 0.0, 1.0)
+        return tuple(v[:, index] + part * (v[:, index + 1] - v[:, index]) for v in (share, equal))
 
     def _weights(self, at: Array, times: Array) -> Array:
-        """Return ∫ E(t − t′) dt′ / E* [s] over the intervals of times, of shape (at, intervals)."""
-        sums = self.primitive(np.maximum(at[:, None] - times[None, :], 0.0))
-        return -np.diff(sums, axis=1)
+        """Return ∫ E(t − t′) dt′ / E* [s] over intervals of times, of shape (k, at, intervals)."""
+        sums = self.primitive(np.maximum(at[:, :, None] - times[:, None, :], 0.0))
+        return -np.diff(sums, axis=2)
+
+
+def _between(rows: Array, index: NDArray[np.intp], part: Array) -> Array:
+    """Return values between an entry of each row, of shape (k, entries), and the next."""
+    left, right = (np.take_along_axis(rows, i, axis=1) for i in (index, index + 1))
+    return left + part * (right - left)
 
 
 def _at(rows: Array, values: Array) -> tuple[NDArray[np.intp], Array]:
     """Return where a value lies in each growing row: after which entry, and by which part."""
-    index = np.clip((rows < values[:, None]).sum(axis=1) - 1, 0, rows.shape[1] - 2)
-    row = np.arange(values.size)
-    left, right = rows[row, index], rows[row, index + 1]
+    index = np.clip((rows < values[:, :, None]).sum(axis=2) - 1, 0, rows.shape[2] - 2)
+    if rows.shape[1] == 1:
+        left, right = (np.take_along_axis(rows[:, 0], i, axis=1) for i in (index, index + 1))
+    else:
+        left, right = (
+            np.take_along_axis(rows, i[:, :, None], 2)[:, :, 0] for i in (index, index + 1)
+        )
     return index, np.clip((values - left) / np.maximum(right - left, 1e-300), 0.0, 1.0)
 
 
 def _rates(times: Array, values: Array) -> Array:
     """Return slopes between neighbours; 0 where no time passes."""
-    steps = np.diff(times)
-    return np.where(steps > 0, np.diff(values) / np.maximum(steps, 1e-300), 0.0)
+    steps = np.diff(times, axis=-1)
+    return np.where(steps > 0, np.diff(values, axis=-1) / np.maximum(steps, 1e-300), 0.0)

@@ -1,6 +1,7 @@
 """What effects have in common that put another shape in place of the indenter."""
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import ClassVar
 
 from pellicle import indenter
@@ -19,7 +20,14 @@ class Shape(Bends):
 
 
 def in_place(contact: Contact, name: str, **fields: float | None) -> Contact:
-    """Return the contact of another indenter in place of that of one."""
+    """Return the contact of another indenter in place of that of one, of the same size."""
+    of = Contact.on_half_space
+    other = of(_body(name, **fields), contact.modulus, contact.deepest, contact.size)
+    return replace(other, tension=contact.tension)
+
+
+@lru_cache(maxsize=64)
+def _body(name: str, **fields: float | None) -> HasForceCurve:
     other = indenter(name, **fields)
     assert isinstance(other, HasForceCurve)
-    return replace(Contact.on_half_space(other, contact.modulus), tension=contact.tension)
+    return other

@@ -18,4 +18,5 @@ class Size(Bends, title="another size of the indenter"):
 
     def contact(self, contact: Contact) -> Contact:
         """Return the contact of the indenter with its lengths times 1 + ε."""
-        return Contact.on_half_space(contact.indenter, contact.modulus, 1 + self.size_error)
+        size, of = 1 + self.size_error, Contact.on_half_space
+        return of(contact.indenter, contact.modulus, contact.deepest, size)

@@ -3,6 +3,8 @@
 from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 
+import numpy as np
+
 from pellicle_fit.effect import Array, Bends, Contact, Fitted, fitted
 
 _LIMIT = 0.5
@@ -29,5 +31,5 @@ class Softening(Bends, title="a solid that softens"):
         def area(depth: Array, length: float) -> Array:
             return contact.area(depth, length) * (1 - depth / self.softening_length)
 
-        limit = min(contact.depth_limit, _LIMIT * self.softening_length)
+        limit = np.minimum(contact.depth_limit, _LIMIT * self.softening_length)
         return replace(contact, area=area, depth_limit=limit, half_space=False)

@@ -25,4 +25,4 @@ class Sphere(Shape, title="a sphere, or a paraboloid, instead"):
     def contact(self, contact: Contact) -> Contact:
         """Return the contact of the other shape."""
         is_sphere = getattr(contact.indenter, "type", "") == "sphere"
-        return in_place(contact, "paraboloid" if is_sphere else "sphere", radius=contact.tip_radius)
+        return in_place(contact, "paraboloid" if is_sphere else "sphere", radius=contact.own_radius)

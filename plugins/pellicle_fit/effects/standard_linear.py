@@ -24,7 +24,8 @@ class StandardLinear(Relaxing, title="standard linear relaxation"):
 
     def relaxed(self, time: float) -> float:
         """Return 1 − g + g e^(−t/T)."""
-        return float(1 - self.relaxed_share * -np.expm1(-time / self.relaxation_time))
+        left: float = 1 + self.relaxed_share * np.expm1(-time / self.relaxation_time)
+        return left
 
     def limits(self, sizes: Sizes) -> Mapping[str, tuple[float, float]]:
         """Return times of more than a few rows and of less than many curves."""

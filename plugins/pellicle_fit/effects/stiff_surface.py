@@ -4,12 +4,17 @@ from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
+from pellicle_fit.area_table import cubic
 from pellicle_fit.effect import Array, Bends, Contact, Curve, Fitted, fitted
 
 _NODES, _SHARES = np.polynomial.legendre.leggauss(10)
 _ROOTS, _WEIGHTS = ((_NODES + 1) / 2) ** 2, _SHARES * (_NODES + 1) / 2
 """Nodes √(δ′/δ), dense at first touch, and weights of integrals over the depths δ′ of contacts."""
+
+_STEPS = 64
+"""Steps in √δ between which the integrals are interpolated."""
 
 
 class StiffSurface(Bends, title="a surface stiffer or softer than the bulk"):
@@ -37,16 +42,19 @@ class StiffSurface(Bends, title="a surface stiffer or softer than the bulk"):
 
     def contact(self, contact: Contact) -> Contact:
         """Return A = A₁ + ∫ 2a g e^(−a/l) dδ over the contacts of radius a, those of A₁."""
-        bare, gain, reach = replace(contact, tension=0.0), self.gain, self.reach
+        gain, reach, deepest = self.gain, np.reshape(self.reach, (-1, 1)), contact.deepest
+        step = np.sqrt(deepest) / _STEPS
+        depths = (step * np.maximum(np.arange(_STEPS + 1), 1e-6)) ** 2
+        bare = replace(contact, modulus=1.0, tension=0.0)
+        # Interpolated, the radius of a body flat at its tip may be less than none.
+        radii = np.maximum(bare.radius((depths[:, None] * _ROOTS**2).ravel()), 0.0)
+        shares = (radii * np.exp(-radii / reach)).reshape(-1, _STEPS + 1, _ROOTS.size)
+        excess = CubicSpline(np.arange(_STEPS + 1), (4 * (shares * _ROOTS) @ _WEIGHTS).T)
+        coefficients = excess.c.transpose(0, 2, 1)
 
         def area(depth: Array, _: float) -> Array:
-            # The radius of round bodies is smooth in √δ.
-            deep = np.maximum(depth, 0.0)
-            table = bare.tabulated(1.01 * float(np.max(deep)))
-            depths = deep[:, None] * _ROOTS**2
-            # Interpolated, that of a body flat at its tip may be less than none.
-            radius = np.maximum(table.radius(depths.ravel()), 0.0).reshape(depths.shape)
-            excess = 4 * gain * radius * np.exp(-radius / reach) * _ROOTS @ _WEIGHTS
-            return table.area(depth, 0.0) + deep * excess
+            deep = np.clip(depth, 0.0, deepest)
+            of_surface = cubic(coefficients, np.sqrt(deep) / step, 1.0)
+            return np.asarray(contact.area(depth, 0.0) + gain * deep * of_surface)
 
         return replace(contact, area=area, half_space=False)

@@ -43,13 +43,14 @@ def likelihood_map(explained: Candidate, widened: float) -> Chart:
     for column, modulus in enumerate(moduli):
         start = np.array(best.at)
         start[e] = modulus
-        at, chi_squared = objective.minimise(start, (e,))
+        found = objective.minimise(start, (e,))
+        at, chi_squared = found.at, found.chi_squared
         by_tension, *by_rest = objective.jacobian(at, [t, *rest]).T
         others = np.array(by_rest).reshape(len(rest), -1).T
         along = by_tension - others @ np.linalg.lstsq(others, by_tension, rcond=1e-12)[0]
         width = 1 / np.linalg.norm(along)
         # Where the best tension is 0, χ² has a slope there.
-        slope = width * (along @ np.concatenate(objective.terms(at)))
+        slope = width * (along @ objective.terms(at))
         ridge[:, column] = at[t], chi_squared - best.chi_squared, width, max(slope, 0.0)
     rises, lowest, series = ridge[1], int(ridge[1].argmin()), []
     angle = np.linspace(0.0, 2 * np.pi, _POINTS)

@@ -8,11 +8,12 @@ import numpy as np
 
 from pellicle.components import Column, Table
 from pellicle.units import DIGITS, Scale
+from pellicle_fit.candidate import Candidate
 from pellicle_fit.intervals import CONFIDENCE, Estimate
 from pellicle_fit.objective import CONTACT_POINT, MODULUS
 from pellicle_fit.population.fits import QUARTILES, summary
 from pellicle_fit.population.row import FITTED, OVER_TIED, SHOWN, Row
-from pellicle_fit.recipe import TENSION
+from pellicle_fit.recipe import TENSION, Answer
 from pellicle_fit.result import Fit
 from pellicle_fit.words.names import FEW, interval, quoted, unit_of, unit_of_one, words, words_of
 
@@ -46,7 +47,7 @@ def explanations(fit: Fit, *, si: bool = False) -> Table:
         Column("explanation", [words_of(one) for one in compared]),
         Column("χ²", [answer.chi_squared(one) for one in compared], digits=5),
         Column("ΔAIC", [one.aic - compared[0].aic for one in compared], digits=3),
-        Column("tied", ["yes" if one in answer.tied else "" for one in compared]),
+        Column("tied", [_standing(answer, one) for one in compared]),
     ]
     for name in (MODULUS, TENSION):
         values = [one.parameters.get(name) for one in compared]
@@ -55,6 +56,10 @@ def explanations(fit: Fit, *, si: bool = False) -> Table:
         columns += _quantity(name, _unit(fit, name, si), values, sought=sought)
     tie = f"below ΔAIC = {answer.decision.margin:.3g} it is a tie"
     return Table(columns, f"What describes the data, best first; {tie}.", folded=True)
+
+
+def _standing(answer: Answer, one: Candidate) -> str:
+    return "yes" if one in answer.tied else "given up" if one.minimum.given_up else ""
 
 
 def curves(fit: Fit, *, si: bool = False) -> Table:

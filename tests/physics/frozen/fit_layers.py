@@ -22,6 +22,8 @@ from tests.physics.frozen.fit_curves import (
 RELAXING = {"power_law", "standard_linear"}
 FAR = 30.0
 """ΔAIC over the best beyond which a minimum may be rough."""
+GAIN = 2.05
+"""ΔAIC by which a pair has to be ahead of its parts, and a rounding."""
 # --- What is recorded ------------------------------------------------------------------------
 
 VALUES = [
@@ -167,8 +169,10 @@ def fit_changes(old: Any, new: Any) -> Iterator[str]:
     least = min(aic.values())
     for name in old["explanations"].keys() & new["explanations"].keys():
         was, now = old["explanations"][name], new["explanations"][name]
-        # What is far behind is not sought to the end.
-        if aic[name] - least < FAR and now["delta_aic"] > was["delta_aic"] + 0.05:
+        # What is far behind, or no better than nothing or than its parts, is not sought to the end.
+        known = [aic[part] for part in ("none", *name.split(" + ")) if part in aic]
+        idle = now["given_up"] and aic[name] > min(known) - GAIN
+        if not idle and aic[name] - least < FAR and now["delta_aic"] > was["delta_aic"] + 0.05:
             yield f"{name}: ΔAIC {was['delta_aic']} → {now['delta_aic']}, above what it was"
         if name == old["chosen"]:
             yield from _parameters(name, was["parameters"], now["parameters"])

@@ -29,8 +29,9 @@ from pellicle_fit.explanation import Explanation
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.intervals import Estimate
-from pellicle_fit.objective import Minimum, Objective
+from pellicle_fit.objective import Objective
 from pellicle_fit.recipe import answer, with_estimates
+from pellicle_fit.search import Minimum
 from tests import adhesive_paths
 from tests.physics.frozen.fit_curves import RADIUS, Case
 from tests.physics.frozen.not_frozen import VARIABLES
@@ -219,7 +220,7 @@ def noise(case: Case, effects: Collection[str], values: Mapping[str, float]) -> 
     They are about a model at given values.
     """
     objective, at = _objective(case, effects, values)
-    fit = Candidate(frozenset(effects), objective, Minimum(at, 0.0), objective.curves)
+    fit = Candidate(frozenset(effects), objective, Minimum(at, (0.0,)), objective.curves)
     judged = fit.judgements[0]
     return {
         "deviation": judged.noise.deviation,
@@ -257,6 +258,7 @@ def fit(case: Case) -> dict[str, Any]:
             _key(fit.types): {
                 "chi_squared": fit.chi_squared,
                 "delta_aic": fit.aic - none,
+                "given_up": fit.minimum.given_up,
                 "parameters": {name: _estimate(e) for name, e in fit.estimates.items()},
             }
             for fit in explanations

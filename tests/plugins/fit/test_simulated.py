@@ -61,7 +61,7 @@ def test_between_the_nodes(exact_nodes: SimulatedCurve, ratio: float) -> None:
 
 def test_the_contact_knows_how_well_it_is_known(exact_nodes: SimulatedCurve) -> None:
     """Its error widens intervals; without a half-space there is no contact radius."""
-    contact = Contact.on_half_space(exact_nodes, 1e3)
+    contact = Contact.on_half_space(exact_nodes, 1e3, RADIUS)
     assert (contact.error, contact.half_space) == (0.01, False)
     assert not contact.is_bare_indenter
     assert 0.4 * RADIUS <= contact.depth_limit < 0.8 * RADIUS

@@ -1,0 +1,149 @@
+"""Many trials at once are as each on its own: tables, columns of quantities, searches."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import pellicle as pl
+from pellicle_fit.area_table import half_space
+from pellicle_fit.effect import Array, Effect
+from pellicle_fit.search import descend
+from pellicle_fit.testing import _columns_are_rows
+from tests.plugins.fit.test_effects import Soft
+
+DEEPEST = 1e-6
+BODIES: dict[str, dict[str, Any]] = {
+    "paraboloid": {"radius": 5e-6},
+    "sphere": {"radius": 2e-6},
+    "cone": {"half_angle": 1.2},
+    "blunt cone": {"half_angle": 1.0, "tip_radius": 100e-9},
+    "worn paraboloid": {"radius": 5e-6, "flat_radius": 0.5e-6},
+    "pyramid": {"half_angle": 0.6, "sides": 4},
+}
+
+
+@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize("length", [0.0, 1e-9, 3e-8, 1.1e-7, 2e-6])
+def test_a_table_of_areas(name: str, length: float) -> None:
+    """It is right to 3e-6 of the largest area, in depths of five decades."""
+    body: Any = pl.indenter(name.split()[-1], **BODIES[name])
+    depth = np.geomspace(1e-5 * DEEPEST, DEEPEST, 301)
+    exact = body.force_curve(depth, length).force
+    areas = half_space(body, DEEPEST)
+    error = areas(depth, length) - exact
+    assert np.max(np.abs(error)) < 3e-6 * exact[-1]
+    several = np.array([[length], [length], [1.1 * length + 1e-9]])
+    np.testing.assert_allclose(areas(depth, several)[0], areas(depth, length), rtol=1e-12)
+    found, slope = areas.slopes(depth, length)
+    np.testing.assert_allclose(found[150:], exact[150:], rtol=1e-4)
+    exact = body.force_curve(depth, length).by_depth
+    np.testing.assert_allclose(slope[150:], exact[150:], rtol=2e-3)
+
+
+@pytest.mark.parametrize("name", sorted(pl.registry().components[Effect.family]))
+def test_effects_take_columns(name: str) -> None:
+    """Of columns of quantities each row is that of the numbers."""
+    effect: Any = pl.registry().find(Effect.family, name)
+    assert _columns_are_rows(effect)
+
+
+class OfNumbers(Soft):
+    """What is in series takes a number alone."""
+
+    type: Literal["of_numbers"] = "of_numbers"  # type: ignore[assignment]
+
+    def give(self, force: Array) -> Array:
+        """Return cF [m]."""
+        return float(self.soft) * force
+
+
+class Mixed(Soft):
+    """What is in series takes columns for rows."""
+
+    type: Literal["mixed"] = "mixed"  # type: ignore[assignment]
+
+    def give(self, force: Array) -> Array:
+        """Return cF [m]."""
+        return float(np.ravel(self.soft)[0]) * force
+
+
+@pytest.mark.parametrize(("effect", "takes"), [(Soft, True), (OfNumbers, False), (Mixed, False)])
+def test_a_stranger_is_tried(effect: type[Effect], takes: bool) -> None:
+    """Whether it takes columns is found out; one that does not is called with numbers."""
+    assert _columns_are_rows(effect) is takes
+
+
+class Trials(NamedTuple):
+    """Trials of a valley."""
+
+    terms: Array
+
+    def of(self, rows: NDArray[Any]) -> Trials:
+        """Return some."""
+        return Trials(self.terms[rows])
+
+    def put(self, rows: NDArray[Any], others: Trials) -> None:
+        """Put others in their places."""
+        self.terms[rows] = others.terms
+
+
+class Valley:
+    """Terms 10 (y − x²) and 1 − x, whose squares are least at (1, 1) (Rosenbrock 1960)."""
+
+    limits = np.array([[-3.0, -3.0], [3.0, 3.0]])
+
+    def trials(self, at: Array, near: Any = None) -> Trials:
+        """Return terms; none where x is below −2.5."""
+        x, y = at.T
+        terms = np.column_stack([10 * (y - x**2), 1 - x])
+        return Trials(np.where(x[:, None] < -2.5, np.nan, terms))
+
+    def derivatives(self, at: Array, trials: Trials) -> Array:
+        """Return derivatives, of shape (k, 2, 2)."""
+        x = at[:, 0]
+        rows = [[-20 * x, np.full_like(x, -1.0)], [np.full_like(x, 10.0), 0 * x]]
+        return np.moveaxis(np.array(rows), 2, 0)
+
+    def squares(self, terms: Array) -> tuple[float, ...]:
+        """Return the sum of squares."""
+        return (float(terms @ terms),)
+
+
+STARTS = np.array([[-1.2, 1.0], [2.0, 2.0], [-2.9, 0.0], [0.3, -1.0]])
+
+
+def test_a_search_ends_at_the_minimum() -> None:
+    """Those that start where there is a force; the others stay, and are infinite."""
+    found = descend(Valley(), STARTS, fall=1e-12)
+    for k in (0, 1, 3):
+        np.testing.assert_allclose(found[k].at, 1.0, atol=1e-4)
+    assert not np.isfinite(found[2].chi_squared)
+    assert not any(one.given_up for one in found)
+
+
+def test_a_search_keeps_what_is_held_and_the_limits() -> None:
+    """With x held y is x², within its limits; with x at most 0.5 the least is there."""
+    held = np.zeros(STARTS.shape, dtype=bool)
+    held[:, 0] = True
+    for one, start in zip(descend(Valley(), STARTS, held), STARTS, strict=True):
+        if np.isfinite(one.chi_squared):
+            np.testing.assert_allclose(one.at, [start[0], min(start[0] ** 2, 3.0)], atol=1e-4)
+    narrow = Valley()
+    narrow.limits = np.array([[-2.0, -3.0], [0.5, 3.0]])
+    (one,) = descend(narrow, STARTS[3:], fall=1e-12)
+    np.testing.assert_allclose(one.at, [0.5, 0.25], atol=1e-4)
+    assert np.isclose(one.chi_squared, 0.25)
+
+
+def test_a_search_that_cannot_come_below_its_goal_is_given_up() -> None:
+    """It says so, and its χ² is an upper bound; a goal within reach is none to give up."""
+    (one,) = descend(Valley(), STARTS[:1], goal=-1.0)
+    assert one.given_up
+    assert one.chi_squared > 0
+    (one,) = descend(Valley(), STARTS[:1], goal=1.0)
+    assert not one.given_up
+    assert one.chi_squared < 1e-4
