@@ -108,6 +108,13 @@ class Table:
         return value * inside * root, (1.5 * value + cubic(rates, x, _DEPTHS)) * root
 
 
+def cubics(values: Array) -> Array:
+    """Return the splines through rows of values, of shape (k, nodes), a step of 1 apart."""
+    from scipy.interpolate import CubicSpline
+
+    return np.asarray(CubicSpline(np.arange(values.shape[1]), values.T).c.transpose(0, 2, 1))
+
+
 def cubic(coefficients: Array, x: Array, step: float) -> Array:
     """Return polynomials of shape (powers, 1 or k, intervals) at 0 ≤ x of shape (n,) or (k, n)."""
     powers, rows, count = coefficients.shape

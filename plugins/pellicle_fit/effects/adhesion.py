@@ -1,12 +1,11 @@
 """Adhesion in equilibrium, under tension and with a cantilever."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import lru_cache
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from pellicle.arrays import Array, Mask
 from pellicle_fit.effect import Contact, Curve, Fitted, Responds, Response, Sizes, Values, fitted
@@ -29,6 +28,8 @@ _CHANGE_POINT = 3
 """Quantities as which the choice of the rows that touch counts (Ninomiya 2015)."""
 _WIDTH, _JUMP = 3, 6.0
 """Rows whose means are compared, and standard errors beyond which they show a jump."""
+
+Spline = Callable[[Array], Array]
 
 
 class Adhesion(Responds):
@@ -130,18 +131,22 @@ class Adhesion(Responds):
         return depth - retraction + softness * force, force
 
 
-def _each(splines: Sequence[CubicSpline], at: Array) -> Array:
+def _each(splines: Sequence[Spline], at: Array) -> Array:
     return np.array([spline(row) for spline, row in zip(splines, at, strict=True)])
 
 
-def _spline(root: Array, force: Array) -> CubicSpline:
+def _spline(root: Array, force: Array) -> Spline:
     """Return the force over the root of the way from the end, at nodes from which that grows."""
+    from scipy.interpolate import CubicSpline
+
     keep = np.append(True, root[1:] > np.maximum.accumulate(root)[:-1] + 1e-9 * root[-1])
     return CubicSpline(root[keep], force[keep])
 
 
-def _spline_back(root: Array, force: Array) -> CubicSpline:
+def _spline_back(root: Array, force: Array) -> Spline:
     """Return the same where the indenter is pulled off."""
+    from scipy.interpolate import CubicSpline
+
     # The edge of a worn tip: what is pulled off it jumps to it from a wider contact.
     wider = np.minimum.accumulate(root[::-1])[::-1]
     keep = np.append(root[:-1] < wider[1:] - 1e-9 * root[-1], True)

@@ -5,11 +5,10 @@ from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
-from scipy.interpolate import CubicSpline
 
 from pellicle.components import HasLayerForceCurve
 from pellicle.units import Quantity
-from pellicle_fit.area_table import checked_area, cubic, layer
+from pellicle_fit.area_table import checked_area, cubic, cubics, layer
 from pellicle_fit.effect import Array, Bends, Contact, Curve, Fitted, fitted
 
 _ERROR = 1e-4
@@ -67,9 +66,9 @@ class Layer(Bends, title="a thin layer"):
                 h_, s_, step, of = one
                 steps.append(step)
                 values.append(of.force + of.by_thickness * (h - h_) + of.by_length * (s - s_))
-            spline = CubicSpline(np.arange(_STEPS + 1), np.array(values).T).c.transpose(0, 2, 1)
+            splines = cubics(np.array(values))
             root = np.sqrt(np.maximum(depth, 0.0)) / np.reshape(steps, (-1, 1))
-            area = cubic(spline, np.minimum(root, _STEPS), 1.0)
+            area = cubic(splines, np.minimum(root, _STEPS), 1.0)
             return np.asarray(size**2 * area.reshape(np.shape(depth + length + thickness)))
 
         deep: Any = size * limit(thickness)

@@ -4,9 +4,8 @@ from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
-from pellicle_fit.area_table import cubic
+from pellicle_fit.area_table import cubic, cubics
 from pellicle_fit.effect import Array, Bends, Contact, Curve, Fitted, fitted
 
 _NODES, _SHARES = np.polynomial.legendre.leggauss(10)
@@ -49,12 +48,11 @@ class StiffSurface(Bends, title="a surface stiffer or softer than the bulk"):
         # Interpolated, the radius of a body flat at its tip may be less than none.
         radii = np.maximum(bare.radius((depths[:, None] * _ROOTS**2).ravel()), 0.0)
         shares = (radii * np.exp(-radii / reach)).reshape(-1, _STEPS + 1, _ROOTS.size)
-        excess = CubicSpline(np.arange(_STEPS + 1), (4 * (shares * _ROOTS) @ _WEIGHTS).T)
-        coefficients = excess.c.transpose(0, 2, 1)
+        excess = cubics(4 * (shares * _ROOTS) @ _WEIGHTS)
 
         def area(depth: Array, _: float) -> Array:
             deep = np.clip(depth, 0.0, deepest)
-            of_surface = cubic(coefficients, np.sqrt(deep) / step, 1.0)
+            of_surface = cubic(excess, np.sqrt(deep) / step, 1.0)
             return np.asarray(contact.area(depth, 0.0) + gain * deep * of_surface)
 
         return replace(contact, area=area, half_space=False)
