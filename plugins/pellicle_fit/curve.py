@@ -24,6 +24,8 @@ _NEIGHBOURS = 4
 """Rows on each side over which forces are smoothed."""
 _CLEAR, _WAYS = 0.2, 3.0
 """Part of the forces that is no noise, and the way that touches over that beyond it."""
+BEFORE = 6.0
+"""How far before the first row a contact may lie, over the range of positions."""
 _COARSE = 60
 """Means for each pass that rough searches see."""
 
@@ -129,7 +131,7 @@ class Curve:
 
         It is tabulated down to a depth that no trial of a contact point exceeds.
         """
-        deepest = 2 * max(float(np.ptp(self.base)), self.span)
+        deepest = (1 + BEFORE) * max(float(np.ptp(self.base)), self.span)
         if self.touch is not None:
             # A given point may lie before any row.
             bent = self.largest / (self.stiffness or np.inf)

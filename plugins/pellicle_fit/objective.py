@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from pellicle.arrays import Array
 
-from .curve import Curve
+from .curve import BEFORE, Curve
 from .effect import Fitted, Records, Responds, Sizes, Weighed
 from .explanation import Balance, Explanation
 from .long_memory import differenced
@@ -20,8 +20,6 @@ from .search import Minimum, descend
 
 _STEP = 1e-6
 """Step of derivatives by differences, in coordinates of the order of 1."""
-_BEFORE = 1.0
-"""How far before the first row a contact may lie, over the range of positions."""
 _DECADES = 6.0
 """How far a logarithm may go from the size of its quantity."""
 MODULUS, CONTACT_POINT = "reduced_modulus", "contact_point"
@@ -141,7 +139,7 @@ class Objective:
                 curve = self.curves[slot.curve]
                 # A free cantilever may be bent, if the force before contact is one.
                 bent = np.array([0.0, curve.shallow_force / (curve.stiffness or np.inf)])
-                low = float(curve.position.min() + bent.min() - _BEFORE * curve.span)
+                low = float(curve.position.min() + bent.min() - BEFORE * curve.span)
                 high = float(curve.position.max() + bent.max())
             elif q.log:
                 low, high = slot.scale / reach, slot.scale * reach

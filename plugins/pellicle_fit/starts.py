@@ -11,12 +11,15 @@ import numpy as np
 from pellicle.arrays import Array
 
 from .candidate import Candidate
+from .curve import BEFORE
 from .effect import Records, powers
 from .objective import CONTACT_POINT, MODULUS, Objective, Slot
 from .search import descend
 
 _POINTS = 25
-"""Contact points that are scanned."""
+"""Contact points that are scanned on a curve."""
+_EARLIER = BEFORE * 2.0 ** np.arange(-5.0, 0.0)
+"""Those before its first row, over the range of positions."""
 _ROUGH = 20
 """Steps of a search on one curve of several."""
 _LAST = 0.05
@@ -84,11 +87,12 @@ def scanned(objective: Objective) -> list[Array]:
         shift = means.known(own, 0).free_force(curve) / (curve.stiffness or np.inf)
         tip = replace(curve, position=curve.position + shift, stiffness=None)
         last = tip.position.max() - _LAST * tip.span
-        at = np.repeat(own[None], _POINTS if point is not None else 1, axis=0)
+        touches = np.linspace(tip.position.min(), last, _POINTS)
+        touches = np.append(touches, touches[0] - _EARLIER * tip.span)
+        at = np.repeat(own[None], touches.size if point is not None else 1, axis=0)
         if modulus is not None:
             at[:, modulus] = 0.0
         if point is not None:
-            touches = np.linspace(tip.position.min(), last, _POINTS)
             at[:, point] = touches / objective.slots[point].scale
         misfits, scaled = _scaled(replace(means, curves=(tip,)), at)
         best = int(np.argmin(misfits))
