@@ -140,7 +140,8 @@ def _spline(root: Array, force: Array) -> Spline:
     from scipy.interpolate import CubicSpline
 
     keep = np.append(True, root[1:] > np.maximum.accumulate(root)[:-1] + 1e-9 * root[-1])
-    return CubicSpline(root[keep], force[keep])
+    spline: Spline = CubicSpline(root[keep], force[keep])
+    return spline
 
 
 def _spline_back(root: Array, force: Array) -> Spline:
@@ -150,7 +151,8 @@ def _spline_back(root: Array, force: Array) -> Spline:
     # The edge of a worn tip: what is pulled off it jumps to it from a wider contact.
     wider = np.minimum.accumulate(root[::-1])[::-1]
     keep = np.append(root[:-1] < wider[1:] - 1e-9 * root[-1], True)
-    return CubicSpline(root[keep], force[keep])
+    spline: Spline = CubicSpline(root[keep], force[keep])
+    return spline
 
 
 @lru_cache(maxsize=16)
