@@ -26,7 +26,6 @@ from .effect import (
     Yields,
     quantities,
 )
-from .strangers import takes_columns
 
 _Kind = TypeVar("_Kind", bound=Effect)
 _BALANCE, _HALVED, _LOST = 1e-5, 1e-9, 1e-3
@@ -36,6 +35,8 @@ _DIFFERENCE = 1e-6
 """Step of slopes by √δ over the root of that way."""
 _LONGEST, _FAR = 4.0, 1e6
 """Longest step, over the root of the depth or of the way, and the greatest root over the latter."""
+_ROUNDING = 1e-6
+"""Difference of forces that is none, over the largest."""
 _STEPS = 80
 """Most steps of a search for a balance."""
 _LEAST = 0.05
@@ -150,14 +151,14 @@ class Explanation:
         return force
 
     def balance(
-        self, curve: Curve, start: Array | None = None, *, together: bool | None = None
+        self, curve: Curve, start: Array | None = None, *, together: bool = True
     ) -> Balance:
         """Return forces and depths of a curve in balance, NaN where none balances.
 
-        Quantities are numbers, or columns of shape (k, 1) of k trials, by default together if all
-        effects take columns.  ``start`` are depths from which the balance is sought.
+        Quantities are numbers, or columns of shape (k, 1) of k trials, which are computed together
+        or one by one.  ``start`` are depths from which the balance is sought.
         """
-        if self._one_by_one if together is None else not together:
+        if not together:
             each = [known.balance(curve) for known in self._each()]
             return Balance(*map(np.array, zip(*each, strict=True)))
         of, step = self._forces(curve), _DIFFERENCE * curve.contact.deepest
@@ -173,9 +174,9 @@ class Explanation:
             force, depth = force + rate * left, depth + left / stretch
         return Balance(self.recorded(force, curve), force, depth, rate)
 
-    def beside(self, curve: Curve, near: Balance) -> Array:
+    def beside(self, curve: Curve, near: Balance, *, together: bool = True) -> Array:
         """Return the recorded forces [N] beside a balance at quantities that differ little."""
-        if self._one_by_one:
+        if not together:
             rows = enumerate(self._each())
             return np.array([k.beside(curve, Balance(*(x[i] for x in near))) for i, k in rows])
         of = self._forces(curve)
@@ -190,17 +191,6 @@ class Explanation:
         for effect in self.of(Records):
             force = effect.recorded(force, curve)
         return force
-
-    @cached_property
-    def takes_columns(self) -> bool:
-        """Whether its quantities may be columns, of many trials."""
-        return all(takes_columns(type(effect)) for effect in self.effects)
-
-    @property
-    def _one_by_one(self) -> bool:
-        """Whether its quantities are columns that an effect does not take."""
-        values = (getattr(part, name) for part in self.parts for name in quantities(type(part)))
-        return any(map(np.ndim, values)) and not self.takes_columns
 
     def _each(self) -> Iterator[Explanation]:
         """Yield the explanation of each trial, of quantities that are numbers."""
@@ -240,6 +230,29 @@ class Explanation:
 
         near = np.where(base > 0, np.maximum(path, _LEAST * base), base)
         return _Forces(base, near, pushed, None if balances else give)
+
+
+def columns_are_rows(explanation: Explanation, curve: Curve) -> bool:
+    """Return whether an explanation takes columns of its open quantities, of many trials at once.
+
+    The results then have the shape (k, n), and each row is that of the numbers.
+    """
+    sizes, factors = Sizes.of_curve(curve), np.array([[1.0], [1.1], [0.9]])
+    effects = [(effect, effect.known(sizes)) for effect in explanation.effects]
+    columns = tuple(
+        known.of_values({name: getattr(known, name) * factors for name in effect.open})
+        for effect, known in effects
+    )
+    moduli, touch = sizes.of("Pa") * factors[::-1], float(np.median(curve.base))
+    solid = explanation.solid.of_values({"reduced_modulus": moduli, "contact_point": touch})
+    trials = Explanation(solid, columns)
+    try:
+        forces = trials.balance(curve).recorded
+    except Exception:  # Of another author's code any may come.
+        return False
+    each = trials.balance(curve, together=False).recorded
+    far = np.inf if forces.shape != each.shape else np.max(np.abs(forces - each))
+    return bool(far <= _ROUNDING * np.max(np.abs(each)))
 
 
 class _Forces(NamedTuple):

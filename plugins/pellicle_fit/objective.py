@@ -14,9 +14,10 @@ from pellicle.arrays import Array
 
 from .curve import BEFORE, Curve
 from .effect import Fitted, Records, Responds, Sizes, Weighed
-from .explanation import Balance, Explanation
+from .explanation import Balance, Explanation, columns_are_rows
 from .long_memory import differenced
 from .search import Minimum, descend
+from .strangers import is_own
 
 _STEP = 1e-6
 """Step of derivatives by differences, in coordinates of the order of 1."""
@@ -75,10 +76,6 @@ class Trials(NamedTuple):
         for mine, other in zip(self.balances, others.balances, strict=True):
             for part, new in zip(mine, other, strict=True):
                 part[rows] = new
-
-
-def _recorded(known: Explanation, curve: Curve, near: Balance) -> Array:
-    return known.recorded(near.force, curve)
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,7 +191,7 @@ class Objective:
         for i, curve in enumerate(self.curves):
             start = None if near is None else near.balances[i].depth
             shape = (len(at), curve.force.size)
-            found = self.known(at, i).balance(curve, start)
+            found = self.known(at, i).balance(curve, start, together=self.takes_columns)
             balance = Balance(*(np.array(np.broadcast_to(part, shape)) for part in found))
             terms.append(self._term(balance.recorded - curve.force, i))
             balances.append(balance)
@@ -225,15 +222,18 @@ class Objective:
         for i, (curve, balance) in enumerate(zip(self.curves, trials.balances, strict=True)):
             of_instrument, touches, others = self._kinds[i]
             begin, end = end, end + curve.force.size
-            for some, forces in ((of_instrument, _recorded), (others, Explanation.beside)):
-                if some:
-                    moved = np.repeat(at, len(some), axis=0)
-                    step = steps[:, some].ravel()
-                    moved[np.arange(step.size), np.tile(some, len(at))] += step
-                    near = Balance(*(np.repeat(part, len(some), axis=0) for part in balance))
-                    change = forces(self.known(moved, i), curve, near) - near.recorded
-                    rates = self._term(change / step[:, None], i)
-                    found[:, some, begin:end] = rates.reshape(len(at), len(some), -1)
+            for some in filter(None, (of_instrument, others)):
+                moved = np.repeat(at, len(some), axis=0)
+                step = steps[:, some].ravel()
+                moved[np.arange(step.size), np.tile(some, len(at))] += step
+                near = Balance(*(np.repeat(part, len(some), axis=0) for part in balance))
+                known = self.known(moved, i)
+                if some is of_instrument:
+                    forces = known.recorded(near.force, curve)
+                else:
+                    forces = known.beside(curve, near, together=self.takes_columns)
+                rates = self._term((forces - near.recorded) / step[:, None], i)
+                found[:, some, begin:end] = rates.reshape(len(at), len(some), -1)
             if touches:
                 known = self.known(at, i)
                 change = known.recorded(balance.force - _STEP * balance.rate, curve)
@@ -244,6 +244,12 @@ class Objective:
             move = [slot.value(x + _STEP) - slot.value(x - _STEP) for x in at[:, k]]
             found[:, k, end + number] = np.array(move) / (2 * _STEP * given.deviation)
         return found
+
+    @cached_property
+    def takes_columns(self) -> bool:
+        """Whether trials are computed together; where an effect is a stranger's, that is tried."""
+        own = all(is_own(type(effect)) for effect in self.explanation.effects)
+        return own or columns_are_rows(self.explanation, self.curves[0])
 
     @cached_property
     def _kinds(self) -> list[tuple[list[int], list[int], list[int]]]:
@@ -267,7 +273,7 @@ class Objective:
                     )
                 )
                 is_touch = self.slots[k].name == CONTACT_POINT and not responds
-                single = not self.explanation.takes_columns
+                single = not self.takes_columns
                 kinds[2 if single else 0 if is_record else 1 if is_touch else 2].append(k)
             found.append(kinds)
         return found

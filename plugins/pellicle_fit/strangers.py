@@ -17,7 +17,7 @@ from .effect import Effect
 @lru_cache(maxsize=64)
 def refuse_broken(effect: Effect) -> None:
     """Ask a stranger's effect the rules of the kit that balance no forces."""
-    if _is_own(type(effect)):
+    if is_own(type(effect)):
         return
     # The kit takes a second to import.
     from pellicle.testing import keep
@@ -31,17 +31,8 @@ def refuse_broken(effect: Effect) -> None:
         raise PluginError(f"effect {effect.type_name!r}: {broken}") from None
 
 
-@lru_cache(maxsize=64)
-def takes_columns(effect: type[Effect]) -> bool:
-    """Return whether quantities of an effect may be columns; a stranger's is tried."""
-    if _is_own(effect):
-        return True
-    from .testing import _columns_are_rows
-
-    return _columns_are_rows(effect)
-
-
-def _is_own(effect: type[Effect]) -> bool:
+def is_own(effect: type[Effect]) -> bool:
+    """Return whether pellicle ships an effect."""
     installed = registry().components[Effect.family].values()
     return effect in {entry.component for entry in installed if entry.origin.is_own}
 

@@ -313,32 +313,6 @@ def _curves() -> Iterator[tuple[str, Curve]]:
         yield f"{words} of {tip}", curve
 
 
-def _columns_are_rows(effect: type[Effect]) -> bool:
-    """Return whether an effect takes columns of quantities, of many trials at once, as numbers.
-
-    Of columns of shape (k, 1) its results have the shape (k, n), and each row is that of the
-    numbers.  An effect that takes numbers alone is asked one by one.
-    """
-    for _, curve in _curves():
-        free, sizes = effect(), Sizes.of_curve(curve)
-        if _excuse(free, curve):
-            continue
-        known, solid = free.known(sizes), Solid(reduced_modulus=_MODULUS, contact_point=0.0)
-        factors = np.array([[1.0], [1.1], [0.9]])
-        own = {name: getattr(known, name) * factors for name in free.open}
-        moduli = {"reduced_modulus": _MODULUS * factors[::-1]}
-        columns = Explanation(solid.of_values(moduli), (known.of_values(own),))
-        try:
-            together = columns.balance(curve, together=True).recorded
-        except Exception:  # Of another author's code any may come.
-            return False
-        each = columns.balance(curve, together=False).recorded
-        far = np.inf if together.shape != each.shape else np.max(np.abs(together - each))
-        if not far <= _ROUNDING * np.max(np.abs(each)):
-            return False
-    return True
-
-
 QUICK = [
     stands_in_one_place,
     starts_lie_within_limits,

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle_fit.area_table import half_space
-from pellicle_fit.effect import Array, Effect
+from pellicle_fit.effect import Array, Effect, Solid
+from pellicle_fit.explanation import Explanation, columns_are_rows
 from pellicle_fit.search import descend
-from pellicle_fit.testing import _columns_are_rows
-from tests.plugins.fit.test_effects import Soft
+from tests.plugins.fit.test_effects import Soft, bead
 
 DEEPEST = 1e-6
 BODIES: dict[str, dict[str, Any]] = {
@@ -44,11 +44,18 @@ def test_a_table_of_areas(name: str, length: float) -> None:
     np.testing.assert_allclose(slope[150:], exact[150:], rtol=2e-3)
 
 
+def _takes(effect: type[Effect]) -> bool:
+    """Return whether an effect takes columns on a curve with both passes."""
+    depth = np.linspace(-0.4e-6, 1.2e-6, 81)
+    curve = bead(np.append(depth, depth[-2::-1]), stiffness=0.05)
+    return columns_are_rows(Explanation(Solid(), (effect(),)), curve)
+
+
 @pytest.mark.parametrize("name", sorted(pl.registry().components[Effect.family]))
 def test_effects_take_columns(name: str) -> None:
     """Of columns of quantities each row is that of the numbers."""
     effect: Any = pl.registry().find(Effect.family, name)
-    assert _columns_are_rows(effect)
+    assert _takes(effect)
 
 
 class OfNumbers(Soft):
@@ -74,7 +81,7 @@ class Mixed(Soft):
 @pytest.mark.parametrize(("effect", "takes"), [(Soft, True), (OfNumbers, False), (Mixed, False)])
 def test_a_stranger_is_tried(effect: type[Effect], takes: bool) -> None:
     """Whether it takes columns is found out; one that does not is called with numbers."""
-    assert _columns_are_rows(effect) is takes
+    assert _takes(effect) is takes
 
 
 class Trials(NamedTuple):
