@@ -235,11 +235,9 @@ class Objective:
                 rates = self._term((forces - near.recorded) / step[:, None], i)
                 found[:, some, begin:end] = rates.reshape(len(at), len(some), -1)
             if touches:
-                known = self.known(at, i)
-                change = known.recorded(balance.force - _STEP * balance.rate, curve)
-                scale = self.slots[touches[0]].scale / _STEP
-                rates = self._term(scale * (change - balance.recorded), i)
-                found[:, touches[0], begin:end] = rates
+                shift = _STEP * self.slots[touches[0]].scale
+                forces = self.known(at, i).recorded(balance.force - shift * balance.rate, curve)
+                found[:, touches[0], begin:end] = self._term((forces - balance.recorded) / _STEP, i)
         for number, (k, slot, given) in enumerate(self._weighed):
             move = [slot.value(x + _STEP) - slot.value(x - _STEP) for x in at[:, k]]
             found[:, k, end + number] = np.array(move) / (2 * _STEP * given.deviation)
@@ -259,22 +257,16 @@ class Objective:
         and nothing else.
         """
         found = []
-        responds = bool(self.explanation.of(Responds))
+        responds, together = bool(self.explanation.of(Responds)), self.takes_columns
         for curve, acting in zip(self.curves, self._acting, strict=True):
             kinds: tuple[list[int], list[int], list[int]] = [], [], []
             for k in acting:
                 part = self.explanation.parts[self.slots[k].part]
-                is_record = isinstance(part, Records) and (
-                    curve.stiffness is None
-                    or not (
-                        responds
-                        or curve.touch is not None
-                        or type(part).stiffness is not Records.stiffness
-                    )
-                )
+                alone = isinstance(part, Records) and type(part).stiffness is Records.stiffness
+                bound = curve.stiffness is not None and (responds or curve.touch is not None)
+                is_record = alone and not bound
                 is_touch = self.slots[k].name == CONTACT_POINT and not responds
-                single = not self.takes_columns
-                kinds[2 if single else 0 if is_record else 1 if is_touch else 2].append(k)
+                kinds[0 if together and is_record else 1 if together and is_touch else 2].append(k)
             found.append(kinds)
         return found
 
