@@ -24,9 +24,9 @@ _FAR = 100.0
 _NEAR, _SMALL, _STEPS = 0.02, 0.1, 40
 """Last step over the distance, and last excess over the rise, whose squares are the error of an
 end; and most steps."""
-_PROFILE = 5e-4
+_PROFILE = 5e-3
 """Fall of χ² that is left on a profile, small beside the threshold."""
-_IMPROVEMENT = 2e-3
+_IMPROVEMENT = 1e-2
 """Decrease of χ² by which another minimum counts as better."""
 _RESTARTS = 5
 _ALIKE = 1e-5

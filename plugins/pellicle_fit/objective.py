@@ -257,13 +257,15 @@ class Objective:
         and nothing else.
         """
         found = []
-        responds, together = bool(self.explanation.of(Responds)), self.takes_columns
+        responds, together = self.explanation.of(Responds), self.takes_columns
+        # What is recorded of a path without a load is in the path that a memory sees.
+        remembers = any(not effect.balances for effect in responds)
         for curve, acting in zip(self.curves, self._acting, strict=True):
             kinds: tuple[list[int], list[int], list[int]] = [], [], []
             for k in acting:
                 part = self.explanation.parts[self.slots[k].part]
                 alone = isinstance(part, Records) and type(part).stiffness is Records.stiffness
-                bound = curve.stiffness is not None and (responds or curve.touch is not None)
+                bound = curve.stiffness is not None and (remembers or curve.touch is not None)
                 is_record = alone and not bound
                 is_touch = self.slots[k].name == CONTACT_POINT and not responds
                 kinds[0 if together and is_record else 1 if together and is_touch else 2].append(k)

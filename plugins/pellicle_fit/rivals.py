@@ -26,8 +26,8 @@ explanations."""
 _FAR, _NEAR, _LEADS, _BESIDE = 20.0, 4.0, 2.0, 1.0
 """Differences of AIC to the best beyond which an explanation is given up, and not sought to all
 digits; of a pair to its parts, and to the best."""
-_FEW_STARTS, _STEPS, _KEPT = 6, 4, 2
-"""Starts from which searches go, their rough steps, and how many are sought to the end."""
+_OF_ONE, _OF_PAIRS, _KEPT = (6, 4), (4, 3), 2
+"""Starts from which searches go, and their rough steps, and how many are sought to the end."""
 _LOWER = 0.1
 """Fall of χ² that is worth another search."""
 _COMPARED = 2e-2
@@ -100,8 +100,8 @@ def comparison(
     fits = _sought(candidates, word, simple, best.of_rows, means)
     fits = {types: _restarted(fit, word, fits) for types, fit in fits.items()}
     ends = {t: _end(t, word, fits, _NEAR) for t in fits}
-    polished = {t: f.polished() if f.aic < ends[t] else f for t, f in fits.items()}
-    fits = at_common_noise(polished)
+    fits = {t: f.polished() if f.aic < ends[t] else f for t, f in fits.items()}
+    fits = at_common_noise(_nearest_sought(fits, word))
     # The modulus of the end of the loading is that after the time since the best first touch.
     best = best_of(fits.values())
     pairs = zip(best.whole, best.contact_points, strict=True)
@@ -131,8 +131,21 @@ def _sought(
         if simple:
             goal = _end(types, word, fits, _FAR) - objective.criterion(0.0)
         known = fits.get(word)
-        fits[types] = Candidate(types, objective, _least(objective, at, goal, known), of.curves)
+        few = _OF_PAIRS if word and word < types else _OF_ONE
+        fits[types] = Candidate(
+            types, objective, _least(objective, at, goal, known, *few), of.curves
+        )
     return fits
+
+
+def _nearest_sought(fits: Fits, word: Types) -> Fits:
+    """Return explanations of which the best without what is asked for is sought to the end."""
+    found = dict(fits)
+    while True:
+        nearest = best_of(fit for fit in found.values() if not word or not word <= fit.types)
+        if not nearest.minimum.given_up:
+            return found
+        found[nearest.types] = nearest.polished()
 
 
 def _end(types: Types, word: Types, fits: Fits, far: float) -> float:
@@ -149,7 +162,12 @@ def _end(types: Types, word: Types, fits: Fits, far: float) -> float:
 
 
 def _least(
-    objective: Objective, starts: Sequence[Array], goal: float, known: Candidate | None
+    objective: Objective,
+    starts: Sequence[Array],
+    goal: float,
+    known: Candidate | None,
+    few: int,
+    steps: int,
 ) -> Minimum:
     """Return the least minimum from several starts: few steps of all, more of the best.
 
@@ -164,8 +182,8 @@ def _least(
     left = np.array(starts)
     if len(left) > _KEPT:
         terms = coarse.trials(np.clip(left, *coarse.limits)).terms
-        left = left[np.argsort(cost_of(terms))[:_FEW_STARTS]]
-        minima = descend(coarse, left, steps=_STEPS, goal=of_coarse)
+        left = left[np.argsort(cost_of(terms))[:few]]
+        minima = descend(coarse, left, steps=steps, goal=of_coarse)
         minima.sort(key=lambda minimum: minimum.chi_squared)
         left = np.array([minimum.at for minimum in minima[:_KEPT]])
     minima = descend(objective, left, goal=of_means, fall=_COMPARED, rivals=True)
@@ -185,11 +203,17 @@ def at_common_noise(fits: Fits) -> Fits:
 
 def _restarted(fit: Candidate, word: Types, fits: Fits) -> Candidate:
     """Return the least χ² from the minima of what it is a part of, too."""
-    wholes = [other for types, other in fits.items() if fit.types and fit.types < types]
+    # What is no better than its part is no better place to start from.
+    lower = fit.minimum.chi_squared - _LOWER
+    wholes = [
+        other
+        for types, other in fits.items()
+        if fit.types and fit.types < types and other.minimum.chi_squared < lower
+    ]
     if not wholes:
         return fit
     values = [whole.objective.values(whole.minimum.at) for whole in wholes]
     at = np.array([fit.objective.at_values(known) for known in values])
     goal = min(_end(fit.types, word, fits, _FAR) - fit.objective.criterion(0.0), fit.chi_squared)
-    found = _least(fit.objective, [*at], goal - _LOWER, fits[word])
+    found = _least(fit.objective, [*at], goal - _LOWER, fits[word], *_OF_ONE)
     return min(fit, replace(fit, minimum=found), key=lambda one: one.minimum.chi_squared)

@@ -17,6 +17,8 @@ _LEAST, _LARGEST, _SHORT = 1e-9, 1e6, 1e-7
 """Least and largest damping, and the one below which a step is undamped."""
 _EASED, _STIFFENED = 0.1, 4.0
 """Least factor of the damping after a step that gains, and the factor after one that does not."""
+_HOPE = 2.0
+"""How much more than an undamped step a search may gain, where χ² bends."""
 _STALLED = 4
 """Steps that have to gain as many falls."""
 _FALL, _ROUGH_FALL = 1e-5, 3e-2
@@ -144,7 +146,9 @@ def descend(
             ends |= better & (gain <= enough) & (damping[rows] <= _SHORT)
             if number > 0:
                 least = min(goal, float(cost.min())) if rivals else goal
-                given_up[rows] = ~ends & (cost[rows] - np.maximum(most[going], gain) > least)
+                given_up[rows] = ~ends & (
+                    cost[rows] - _HOPE * np.maximum(most[going], gain) > least
+                )
                 ends |= given_up[rows]
             ended[going[ends]] = True
             going = going[~better & ~ends]

@@ -81,22 +81,26 @@ def scanned(objective: Objective) -> list[Array]:
     curve = curve.coarse
     means = replace(objective, curves=(curve,), memory=())
     point, modulus = objective.index(CONTACT_POINT), objective.index(MODULUS)
+    owns = np.array([*_own(means)])
+    # Noisy positions are taken as they are, where no force bends the cantilever.
+    shifts = means.known(owns, 0).free_force(curve) / (curve.stiffness or np.inf)
+    shifts, group = np.unique(np.atleast_2d(shifts), axis=0, return_inverse=True)
+    groups = np.broadcast_to(group, len(owns))
     found = []
-    for own in _own(means):
-        # Noisy positions are taken as they are, where no force bends the cantilever.
-        shift = means.known(own, 0).free_force(curve) / (curve.stiffness or np.inf)
+    for number, shift in enumerate(shifts):
+        some = owns[groups == number]
         tip = replace(curve, position=curve.position + shift, stiffness=None)
-        last = tip.position.max() - _LAST * tip.span
-        touches = np.linspace(tip.position.min(), last, _POINTS)
+        touches = np.linspace(tip.position.min(), tip.position.max() - _LAST * tip.span, _POINTS)
         touches = np.append(touches, touches[0] - _EARLIER * tip.span)
-        at = np.repeat(own[None], touches.size if point is not None else 1, axis=0)
+        at = np.repeat(some, touches.size if point is not None else 1, axis=0)
         if modulus is not None:
             at[:, modulus] = 0.0
         if point is not None:
-            at[:, point] = touches / objective.slots[point].scale
+            at[:, point] = np.tile(touches / objective.slots[point].scale, len(some))
         misfits, scaled = _scaled(replace(means, curves=(tip,)), at)
-        best = int(np.argmin(misfits))
-        found.append((misfits[best], scaled[best]))
+        each = np.argmin(misfits.reshape(len(some), -1), axis=1)
+        best = each + np.arange(len(some)) * (len(at) // len(some))
+        found += [*zip(misfits[best], scaled[best], strict=True)]
     return [at for _, at in sorted(found, key=lambda trial: trial[0])[:_KEPT]]
 
 

@@ -17,7 +17,7 @@ from tests.layered_contact import LayeredContact, layered_contact
 from tests.physics.tables import steps, tensed
 
 # The equations are linear, so that lengths and loads may be convenient numbers.
-pytestmark = pytest.mark.filterwarnings("ignore:.*are those of the equations")
+pytestmark = pytest.mark.filterwarnings("ignore:.*are those of the (equations|model)")
 
 PARABOLOID = Paraboloid(radius=1.0)
 FORCE = pi

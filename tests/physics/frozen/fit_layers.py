@@ -188,7 +188,8 @@ def _parameters(name: str, old: Any, new: Any) -> Iterator[str]:
         yield f"{name}: {sorted(old)} → {sorted(new)}"
         return
     for parameter, (value, *ends) in old.items():
-        middle = next((known for known in (value, *ends) if known is not None), 0.0)
+        # An interval that is open below reaches from 0.
+        middle = next((known for known in (value, ends[0]) if known is not None), 0.0)
         reach = max((abs(end - middle) for end in ends if end is not None), default=0.0)
         for was, now in zip(old[parameter], new[parameter], strict=True):
             both = was is not None and now is not None
