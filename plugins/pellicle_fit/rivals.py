@@ -26,8 +26,8 @@ explanations."""
 _FAR, _NEAR, _LEADS, _BESIDE = 20.0, 4.0, 2.0, 1.0
 """Differences of AIC to the best beyond which an explanation is given up, and not sought to all
 digits; of a pair to its parts, and to the best."""
-_OF_ONE, _OF_PAIRS, _KEPT = (6, 4), (4, 3), 2
-"""Starts from which searches go, and their rough steps, and how many are sought to the end."""
+_STARTS, _STEPS, _KEPT = 6, 4, 2
+"""Starts from which searches go, their rough steps, and how many are sought to the end."""
 _LOWER = 0.1
 """Fall of χ² that is worth another search."""
 _COMPARED = 2e-2
@@ -131,21 +131,19 @@ def _sought(
         if simple:
             goal = _end(types, word, fits, _FAR) - objective.criterion(0.0)
         known = fits.get(word)
-        few = _OF_PAIRS if word and word < types else _OF_ONE
-        fits[types] = Candidate(
-            types, objective, _least(objective, at, goal, known, *few), of.curves
-        )
+        fits[types] = Candidate(types, objective, _least(objective, at, goal, known), of.curves)
     return fits
 
 
 def _nearest_sought(fits: Fits, word: Types) -> Fits:
     """Return explanations of which the best without what is asked for is sought to the end."""
-    found = dict(fits)
+    found, sought = dict(fits), set[Types]()
     while True:
         nearest = best_of(fit for fit in found.values() if not word or not word <= fit.types)
-        if not nearest.minimum.given_up:
+        if nearest.types in sought:
             return found
         found[nearest.types] = nearest.polished()
+        sought.add(nearest.types)
 
 
 def _end(types: Types, word: Types, fits: Fits, far: float) -> float:
@@ -166,8 +164,6 @@ def _least(
     starts: Sequence[Array],
     goal: float,
     known: Candidate | None,
-    few: int,
-    steps: int,
 ) -> Minimum:
     """Return the least minimum from several starts: few steps of all, more of the best.
 
@@ -182,8 +178,8 @@ def _least(
     left = np.array(starts)
     if len(left) > _KEPT:
         terms = coarse.trials(np.clip(left, *coarse.limits)).terms
-        left = left[np.argsort(cost_of(terms))[:few]]
-        minima = descend(coarse, left, steps=steps, goal=of_coarse)
+        left = left[np.argsort(cost_of(terms))[:_STARTS]]
+        minima = descend(coarse, left, steps=_STEPS, goal=of_coarse)
         minima.sort(key=lambda minimum: minimum.chi_squared)
         left = np.array([minimum.at for minimum in minima[:_KEPT]])
     minima = descend(objective, left, goal=of_means, fall=_COMPARED, rivals=True)
@@ -215,5 +211,5 @@ def _restarted(fit: Candidate, word: Types, fits: Fits) -> Candidate:
     values = [whole.objective.values(whole.minimum.at) for whole in wholes]
     at = np.array([fit.objective.at_values(known) for known in values])
     goal = min(_end(fit.types, word, fits, _FAR) - fit.objective.criterion(0.0), fit.chi_squared)
-    found = _least(fit.objective, [*at], goal - _LOWER, fits[word], *_OF_ONE)
+    found = _least(fit.objective, [*at], goal - _LOWER, fits[word])
     return min(fit, replace(fit, minimum=found), key=lambda one: one.minimum.chi_squared)
