@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -171,14 +172,13 @@ def _least(
     """
     coarse, of_means, of_coarse = objective.coarse, goal, goal
     if known is not None:
-        # Of means, χ² lacks the scatter of the rows about them.
-        whole, at = known.chi_squared, known.minimum.at
-        of_means -= whole - replace(known.objective, curves=objective.curves).chi_squared(at)
-        of_coarse -= whole - replace(known.objective, curves=coarse.curves).chi_squared(at)
+        of_means -= _scatter(known, objective.curves)
+        of_coarse -= _scatter(known, coarse.curves)
     left = np.array(starts)
-    if len(left) > _KEPT:
+    if len(left) > _STARTS:
         terms = coarse.trials(np.clip(left, *coarse.limits)).terms
         left = left[np.argsort(cost_of(terms))[:_STARTS]]
+    if len(left) > _KEPT:
         minima = descend(coarse, left, steps=_STEPS, goal=of_coarse)
         minima.sort(key=lambda minimum: minimum.chi_squared)
         left = np.array([minimum.at for minimum in minima[:_KEPT]])
@@ -195,6 +195,13 @@ def at_common_noise(fits: Fits) -> Fits:
     passing = (fit for fit in ranked if all(judged.describes for judged in fit.judgements))
     noise = [judged.noise.deviation for judged in next(passing, ranked[0]).judgements]
     return {types: fit.at_noise(noise) for types, fit in fits.items()}
+
+
+@lru_cache(maxsize=4)
+def _scatter(known: Candidate, curves: tuple[Curve, ...]) -> float:
+    """Return by what χ² of all rows exceeds that of means: the scatter of the rows about them."""
+    of_means = replace(known.objective, curves=curves)
+    return known.chi_squared - of_means.chi_squared(known.minimum.at)
 
 
 def _restarted(fit: Candidate, word: Types, fits: Fits) -> Candidate:
