@@ -14,7 +14,7 @@ import pellicle as pl
 from pellicle.contact import Problem
 from pellicle.show import save_figure
 from pellicle.show.style import MARKERS
-from pellicle.surface import make_operator
+from pellicle.surface import operator_of
 
 POINTS = {"conjugate_gradient": (64, 128, 256, 512), "active_set": (64, 128, 256, 512, 1024)}
 TENSIONS = {0.0: "no tension", 0.02: "s = 0.02 L", 1.0: "s = L"}
@@ -30,7 +30,7 @@ def applications(solver: str, points: int, s: float) -> int:
     profile = surface.profile(*grid.coordinates())
     slope = np.hypot(*np.gradient(profile, 1 / points))
     force = 0.1 * float(np.sqrt(np.mean(slope**2)))
-    problem = Problem(grid, make_operator(kernel, grid), profile, pl.Force(force))
+    problem = Problem(grid, operator_of(kernel, grid), profile, pl.Force(force))
     pl.solver(solver, tolerance=1e-6).solve(problem, None, lambda iteration, excess: None)
     return problem.operator.applications
 

@@ -20,6 +20,7 @@ from .components import HasForceCurve as HasForceCurve
 from .components import HasLayerForceCurve as HasLayerForceCurve
 from .components import Indenter as Indenter
 from .components import Interaction as Interaction
+from .components import Isotropic as Isotropic
 from .components import IterativeSolver as IterativeSolver
 from .components import Kernel as Kernel
 from .components import LayerForceCurve as LayerForceCurve
@@ -57,5 +58,5 @@ from .results.result import load as load
 from .runs.runner import run as run
 from .runs.validation import validate as validate
 from .studies.runner import run_study as run_study
-from .surface.operators import displacement as displacement
+from .surface.from_kernel import displacement as displacement
 from .version import __version__ as __version__

@@ -37,7 +37,7 @@ from tables import in_process, print_head, print_row
 import pellicle as pl
 from pellicle.contact import Problem
 from pellicle.contact import measure as measure_pressure
-from pellicle.surface import make_operator, operators
+from pellicle.surface import operator_of, operators
 from pellicle_plugins.solvers import preconditioner
 
 
@@ -55,7 +55,7 @@ def problem(
     }[case]()
     profile = indenter.profile(*grid.coordinates())
     started = time.process_time()
-    operator = make_operator(kernel, grid)
+    operator = operator_of(kernel, grid)
     setup = time.process_time() - started
     if case == "rough":
         slope = np.hypot(*np.gradient(profile, 1 / points))

@@ -39,7 +39,7 @@ from tables import in_process, print_head, print_row
 import pellicle as pl
 from pellicle.contact import Problem
 from pellicle.contact import measure as judge
-from pellicle.surface import make_operator
+from pellicle.surface import operator_of
 
 RMS_HEIGHT = 0.01  # in L; the edge L and the reduced modulus E* are 1
 LOAD = 0.1  # mean pressure over E* × rms slope
@@ -79,7 +79,7 @@ class Case:
         kernel = pl.kernel("half_space", reduced_modulus=1.0)
         if self.skin_length:
             kernel = pl.kernel("tensed_membrane", reduced_modulus=1.0, tension=self.skin_length / 2)
-        return Problem(grid, make_operator(kernel, grid), heights, pl.Force(LOAD * slope))
+        return Problem(grid, operator_of(kernel, grid), heights, pl.Force(LOAD * slope))
 
 
 Answer = tuple[Any, int, int]
@@ -100,10 +100,11 @@ class Code:
 
 def pellicle(solver: str, case: Case, tolerance: float) -> Answer:
     """Solve with a solver of pellicle."""
-    operator = make_operator(case.problem.operator.kernel, case.problem.grid)
+    operator = case.problem.operator
+    before = operator.applications
     method = pl.solver(solver, tolerance=tolerance)
-    outcome = method.solve(replace(case.problem, operator=operator), None, lambda *progress: None)
-    return outcome.pressure, outcome.iterations, operator.applications
+    outcome = method.solve(case.problem, None, lambda *progress: None)
+    return outcome.pressure, outcome.iterations, operator.applications - before
 
 
 def tamaas(case: Case, tolerance: float) -> Answer:

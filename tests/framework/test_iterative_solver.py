@@ -11,7 +11,7 @@ import pellicle as pl
 from pellicle import Grid, IterativeSolver, Problem, Solution, State, Stop
 from pellicle.arrays import Array
 from pellicle.contact.solution import Progress
-from pellicle.surface import make_operator
+from pellicle.surface import operator_of
 from pellicle_plugins.kernels.half_spaces import HalfSpace
 
 
@@ -51,7 +51,7 @@ class Played(IterativeSolver):
 def solve(residuals: list[float], **fields: Any) -> tuple[Solution, list[int]]:
     """Return the solution of a problem, and the iterations that the monitor was called with."""
     grid = Grid(points=4, size=1.0, boundary="periodic")
-    operator = make_operator(HalfSpace(reduced_modulus=1.0), grid)
+    operator = operator_of(HalfSpace(reduced_modulus=1.0), grid)
     problem = Problem(grid, operator, np.zeros(grid.shape), pl.Force(1.0))
     iterations: list[int] = []
     solver = Played(**{"measures": [(r,) for r in residuals], "tolerance": 1e-8} | fields)

@@ -28,11 +28,11 @@ SOFT = '''
 from collections.abc import Callable
 from typing import Annotated, Literal
 from pydantic import Field
-from pellicle import Kernel, Output, hookimpl
+from pellicle import Isotropic, Kernel, Output, hookimpl
 from pellicle.components import Component
 from pellicle.units import Quantity
 
-class Soft(Kernel):
+class Soft(Isotropic):
     """Kernel of a stranger."""
 
     type: Literal["soft"] = "soft"
@@ -68,7 +68,7 @@ BROKEN = {
     "other default": (TYPE, 'type: Literal["soft"] = "s"', 'Soft.type needs the default "soft"'),
     "no method": ("compliance", "stiffness", "Soft lacks the method compliance"),
     "shows nothing": (
-        "Soft(Kernel)",
+        "Soft(Isotropic)",
         "Soft(Output)",
         "Soft lacks the method charts, or write",
     ),
@@ -76,14 +76,18 @@ BROKEN = {
     "bare field": (FIELD, "float = 1.0", "Soft.scale lacks Field(description=…)"),
     "unknown unit": ("float,", "float, Quantity('ell'),", "Soft.scale: Quantity('ell') has an unk"),
     "other family": (TYPE, TYPE + '\n    family = "x"', "Soft.family is 'x'; leave it to Kernel"),
-    "no family": ("Soft(Kernel)", "Soft(Component)", "Soft is of no family; derive it from a base"),
+    "no family": (
+        "Soft(Isotropic)",
+        "Soft(Component)",
+        "Soft is of no family; derive it from a base",
+    ),
     "its own base": (
-        f"Soft(Kernel):\n    {DOCSTRING}",
+        f"Soft(Isotropic):\n    {DOCSTRING}",
         f"Soft(Component):\n    {DOCSTRING}\n    family = 'x'; place = 'x'",
         "Soft is the base class of a family; derive from it",
     ),
     "no place": (
-        "class Soft(Kernel):",
+        "class Soft(Isotropic):",
         "class X(Component): family = 'x'\nclass Soft(X):",
         "X lacks the class variable place",
     ),

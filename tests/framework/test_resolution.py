@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle.surface import make_operator
+from pellicle.surface import operator_of
 from pellicle.surface.influence import error_of_cells, warn_of_cells
 
 THICK = 10e-6
@@ -37,7 +37,7 @@ def test_error_is_that_of_the_cells(ratio: float, poissons_ratio: float) -> None
     pressure = np.zeros(grid.shape)
     pressure[n // 2, n // 2] = 1.0
     # Far from the edges the line response of one cell, summed up with the wave.
-    response = make_operator(kernel, grid)(pressure).sum(axis=1)
+    response = operator_of(kernel, grid)(pressure).sum(axis=1)
     q = 2 * np.pi / (16 * grid.spacing[0])
     total = (response * np.cos(q * grid.coordinates()[0][:, 0])).sum()
     expected = total / kernel.compliance(np.array([q]))[0] - 1

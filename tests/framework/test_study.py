@@ -27,7 +27,6 @@ from pellicle.studies import runner as study_module
 from pellicle.studies.table import StudyTable, write
 from pellicle_plugins.executors.execution import Serial
 from pellicle_plugins.executors.processes import Processes
-from pellicle_plugins.kernels.half_spaces import TensedMembrane
 from tests import small_run
 
 RUN = small_run.RUN | {"title": "Study"}
@@ -40,9 +39,8 @@ NUMBERS = ("depth", "force", "contact_area", "residual_contact", "iterations", "
 
 def tension_of(problem: pl.Problem) -> float:
     """Return the tension [N/m] of the skin."""
-    kernel = problem.operator.kernel
-    assert isinstance(kernel, TensedMembrane)
-    return kernel.tension
+    q = np.array([1e12])
+    return float(round(1 / (problem.operator.symbol(q, 0 * q) * q**2).item(), 6))
 
 
 class Counting(pl.Solver):

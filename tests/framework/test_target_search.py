@@ -14,7 +14,7 @@ from pellicle.contact import Problem
 from pellicle.contact.load_step import LoadStep
 from pellicle.contact.solution import State
 from pellicle.runs.target_search import reach
-from pellicle.surface import make_operator
+from pellicle.surface import operator_of
 
 GRID = pl.Grid(points=11, size=11.0, boundary="periodic")
 
@@ -43,7 +43,7 @@ def setting(start: float | None = None) -> pl.Setting:
         before = np.zeros(GRID.shape)
         before.ravel()[:4] = start / 4
         state = State(before, before, 1.0)
-    return pl.Setting(GRID, make_operator(kernel, GRID), profile, "unbounded", state)
+    return pl.Setting(GRID, operator_of(kernel, GRID), profile, "unbounded", state)
 
 
 def search(cells: Callable[[float], int], area: float, start: float | None = None) -> LoadStep:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pellicle import Depth, Force, Grid, Problem
-from pellicle.surface import make_operator
+from pellicle.surface import operator_of
 from pellicle.surface.grid_transfer import highest, prolong, restrict
 from pellicle_plugins.kernels.half_spaces import HalfSpace
 
@@ -101,13 +101,13 @@ def test_coarsened_problem(control: Depth | Force) -> None:
     """The same load on the coarse grid; an operator of its own leaves the fine one's count."""
     grid = Grid(points=(9, 6), size=(2.0, 3.0))
     kernel = HalfSpace(reduced_modulus=2.0)
-    fine = Problem(grid, make_operator(kernel, grid), field(grid.shape), control)
+    fine = Problem(grid, operator_of(kernel, grid), field(grid.shape), control)
     coarse = fine.coarsened()
     assert coarse.grid == grid.coarsened() == coarse.operator.grid
     assert coarse.control == control
     np.testing.assert_array_equal(coarse.profile, restrict(fine.profile, (5, 3)))
     pressure = np.ones(coarse.grid.shape)
     np.testing.assert_array_equal(
-        coarse.operator(pressure), make_operator(kernel, coarse.grid)(pressure)
+        coarse.operator(pressure), operator_of(kernel, coarse.grid)(pressure)
     )
     assert (fine.operator.applications, coarse.operator.applications) == (0, 1)

@@ -14,7 +14,7 @@ import pellicle as pl
 from pellicle.axisymmetric.indentation import indent
 from pellicle.components.solver import solution_of
 from pellicle.contact import Problem, measure
-from pellicle.surface import make_operator
+from pellicle.surface import operator_of
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.physics.tables import ROUGH, Table, half_space, paraboloid, steps, tensed
 
@@ -153,7 +153,7 @@ def test_coarser_problem_has_the_same_spring(boundary: str) -> None:
     """The deflection under a uniform pressure, and so the force, stay those of the fine grid."""
     run = pl.Run(**_base(boundary, SKIN, TIP), loading={"depth": 0})
     profile = run.indenter.profile(*run.grid.coordinates())
-    operator = make_operator(run.kernel, run.grid)
+    operator = operator_of(run.kernel, run.grid)
     fine = Problem(run.grid, operator, profile, pl.Depth(2e-5, compliance=0.7))
     coarse = fine.coarsened()
     for problem in (fine, coarse, fine.scaled(2.0**-20, 2.0**5).scaled(2.0**20, 2.0**-5)):

@@ -50,6 +50,7 @@ from .indenter import Indenter as Indenter
 from .indenter import LayerForceCurve as LayerForceCurve
 from .indenter import profile_of as profile_of
 from .interaction import Interaction as Interaction
+from .kernel import Isotropic as Isotropic
 from .kernel import Kernel as Kernel
 from .kernel import KernelOf as KernelOf
 from .lattice import Lattice as Lattice

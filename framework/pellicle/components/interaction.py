@@ -13,6 +13,7 @@ from pellicle.checks import errors_attributed_to
 from pellicle.contact.law import GapLaw, Law
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid
+from pellicle.surface.operators import along_axes
 
 from .base import Component
 from .kernel import Kernel
@@ -102,7 +103,7 @@ def law_of(
         averaged=interaction.averaged,
     )
     with errors_attributed_to(kernel):
-        compliance = kernel.compliance(np.array([np.pi / grid.cell_size])).item()
+        compliance = along_axes(kernel.symbol, np.array([np.pi / grid.cell_size])).item()
     cutoff, strength = law.cutoff(), law.strength()
     if _DIGITS * strength * compliance > cutoff:
         raise ConfigError(

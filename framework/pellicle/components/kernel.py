@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from typing import ClassVar, cast
+from typing import Any, ClassVar, cast
+
+import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.checks import component_name, errors_attributed_to, real_number
+from pellicle.checks import component_name, errors_attributed_to, read_only, real_number
 from pellicle.contact.time_step import Branch
-from pellicle.errors import PluginError, shown
-from pellicle.surface.operators import HasClosedForm, mean_compliance
+from pellicle.errors import ConfigError, PluginError, shown
+from pellicle.surface.from_kernel import HasClosedForm, mean_compliance
 
 from .base import Component
 
@@ -21,12 +23,10 @@ _ROUNDING = 1e-12
 class Kernel(Component):
     """The displacement of the surface under pressure: û(q) = G(q) p̂(q).
 
-    Only G(q) is required; the other methods are those of an elastic half-space without a skin. On
-    free boundaries the closed form (`pellicle.surface.HasClosedForm`), ``greens_function(r)`` [m/N]
-    and ``radial_primitive(r)`` [m³/N], is used if the kernel has one; otherwise it is tabulated
-    from G(q).
+    Only G(q) is required; the defaults of the other methods are those of an elastic half-space
+    without a skin. A kernel that yields equally in all directions derives from `Isotropic`.
 
-    If the solid relaxes in time, ``compliance(q)`` is its instantaneous response. A skin on the
+    If the solid relaxes in time, ``symbol(qx, qy)`` is its instantaneous response. A skin on the
     solid does not relax: at a time t after a jump the stiffness is
     1/G(q) − Σ gⱼ (1 − e^(−t/τⱼ))/G₀(q), with G₀ the compliance of `without_skin`, and shares gⱼ and
     times τⱼ of `branches`. An elastic kernel may count a skin of its own as part of the solid.
@@ -35,9 +35,36 @@ class Kernel(Component):
     family: ClassVar[str] = "kernel"
     place: ClassVar[str] = "kernel"
 
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        super().__pydantic_init_subclass__(**options)
+        if "symbol" in cls.__abstractmethods__ and cls.compliance is not Kernel.compliance:
+            raise PluginError(
+                f"{cls.__name__} has compliance(q) and no symbol(qx, qy); derive it from "
+                "pellicle.Isotropic, the kernels that compliance(q) describes in all directions"
+            )
+
+    @property
+    def is_isotropic(self) -> bool:
+        """Whether G depends on |q| alone; a free boundary needs that."""
+        return False
+
     @abstractmethod
+    def symbol(self, qx: Array, qy: Array) -> Array:
+        """Return G(q) [m/Pa] of waves q_x and q_y [rad/m], not both 0, which may be broadcast.
+
+        It is real and even, G(−q) = G(q).
+        """
+
     def compliance(self, q: Array) -> Array:
-        """Return G(q) [m/Pa], of the shape of ``q`` > 0 [rad/m]."""
+        """Return G(q) [m/Pa] of an isotropic kernel for q > 0 [rad/m]; refuse of any other."""
+        if not self.is_isotropic:
+            raise ConfigError(
+                f"{component_name(self)} yields differently along x and y, so compliance(q) does "
+                "not describe it; use symbol(qx, qy)",
+                "kernel",
+            )
+        return self.symbol(q, np.zeros_like(q))
 
     def mean_compliance(self) -> float:
         """Return G(0) [m/Pa], the displacement per uniform pressure on a periodic domain.
@@ -68,7 +95,7 @@ class Kernel(Component):
     def scaled(self, share: float) -> Kernel:
         """Return the elastic kernel of a solid ``share`` > 0 times as stiff under the same skin.
 
-        Its compliance is 1/(1/G + (share − 1)/G₀). It has a closed form if this kernel has one.
+        Its symbol is 1/(1/G + (share − 1)/G₀). It has a closed form if this kernel has one.
         """
         kind = _StiffenedClosedForm if isinstance(self, HasClosedForm) else _Stiffened
         return kind.model_construct(substrate=self, factor=share)
@@ -78,15 +105,42 @@ class Kernel(Component):
         return math.inf
 
 
+class Isotropic(Kernel):
+    """A kernel that yields equally in all directions, given by one function of |q|.
+
+    On free boundaries the closed form (`pellicle.surface.HasClosedForm`), ``greens_function(r)``
+    [m/N] and ``radial_primitive(r)`` [m³/N], is used if the kernel has one; otherwise it is
+    tabulated from G(q).
+    """
+
+    @property
+    def is_isotropic(self) -> bool:
+        """Whether G depends on |q| alone."""
+        return True
+
+    @abstractmethod
+    def compliance(self, q: Array) -> Array:
+        """Return G(q) [m/Pa], of the shape of ``q`` > 0 [rad/m]."""
+
+    def symbol(self, qx: Array, qy: Array) -> Array:
+        """Return G(|q|) [m/Pa] of waves q_x and q_y [rad/m]."""
+        return self.compliance(read_only(np.hypot(qx, qy)))
+
+
 class KernelOf(Kernel):
     """A kernel made of another one, as a skin on a substrate.
 
     A subclass has the field of the other kernel and says what it changes. All else is that of the
-    substrate, but a closed form, which holds for the very compliance of the substrate.
+    substrate, but a closed form, which holds for the very symbol of the substrate.
     """
 
     substrate_field: ClassVar[str] = "substrate"
     """Name of the field of the other kernel."""
+
+    @property
+    def is_isotropic(self) -> bool:
+        """Whether the substrate is isotropic."""
+        return self._substrate.is_isotropic
 
     def mean_compliance(self) -> float:
         """Return G(0) [m/Pa] of the substrate."""
@@ -123,8 +177,8 @@ class _Stiffened(KernelOf):
     substrate: Kernel
     factor: float
 
-    def compliance(self, q: Array) -> Array:
-        return self.substrate.compliance(q) / self.factor
+    def symbol(self, qx: Array, qy: Array) -> Array:
+        return self.substrate.symbol(qx, qy) / self.factor
 
     def mean_compliance(self) -> float:
         return mean_compliance(self.substrate) / self.factor

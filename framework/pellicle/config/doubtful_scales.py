@@ -12,6 +12,7 @@ import numpy as np
 from pellicle.config.run import Run
 from pellicle.config.study import Study
 from pellicle.schema.model import walk
+from pellicle.surface import along_axes
 from pellicle.units import Quantity, printed, quantity_of, readable
 
 _LARGE = 1.0
@@ -58,7 +59,7 @@ def _doubts(run: Run) -> Iterator[tuple[str, str]]:
     # A kernel that cannot be evaluated is refused when the run is composed.
     with suppress(Exception), np.errstate(all="ignore"):
         longest = np.array([2 * math.pi / size])
-        softness = float(np.asarray(run.kernel.compliance(longest))[0]) / size
+        softness = along_axes(run.kernel.symbol, longest).item() / size
     if size > _LARGE and max(moduli, default=0.0) > _STIFF:
         yield _doubt("grid.size", size, "m")
     for path, value, unit in values:

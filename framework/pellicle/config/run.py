@@ -43,6 +43,7 @@ from pellicle.grid import Grid, grid_of_run
 from pellicle.plugins import registry
 from pellicle.schema.from_file import FromFile
 from pellicle.schema.model import get, replaced, walk
+from pellicle.surface import along_axes
 from pellicle.variables import VARIABLES, Variable, corrected_area, corrected_fraction
 
 from .loading import Loading, fields_from
@@ -157,8 +158,8 @@ class Run(FromFile):
             return self
         q = np.array([np.pi / self.grid.cell_size])
         with errors_attributed_to(kernel):
-            solid = kernel.without_skin().compliance(q).item()
-            cells = (solid / kernel.compliance(q).item() - 1) / np.pi
+            solid = along_axes(kernel.without_skin().symbol, q).item()
+            cells = (solid / along_axes(kernel.symbol, q).item() - 1) / np.pi
         if cells < _TENSED_CELLS:
             raise ConfigError(
                 f"{interaction.type_name!r} takes its range from the cells, and where the solid "

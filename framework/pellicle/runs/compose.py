@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Final
 
 import numpy as np
@@ -23,8 +23,9 @@ from pellicle.contact.time_step import stiffness_after
 from pellicle.errors import ConfigError, PluginError
 from pellicle.grid import Grid
 from pellicle.plugins import registry
+from pellicle.surface.from_kernel import operator_of
 from pellicle.surface.influence import warn_of_cells
-from pellicle.surface.operators import make_operator
+from pellicle.surface.operators import along_axes
 from pellicle.units import readable
 
 # A step between opposite edges above this multiple of steps inside means a non-periodic surface.
@@ -42,8 +43,8 @@ def compose(run: Run) -> Setting:
             with errors_attributed_to(component):
                 _ask_stranger(component, case)
     with errors_attributed_to(run.kernel):
-        operator = make_operator(instantaneous(run.kernel), run.grid)
-        warn_of_cells(run.kernel.compliance, run.grid)
+        operator = operator_of(instantaneous(run.kernel), run.grid)
+        warn_of_cells(partial(along_axes, operator.symbol), run.grid)
     profile = profile_of(run.indenter, run.grid)
     if run.indenter.footprint == "domain":
         warn_of_period(profile, run.grid)

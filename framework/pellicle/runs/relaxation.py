@@ -18,7 +18,7 @@ from pellicle.config.run import Run
 from pellicle.contact.load_step import FinishedStep
 from pellicle.contact.time_step import Memory, TimeStep
 from pellicle.grid import Grid
-from pellicle.surface import HasCompliance, mean_compliance
+from pellicle.surface import HasSymbol, mean_compliance
 from pellicle.surface.outside import PlaneOperator
 
 KEPT: Final = 4
@@ -91,14 +91,19 @@ class Relaxation:
 class CarriedShare:
     """The part of a pressure that the solid under a skin carries, as a kernel without unit."""
 
-    whole: HasCompliance
+    whole: HasSymbol
     """The skin on the solid, γ times as stiff."""
-    solid: HasCompliance
+    solid: HasSymbol
     """The solid alone, as stiff as it is at once."""
 
-    def compliance(self, q: Array) -> Array:
+    @property
+    def is_isotropic(self) -> bool:
+        """Whether both are."""
+        return self.whole.is_isotropic and self.solid.is_isotropic
+
+    def symbol(self, qx: Array, qy: Array) -> Array:
         """Return k₀/(k_skin + γ k₀)."""
-        share: Array = self.whole.compliance(q) / self.solid.compliance(q)
+        share: Array = self.whole.symbol(qx, qy) / self.solid.symbol(qx, qy)
         return share
 
     def mean_compliance(self) -> float:
@@ -116,7 +121,7 @@ def skin_operators(
     """
     solid = kernel.without_skin()
 
-    def kept(make: Callable[[float], HasCompliance]) -> Callable[[TimeStep], PlaneOperator]:
+    def kept(make: Callable[[float], HasSymbol]) -> Callable[[TimeStep], PlaneOperator]:
         @lru_cache(maxsize=KEPT)
         def operator(share: float) -> PlaneOperator:
             with errors_attributed_to(kernel):

@@ -13,7 +13,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.grid import Grid
 
-from .operators import HasCompliance, make_operator
+from .from_kernel import HasSymbol, operator_of
 
 # Edge of the larger plane over that of the domain, and its cells each way. With twice of both the
 # force of a flat punch with a tensed skin changes by 2e-4 in a domain of 8 contact radii.
@@ -27,8 +27,8 @@ class PlaneOperator:
     On a periodic boundary there is nothing outside the domain, and the integral is not used.
     """
 
-    def __init__(self, kernel: HasCompliance, grid: Grid) -> None:
-        self.operator = make_operator(kernel, grid)
+    def __init__(self, kernel: HasSymbol, grid: Grid) -> None:
+        self.operator = operator_of(kernel, grid)
         """The operator on fields that are 0 outside the domain."""
         self._from_outside = from_outside(kernel, grid) if grid.boundary == "free" else None
 
@@ -41,7 +41,7 @@ class PlaneOperator:
         return result
 
 
-def from_outside(kernel: HasCompliance, grid: Grid) -> Array:
+def from_outside(kernel: HasSymbol, grid: Grid) -> Array:
     """Return the displacement [m/N] of each cell by 1 N spread as r⁻³ outside the domain.
 
     It is computed on a plane eight times as large, in coarse cells. The eighth of the force that
@@ -61,7 +61,7 @@ def from_outside(kernel: HasCompliance, grid: Grid) -> Array:
     density: Array = np.hypot(x / min(size), y / min(size)) ** -3.0
     density[domain] = 0.0
     density *= (1 - 1 / _LARGER) / (density.sum() * plane.cell_area)
-    displacement = make_operator(kernel, plane)(density)[domain]
+    displacement = operator_of(kernel, plane)(density)[domain]
     spline = RectBivariateSpline(x[rows, 0], y[0, columns], displacement)
     # Between the outermost coarse centres and the edge of the domain the spline is constant.
     fine_x, fine_y = grid.coordinates()

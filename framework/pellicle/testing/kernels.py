@@ -10,7 +10,7 @@ from pellicle.components.kernel import instantaneous
 from pellicle.components.rules import Case
 from pellicle.components.rules.closed_form import displacement_of_centre
 from pellicle.grid import Grid
-from pellicle.surface.operators import displacement
+from pellicle.surface.from_kernel import displacement
 
 from .component import check, require_close, rules_of
 from .small_runs import solved
@@ -33,8 +33,11 @@ def check_kernel(kernel: Kernel) -> None:
 
 
 def runs_converge(kernel: Kernel) -> None:
-    """A paraboloid pressed into a periodic and into a free surface converges."""
-    for boundary in ("periodic", "free"):
+    """A paraboloid pressed into a periodic and into a free surface converges.
+
+    The free surface is one of kernels that yield equally in all directions.
+    """
+    for boundary in ("periodic", "free") if kernel.is_isotropic else ("periodic",):
         grid = {"points": 24, "size": "1 mm", "boundary": boundary}
         # A run of a kernel that relaxes would need times.
         solved(grid=grid, kernel=instantaneous(kernel), loading={"depth": ["5 um", "20 um"]})
@@ -42,6 +45,8 @@ def runs_converge(kernel: Kernel) -> None:
 
 def free_operator_is_the_transform_of_the_compliance(kernel: Kernel) -> None:
     """On a free grid, a Gaussian pressure displaces its centre by the Hankel integral."""
+    if not kernel.is_isotropic:
+        return
     grid = Grid(points=255, size=10 * _WIDTH, boundary="free")
     x, y = grid.coordinates()
     pressure = np.exp(-(x**2 + y**2) / (2 * _WIDTH**2))

@@ -14,7 +14,7 @@ from pellicle.config.run import Run
 from pellicle.contact.equilibrium import measure_stiffness
 from pellicle.contact.problem import Depth, Force, Problem
 from pellicle.contact.solution import State
-from pellicle.surface.operators import make_operator
+from pellicle.surface.from_kernel import operator_of
 
 from .component import check, require, require_close, rules_of
 from .small_runs import PARABOLOID, ROUGH, ignore, solved
@@ -63,7 +63,7 @@ def _from_scratch(solver: Solver, case: int) -> xr.Dataset:
 
 def _problems() -> list[Problem]:
     run = Run(**_SMOOTH, loading={"depth": 0.0})
-    operator = make_operator(run.kernel, run.grid)
+    operator = operator_of(run.kernel, run.grid)
     profile = run.indenter.profile(*run.grid.coordinates())
     return [
         Problem(run.grid, operator, profile, control) for control in (Depth(20e-6), Force(4e-5))

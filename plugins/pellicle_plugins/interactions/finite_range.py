@@ -12,6 +12,7 @@ from pellicle import Grid
 from pellicle.arrays import Array
 from pellicle.components import Interaction, Kernel
 from pellicle.contact import GapLaw
+from pellicle.surface import along_axes
 from pellicle.units import Length, Strength, WorkOfAdhesion
 
 # q times the width of the zone of `softening_strength`. The gap in the zone is a wave for which
@@ -25,7 +26,7 @@ def softening_strength(work_of_adhesion: float, width: float, kernel: Kernel) ->
     The traction −σ₀(1 − g/g_max), with g_max = 2w/σ₀, has the slope σ₀²/(2w), which the stiffness
     1/G(q) of the zone's own wave balances.
     """
-    compliance = float(kernel.compliance(np.array([_PHASE / width]))[0])
+    compliance = along_axes(kernel.symbol, np.array([_PHASE / width])).item()
     return float(np.sqrt(2 * work_of_adhesion / compliance))
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from pellicle.arrays import Array
-from pellicle.components import Kernel
+from pellicle.components import Isotropic
 from pellicle.units import Length
 
 from .elastic_constants import ElasticConstants
@@ -28,7 +28,7 @@ class Layer(ElasticConstants):
         return self.thickness * self.uniaxial_compliance
 
 
-class ElasticLayer(Layer, Kernel):
+class ElasticLayer(Layer, Isotropic):
     """A kernel whose solid is a layer of finite thickness on a rigid base."""
 
     def depth_to_base(self) -> float:

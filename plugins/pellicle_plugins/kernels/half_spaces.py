@@ -8,14 +8,14 @@ import numpy as np
 from pydantic import ConfigDict, Field
 
 from pellicle.arrays import Array
-from pellicle.components import Kernel
+from pellicle.components import Isotropic
 from pellicle.units import Tension
 
 from .elastic_constants import ElasticModulus
 from .struve import struve_minus_bessel, struve_minus_bessel_primitive
 
 
-class HalfSpace(ElasticModulus, Kernel):
+class HalfSpace(ElasticModulus, Isotropic):
     """Elastic half-space without surface tension (Boussinesq 1885)."""
 
     model_config = ConfigDict(title="half-space")
@@ -36,7 +36,7 @@ class HalfSpace(ElasticModulus, Kernel):
         return r / (np.pi * self.contact_modulus)
 
 
-class TensedMembrane(ElasticModulus, Kernel):
+class TensedMembrane(ElasticModulus, Isotropic):
     """Elastic half-space under a skin of constant equi-biaxial tension (Hajji 1978)."""
 
     type: Literal["tensed_membrane"] = "tensed_membrane"

@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field
 
 from pellicle.arrays import Array
-from pellicle.components import Kernel
+from pellicle.components import Isotropic
 from pellicle.errors import ConfigError, shown
 
 from .elastic_constants import ElasticConstants
@@ -33,7 +33,7 @@ def _substrate(value: object) -> object:
     )
 
 
-class Layered(Kernel):
+class Layered(Isotropic):
     """Elastic layers glued to each other, on a half-space or a rigid base (Burmister 1945).
 
     One layer on a rigid base is `bonded_layer`. Waves much shorter than the uppermost layer feel

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import ConfigDict, Field
 
 from pellicle.arrays import Array
-from pellicle.components import FromRegistry, Kernel, KernelOf
+from pellicle.components import FromRegistry, Isotropic, Kernel, KernelOf
 from pellicle.units import BendingStiffness, Tension
 
 from .elastic_constants import ElasticConstants, ElasticModulus
@@ -33,7 +34,7 @@ class Skin(Kernel):
         return (self.tension + self.bending * q**2) * q**2
 
 
-class BendingSkin(Skin, ElasticModulus):
+class BendingSkin(Skin, ElasticModulus, Isotropic):
     """Elastic half-space under a skin with tension and bending stiffness (Kirchhoff plate).
 
     Waves with 1/q below (2B/E*)^⅓ are carried by the bending stiffness. Without it this is
@@ -51,7 +52,7 @@ class BendingSkin(Skin, ElasticModulus):
         return 1 / (self.contact_modulus * q / 2 + self.skin_stiffness(q))
 
 
-class GurtinMurdoch(Skin, ElasticConstants):
+class GurtinMurdoch(Skin, ElasticConstants, Isotropic):
     """Elastic half-space whose surface resists stretching too (Gurtin & Murdoch 1975).
 
     The surface has a residual tension τ₀ and a stiffness κ_s = λ_s + 2μ_s against in-plane strain.
@@ -110,7 +111,7 @@ class Coated(Skin, KernelOf):
         description="the kernel under the skin: a table with type"
     )
 
-    def compliance(self, q: Array) -> Array:
+    def symbol(self, qx: Array, qy: Array) -> Array:
         """Return G(q) = 1/(1/G_s + τ₀ q² + B q⁴) [m/Pa], with G_s of the substrate."""
-        substrate = self.substrate.compliance(q)
-        return substrate / (1 + substrate * self.skin_stiffness(q))
+        substrate = self.substrate.symbol(qx, qy)
+        return substrate / (1 + substrate * self.skin_stiffness(np.hypot(qx, qy)))

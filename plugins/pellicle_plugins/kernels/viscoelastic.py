@@ -110,9 +110,9 @@ class Viscoelastic(KernelOf):
         None, description="a power law of time: a table of exponent, time, shortest and longest"
     )
 
-    def compliance(self, q: Array) -> Array:
+    def symbol(self, qx: Array, qy: Array) -> Array:
         """Return G(q) [m/Pa] of the instantaneous response; of a power law, before its span."""
-        return self.solid.compliance(q) / self._instantaneous
+        return self.solid.symbol(qx, qy) / self._instantaneous
 
     def mean_compliance(self) -> float:
         """Return the instantaneous G(0) [m/Pa]."""

@@ -8,11 +8,11 @@ import numpy as np
 from pydantic import ConfigDict, Field
 
 from pellicle.arrays import Array
-from pellicle.components import Kernel
+from pellicle.components import Isotropic
 from pellicle.units import FoundationStiffness
 
 
-class Winkler(Kernel):
+class Winkler(Isotropic):
     """Bed of independent springs: the surface yields only where it is pressed (Winkler 1867)."""
 
     model_config = ConfigDict(title="Winkler foundation")

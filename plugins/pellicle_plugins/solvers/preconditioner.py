@@ -42,10 +42,10 @@ class CirculantStiffness:
     def __init__(self, operator: Operator, shape: tuple[int, int]) -> None:
         dx, dy = operator.grid.spacing
         plane = Grid(points=shape, size=(shape[0] * dx, shape[1] * dy), boundary="periodic")
-        q = np.hypot(*plane.wavenumbers())
+        waves = np.array(np.broadcast_arrays(*plane.wavenumbers()))
         # At q = 0 half of the stiffness of the longest wave keeps K positive definite.
-        q[0, 0] = 2 * np.pi / max(plane.size)
-        stiffness = 1 / operator.compliance(q)
+        waves[int(np.argmax(plane.size)), 0, 0] = 2 * np.pi / max(plane.size)
+        stiffness = 1 / operator.symbol(*waves)
         stiffness[0, 0] /= 2
         self.shape = shape
         self._workspace = operator.workspace
@@ -85,10 +85,8 @@ class Preconditioner:
         levels, halved = 0, [n for n in self._padded if n > 1]
         while halved and all(n >= 4 and n % 2 == 0 for n in halved):
             levels, halved = levels + 1, [n // 2 for n in halved]
-        # α ≥ 0 of the stiffness k ∝ q^α at the cell size of each level, the finest first.
-        q = np.pi / max(edges(grid)) * 0.5 ** np.arange(levels + 2, dtype=np.float64)
-        stiffness = 1 / operator.compliance(q)
-        orders = [max(0.0, float(order)) for order in -np.diff(np.log2(stiffness))]
+        # Those of the cell size of each level, the finest first.
+        orders = operator.orders(levels + 1)
         self.bends = bends(orders[0])
         """Whether bending dominates the stiffness at the size of a cell."""
         self.is_bed = orders[0] < _BED

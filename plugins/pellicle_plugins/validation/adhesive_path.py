@@ -11,6 +11,7 @@ from pellicle.arrays import Dataset
 from pellicle.components import Kernel
 from pellicle.errors import ConfigError
 from pellicle.results import Result
+from pellicle.surface import along_axes
 
 _ROUND = 0.02
 """Relative difference of a circle's semi-axes, or of its area from the ellipse's, beyond a cell."""
@@ -74,6 +75,6 @@ def excess_radius(kernel: Kernel, spacing: float) -> float:
     is more than the radius.
     """
     shortest = pi / spacing
-    compliance = kernel.compliance(shortest * np.array([sqrt(0.5), sqrt(2.0)]))
+    compliance = along_axes(kernel.symbol, shortest * np.array([sqrt(0.5), sqrt(2.0)]))
     order = float(np.log2(compliance[0] / compliance[1]))
     return _EXCESS_CELLS * min(max(order, 0.0), 2.0) * spacing

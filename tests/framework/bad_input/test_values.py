@@ -29,7 +29,7 @@ def test_memory_that_runs_out_all_the_same(
     def fail(*arguments: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr("pellicle.runs.compose.make_operator", fail)
+    monkeypatch.setattr("pellicle.runs.compose.operator_of", fail)
     says(refuse(), "grid.points: (16, 16) cells do not fit in memory; use fewer points")
 
 

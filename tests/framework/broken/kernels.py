@@ -32,7 +32,7 @@ class Relaxing(Kernel):
         return self
 
 
-class WithoutForm(pl.Kernel):
+class WithoutForm(pl.Isotropic):
     """Half-space without a closed form."""
 
     type: Literal["broken"] = "broken"
@@ -87,6 +87,10 @@ BROKEN: dict[str, Any] = {
         Broken("looks at all waves", RULE, compliance=lambda f, q: f(q) * (1 + 1e-6 * q / q.max())),
         Broken("works in place", PLACE, compliance=lambda f, q: f(np.multiply(q, 2, out=q))),
         form("form in place", PLACE, greens_function=lambda f, r: f(np.multiply(r, 2, out=r))),
+    ],
+    "symbol_is_even_and_broadcast": [
+        Broken("odd", RULE, symbol=lambda f, qx, qy: f(qx, qy) * (1 + 0.1 * (qx > 0))),
+        Broken("another along y", RULE, symbol=lambda f, qx, qy: f(qx, 2 * qy)),
     ],
     "compliance_is_positive_and_finite": [
         *(bad(fault, value) for fault, value in (("zero", 0.0), ("nan", np.nan))),

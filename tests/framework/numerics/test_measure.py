@@ -11,7 +11,7 @@ from pellicle import Grid
 from pellicle.arrays import Array
 from pellicle.contact.equilibrium import measure, measure_stiffness
 from pellicle.contact.problem import Depth, Force, Problem
-from pellicle.surface.operators import make_operator
+from pellicle.surface import operator_of
 from pellicle_plugins.kernels.winkler import Winkler
 
 FOUNDATION, RADIUS, DEPTH = 2e8, 1e-3, 4e-6
@@ -23,7 +23,7 @@ def springs(control: Depth | Force) -> tuple[Problem, Array]:
     x, y = GRID.coordinates()
     profile = np.asarray(-(x**2 + y**2) / (2 * RADIUS))
     pressure = FOUNDATION * np.maximum(DEPTH + profile, 0.0)
-    operator = make_operator(Winkler(foundation=FOUNDATION), GRID)
+    operator = operator_of(Winkler(foundation=FOUNDATION), GRID)
     return Problem(GRID, operator, profile, control), pressure
 
 

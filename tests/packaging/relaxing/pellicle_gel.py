@@ -9,7 +9,7 @@ from pellicle.components import Branch
 from pellicle.units import Modulus, Time
 
 
-class Gel(pl.Kernel):
+class Gel(pl.Isotropic):
     """Half-space of which 80 % relaxes."""
 
     type: Literal["gel"] = "gel"

@@ -4,11 +4,11 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pellicle import Kernel, hookimpl
+from pellicle import Isotropic, hookimpl
 from pellicle.units import Modulus, Tension
 
 
-class Skin(Kernel):
+class Skin(Isotropic):
     """Half-space under a tensed skin, known by its compliance alone."""
 
     type: Literal["skin"] = "skin"

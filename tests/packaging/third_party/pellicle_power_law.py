@@ -4,11 +4,11 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pellicle import Kernel
+from pellicle import Isotropic
 from pellicle.units import Length, Modulus, Quantity
 
 
-class PowerLaw(Kernel):
+class PowerLaw(Isotropic):
     """Stiffness k ∝ qⁿ: a Winkler foundation (n = 0), a graded solid, the half-space (n = 1)."""
 
     type: Literal["power_law"] = "power_law"

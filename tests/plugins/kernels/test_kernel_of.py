@@ -12,7 +12,7 @@ from pellicle.arrays import Array
 from pellicle.components import Branch, KernelOf
 
 
-class Stated(pl.Kernel):
+class Stated(pl.Isotropic):
     """A layer of which half relaxes, and which states all that a kernel may."""
 
     type: Literal["stated"] = "stated"
@@ -45,9 +45,9 @@ class Warm(KernelOf):
     type: Literal["warm"] = "warm"
     body: pl.Kernel
 
-    def compliance(self, q: Array) -> Array:
+    def symbol(self, qx: Array, qy: Array) -> Array:
         """Return twice that of the body."""
-        return 2 * self.body.compliance(q)
+        return 2 * self.body.symbol(qx, qy)
 
 
 def _stated(kernel: pl.Kernel) -> list[Any]:

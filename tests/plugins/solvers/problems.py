@@ -12,7 +12,7 @@ from pellicle import Grid, Kernel, Problem, Solver, State, Stop
 from pellicle.arrays import Array
 from pellicle.contact.equilibrium import Equilibrium, measure
 from pellicle.contact.problem import Depth, Force
-from pellicle.surface.operators import make_operator
+from pellicle.surface import operator_of
 from pellicle_plugins.indenters.self_affine import SelfAffine
 from pellicle_plugins.kernels.half_spaces import TensedMembrane
 
@@ -37,7 +37,7 @@ def make(
     heights = shape(*grid.coordinates()) if callable(shape) else shape
     profile = np.array(np.broadcast_to(heights, grid.shape))
     control = Depth(value) if prescribed == "depth" else Force(value)
-    return Problem(grid, make_operator(kernel, grid), profile, control)
+    return Problem(grid, operator_of(kernel, grid), profile, control)
 
 
 @dataclass(frozen=True)

@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle import ConfigError, Grid, Kernel, Problem, Stop
+from pellicle import ConfigError, Grid, Isotropic, Kernel, Problem, Stop
 from pellicle.arrays import Array
 from pellicle.contact.problem import Depth, Force
-from pellicle.surface import make_operator
+from pellicle.surface import operator_of
 from pellicle_plugins.kernels.skins import BendingSkin
 from pellicle_plugins.solvers.active_set import ActiveSet
 from pellicle_plugins.solvers.conjugate_gradient import ConjugateGradient
@@ -40,7 +40,7 @@ TENSIONS = [0.0, 0.02, 1.0]
 TIGHT = 1e-10
 
 
-class Graded(Kernel):
+class Graded(Isotropic):
     """A modulus that grows with the depth: k = q^½."""
 
     type: Literal["graded"] = "graded"
@@ -523,6 +523,6 @@ def test_a_layer_too_thin_for_the_coarser_grid_is_solved_without_it() -> None:
     """An incompressible layer is rigid under cells much wider than its thickness."""
     kernel = layer("bonded_layer", 0.15 / 96)
     with pytest.raises(ConfigError, match="use more points"):
-        make_operator(kernel, Grid(points=48, size=1.0))
+        operator_of(kernel, Grid(points=48, size=1.0))
     problem = make(96, "free", kernel, paraboloid, "depth", 0.02)
     assert active_set(problem, 1e-6).equilibrium.contact.sum() > 500

@@ -27,7 +27,7 @@ from pellicle import Grid, Problem, Solver, Stop
 from pellicle.arrays import Array
 from pellicle.contact import height_scale
 from pellicle.contact.problem import Depth, Force
-from pellicle.surface import make_operator
+from pellicle.surface import operator_of
 from pellicle_plugins.solvers.active_set import ActiveSet
 from pellicle_plugins.solvers.conjugate_gradient import ConjugateGradient
 from tests.plugins.solvers.problems import skin, solve
@@ -103,7 +103,7 @@ def problems(draw: st.DrawFn) -> Problem:
     random = np.random.default_rng(draw(st.integers(0, 2**20)))
     size = (float(points[0]), aspect * points[1])
     grid = Grid(points=points, size=size, boundary=boundary)
-    operator = make_operator(skin(2 * tension), grid)
+    operator = operator_of(skin(2 * tension), grid)
     profile = _profile(form, grid, random)
     solid = random.uniform(size=grid.shape) >= holes
     solid.flat[random.integers(solid.size)] = True

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.components.kernel import Kernel, branches_of
 from pellicle.grid import Grid
-from pellicle.surface.operators import HasClosedForm, checked_call, mean_compliance
+from pellicle.surface.from_kernel import HasClosedForm, checked_call, mean_compliance, words_of_call
 
 from .closed_form import displacement_by_primitive, displacement_of_centre
 from .rule import Case, difference
@@ -41,24 +42,45 @@ def _lengths(grid: Grid) -> tuple[float, float]:
     return min(grid.spacing), math.hypot(*grid.size)
 
 
+def _vectors(kernel: Kernel, q: Array) -> tuple[Array, Array]:
+    """Return waves of each q: along x of a kernel that is isotropic, else along four directions."""
+    angles = np.array([0.0] if kernel.is_isotropic else [0.0, 0.25, 0.5, 0.75]) * np.pi
+    return np.outer(np.cos(angles), q).ravel(), np.outer(np.sin(angles), q).ravel()
+
+
+def _along(kernel: Kernel, angle: float, name: str) -> Callable[[Array], Array]:
+    """Return the checked symbol as a function of q along a direction; of r, a closed form."""
+    call = checked_call(kernel, name)
+    if name != "symbol":
+        return call
+    return lambda q: call(q * math.cos(angle), q * math.sin(angle))
+
+
 def compliance_is_positive_and_finite(kernel: Kernel, case: Case) -> str:
     """The compliance is positive and finite for every wave of a grid."""
-    q = _waves(case.grid, 200)
-    values = np.asarray(kernel.compliance(q.copy()))
+    qx, qy = _vectors(kernel, _waves(case.grid, 200))
+    values = np.asarray(
+        kernel.compliance(qx.copy()) if kernel.is_isotropic else kernel.symbol(qx, qy)
+    )
     bad = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
-    return f"compliance is {values[bad[0]]:g} m/Pa at q = {q[bad[0]]:g} rad/m" if bad.size else ""
+    if not bad.size:
+        return ""
+    return (
+        f"compliance is {values[bad[0]]:g} m/Pa at q = {math.hypot(qx[bad[0]], qy[bad[0]]):g} rad/m"
+    )
 
 
 def values_are_of_their_argument_alone(kernel: Kernel, case: Case) -> str:
-    """compliance(q) and the closed form are float arrays of the shape of their argument.
+    """The symbol and the closed form are float arrays of the shape of their argument.
 
     Each value depends on its own q or r alone, which stays as it is, and is the same every time.
     """
     q, r = _waves(case.grid), np.geomspace(*_lengths(case.grid), 24)
-    for name, argument in {"compliance": q, **dict.fromkeys(_FORMS, r)}.items():
+    first = "compliance" if kernel.is_isotropic else "symbol"
+    for name, argument in {first: q, **dict.fromkeys(_FORMS, r)}.items():
         if not hasattr(kernel, name):
             continue
-        function = checked_call(kernel, name)
+        function = _along(kernel, 0.3, name)
         singly = np.concatenate([function(value) for value in np.split(argument, argument.size)])
         for shape in ((24,), (4, 6), (2, 3, 4)):
             words = f"{name}() for an argument of shape {shape}"
@@ -69,6 +91,19 @@ def values_are_of_their_argument_alone(kernel: Kernel, case: Case) -> str:
     return ""
 
 
+def symbol_is_even_and_broadcast(kernel: Kernel, case: Case) -> str:
+    """symbol(qx, qy) is even and broadcast; it is compliance(q) if the kernel is isotropic."""
+    qx, qy = _waves(case.grid, 6)[:, None], -1.3 * _waves(case.grid, 5)
+    name, values = words_of_call(kernel), np.asarray(kernel.symbol(qx, qy))
+    every = checked_call(kernel, "symbol")(*(q.copy() for q in np.broadcast_arrays(-qx, -qy)))
+    if differs := difference(values, every, f"{name} of −q", relative=_ROUNDING):
+        return differs
+    if not kernel.is_isotropic:
+        return ""
+    expected = kernel.compliance(np.hypot(qx, qy))
+    return difference(values, expected, "symbol(qx, qy) [m/Pa]", relative=_ROUNDING)
+
+
 def compliance_does_not_grow_for_short_waves(kernel: Kernel, case: Case) -> str:
     """For short waves the compliance falls with q, or tends to a constant.
 
@@ -76,20 +111,22 @@ def compliance_does_not_grow_for_short_waves(kernel: Kernel, case: Case) -> str:
     G(q) of an incompressible layer grows with q down to waves about as long as the layer is thick.
     These may be shorter than the grid's waves, so still shorter waves are checked.
     """
-    shortest = _shortest(case.grid)
-    half, last = kernel.compliance(shortest * np.array([0.5, 1.0]))
-    if not last > half * (1 + _GROWTH):
-        return ""
-    q = shortest * _SHORTER
-    values = kernel.compliance(q)
-    # A formula may overflow far beyond the grid.
-    known = int(np.argmin(np.append(np.isfinite(values), False)))
-    if known >= 2 and values[known - 1] <= values[known - 2] * (1 + _GROWTH):
-        return ""
-    return (
-        f"compliance(q) grows from {half:.3g} m/Pa at {shortest / 2:.3g} rad/m to "
-        f"{values[known - 1]:.3g} m/Pa at {q[known - 1]:.3g} rad/m"
-    )
+    for axis in (0.0,) if kernel.is_isotropic else (0.0, math.pi / 2):
+        along, shortest = _along(kernel, axis, "symbol"), _shortest(case.grid)
+        half, last = along(shortest * np.array([0.5, 1.0]))
+        if not last > half * (1 + _GROWTH):
+            continue
+        q = shortest * _SHORTER
+        values = along(q)
+        # A formula may overflow far beyond the grid.
+        known = int(np.argmin(np.append(np.isfinite(values), False)))
+        if known >= 2 and values[known - 1] <= values[known - 2] * (1 + _GROWTH):
+            continue
+        return (
+            f"{words_of_call(kernel)} grows from {half:.3g} m/Pa at {shortest / 2:.3g} rad/m to "
+            f"{values[known - 1]:.3g} m/Pa at {q[known - 1]:.3g} rad/m"
+        )
+    return ""
 
 
 def branches_have_shares_and_times(kernel: Kernel, case: Case) -> str:
@@ -100,12 +137,12 @@ def branches_have_shares_and_times(kernel: Kernel, case: Case) -> str:
 
 def scaled_by_one_is_the_kernel(kernel: Kernel, case: Case) -> str:
     """scaled(1) is elastic, with the compliance and the mean compliance of the kernel."""
-    elastic, q = kernel.scaled(1.0), _waves(case.grid)
+    elastic, waves = kernel.scaled(1.0), _vectors(kernel, _waves(case.grid))
     if branches_of(elastic):
         return f"scaled(1) has the branches {branches_of(elastic)}"
     return difference(
-        elastic.compliance(q),
-        kernel.compliance(q),
+        elastic.symbol(*waves),
+        kernel.symbol(*waves),
         "the compliance [m/Pa] of scaled(1)",
         relative=_ROUNDING,
     ) or difference(
@@ -118,11 +155,11 @@ def scaled_by_one_is_the_kernel(kernel: Kernel, case: Case) -> str:
 
 def scaled_stiffens_the_solid_alone(kernel: Kernel, case: Case) -> str:
     """The stiffness of scaled(share) is 1/G + (share − 1)/G₀, with G₀ of without_skin()."""
-    q = _waves(case.grid)
-    whole, solid = 1 / kernel.compliance(q), 1 / kernel.without_skin().compliance(q)
+    waves = _vectors(kernel, _waves(case.grid))
+    whole, solid = 1 / kernel.symbol(*waves), 1 / kernel.without_skin().symbol(*waves)
     for share in (0.01, 0.5, 3.0):
         if differs := difference(
-            1 / kernel.scaled(share).compliance(q),
+            1 / kernel.scaled(share).symbol(*waves),
             whole + (share - 1) * solid,
             f"the stiffness [Pa/m] of scaled({share:g})",
             relative=_ROUNDING,
@@ -133,13 +170,13 @@ def scaled_stiffens_the_solid_alone(kernel: Kernel, case: Case) -> str:
 
 def without_skin_has_no_skin(kernel: Kernel, case: Case) -> str:
     """The solid without its skin relaxes as the kernel does, and has no skin to take off."""
-    solid, q = kernel.without_skin(), _waves(case.grid)
+    solid, waves = kernel.without_skin(), _vectors(kernel, _waves(case.grid))
     if branches_of(solid) != branches_of(kernel):
         wrong = "relaxes as another kernel does" if branches_of(solid) else "does not relax"
         return f"without_skin() {wrong}"
     return difference(
-        solid.without_skin().compliance(q),
-        solid.compliance(q),
+        solid.without_skin().symbol(*waves),
+        solid.symbol(*waves),
         "the compliance [m/Pa] of without_skin().without_skin()",
         relative=_ROUNDING,
     )
@@ -153,7 +190,7 @@ def closed_form_is_whole(kernel: Kernel, case: Case) -> str:
 
 def primitive_is_the_integral_of_the_closed_form(kernel: Kernel, case: Case) -> str:
     """radial_primitive is 0 at r = 0 and grows by ∫ greens_function r dr."""
-    if not isinstance(kernel, HasClosedForm):
+    if not (kernel.is_isotropic and isinstance(kernel, HasClosedForm)):
         return ""
     cell, size = _lengths(case.grid)
     at_zero, at_cell = kernel.radial_primitive(np.array([0.0, cell]))
@@ -175,7 +212,7 @@ def primitive_is_the_integral_of_the_closed_form(kernel: Kernel, case: Case) -> 
 
 def closed_form_is_the_transform_of_the_compliance(kernel: Kernel, case: Case) -> str:
     """At the centre of a Gaussian pressure, radial_primitive and compliance agree."""
-    if not isinstance(kernel, HasClosedForm):
+    if not (kernel.is_isotropic and isinstance(kernel, HasClosedForm)):
         return ""
     cell, size = _lengths(case.grid)
     for width in (_CELLS * cell, _SHARE * size):

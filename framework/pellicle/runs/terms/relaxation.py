@@ -13,6 +13,7 @@ from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.load_step import LoadStep, Value
 from pellicle.contact.time_step import stiffness_after
 from pellicle.runs.relaxation import CarriedShare
+from pellicle.surface import along_axes
 
 from . import Surroundings
 
@@ -73,8 +74,8 @@ def _least_domain(run: Run, index: int, largest_area: float) -> float:
     shortest = 3 / min(run.grid.size)
     radius = math.sqrt(largest_area / math.pi)
     length = 0.0
-    if share * carried.compliance(np.array([shortest])).item() < 0.5:
+    if share * along_axes(carried.symbol, np.array([shortest])).item() < 0.5:
         waves = shortest * np.geomspace(1 / _LONGEST, 1.0, 1 + 20 * round(math.log10(_LONGEST)))
-        stiff = np.flatnonzero(share * carried.compliance(waves) >= 0.5)
+        stiff = np.flatnonzero(share * along_axes(carried.symbol, waves) >= 0.5)
         length = 1 / float(waves[stiff[-1]]) if stiff.size else math.inf
     return max(_RADII * radius, 3 * length)

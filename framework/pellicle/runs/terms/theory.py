@@ -43,7 +43,9 @@ def _limits(run: Run, equilibrium: Equilibrium) -> Iterator[Caveat]:
     slope = steepest(equilibrium.problem.heights, contact, run.grid)
     if law:
         q = 1e3 * np.pi / min(run.grid.spacing) * np.array([1.0, 10.0])
-        a, b = run.kernel.compliance(q) * q**2
+        nothing = np.zeros_like(q)
+        axes = [run.kernel.symbol(q, nothing), run.kernel.symbol(nothing, q)]
+        a, b = np.maximum(*axes) * q**2
         if abs(b / a - 1) < _CONSTANT:
             slope = max(slope, float(np.sqrt(2 * law.work_of_adhesion() * b)))
     # As it is told: an indenter of that very slope is not beyond it by rounding.
