@@ -55,6 +55,7 @@ from .plugins import registry as registry
 from .plugins import solver as solver
 from .results.result import Result as Result
 from .results.result import load as load
+from .runs.gradient import gradient as gradient
 from .runs.runner import run as run
 from .runs.validation import validate as validate
 from .studies.runner import run_study as run_study

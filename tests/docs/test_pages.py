@@ -25,6 +25,7 @@ CEILINGS = {
     "time": 950,
     "results": 930,
     "outputs": 1200,
+    "gradients": 580,
     "studies": 1200,
     "fits": 1680,
     "curves": 1610,

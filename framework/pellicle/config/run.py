@@ -37,7 +37,7 @@ from pellicle.components import (
 from pellicle.components.base import words_of_type
 from pellicle.components.kernel import branches_of
 from pellicle.components.output import refuse_shared_files
-from pellicle.errors import ConfigError
+from pellicle.errors import ConfigError, all_problems
 from pellicle.files import is_file
 from pellicle.grid import Grid, grid_of_run
 from pellicle.plugins import registry
@@ -46,6 +46,7 @@ from pellicle.schema.model import get, replaced, walk
 from pellicle.surface import along_axes
 from pellicle.variables import VARIABLES, Variable, corrected_area, corrected_fraction
 
+from .gradient import derivatives_of, refuse_undefined
 from .loading import Loading, fields_from
 
 DEFAULT_SOLVER = "active_set"
@@ -73,6 +74,12 @@ class Run(FromFile):
     )
     corrections: tuple[Annotated[AreaCorrection, FromRegistry()], ...] = Field(
         (), description="corrections of the contact area"
+    )
+    gradient: tuple[str, ...] | None = Field(
+        None,
+        min_length=1,
+        description='what force and depth are differentiated by: "heights", and paths of numbers '
+        'of kernel and indenter, such as "kernel.tension"',
     )
     outputs: tuple[Annotated[Output, FromRegistry()], ...] | None = Field(
         None,
@@ -171,6 +178,14 @@ class Run(FromFile):
         return self
 
     @model_validator(mode="after")
+    def _gradient_is_defined(self) -> Self:
+        with all_problems() as within:
+            for index, path in enumerate(self.gradient or ()):
+                with within(f"gradient.{index}"):
+                    refuse_undefined(self, path, self.gradient[:index] if self.gradient else ())
+        return self
+
+    @model_validator(mode="after")
     def _each_correction_and_file_once(self) -> Self:
         types = [correction.type_name for correction in self.corrections]
         for index, type_ in enumerate(types):
@@ -218,6 +233,7 @@ class Run(FromFile):
             type_ = correction.type_name
             area = corrected_area(type_, words_of_type(type(correction), type_))
             listed += [area, corrected_fraction(area)]
+        listed += derivatives_of(self)
         return [variable for variable in listed if variable.type != "text"]
 
     @property

@@ -12,7 +12,7 @@ import numpy as np
 from pellicle.arrays import Array
 
 from .caveats import Caveat, ranked
-from .equilibrium import Equilibrium
+from .equilibrium import Equilibrium, Response
 from .problem import Depth, Problem
 from .solution import State, Stop
 
@@ -45,6 +45,10 @@ class LoadStep:
     """Applications of the operator on the finest grid."""
     measures: Mapping[str, Value] = field(default_factory=dict)
     """Numbers besides those of the equilibrium, by the name of their variable."""
+    fields: Mapping[str, Array] = field(default_factory=dict)
+    """Fields besides those of the equilibrium, by the name of their variable."""
+    response: Response | None = None
+    """The response of the contact, if a term has asked for it."""
     caveats: tuple[Caveat, ...] = ()
     """What limits the step, `ranked`."""
 
@@ -53,11 +57,17 @@ class LoadStep:
         """Whether the numbers of the step may be used, possibly with a caveat."""
         return all(caveat.status.converged for caveat in self.caveats)
 
-    def having(self, measures: Mapping[str, Value], caveats: Iterable[Caveat] = ()) -> LoadStep:
-        """Return the step with more measures and caveats."""
+    def having(
+        self,
+        measures: Mapping[str, Value],
+        caveats: Iterable[Caveat] = (),
+        fields: Mapping[str, Array] | None = None,
+    ) -> LoadStep:
+        """Return the step with more measures, caveats and fields."""
         return replace(
             self,
             measures={**self.measures, **measures},
+            fields={**self.fields, **(fields or {})},
             caveats=ranked((*self.caveats, *caveats)),
         )
 

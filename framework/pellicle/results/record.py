@@ -36,6 +36,7 @@ def step_dataset(
         "displacement": equilibrium.displacement,
         "gap": equilibrium.gap,
         "contact": equilibrium.counted_contact,
+        **step.fields,
     }
     of_law: dict[str, object] = {}
     if equilibrium.problem.law:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pellicle.components.kernel import branches_of
+from pellicle.config.gradient import HEIGHTS
 from pellicle.config.run import Run
 from pellicle.contact.time_step import TimeStep
 
@@ -50,5 +51,9 @@ def memory_of(run: Run) -> float:
         stiffnesses = {rounded_stiffness(step) for step in steps}
         history += 1 + min(KEPT, len(stiffnesses)) * _PAIR[grid.boundary]
     kept = (_STEP + _SERIALISED) * (len(run.loading.values) - 1)
+    for path in run.gradient or ():
+        # The derivative of the operator, the profile's, or two fields of each step.
+        by_number = operator if path.startswith("kernel.") else 1.0
+        kept += 4.0 * len(run.loading.values) if path == HEIGHTS else by_number
     heap = _HEAP if 8 * cells < _GIVEN_BACK else 0
     return _FIXED + 8 * cells * (operator + iterating + history + kept + heap)

@@ -12,6 +12,7 @@ import xarray as xr
 from pellicle.components import Monitor, Search, Setting
 from pellicle.components.kernel import branches_of
 from pellicle.components.prescription import target_of
+from pellicle.config.gradient import all_derivatives
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
 from pellicle.contact.load_step import FinishedStep, LoadStep, end_of
@@ -22,6 +23,7 @@ from .target_search import reach, solved
 from .terms import Surroundings, Term
 from .terms.adhesion import adhesion
 from .terms.contact import contact
+from .terms.gradient import Gradient
 from .terms.relaxation import relaxation
 from .terms.requested import corrections, prescription, stiffness
 from .terms.theory import theory
@@ -30,7 +32,7 @@ from .terms.theory import theory
 class Physics:
     """What the load steps of a run have besides their equilibrium, made once."""
 
-    def __init__(self, run: Run) -> None:
+    def __init__(self, run: Run, setting: Setting) -> None:
         self.memory = Relaxation(run) if branches_of(run.kernel) else None
         # Their measures are columns of a result in this order.
         named = {
@@ -38,6 +40,7 @@ class Physics:
             corrections: run.corrections,
             prescription: True,
             stiffness: run.loading.stiffness,
+            Gradient(run, setting).add: run.gradient,
             relaxation: self.memory or run.loading.times,
             adhesion: run.interaction,
             theory: True,
@@ -49,7 +52,7 @@ def solve_steps(
     run: Run, setting: Setting, steps: Steps, monitor_of: Callable[[int], Monitor]
 ) -> Generator[xr.Dataset, None, None]:
     """Solve the load steps missing from ``steps``; add and yield each as soon as it is solved."""
-    origin, physics = provenance(run), Physics(run)
+    origin, physics = provenance(run), Physics(run, setting)
     for index in range(len(steps), len(run.loading.values)):
         # Without a name for the solved step, only its copy in ``steps`` outlives the solve.
         yield steps.append(
@@ -72,7 +75,8 @@ def _next_step(
     for term in physics.terms:
         step = term(step, surroundings)
     seconds = time.perf_counter() - started
-    return step_dataset(run.grid, len(path) + 1, step, run.variables, seconds)
+    variables = [*run.variables, *all_derivatives(run)]
+    return step_dataset(run.grid, len(path) + 1, step, variables, seconds)
 
 
 def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> LoadStep:

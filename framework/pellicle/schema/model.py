@@ -62,6 +62,16 @@ def get(at: Any, path: str) -> Any:
     return at
 
 
+def with_value(at: Any, path: str, value: object) -> Any:
+    """Return a model, or a list, made anew with another value at a path; it is validated."""
+    name, _, rest = path.partition(".")
+    if isinstance(at, Model):
+        fields = {field: getattr(at, field) for field in at.model_fields_set}
+        return type(at)(**fields | {name: with_value(fields[name], rest, value) if rest else value})
+    index = int(name)
+    return (*at[:index], with_value(at[index], rest, value) if rest else value, *at[index + 1 :])
+
+
 def walk(at: Any, path: str = "") -> list[tuple[str, Any, FieldInfo | None]]:
     """Return path, value and field of each value below ``at``, outer ones before inner ones.
 

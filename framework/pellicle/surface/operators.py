@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from typing import Any, Self
 
@@ -187,6 +187,27 @@ def along_axes(symbol: Symbol, q: Array) -> Array:
     nothing = np.zeros_like(q)
     mean: Array = 0.5 * (symbol(q, nothing) + symbol(nothing, q))
     return mean
+
+
+class Derivative:
+    """The derivative of an operator by a number: a sum of operators on one grid with weights.
+
+    For each of the ``operators`` there is one of the ``weights`` per unit of the number.
+    """
+
+    def __init__(self, operators: Iterable[Operator], weights: Iterable[float]) -> None:
+        total: Array | float = 0.0
+        for operator, weight in zip(operators, weights, strict=True):
+            values = operator._values
+            total = total + values.double * (values.unit * operator._factor * weight)
+            self.padded = operator.padded
+        self._values = _Values(np.asarray(total))
+
+    def __call__(self, pressure: Array) -> Array:
+        """Return the change of the displacement [m] per unit of the number."""
+        change = convolve(pressure, self._values.double, self.padded, Workspace())
+        change *= self._values.unit
+        return change
 
 
 class _Values:

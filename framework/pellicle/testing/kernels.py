@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from pellicle.arrays import Array
@@ -9,7 +11,9 @@ from pellicle.components import Kernel
 from pellicle.components.kernel import instantaneous
 from pellicle.components.rules import Case
 from pellicle.components.rules.closed_form import displacement_of_centre
+from pellicle.errors import ConfigError
 from pellicle.grid import Grid
+from pellicle.schema.model import walk, with_value
 from pellicle.surface.from_kernel import displacement
 
 from .component import check, require_close, rules_of
@@ -41,6 +45,41 @@ def runs_converge(kernel: Kernel) -> None:
         grid = {"points": 24, "size": "1 mm", "boundary": boundary}
         # A run of a kernel that relaxes would need times.
         solved(grid=grid, kernel=instantaneous(kernel), loading={"depth": ["5 um", "20 um"]})
+
+
+def numbers_have_derivatives(kernel: Kernel) -> None:
+    """The force on a flat punch grows with each number of the kernel as the gradient of a run says.
+
+    It is compared with that of 1 % more and 1 % less, unless one of these is not allowed.
+    """
+    elastic = instantaneous(kernel)
+    run: dict[str, Any] = {
+        "grid": {
+            "points": 16,
+            "size": "1 mm",
+            "boundary": "free" if kernel.is_isotropic else "periodic",
+        },
+        "indenter": {"type": "flat_punch", "radius": "0.2 mm"},
+        "loading": {"depth": ["10 um"]},
+    }
+    for path, value, _ in walk({"kernel": elastic}):
+        if not isinstance(value, float) or not value:
+            continue
+        field = path.removeprefix("kernel.")
+        try:
+            kernels = [with_value(elastic, field, share * value) for share in (0.99, 1.01)]
+            less, more = (solved(**run, kernel=k)["force"].values for k in kernels)
+            result = solved(**run, kernel=elastic, gradient=[path])
+        except ConfigError:
+            continue
+        (name,) = (n for n in result if str(n).startswith("force_by_"))
+        require_close(
+            result[name].values * value,
+            (more - less) / 0.02,
+            f"the derivative of the force [N] by the logarithm of {path}",
+            relative=1e-3,
+            absolute=1e-5 * float(result["force"][0]),
+        )
 
 
 def free_operator_is_the_transform_of_the_compliance(kernel: Kernel) -> None:

@@ -12,7 +12,7 @@ from pellicle.components.prescription import report_of
 from pellicle.components.solver import response_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
-from pellicle.contact.equilibrium import Stiffness, measure_stiffness
+from pellicle.contact.equilibrium import Response, Stiffness, measure_stiffness
 from pellicle.contact.load_step import LoadStep
 from pellicle.variables import CORRECTED_AREA, CORRECTED_FRACTION
 
@@ -40,17 +40,28 @@ def prescription(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadSt
 
 def stiffness(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
     """Add the contact stiffness [N/m], δ being the depth of the indenter."""
+    step = responding(run, step, surroundings)
+    assert step.response
+    return step.having({"stiffness": step.response.stiffness.value})
+
+
+def responding(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
+    """Return the step with its response to a change of δ, and a caveat if that is not known."""
+    if step.response:
+        return step
     equilibrium, tolerance = step.equilibrium, run.solver.tolerance
     problem = replace(equilibrium.problem, control=Depth(equilibrium.depth))
     contact = equilibrium.contact
+    response = np.ones(contact.shape)
     if contact.all() and not problem.operator.has_mean_compliance:
         # A period in full contact whose mean displacement is 0.
         measured = Stiffness(np.inf, 0.0)
     elif not contact.any():
-        measured = Stiffness(0.0, 0.0)
+        measured, response = Stiffness(0.0, 0.0), np.zeros(contact.shape)
     else:
         response = response_of(run.solver, problem, equilibrium.state, surroundings.monitor)
         measured = measure_stiffness(problem, contact, response, equilibrium.attraction)
     missed = Caveat(Status.STIFFNESS, {"measure": measured.residual, "tolerance": tolerance})
     unknown = not measured.residual <= tolerance
-    return step.having({"stiffness": measured.value}, [missed] if unknown else [])
+    step = replace(step, response=Response(response, measured))
+    return step.having({}, [missed] if unknown else [])
