@@ -233,7 +233,7 @@ def test_a_run_that_fails_leaves_the_page_alive(
         raise error
 
     with monkeypatch.context() as broken:
-        broken.setattr(type(start.kernel), "compliance", fails)
+        broken.setattr(type(start.kernel), "symbol", fails)
         page.type("thickness", "1 nm")
         page.rest()
     (message,) = page.errors
