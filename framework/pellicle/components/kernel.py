@@ -12,7 +12,7 @@ from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to, read_only, real_number
 from pellicle.contact.time_step import Branch
 from pellicle.errors import ConfigError, PluginError, shown
-from pellicle.surface.from_kernel import HasClosedForm, mean_compliance
+from pellicle.surface.from_kernel import HasClosedForm, closed_form_of, mean_compliance
 
 from .base import Component
 
@@ -97,7 +97,7 @@ class Kernel(Component):
 
         Its symbol is 1/(1/G + (share − 1)/G₀). It has a closed form if this kernel has one.
         """
-        kind = _StiffenedClosedForm if isinstance(self, HasClosedForm) else _Stiffened
+        kind = _StiffenedClosedForm if closed_form_of(self) else _Stiffened
         return kind.model_construct(substrate=self, factor=share)
 
     def depth_to_base(self) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import Protocol, runtime_checkable
+from typing import Protocol, cast, runtime_checkable
 
 import numpy as np
 import scipy.fft
@@ -60,6 +60,15 @@ class HasMeanCompliance(Protocol):
         """
 
 
+def closed_form_of(kernel: object) -> HasClosedForm | None:
+    """Return a kernel that has formulas in real space; None for one that has none.
+
+    One made of others has them if those have, whatever its class.
+    """
+    has_both = hasattr(kernel, "greens_function") and hasattr(kernel, "radial_primitive")
+    return cast(HasClosedForm, kernel) if has_both else None
+
+
 def mean_compliance(kernel: object) -> float:
     """Return G(0) [m/Pa] of a kernel; ∞ if it does not state G(0), as for a half-space."""
     if not isinstance(kernel, HasMeanCompliance):
@@ -108,7 +117,7 @@ def operator_of(kernel: HasSymbol, grid: Grid) -> Operator:
             "than the contact",
             "grid.boundary",
         )
-    return _free(kernel, grid, kernel if isinstance(kernel, HasClosedForm) else None)
+    return _free(kernel, grid, closed_form_of(kernel))
 
 
 def _periodic(kernel: HasSymbol, grid: Grid) -> Operator:

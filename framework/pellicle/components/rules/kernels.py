@@ -10,7 +10,12 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.components.kernel import Kernel, branches_of
 from pellicle.grid import Grid
-from pellicle.surface.from_kernel import HasClosedForm, checked_call, mean_compliance, words_of_call
+from pellicle.surface.from_kernel import (
+    checked_call,
+    closed_form_of,
+    mean_compliance,
+    words_of_call,
+)
 
 from .closed_form import displacement_by_primitive, displacement_of_centre
 from .rule import Case, difference
@@ -190,18 +195,19 @@ def closed_form_is_whole(kernel: Kernel, case: Case) -> str:
 
 def primitive_is_the_integral_of_the_closed_form(kernel: Kernel, case: Case) -> str:
     """radial_primitive is 0 at r = 0 and grows by ∫ greens_function r dr."""
-    if not (kernel.is_isotropic and isinstance(kernel, HasClosedForm)):
+    form = closed_form_of(kernel)
+    if form is None or not kernel.is_isotropic:
         return ""
     cell, size = _lengths(case.grid)
-    at_zero, at_cell = kernel.radial_primitive(np.array([0.0, cell]))
+    at_zero, at_cell = form.radial_primitive(np.array([0.0, cell]))
     if not abs(at_zero) <= _ROUNDING * abs(at_cell):
         return f"radial_primitive(0) is {at_zero:g} m³/N, and {at_cell:g} at r = {cell:g} m"
     edges = np.linspace(np.log(cell), np.log(size), 2 + int(np.log(size / cell)))
     points, weights = np.polynomial.legendre.leggauss(16)
     middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
     r = np.exp(middle[:, None] + half[:, None] * points)
-    integral = float((half[:, None] * weights * kernel.greens_function(r) * r**2).sum())
-    start, end = kernel.radial_primitive(np.array([cell, size]))
+    integral = float((half[:, None] * weights * form.greens_function(r) * r**2).sum())
+    start, end = form.radial_primitive(np.array([cell, size]))
     if abs(end - start - integral) <= _ALLOWED * max(abs(start), abs(end)):
         return ""
     return (
@@ -212,12 +218,13 @@ def primitive_is_the_integral_of_the_closed_form(kernel: Kernel, case: Case) -> 
 
 def closed_form_is_the_transform_of_the_compliance(kernel: Kernel, case: Case) -> str:
     """At the centre of a Gaussian pressure, radial_primitive and compliance agree."""
-    if not (kernel.is_isotropic and isinstance(kernel, HasClosedForm)):
+    form = closed_form_of(kernel)
+    if form is None or not kernel.is_isotropic:
         return ""
     cell, size = _lengths(case.grid)
     for width in (_CELLS * cell, _SHARE * size):
         by_compliance = displacement_of_centre(kernel.compliance, width)
-        by_primitive = displacement_by_primitive(kernel.radial_primitive, width)
+        by_primitive = displacement_by_primitive(form.radial_primitive, width)
         if not abs(by_primitive - by_compliance) <= _ALLOWED * by_compliance:
             return (
                 f"radial_primitive(r) gives {by_primitive:.6g} m at the centre of a Gaussian "

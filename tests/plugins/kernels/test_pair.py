@@ -1,0 +1,156 @@
+"""Two bodies that both yield: a pair is each of them alone where the other is rigid."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import pellicle as pl
+from pellicle.surface import mean_compliance, operator_of
+from pellicle.surface.from_kernel import closed_form_of
+
+SKIN: dict[str, Any] = {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 0.04}
+LAYER: dict[str, Any] = {
+    "type": "bonded_layer",
+    "youngs_modulus": 5e3,
+    "poissons_ratio": 0.4,
+    "thickness": 1e-4,
+}
+BALL = {"type": "paraboloid", "radius": 1e-3}
+
+
+def pair(first: Any, second: Any) -> Any:
+    """Return the kernel of two bodies."""
+    return pl.kernel("pair", first=first, second=second)
+
+
+def force(kernel: Any, boundary: str = "free", **loading: Any) -> Any:
+    """Return the last step of a paraboloid that is pressed in."""
+    return pl.run(
+        pl.Run(
+            grid={"points": 64, "size": "0.4 mm", "boundary": boundary},
+            kernel=kernel,
+            indenter=BALL,
+            loading=loading or {"depth": ["10 um"]},
+        ),
+        progress=False,
+    ).dataset.isel(step=-1)
+
+
+@pytest.mark.parametrize("boundary", ["free", "periodic"])
+def test_two_equal_bodies_are_a_rigid_one_on_half_of_both(boundary: Any) -> None:
+    """Half the modulus and half the tension, with the same length s; in every cell."""
+    both, half = pair(SKIN, SKIN), pl.kernel("tensed_membrane", reduced_modulus=5e3, tension=0.02)
+    grid = pl.Grid(points=[32, 24], size=[4e-4, 3e-4], boundary=boundary)
+    pressure = np.random.default_rng(0).random(grid.shape)
+    expected = operator_of(half, grid)(pressure)
+    np.testing.assert_allclose(operator_of(both, grid)(pressure), expected, rtol=1e-12)
+    assert force(both, boundary)["force"].item() == pytest.approx(
+        force(half, boundary)["force"].item(), rel=1e-8
+    )
+
+
+def test_a_skin_of_infinite_tension_is_a_rigid_body() -> None:
+    """So is a body of a very large modulus."""
+    alone = force(SKIN)["force"].item()
+    for rigid in (SKIN | {"tension": 1e9}, {"type": "half_space", "reduced_modulus": 1e16}):
+        assert force(pair(SKIN, rigid))["force"].item() == pytest.approx(alone, rel=1e-6)
+        assert force(pair(rigid, SKIN))["force"].item() == pytest.approx(alone, rel=1e-6)
+
+
+def test_hertz_of_two_bodies() -> None:
+    """The reduced moduli add as compliances, 1/E* = 1/E₁* + 1/E₂*."""
+    bodies = [{"type": "half_space", "reduced_modulus": e} for e in (1e4, 3e4)]
+    one = {"type": "half_space", "reduced_modulus": 7.5e3}
+    assert force(pair(*bodies))["force"].item() == pytest.approx(
+        force(one)["force"].item(), rel=1e-9
+    )
+    hertz = 4 / 3 * 7.5e3 * np.sqrt(1e-3) * 1e-5**1.5
+    assert force(pair(*bodies))["force"].item() == pytest.approx(hertz, rel=3e-3)
+
+
+def test_closed_forms_add_where_both_have_one() -> None:
+    """Otherwise the sum is tabulated, and is that of its parts."""
+    assert closed_form_of(pair(SKIN, SKIN))
+    mixed = pair(SKIN, LAYER)
+    assert closed_form_of(mixed) is None
+    grid = pl.Grid(points=32, size=4e-4)
+    pressure = np.random.default_rng(0).random(grid.shape)
+    parts = [operator_of(pl.kernel(k["type"], **_fields(k)), grid) for k in (SKIN, LAYER)]
+    expected = sum(part(pressure) for part in parts)
+    np.testing.assert_allclose(operator_of(mixed, grid)(pressure), expected, rtol=1e-7)
+
+
+def _fields(table: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in table.items() if key != "type"}
+
+
+def test_what_bodies_state_of_themselves() -> None:
+    """The nearer base, and the sum of what a uniform pressure does."""
+    thin, thick = LAYER, LAYER | {"thickness": 3e-4}
+    layers = pair(thin, thick)
+    assert layers.depth_to_base() == 1e-4
+    assert mean_compliance(layers) == pytest.approx(
+        sum(mean_compliance(pl.kernel("bonded_layer", **_fields(k))) for k in (thin, thick))
+    )
+    assert mean_compliance(pair(thin, SKIN)) == np.inf
+    assert pair(thin, SKIN).depth_to_base() == 1e-4
+
+
+SOLID = {"type": "half_space", "reduced_modulus": 1e4}
+
+
+def relaxing(solid: Any = SOLID, fraction: float = 0.5) -> dict[str, Any]:
+    """Return a solid of which a part relaxes in a second."""
+    branch = {"fraction": fraction, "time": 1.0}
+    return {"type": "viscoelastic", "solid": solid, "relaxation": [branch]}
+
+
+def test_two_bodies_that_relax_alike_are_one() -> None:
+    """Of the sum of their compliances, whatever the path."""
+    loading: Any = {"depth": ["5 um", "10 um", "10 um"], "time": [0.0, 0.5, 3.0]}
+    both = pair(relaxing(), relaxing(SOLID | {"reduced_modulus": 3e4}))
+    one = relaxing(SOLID | {"reduced_modulus": 7.5e3})
+    expected = force(one, **loading)["force"].item()
+    assert force(both, **loading)["force"].item() == pytest.approx(expected, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("second", "words"),
+    [
+        (SOLID, "relax differently"),
+        (relaxing(fraction=0.4), "relax differently"),
+        ({"type": "coated", "tension": 0.1, "substrate": relaxing()}, "under a skin"),
+    ],
+)
+def test_bodies_that_have_no_sum_of_branches_are_refused(second: Any, words: str) -> None:
+    """In words that name the kernel."""
+    with pytest.raises(pl.ConfigError, match=words) as caught:
+        pl.Run(
+            grid={"points": 8, "size": 1e-4},
+            kernel={"type": "pair", "first": relaxing(), "second": second},
+            indenter=BALL,
+            loading={"depth": [1e-6], "time": [0.0]},
+        )
+    assert caught.value.problems[0].field == "kernel"
+
+
+def test_derivatives_by_both_bodies() -> None:
+    """Two equal bodies share the derivative of one of half."""
+    paths = ["kernel.first.tension", "kernel.second.tension"]
+    run = {
+        "grid": {"points": 32, "size": "0.4 mm"},
+        "kernel": {"type": "pair", "first": SKIN, "second": SKIN},
+        "indenter": BALL,
+        "loading": {"depth": ["10 um"]},
+        "gradient": paths,
+    }
+    data = pl.run(run, progress=False).dataset
+    one = run | {
+        "kernel": SKIN | {"reduced_modulus": 5e3, "tension": 0.02},
+        "gradient": ["kernel.tension"],
+    }
+    whole = pl.run(one, progress=False).dataset["force_by_kernel_tension"].item()
+    for path in paths:
+        value = data[f"force_by_{path.replace('.', '_')}"].item()
+        assert value == pytest.approx(whole / 4, rel=1e-6)
