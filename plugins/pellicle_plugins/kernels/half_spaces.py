@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from pydantic import ConfigDict, Field
+from pydantic import ConfigDict
 
 from pellicle.arrays import Array
 from pellicle.components import Isotropic
-from pellicle.units import Tension
 
 from .elastic_constants import ElasticModulus
 from .struve import struve_minus_bessel, struve_minus_bessel_primitive
+from .tensions import Stretched
 
 
 class HalfSpace(ElasticModulus, Isotropic):
@@ -36,23 +36,35 @@ class HalfSpace(ElasticModulus, Isotropic):
         return r / (np.pi * self.contact_modulus)
 
 
-class TensedMembrane(ElasticModulus, Isotropic):
-    """Elastic half-space under a skin of constant equi-biaxial tension (Hajji 1978)."""
+class TensedMembrane(Stretched, ElasticModulus, Isotropic):
+    """Elastic half-space under a skin of constant tension (Hajji 1978).
+
+    On a periodic boundary the tension along one direction may differ from that across it.
+    """
 
     type: Literal["tensed_membrane"] = "tensed_membrane"
     examples = ({"reduced_modulus": "10 kPa", "tension": "1 N/m"},)
-    tension: Tension = Field(
-        title="surface tension", description="tension τ₀ of the surface [N/m], 0 for none"
-    )
+
+    @property
+    def is_isotropic(self) -> bool:
+        """Whether the tension is the same in all directions."""
+        return self.is_tensed_alike
 
     @property
     def elastocapillary_length(self) -> float:
         """Length s = 2τ₀/E* [m], below which the tension outweighs the elasticity."""
-        return 2 * self.tension / self.contact_modulus
+        return 2 * self.one_tension / self.contact_modulus
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) = 1/(E* q/2 + τ₀ q²) [m/Pa]; Hajji 1978."""
-        return 1.0 / (self.contact_modulus * q / 2 + self.tension * q**2)
+        return 1.0 / (self.contact_modulus * q / 2 + self.one_tension * q**2)
+
+    def symbol(self, qx: Array, qy: Array) -> Array:
+        """Return G(q) = 1/(E* q/2 + qᵀTq) [m/Pa], T the tensor of the tension."""
+        if self.is_isotropic:
+            return super().symbol(qx, qy)
+        solid = self.contact_modulus * np.hypot(qx, qy) / 2
+        return 1.0 / (solid + self.tension_stiffness(qx, qy))
 
     def greens_function(self, r: Array) -> Array:
         """Return G(r) = [H₀(r/s) − Y₀(r/s)]/(2 s E*) [m/N]; Hajji 1978."""

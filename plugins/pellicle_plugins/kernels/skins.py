@@ -12,6 +12,7 @@ from pellicle.components import FromRegistry, Isotropic, Kernel, KernelOf
 from pellicle.units import BendingStiffness, Tension
 
 from .elastic_constants import ElasticConstants, ElasticModulus
+from .tensions import Stretched, Tensions, tensions
 
 
 class Skin(Kernel):
@@ -88,11 +89,11 @@ class GurtinMurdoch(Skin, ElasticConstants, Isotropic):
         return 1 / (self.contact_modulus * q / 2 * hindered + self.skin_stiffness(q))
 
 
-class Coated(Skin, KernelOf):
+class Coated(Stretched, KernelOf):
     """Skin with tension and bending stiffness on any other kernel.
 
-    The stiffnesses of substrate and skin add at each wave number. This is exact if the skin
-    transmits normal tractions only, as a tension does.
+    The stiffnesses of substrate and skin add at each wave. This is exact if the skin transmits
+    normal tractions only, as a tension does.
     """
 
     type: Literal["coated"] = "coated"
@@ -107,11 +108,27 @@ class Coated(Skin, KernelOf):
             },
         },
     )
+    tension: Tensions = tensions(0.0)
+    bending: BendingStiffness = Field(
+        0.0,
+        title="bending stiffness",
+        description="bending stiffness B of the skin [N*m], 0 for none",
+    )
     substrate: Annotated[Kernel, FromRegistry()] = Field(
         description="the kernel under the skin: a table with type"
     )
 
+    @property
+    def is_isotropic(self) -> bool:
+        """Whether the substrate is, and the tension is the same in all directions."""
+        return self.is_tensed_alike and self.substrate.is_isotropic
+
     def symbol(self, qx: Array, qy: Array) -> Array:
-        """Return G(q) = 1/(1/G_s + τ₀ q² + B q⁴) [m/Pa], with G_s of the substrate."""
-        substrate = self.substrate.symbol(qx, qy)
-        return substrate / (1 + substrate * self.skin_stiffness(np.hypot(qx, qy)))
+        """Return G(q) = 1/(1/G_s + qᵀTq + B q⁴) [m/Pa], with G_s of the substrate."""
+        substrate, q = self.substrate.symbol(qx, qy), np.hypot(qx, qy)
+        if self.is_tensed_alike:
+            skin = (self.one_tension + self.bending * q**2) * q**2
+        else:
+            skin = self.tension_stiffness(qx, qy) + self.bending * q**4
+        compliance: Array = substrate / (1 + substrate * skin)
+        return compliance

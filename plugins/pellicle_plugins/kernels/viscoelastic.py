@@ -13,9 +13,9 @@ from pellicle.schema import Model
 from pellicle.surface import mean_compliance
 from pellicle.units import Quantity, Time
 
-from .half_spaces import TensedMembrane
 from .power_law import PronySeries, power_law_series
 from .skins import Skin
+from .tensions import Stretched
 
 # Fractions given in decimals may sum to 1 plus rounding.
 _ROUNDING: Final = 1e-12
@@ -151,7 +151,7 @@ class Viscoelastic(KernelOf):
     @field_validator("solid")
     @classmethod
     def _check_solid(cls, solid: Kernel) -> Kernel:
-        if isinstance(solid, (Skin, TensedMembrane)):
+        if isinstance(solid, (Skin, Stretched)):
             raise ValueError(
                 f"{solid.type_name} has a skin, which would relax with the solid; give the solid "
                 'without it, and put the skin on top: type = "coated", with this kernel as its '
