@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 
 HEIGHTS: Final = "heights"
 """What stands for the height of each cell of the indenter."""
-_LENGTH: Final = Quantity("m")
-_NUMBER: Final = Quantity("1")
 _MAY = 'give "heights", or the path of a number of the kernel or the indenter, as "kernel.tension"'
 
 
@@ -26,11 +24,11 @@ def quantities_of(run: Run) -> dict[str, Quantity]:
     """Return the quantity of each number of kernel and indenter by its path, and of heights."""
     parts = {"kernel": run.kernel, "indenter": run.indenter}
     found = {
-        path: (info and quantity_of(info)) or _NUMBER
+        path: (info and quantity_of(info)) or Quantity("1")
         for path, value, info in walk(parts)
         if isinstance(value, float)
     }
-    return found | {HEIGHTS: _LENGTH}
+    return found | {HEIGHTS: Quantity("m")}
 
 
 def refuse_undefined(run: Run, path: str, before: Iterable[str] = ()) -> None:
@@ -46,9 +44,8 @@ def refuse_undefined(run: Run, path: str, before: Iterable[str] = ()) -> None:
         there = get({"kernel": run.kernel, "indenter": run.indenter}, path)
         is_it = "is not given here" if there is None else f"is {shown(there)}, no real number"
         raise ConfigError(f"{path!r} {is_it}; {_MAY}")
-    interaction = run.interaction
-    has_range = interaction is None or type(interaction).resolved is Interaction.resolved
-    if interaction and path.startswith("kernel.") and not has_range:
+    interaction, by_kernel = run.interaction, path.startswith("kernel.")
+    if interaction and by_kernel and type(interaction).resolved is not Interaction.resolved:
         raise ConfigError(
             f"{path!r} also changes the range that {interaction.type_name!r} takes from kernel and "
             'cells; give "heights" or numbers of the indenter alone, or an interaction with a '
@@ -63,25 +60,17 @@ def refuse_undefined(run: Run, path: str, before: Iterable[str] = ()) -> None:
 
 
 def derivatives_of(run: Run) -> list[Variable]:
-    """Return the variables that a run has for its gradient, that by heights without a field."""
-    return [v for v in all_derivatives(run) if not v.name.endswith(f"_by_{HEIGHTS}")]
-
-
-def all_derivatives(run: Run) -> list[Variable]:
     """Return the derivatives of force and depth by all that the gradient of a run names."""
     paths = run.gradient or ()
     names, quantities = python_names(paths), quantities_of(run) if paths else {}
     return [
         Variable(
             f"{quantity}_by_{names[path]}",
-            _ratio(unit, quantities[path].unit),
+            unit if (by := quantities[path].unit) == "1" else si_unit(one(unit) / one(by)),
             f"derivative of the {quantity} by {path}, what is prescribed kept",
+            "field" if path == HEIGHTS else "requested",
             title=f"d({quantity})/d({path})",
         )
         for path in paths
         for quantity, unit in (("force", "N"), ("depth", "m"))
     ]
-
-
-def _ratio(unit: str, by: str) -> str:
-    return unit if by == "1" else si_unit(one(unit) / one(by))

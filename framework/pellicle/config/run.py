@@ -233,7 +233,7 @@ class Run(FromFile):
             type_ = correction.type_name
             area = corrected_area(type_, words_of_type(type(correction), type_))
             listed += [area, corrected_fraction(area)]
-        listed += derivatives_of(self)
+        listed += [variable for variable in derivatives_of(self) if variable.kind != "field"]
         return [variable for variable in listed if variable.type != "text"]
 
     @property

@@ -249,14 +249,6 @@ class Stiffness(NamedTuple):
     """Rms error of the displacement in contact, over the prescribed displacement."""
 
 
-class Response(NamedTuple):
-    """The answer of a contact to a change of the depth with its cells fixed."""
-
-    pressure: Array
-    """dp/dδ [Pa/m]; where the stiffness is infinite, any multiple of it."""
-    stiffness: Stiffness
-
-
 def measure_stiffness(
     problem: Problem, contact: Mask, pressure: Array, attraction: Attraction | None = None
 ) -> Stiffness:

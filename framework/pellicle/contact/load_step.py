@@ -12,7 +12,7 @@ import numpy as np
 from pellicle.arrays import Array
 
 from .caveats import Caveat, ranked
-from .equilibrium import Equilibrium, Response
+from .equilibrium import Equilibrium
 from .problem import Depth, Problem
 from .solution import State, Stop
 
@@ -47,8 +47,8 @@ class LoadStep:
     """Numbers besides those of the equilibrium, by the name of their variable."""
     fields: Mapping[str, Array] = field(default_factory=dict)
     """Fields besides those of the equilibrium, by the name of their variable."""
-    response: Response | None = None
-    """The response of the contact, if a term has asked for it."""
+    response: tuple[Array, float] | None = None
+    """dp/dδ [Pa/m] and dF/dδ [N/m] of the contact, once known; of an infinite one any multiple."""
     caveats: tuple[Caveat, ...] = ()
     """What limits the step, `ranked`."""
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
+from contextlib import suppress
 from typing import Final
 
 import numpy as np
@@ -35,13 +36,16 @@ def differences(values: Function, at: float, size: float) -> tuple[Array, Array]
     a ValueError. Where it does not change the weights are of no account.
     """
     step = _step(values, at, size)
-    nodes, weights = next(_stencils(values, at, step), (None, None))
-    if nodes is None or weights is None:
+    for (offsets, weights), signed in ((_CENTRAL, step), (_ONE_SIDED, step), (_ONE_SIDED, -step)):
+        nodes, weights = at + signed * offsets, weights / (12 * signed)
+        with suppress(ConfigError):
+            rows = [values(node) for node in nodes.tolist()]
+            break
+    else:
         raise ValueError("has no room to either side within its bounds")
-    derivative = sum(w * values(v) for v, w in zip(nodes, weights, strict=True))
-    mean = (values(nodes[-1]) - values(nodes[0])) / (nodes[-1] - nodes[0])
-    largest = float(np.abs(derivative).max())
-    if not float(np.abs(derivative - mean).max()) <= _SMOOTH * largest:
+    derivative = sum(weight * row for weight, row in zip(weights, rows, strict=True))
+    mean = (rows[-1] - rows[0]) / (nodes[-1] - nodes[0])
+    if not float(np.abs(derivative - mean).max()) <= _SMOOTH * float(np.abs(derivative).max()):
         raise ValueError("changes what it acts on in steps")
     return nodes, weights
 
@@ -51,8 +55,10 @@ def _step(values: Function, at: float, size: float) -> float:
     here, step = values(at), _STEP * abs(at) or 1.0
     least, most = _LEAST, _MOST
     for _ in range(_TRIALS):
-        inside = [s for s in (step, -step) if _is_allowed(values, at + s)]
-        changed = float(np.abs(values(at + inside[0]) - here).max()) / size if inside else np.inf
+        changed = np.inf
+        for signed in (-step, step):
+            with suppress(ConfigError):
+                changed = float(np.abs(values(at + signed) - here).max()) / size
         if least < changed < most or step > _FARTHEST * abs(at) > 0:
             break
         # A step that is not that of the number itself is chosen for its change alone.
@@ -60,19 +66,3 @@ def _step(values: Function, at: float, size: float) -> float:
         factor = _STEP / changed if changed else _FARTHEST
         step *= min(max(factor, 1 / _FARTHEST), _FARTHEST)
     return step
-
-
-def _stencils(values: Function, at: float, step: float) -> Iterator[tuple[Array, Array]]:
-    """Yield the nodes and weights of differences all of whose nodes are allowed."""
-    for (offsets, weights), signed in ((_CENTRAL, step), (_ONE_SIDED, step), (_ONE_SIDED, -step)):
-        nodes = at + signed * offsets
-        if all(_is_allowed(values, node) for node in nodes.tolist()):
-            yield nodes, weights / (12 * signed)
-
-
-def _is_allowed(values: Function, at: float) -> bool:
-    try:
-        values(at)
-    except ConfigError:
-        return False
-    return True

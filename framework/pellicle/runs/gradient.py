@@ -11,7 +11,7 @@ import xarray as xr
 
 from pellicle.components import Depth, Force, Search
 from pellicle.components.prescription import target_of
-from pellicle.config.gradient import all_derivatives
+from pellicle.config.gradient import derivatives_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import from_text
 from pellicle.contact.equilibrium import Equilibrium
@@ -44,12 +44,8 @@ def gradient(result: Result, *, by: str | Sequence[str]) -> xr.Dataset:
     -------
     xarray.Dataset
         ``force_by_kernel_tension`` and ``depth_by_kernel_tension`` of each step, and so on; by
-        heights for each cell. NaN for a step that did not converge.
-
-    Raises
-    ------
-    ConfigError
-        What is named is no number, or force and depth have no derivative by it.
+        heights for each cell. NaN for a step that did not converge; a ConfigError where there is
+        no derivative.
     """
     if not isinstance(result, Result):
         raise ConfigError(f"{shown(result)} is not a result; give that of pellicle.run", "result")
@@ -63,22 +59,18 @@ def gradient(result: Result, *, by: str | Sequence[str]) -> xr.Dataset:
         for index, value in enumerate(run.loading.values[: data.sizes["step"]]):
             row = data.isel(step=index)
             target = target_of(run.loading.prescription, setting, value)
+            depth, pressure = row["depth"].item(), row["pressure"].values
             if isinstance(target, Search):
-                found = Depth(row["depth"].item()), Force(row["force"].item())
-                target = found[0] if target.control is Depth else found[1]
-            state = State(
-                row["pressure"].values,
-                row["pressure" if setting.law is None else WALL_PRESSURE].values,
-                row["depth"].item(),
-            )
-            problem = setting.problem(target)
-            equilibrium = Equilibrium(problem, state.pressure, state if problem.law else None)
+                is_depth = target.control is Depth
+                target = Depth(depth) if is_depth else Force(row["force"].item())
+            wall = State(pressure, row[WALL_PRESSURE].values, depth) if setting.law else None
+            equilibrium = Equilibrium(setting.problem(target), pressure, wall)
             caveats = tuple(from_text(row[CAVEATS].item()))
             step = LoadStep(equilibrium, 0, Stop.DONE, caveats=caveats)
             step = differentiated.add(run, step, Surroundings(setting, (), lambda *_: None))
             for name, entry in {**step.measures, **step.fields}.items():
                 columns.setdefault(name, []).append(entry)
-    described = {v.name: v.attributes for v in all_derivatives(run)}
+    described = {v.name: v.attributes for v in derivatives_of(run)}
     arrays = {name: np.array(values) for name, values in columns.items()}
     return xr.Dataset(
         {name: (COORDINATES[: a.ndim], a, described[name]) for name, a in arrays.items()},

@@ -52,8 +52,7 @@ def memory_of(run: Run) -> float:
         history += 1 + min(KEPT, len(stiffnesses)) * _PAIR[grid.boundary]
     kept = (_STEP + _SERIALISED) * (len(run.loading.values) - 1)
     for path in run.gradient or ():
-        # The derivative of the operator, the profile's, or two fields of each step.
-        by_number = operator if path.startswith("kernel.") else 1.0
-        kept += 4.0 * len(run.loading.values) if path == HEIGHTS else by_number
+        # Two fields of each step, or the derivative of the operator.
+        kept += 4.0 * len(run.loading.values) if path == HEIGHTS else operator
     heap = _HEAP if 8 * cells < _GIVEN_BACK else 0
     return _FIXED + 8 * cells * (operator + iterating + history + kept + heap)

@@ -12,7 +12,7 @@ import xarray as xr
 from pellicle.components import Monitor, Search, Setting
 from pellicle.components.kernel import branches_of
 from pellicle.components.prescription import target_of
-from pellicle.config.gradient import all_derivatives
+from pellicle.config.gradient import derivatives_of
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
 from pellicle.contact.load_step import FinishedStep, LoadStep, end_of
@@ -75,7 +75,7 @@ def _next_step(
     for term in physics.terms:
         step = term(step, surroundings)
     seconds = time.perf_counter() - started
-    variables = [*run.variables, *all_derivatives(run)]
+    variables = [*run.variables, *derivatives_of(run)]
     return step_dataset(run.grid, len(path) + 1, step, variables, seconds)
 
 

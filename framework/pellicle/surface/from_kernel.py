@@ -61,10 +61,7 @@ class HasMeanCompliance(Protocol):
 
 
 def closed_form_of(kernel: object) -> HasClosedForm | None:
-    """Return a kernel that has formulas in real space; None for one that has none.
-
-    One made of others has them if those have, whatever its class.
-    """
+    """Return a kernel that has formulas in real space; None for one that has none."""
     has_both = hasattr(kernel, "greens_function") and hasattr(kernel, "radial_primitive")
     return cast(HasClosedForm, kernel) if has_both else None
 
@@ -85,9 +82,7 @@ def checked_call(kernel: object, name: str) -> Callable[..., Array]:
     numbers of the shape of its arguments.
     """
     method = getattr(kernel, name)
-    text = f"{name}({'q' if name == 'compliance' else 'r'})"
-    if name == "symbol":
-        text = words_of_call(kernel)
+    text = words_of_call(kernel) if name in ("compliance", "symbol") else f"{name}(r)"
 
     def call(*arguments: Array) -> Array:
         with errors_attributed_to(kernel):
@@ -98,7 +93,7 @@ def checked_call(kernel: object, name: str) -> Callable[..., Array]:
 
 
 def words_of_call(kernel: object) -> str:
-    """Return what gives the symbol of a kernel: its ``compliance(q)``, or ``symbol(qx, qy)``."""
+    """Return what gives the symbol of a kernel, in words."""
     return "compliance(q)" if getattr(kernel, "is_isotropic", False) else "symbol(qx, qy)"
 
 
@@ -134,7 +129,11 @@ def _periodic(kernel: HasSymbol, grid: Grid) -> Operator:
     # Overflow gives infinite or NaN values, which are detected here.
     with np.errstate(all="ignore"):
         values.ravel()[1:] = waves = symbol(qx, qy)
-        _average_both_signs(values, symbol, grid)
+        if grid.shape[0] % 2 == 0:
+            # On the grid q_x = ±π/Δx are one wave; along y the transform takes the mean itself.
+            middle = grid.shape[0] // 2
+            shortest, across = (q[middle] for q in np.broadcast_arrays(*grid.wavenumbers()))
+            values[middle] = 0.5 * (values[middle] + symbol(-shortest, across))
     invalid = np.flatnonzero(~(np.isfinite(waves) & (waves > 0)))
     if invalid.size:
         first = invalid[0]
@@ -151,26 +150,7 @@ def _periodic(kernel: HasSymbol, grid: Grid) -> Operator:
             "positive or infinite; check the parameters, or the formula if the kernel is yours",
             "kernel",
         )
-    return Operator(
-        grid,
-        values,
-        grid.shape,
-        symbol,
-        lambda other: _periodic(kernel, other),
-        has_mirrors=kernel.is_isotropic,
-    )
-
-
-def _average_both_signs(values: Array, symbol: Symbol, grid: Grid) -> None:
-    """Replace G of waves of two cells along x by the mean over both signs of q_x.
-
-    On the grid q_x = ±π/Δx are one wave. Of waves along y the transform takes the mean itself.
-    """
-    nx = grid.shape[0]
-    if nx % 2:
-        return
-    qx, qy = (q[nx // 2] for q in np.broadcast_arrays(*grid.wavenumbers()))
-    values[nx // 2] = 0.5 * (values[nx // 2] + symbol(-qx, qy))
+    return Operator(grid, values, grid.shape, symbol, lambda other: _periodic(kernel, other))
 
 
 def _free(kernel: HasSymbol, grid: Grid, form: HasClosedForm | None) -> Operator:
@@ -211,14 +191,7 @@ def _free(kernel: HasSymbol, grid: Grid, form: HasClosedForm | None) -> Operator
         wrapped[px - nx + 1 :, :ny] = cells[:0:-1]
         wrapped[:, py - ny + 1 :] = wrapped[:, ny - 1 : 0 : -1]
         values = scipy.fft.rfft2(wrapped).real.copy()
-    return Operator(
-        grid,
-        values,
-        (px, py),
-        symbol,
-        lambda other: _free(kernel, other, form),
-        has_mirrors=True,
-    )
+    return Operator(grid, values, (px, py), symbol, lambda other: _free(kernel, other, form))
 
 
 def _table(kernel: HasSymbol, symbol: Symbol, grid: Grid, table: Tabulated | None) -> Tabulated:

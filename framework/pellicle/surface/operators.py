@@ -37,15 +37,11 @@ class Operator:
         padded: tuple[int, int],
         symbol: Symbol,
         on: Callable[[Grid], Operator],
-        *,
-        has_mirrors: bool,
     ) -> None:
         """Take over ``values`` [m/Pa], by which transforms of the shape ``padded`` are multiplied.
 
         ``symbol`` is the same of any wave.
         """
-        self.has_mirrors = has_mirrors
-        """Whether a cell displaces those at x and −x alike, and at y and −y."""
         self.grid = grid
         self.padded = padded
         """Number of points of the transform along x and y."""
@@ -68,6 +64,12 @@ class Operator:
             or bool(self._values.double[0, 0] > 0)
             or self._spring_compliance > 0
         )
+
+    @property
+    def has_mirrors(self) -> bool:
+        """Whether a cell displaces those at x and −x alike, and at y and −y."""
+        values = self._values.double
+        return self.grid.boundary == "free" or bool((values[1:] == values[:0:-1]).all())
 
     @property
     def applications(self) -> int:

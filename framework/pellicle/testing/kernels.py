@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -52,34 +53,27 @@ def numbers_have_derivatives(kernel: Kernel) -> None:
 
     It is compared with that of 1 % more and 1 % less, unless one of these is not allowed.
     """
-    elastic = instantaneous(kernel)
+    elastic, boundary = instantaneous(kernel), "free" if kernel.is_isotropic else "periodic"
     run: dict[str, Any] = {
-        "grid": {
-            "points": 16,
-            "size": "1 mm",
-            "boundary": "free" if kernel.is_isotropic else "periodic",
-        },
+        "grid": {"points": 16, "size": "1 mm", "boundary": boundary},
         "indenter": {"type": "flat_punch", "radius": "0.2 mm"},
         "loading": {"depth": ["10 um"]},
     }
     for path, value, _ in walk({"kernel": elastic}):
-        if not isinstance(value, float) or not value:
-            continue
-        field = path.removeprefix("kernel.")
-        try:
-            kernels = [with_value(elastic, field, share * value) for share in (0.99, 1.01)]
-            less, more = (solved(**run, kernel=k)["force"].values for k in kernels)
-            result = solved(**run, kernel=elastic, gradient=[path])
-        except ConfigError:
-            continue
-        (name,) = (n for n in result if str(n).startswith("force_by_"))
-        require_close(
-            result[name].values * value,
-            (more - less) / 0.02,
-            f"the derivative of the force [N] by the logarithm of {path}",
-            relative=1e-3,
-            absolute=1e-5 * float(result["force"][0]),
-        )
+        # A number may have no room to either side, or no derivative.
+        with suppress(ConfigError):
+            if isinstance(value, float) and value:
+                field = path.removeprefix("kernel.")
+                kernels = [with_value(elastic, field, share * value) for share in (0.99, 1.01)]
+                less, more = (solved(**run, kernel=k)["force"].values for k in kernels)
+                result = solved(**run, kernel=elastic, gradient=[path])
+                require_close(
+                    result[f"force_by_{path.replace('.', '_')}"].values * value,
+                    (more - less) / 0.02,
+                    f"the derivative of the force [N] by the logarithm of {path}",
+                    relative=1e-3,
+                    absolute=1e-5 * float(result["force"][0]),
+                )
 
 
 def free_operator_is_the_transform_of_the_compliance(kernel: Kernel) -> None:

@@ -20,15 +20,10 @@ class Pair(Kernel):
     """
 
     type: Literal["pair"] = "pair"
-    also = ("two", "bodies", "twobodies", "cellongel")
     examples = (
         {
-            "first": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "1 mN/m"},
-            "second": {
-                "type": "coated",
-                "tension": "0.5 mN/m",
-                "substrate": {"type": "half_space", "reduced_modulus": "1 kPa"},
-            },
+            "first": {"type": "tensed_membrane", "reduced_modulus": "1 kPa", "tension": "1 mN/m"},
+            "second": {"type": "half_space", "reduced_modulus": "10 kPa"},
         },
     )
     first: Annotated[Kernel, FromRegistry()] = Field(
@@ -59,12 +54,7 @@ class Pair(Kernel):
 
     def _added(self, name: str) -> Callable[[Array], Array]:
         first, second = (getattr(kernel, name) for kernel in (self.first, self.second))
-
-        def added(r: Array) -> Array:
-            total: Array = first(r) + second(r)
-            return total
-
-        return added
+        return lambda r: first(r) + second(r)
 
     def mean_compliance(self) -> float:
         """Return G(0) [m/Pa] of both."""
@@ -76,8 +66,8 @@ class Pair(Kernel):
 
     def time_span(self) -> tuple[float, float]:
         """Return the times at which the branches of both hold."""
-        spans = self.first.time_span(), self.second.time_span()
-        return max(start for start, _ in spans), min(end for _, end in spans)
+        starts, ends = zip(self.first.time_span(), self.second.time_span(), strict=True)
+        return max(starts), min(ends)
 
     def scaled(self, share: float) -> Kernel:
         """Return the elastic kernel of both bodies ``share`` times as stiff."""
@@ -94,15 +84,12 @@ class Pair(Kernel):
     @model_validator(mode="after")
     def _check_relaxation(self) -> Self:
         bodies = self.first, self.second
-        branches = [body.branches() for body in bodies]
-        if not any(branches):
-            return self
-        if branches[0] != branches[1]:
+        if self.first.branches() != self.second.branches():
             raise ValueError(
                 "the bodies relax differently, and then their sum has no branches of its own; give "
                 "both the same fractions and times, or none"
             )
-        if any(body.without_skin() != body for body in bodies):
+        if self.branches() and any(body.without_skin() != body for body in bodies):
             raise ValueError(
                 "a body relaxes under a skin, which does not, so the sum has no branches of its "
                 "own; give both bodies without a skin, or elastic ones"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Final, Literal
 
 import numpy as np
 from pydantic import ConfigDict, Field
@@ -12,7 +12,12 @@ from pellicle.components import FromRegistry, Isotropic, Kernel, KernelOf
 from pellicle.units import BendingStiffness, Tension
 
 from .elastic_constants import ElasticConstants, ElasticModulus
-from .tensions import Stretched, Tensions, tensions
+from .tensions import TENSION, Stretched, Tensions
+
+_BENDING: Final[Any] = {
+    "title": "bending stiffness",
+    "description": "bending stiffness B of the skin [N*m], 0 for none",
+}
 
 
 class Skin(Kernel):
@@ -21,11 +26,7 @@ class Skin(Kernel):
     tension: Tension = Field(
         0.0, title="surface tension", description="tension τ₀ of the skin [N/m], 0 for none"
     )
-    bending: BendingStiffness = Field(
-        0.0,
-        title="bending stiffness",
-        description="bending stiffness B of the skin [N*m], 0 for none",
-    )
+    bending: BendingStiffness = Field(0.0, **_BENDING)
 
     def skin_stiffness(self, q: Array) -> Array:
         """Return τ₀ q² + B q⁴ [Pa/m], a plate under tension; Timoshenko & Woinowsky-Krieger 1959.
@@ -44,9 +45,7 @@ class BendingSkin(Skin, ElasticModulus, Isotropic):
 
     type: Literal["bending_skin"] = "bending_skin"
     examples = ({"reduced_modulus": "10 kPa", "tension": "0.1 N/m", "bending": "100 pN*m"},)
-    bending: BendingStiffness = Field(
-        title="bending stiffness", description="bending stiffness B of the skin [N*m], 0 for none"
-    )
+    bending: BendingStiffness = Field(**_BENDING)
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) = 1/(E* q/2 + τ₀ q² + B q⁴) [m/Pa]."""
@@ -108,12 +107,8 @@ class Coated(Stretched, KernelOf):
             },
         },
     )
-    tension: Tensions = tensions(0.0)
-    bending: BendingStiffness = Field(
-        0.0,
-        title="bending stiffness",
-        description="bending stiffness B of the skin [N*m], 0 for none",
-    )
+    tension: Tensions = Field(0.0, **TENSION)
+    bending: BendingStiffness = Field(0.0, **_BENDING)
     substrate: Annotated[Kernel, FromRegistry()] = Field(
         description="the kernel under the skin: a table with type"
     )

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Final, Self
 
-import numpy as np
 from pydantic import Field, GetJsonSchemaHandler, model_validator
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import core_schema
@@ -41,20 +40,17 @@ Tensions = Annotated[float | tuple[float, float], OneOrTwo("N/m", at_least=0)]
 """A surface tension ≥ 0 [N/m], or that along a direction and that across it."""
 
 
-def tensions(default: Any = ...) -> Any:
-    """Return the field of a tension that may be two."""
-    return Field(
-        default,
-        title="surface tension",
-        description="tension τ₀ of the surface [N/m], 0 for none; on a periodic boundary also two, "
-        "[along, across] a direction",
-    )
+TENSION: Final[Any] = {
+    "title": "surface tension",
+    "description": "tension τ₀ of the surface [N/m], 0 for none; on a periodic boundary also two, "
+    "[along, across] a direction",
+}
 
 
 class Stretched(Model):
     """A skin under tension, which may be tensed more one way: k = qᵀTq."""
 
-    tension: Tensions = tensions()
+    tension: Tensions = Field(**TENSION)
     angle: Annotated[float, Quantity("rad")] | None = Field(
         None,
         description="angle of the first of two tensions from x to y [rad], or as '30 degree'; "
@@ -79,10 +75,8 @@ class Stretched(Model):
 
     def tension_stiffness(self, qx: Array, qy: Array) -> Array:
         """Return T₁ q∥² + T₂ q⊥² [Pa/m], with q∥ along the angle and q⊥ across it."""
-        along, across = (
-            self.tension if isinstance(self.tension, tuple) else (self.tension, self.tension)
-        )
-        cos, sin = _direction(self.angle or 0.0)
+        along, across = self.tension if isinstance(self.tension, tuple) else (self.tension,) * 2
+        cos, sin = math.cos(self.angle or 0.0), math.sin(self.angle or 0.0)
         stiffness: Array = along * (cos * qx + sin * qy) ** 2 + across * (cos * qy - sin * qx) ** 2
         return stiffness
 
@@ -95,11 +89,3 @@ class Stretched(Model):
                 "angle",
             )
         return self
-
-
-def _direction(angle: float) -> tuple[float, float]:
-    """Return cosine and sine, exact at quarters of a turn."""
-    quarters = angle / (math.pi / 2)
-    if quarters == round(quarters):
-        return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[round(quarters) % 4]
-    return float(np.cos(angle)), float(np.sin(angle))

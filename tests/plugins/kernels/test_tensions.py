@@ -86,7 +86,7 @@ def test_a_quarter_of_a_turn_swaps_the_axes() -> None:
     first, turned = step(skin(T)), step(skin(T[::-1]))
     np.testing.assert_array_equal(first["contact"].values, turned["contact"].values.T)
     for same in (skin(T, angle="180 degree"), skin(T[::-1], angle="90 degree")):
-        np.testing.assert_array_equal(step(same)["pressure"], first["pressure"])
+        np.testing.assert_allclose(step(same)["pressure"], first["pressure"], rtol=1e-6)
 
 
 def test_without_a_solid_stretched_coordinates_make_it_isotropic() -> None:

@@ -19,7 +19,7 @@ from pellicle.components import Depth, Search, Setting
 from pellicle.components.indenter import profile_of
 from pellicle.components.kernel import Kernel, instantaneous
 from pellicle.components.prescription import target_of
-from pellicle.config.gradient import HEIGHTS, all_derivatives
+from pellicle.config.gradient import HEIGHTS
 from pellicle.config.run import Run
 from pellicle.contact.load_step import LoadStep
 from pellicle.contact.masks import dilated
@@ -40,18 +40,25 @@ class Gradient:
     """What the derivatives of a run need, made once; what has none is refused."""
 
     def __init__(self, run: Run, setting: Setting) -> None:
-        self.paths = run.gradient or ()
-        self._operators = {p: _of_operator(run, p) for p in self.paths if p.startswith("kernel.")}
-        self._profiles = {
-            p: _of_profile(run, setting, p) for p in self.paths if p.startswith("indenter.")
-        }
-        if self.paths:
-            # A search for nothing, as for no area, may be no search.
-            ends = {run.loading.values[0], run.loading.values[-1]}
-            targets = [target_of(run.loading.prescription, setting, value) for value in ends]
-            self._searches = any(isinstance(target, Search) for target in targets)
-            if HEIGHTS in self.paths or self._profiles:
-                _refuse_target_of_heights(run, setting)
+        self.names = python_names(run.gradient or ())
+        self._changes: dict[str, Callable[[Array], Array]] = {}
+        for path in self.names:
+            if path != HEIGHTS:
+                of = _of_operator if path.startswith("kernel.") else _of_profile
+                self._changes[path] = of(run, setting, path)
+        # A search for nothing, as for no area, may be no search.
+        prescription, values = run.loading.prescription, run.loading.values
+        ends = [target_of(prescription, setting, v) for v in (values[0], values[-1]) if self.names]
+        self._searches = any(isinstance(target, Search) for target in ends)
+        if all(path.startswith("kernel.") for path in self.names) or self._searches:
+            return
+        higher = replace(setting, profile=_WIDER * setting.profile)
+        if target_of(prescription, higher, values[0]) != ends[0]:
+            raise ConfigError(
+                f"{prescription.type_name} depends on the heights of the indenter itself; "
+                "prescribe depth or force",
+                "gradient",
+            )
 
     def add(self, run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
         """Add the derivatives of a step, with what is prescribed kept; NaN if it is not solved.
@@ -60,47 +67,36 @@ class Gradient:
         """
         step = responding(run, step, surroundings)
         assert step.response
-        equilibrium, k = step.equilibrium, step.response.stiffness.value
-        response, cell = step.response.pressure, run.grid.cell_area
-        contact, control = equilibrium.contact, equilibrium.problem.control
-        known = step.converged and (contact.any() or not equilibrium.zone.any())
+        (response, k), equilibrium = step.response, step.equilibrium
+        control, cell = equilibrium.problem.control, run.grid.cell_area
+        known = step.converged and (equilibrium.contact.any() or not equilibrium.zone.any())
+        keeps_depth = isinstance(control, Depth)
         compliance = control.compliance if isinstance(control, Depth) else 0.0
-        measures: dict[str, float] = {}
-        fields: dict[str, Array] = {}
-        for variable in all_derivatives(run):
-            quantity, _, name = variable.name.partition("_by_")
-            path = next(p for p, n in python_names(self.paths).items() if n == name)
-            # At a fixed depth, and of the depth at a fixed force; any multiple of r serves that.
-            at_depth = self._force_by(path, response, equilibrium.pressure, cell)
+        found: dict[str, Array] = {}
+        for path, name in self.names.items():
+            change = response
+            if path in self._changes:
+                # Off the contact no change is needed, and a profile may have none.
+                change = self._changes[path](equilibrium.pressure)
+                change = np.where(response != 0, response * change, 0.0).sum()
             with np.errstate(all="ignore"):
-                at_force = -at_depth / (response.sum() * cell)
-            if quantity == "force":
-                value = at_depth / (1 + k * compliance) if np.isfinite(k) else at_depth * np.nan
-                value = value * (self._searches or isinstance(control, Depth))
-            elif self._searches or not isinstance(control, Depth):
-                value = at_force
-            else:
-                value = 0.0 - compliance * at_depth / (1 + k * compliance)
-            value = value if known else value * np.nan
-            if path == HEIGHTS:
-                fields[variable.name] = np.asarray(value)
-            else:
-                measures[variable.name] = float(value)
-        return step.having(measures, fields=fields)
-
-    def _force_by(self, path: str, response: Array, pressure: Array, cell: float) -> Array:
-        """Return the derivative of the force at a fixed depth: a number, or a field by heights."""
-        if path == HEIGHTS:
-            return cell * response
-        if path in self._profiles:
-            # The profile has no derivative where its edge moves; off the contact none is needed.
-            change = self._profiles[path]
-            return np.asarray(cell * np.where(response != 0, response * change, 0.0).sum())
-        return np.asarray(-cell * (response * self._operators[path](pressure)).sum())
+                # On its spring, or at a fixed depth; the depth at a fixed force.
+                force = cell * change / (1 + k * compliance) if np.isfinite(k) else np.nan * change
+                depth = -change / response.sum()
+            force, depth = (
+                force if keeps_depth or self._searches else 0.0 * change,
+                depth if not keeps_depth or self._searches else 0.0 - compliance * force,
+            )
+            found[f"force_by_{name}"] = force if known else np.nan * force
+            found[f"depth_by_{name}"] = depth if known else np.nan * depth
+        return step.having(
+            {name: float(value) for name, value in found.items() if np.ndim(value) == 0},
+            fields={name: value for name, value in found.items() if np.ndim(value)},
+        )
 
 
-def _of_operator(run: Run, path: str) -> Callable[[Array], Array]:
-    """Return dA/dθ by a number θ of the kernel, from operators of its neighbours."""
+def _of_operator(run: Run, setting: Setting, path: str) -> Callable[[Array], Array]:
+    """Return −(dA/dθ) p as a function of p, by a number θ of the kernel."""
     longest, finest = 2 * np.pi / max(run.grid.size), np.pi / min(run.grid.spacing)
     q = np.geomspace(longest, finest, _WAVES)
 
@@ -113,11 +109,11 @@ def _of_operator(run: Run, path: str) -> Callable[[Array], Array]:
         return logarithms
 
     nodes, weights = _differences(run, path, waves, 1.0)
-    return Derivative((operator_of(solid(value), run.grid) for value in nodes), weights)
+    return Derivative((operator_of(solid(value), run.grid) for value in nodes), -weights)
 
 
-def _of_profile(run: Run, setting: Setting, path: str) -> Array:
-    """Return df/dθ by a number θ of the indenter; NaN at an edge that moves with it."""
+def _of_profile(run: Run, setting: Setting, path: str) -> Callable[[Array], Array]:
+    """Return df/dθ by a number θ of the indenter, whatever p; NaN at an edge that moves with it."""
     finite = np.isfinite(setting.profile)
     size = float(np.ptp(setting.profile[finite])) or max(run.grid.size)
 
@@ -135,7 +131,7 @@ def _of_profile(run: Run, setting: Setting, path: str) -> Array:
         change[edge] = np.nan
         if (edge & (setting.profile == setting.profile.max())).any():
             raise _undefined(run, path, "moves the edge of a flat end, by whole cells")
-    return change
+    return lambda _: change
 
 
 def _moves_edge(profile: Callable[[float], Array], value: float, finite: Array) -> bool:
@@ -157,24 +153,7 @@ def _differences(
         raise _undefined(run, path, str(error)) from None
 
 
-def _refuse_target_of_heights(run: Run, setting: Setting) -> None:
-    """Refuse a prescription whose depth or force depends on the heights of the indenter."""
-    prescription, value = run.loading.prescription, run.loading.values[0]
-    targets = [
-        target_of(prescription, replace(setting, profile=scale * setting.profile), value)
-        for scale in (1.0, _WIDER)
-    ]
-    if not isinstance(targets[0], Search) and targets[0] != targets[1]:
-        raise ConfigError(
-            f"{prescription.type_name} depends on the heights of the indenter itself; prescribe "
-            "depth or force",
-            "gradient",
-        )
-
-
 def _undefined(run: Run, path: str, reason: str) -> ConfigError:
-    index = (run.gradient or ()).index(path)
-    return ConfigError(
-        f"{path!r} {reason}, so it has no derivative on these cells; leave it out",
-        f"gradient.{index}",
-    )
+    field = f"gradient.{(run.gradient or ()).index(path)}"
+    reason = f"{path!r} {reason}, so it has no derivative on these cells; leave it out"
+    return ConfigError(reason, field)

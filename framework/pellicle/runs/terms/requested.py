@@ -12,7 +12,7 @@ from pellicle.components.prescription import report_of
 from pellicle.components.solver import response_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
-from pellicle.contact.equilibrium import Response, Stiffness, measure_stiffness
+from pellicle.contact.equilibrium import Stiffness, measure_stiffness
 from pellicle.contact.load_step import LoadStep
 from pellicle.variables import CORRECTED_AREA, CORRECTED_FRACTION
 
@@ -42,7 +42,7 @@ def stiffness(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
     """Add the contact stiffness [N/m], δ being the depth of the indenter."""
     step = responding(run, step, surroundings)
     assert step.response
-    return step.having({"stiffness": step.response.stiffness.value})
+    return step.having({"stiffness": step.response[1]})
 
 
 def responding(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
@@ -63,5 +63,5 @@ def responding(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep
         measured = measure_stiffness(problem, contact, response, equilibrium.attraction)
     missed = Caveat(Status.STIFFNESS, {"measure": measured.residual, "tolerance": tolerance})
     unknown = not measured.residual <= tolerance
-    step = replace(step, response=Response(response, measured))
+    step = replace(step, response=(response, measured.value))
     return step.having({}, [missed] if unknown else [])

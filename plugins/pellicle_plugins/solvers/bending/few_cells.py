@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from pellicle.arrays import Array, Cells, Mask
+from pellicle.arrays import Array, Mask
 from pellicle.contact import Problem, dilated, with_force
 
 # Cells in contact up to which this takes less time than local relaxation, and cells that may join.
@@ -46,7 +46,13 @@ def solved_on_few_cells(
         nearest = np.where(contact, -np.inf, gap).ravel()[cells]
         cells = np.sort(cells[np.argpartition(nearest, _MOST_CANDIDATES)[:_MOST_CANDIDATES]])
     unit, (i, j) = float(column[0, 0]), np.divmod(cells, trial.shape[1])
-    matrix = column[_apart(i, problem, 0), _apart(j, problem, 1)] / unit
+    apart = [index[:, None] - index for index in (i, j)]
+    # Without mirrors they count from the first to the second cell, on the period.
+    mirrored = problem.operator.has_mirrors
+    rows, columns = (
+        np.abs(d) if mirrored else d % n for d, n in zip(apart, trial.shape, strict=True)
+    )
+    matrix = column[rows, columns] / unit
     height, depth = problem.profile.ravel()[cells] / unit, problem.value / unit
     added, steps = 0.0, 1
     if problem.prescribed == "force":
@@ -63,13 +69,3 @@ def solved_on_few_cells(
         return None
     pressure.ravel()[cells] = least
     return with_force(problem, pressure) if least.any() else None
-
-
-def _apart(index: Cells, problem: Problem, axis: int) -> Cells:
-    """Return the offsets of cells from each other, by which a column of the operator is read.
-
-    An operator without mirrors has the point mirror alone: they count from the first to the second
-    cell on the period.
-    """
-    apart = index[:, None] - index
-    return np.abs(apart) if problem.operator.has_mirrors else apart % problem.grid.shape[axis]
