@@ -237,7 +237,7 @@ def test_the_library_gives_what_a_run_does(boundary: str) -> None:
         np.testing.assert_allclose(again[name], result.dataset[name], rtol=1e-9, atol=1e-30)
         assert again[name].attrs == result.dataset[name].attrs
     assert again["force_by_indenter_radius"].attrs["units"] == "N/m"
-    with pytest.raises(pl.ConfigError, match="not given here"):
+    with pytest.raises(pl.ConfigError, match="no real number"):
         pl.gradient(result, by="kernel.tension")
     # All heights together are the depth.
     stiffness = pl.run(
@@ -305,8 +305,8 @@ def test_a_first_jump_of_a_solid_that_relaxes() -> None:
 STICKY = {"interaction": {"type": "jkr", "work_of_adhesion": 5e-4}}
 SEEDED = {"indenter": INDENTERS[2]}
 REFUSED: list[tuple[dict[str, Any], list[str], str]] = [
-    ({}, ["kernel.tenison"], "'kernel.tenison' is not given here"),
-    ({}, ["kernel.poissons_ratio"], "is not given here"),
+    ({}, ["kernel.tenison"], "'kernel.tenison' is no real number"),
+    ({}, ["kernel.poissons_ratio"], "is no real number"),
     ({}, ["kernel"], "no real number"),
     ({}, ["contact_area"], "areas, pull-off and the like change by whole cells"),
     ({}, ["pull_off"], "whole cells"),

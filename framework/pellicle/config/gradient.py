@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 from pellicle.components import Interaction
 from pellicle.components.kernel import branches_of
-from pellicle.errors import ConfigError, shown
-from pellicle.schema.model import get, python_names, walk
+from pellicle.errors import ConfigError
+from pellicle.schema.model import python_names, walk
 from pellicle.units import Quantity, one, quantity_of, si_unit
 from pellicle.variables import VARIABLES, Variable
 
@@ -41,9 +41,7 @@ def refuse_undefined(run: Run, path: str, before: Iterable[str] = ()) -> None:
             f"pull-off and the like change by whole cells; {_MAY}"
         )
     if path not in quantities_of(run):
-        there = get({"kernel": run.kernel, "indenter": run.indenter}, path)
-        is_it = "is not given here" if there is None else f"is {shown(there)}, no real number"
-        raise ConfigError(f"{path!r} {is_it}; {_MAY}")
+        raise ConfigError(f"{path!r} is no real number of this kernel or indenter; {_MAY}")
     interaction, by_kernel = run.interaction, path.startswith("kernel.")
     if interaction and by_kernel and type(interaction).resolved is not Interaction.resolved:
         raise ConfigError(
