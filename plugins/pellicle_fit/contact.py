@@ -10,8 +10,8 @@ from typing import Any, cast
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.axisymmetric import punch_radius
 from pellicle.components import HasContactRadius, HasForceCurve
+from pellicle_axisymmetric import punch_radius
 
 from .area_table import Areas, half_space
 

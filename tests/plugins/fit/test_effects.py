@@ -15,8 +15,8 @@ from scipy.special import beta
 
 import pellicle as pl
 from pellicle.arrays import Array
-from pellicle.axisymmetric import Adhesion
 from pellicle.testing import rules_of
+from pellicle_axisymmetric import Adhesion
 from pellicle_fit import testing
 from pellicle_fit.contact import Contact
 from pellicle_fit.curve import Curve

@@ -9,13 +9,13 @@ import curve_tables
 import numpy as np
 import pytest
 
-from pellicle.axisymmetric.adhesive_contact import Adhesion, punch_pull_off
-from pellicle.axisymmetric.indentation import indent
-from pellicle.axisymmetric.radius_curves import radius_curves
-from pellicle.axisymmetric.reciprocity import contacts
-from pellicle.axisymmetric.tensed_punch import punch
 from pellicle.components import HasAbelSlope
 from pellicle.errors import ConfigError
+from pellicle_axisymmetric.adhesive_contact import Adhesion, punch_pull_off
+from pellicle_axisymmetric.indentation import indent
+from pellicle_axisymmetric.radius_curves import radius_curves
+from pellicle_axisymmetric.reciprocity import contacts
+from pellicle_axisymmetric.tensed_punch import punch
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid, Sphere
 
 DATA = Path(__file__).parents[2] / "data" / "jkr_tension.csv"

@@ -8,10 +8,10 @@ import pytest
 from numpy.typing import NDArray
 
 import pellicle as pl
-from pellicle.axisymmetric import reciprocity, splines
-from pellicle.axisymmetric.indentation import indent
-from pellicle.axisymmetric.tensed_punch import punch
 from pellicle.components import HasForceCurve
+from pellicle_axisymmetric import reciprocity, splines
+from pellicle_axisymmetric.indentation import indent
+from pellicle_axisymmetric.tensed_punch import punch
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid, Sphere
 
 Array = NDArray[np.float64]

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from scipy.integrate import quad
 
 import pellicle as pl
-from pellicle.axisymmetric import BodyOfRevolution
-from pellicle.axisymmetric.equation import solve
-from pellicle.axisymmetric.master_curves import _Power
-from pellicle.axisymmetric.reciprocity import contacts
+from pellicle_axisymmetric import BodyOfRevolution
+from pellicle_axisymmetric.equation import solve
+from pellicle_axisymmetric.master_curves import _Power
+from pellicle_axisymmetric.reciprocity import contacts
 from pellicle_plugins.indenters.of_revolution import (
     Cone,
     FlatPunch,

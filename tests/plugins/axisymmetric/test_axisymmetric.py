@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pellicle.axisymmetric.indentation import AxisymmetricContact, indent
-from pellicle.axisymmetric.tensed_punch import punch
 from pellicle.components import HasAbelSlope
 from pellicle.errors import ConfigError
+from pellicle_axisymmetric.indentation import AxisymmetricContact, indent
+from pellicle_axisymmetric.tensed_punch import punch
 from pellicle_plugins.closed_forms.hertz import sphere
 from pellicle_plugins.closed_forms.sneddon import cone
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid, Sphere

@@ -11,7 +11,7 @@ from layer_equation import half_space, moments
 from numpy.typing import NDArray
 
 import pellicle as pl
-from pellicle.axisymmetric import layer_curves, splines
+from pellicle_axisymmetric import layer_curves, splines
 from tests.layered_contact import layered_contact, tensed_layer_contact
 
 Array = NDArray[np.float64]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle.axisymmetric.tensed_punch import punch
+from pellicle_axisymmetric.tensed_punch import punch
 from pellicle_plugins.validation.adhesive_path import excess_radius
 
 POINTS, SIZE = 64, 4.0

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from pellicle.axisymmetric.tension_kernel import auxiliary_g, primitive
+from pellicle_axisymmetric.tension_kernel import auxiliary_g, primitive
 
 
 @pytest.mark.parametrize("y", [1e-6, 0.3, 7.0, 49.0, 51.0, 1e4])
