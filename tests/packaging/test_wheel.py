@@ -24,7 +24,7 @@ PACKAGES = (
 )
 DATA = {
     "pellicle/py.typed",
-    "pellicle/applications.pyi",
+    "pellicle/plugins/applications.pyi",
     "pellicle_axisymmetric/layer_curves.npz",
     "pellicle_axisymmetric/punches.npz",
     "pellicle_axisymmetric/py.typed",

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from pellicle.hookspecs import RegisterCommand, hookimpl
+from pellicle.plugins.hooks import RegisterCommand, hookimpl
 
 from .printing import INTERRUPTED, AsJSON, InSI, echo, print_json, print_table
 

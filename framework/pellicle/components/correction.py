@@ -9,8 +9,7 @@ from pellicle.arrays import Mask
 from pellicle.checks import component_name, errors_attributed_to, read_only, real_number
 from pellicle.errors import PluginError
 from pellicle.grid import Boundary, Grid
-
-from .base import Component
+from pellicle.plugins.component import Component
 
 # Relative rounding error of areas.
 _ROUNDING = 1e-12

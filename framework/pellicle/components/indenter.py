@@ -12,9 +12,9 @@ from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to, read_only, real_array
 from pellicle.errors import ConfigError, PluginError, problems_within, shown
 from pellicle.grid import Grid, grid_of_run
+from pellicle.plugins.component import Component
 from pellicle.units import DIGITS, readable
 
-from .base import Component
 from .lattice import Lattice
 
 Footprint = Literal["unbounded", "domain"]

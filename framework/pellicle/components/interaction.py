@@ -13,8 +13,8 @@ from pellicle.checks import errors_attributed_to
 from pellicle.contact.law import GapLaw, Law
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid
+from pellicle.plugins.component import Component
 
-from .base import Component
 from .kernel import Kernel
 
 # Share of the cutoff over which a slope is measured.

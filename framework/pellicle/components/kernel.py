@@ -10,9 +10,8 @@ from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to, real_number
 from pellicle.contact.time_step import Branch
 from pellicle.errors import PluginError, shown
+from pellicle.plugins.component import Component
 from pellicle.surface.operators import HasClosedForm, mean_compliance
-
-from .base import Component
 
 # Rounding error of a sum of shares.
 _ROUNDING = 1e-12

@@ -11,8 +11,8 @@ from typing import Any, ClassVar, Literal, Protocol
 from pellicle.arrays import DataArray, Dataset
 from pellicle.checks import component_name, errors_attributed_to
 from pellicle.errors import ConfigError, PluginError, shown
+from pellicle.plugins.component import Component
 
-from .base import Component
 from .charts import Shown
 
 
@@ -77,6 +77,12 @@ class Output(Component):
     def suffixes(self) -> tuple[str, ...]:
         """Ends of its file names, which follow the stem; ``*`` stands for any text."""
         return ("*",)
+
+    @classmethod
+    def check_class(cls) -> None:
+        """Refuse a class that shows nothing."""
+        if (cls.charts, cls.write) == (Output.charts, Output.write):
+            raise PluginError(f"{cls.__name__} lacks the method charts, or write")
 
     def check(self, runs: Runs) -> None:
         """Refuse settings that do not fit a study, by a ConfigError; nothing is solved yet.

@@ -19,11 +19,11 @@ from pellicle.contact.problem import Depth, Force, Problem
 from pellicle.contact.solution import State
 from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import Grid
+from pellicle.plugins.component import Component
 from pellicle.surface.operators import Operator
 from pellicle.units import Quantity
-from pellicle.variables import Variable
+from pellicle.variables import COORDINATES, VARIABLES, Variable
 
-from .base import Component
 from .indenter import Footprint
 
 OPTIONS: Final = frozenset({"stiffness", "time"})
@@ -113,6 +113,29 @@ class Prescription(Component):
     """Whether 0, from which a path in legs begins, is its value before the indenter presses."""
     variables: ClassVar[tuple[Variable, ...]] = ()
     """Variables that it adds to a result; kind ``residual`` is the relative error of its search."""
+
+    @classmethod
+    def check_class(cls) -> None:
+        """Refuse a class that ``[loading]`` cannot hold, or whose variables a result cannot."""
+        name, type_ = cls.__name__, str(cls.model_fields["type"].default)
+        if not isinstance(getattr(cls, "unit", None), str):
+            raise PluginError(f"{name} lacks the class variable unit: the SI unit of its values")
+        if not cls.quantity().has_known_unit:
+            raise PluginError(f"{name}.unit is {cls.unit!r}, which is not a known unit")
+        if reserved := {type_, *cls.model_fields} & OPTIONS:
+            raise PluginError(
+                f"{name}: {min(reserved)!r} is an option of [loading]; choose another name"
+            )
+        if type_ in cls.model_fields:
+            raise PluginError(f"{name} has a field with the name of its type; choose another name")
+        for variable in cls.variables:
+            is_taken = variable.name in {*VARIABLES, *COORDINATES}
+            if is_taken or not variable.name.isidentifier():
+                reason = "the name of another variable" if is_taken else "not a name"
+                raise PluginError(
+                    f"{name}: variables has {shown(variable.name)}, which is {reason}; choose one "
+                    "of letters, digits and _ that no result has yet"
+                )
 
     @classmethod
     def quantity(cls, interaction: bool = False) -> Quantity:

@@ -18,9 +18,8 @@ from pellicle.contact.problem import Problem
 from pellicle.contact.solution import Progress, Solution, State, Stop
 from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import Grid
+from pellicle.plugins.component import Component
 from pellicle.units import Quantity
-
-from .base import Component
 
 Monitor = Callable[[int, float], None]
 """Function that a solver calls with its iteration and its residual over the tolerance."""

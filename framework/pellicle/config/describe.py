@@ -14,10 +14,11 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from pellicle.components import Component, HasForceCurve
-from pellicle.components.base import words_of_type
+from pellicle.components.installed import registry
 from pellicle.errors import ConfigError, PluginError
 from pellicle.grid import Grid
-from pellicle.plugins import Origin, registry
+from pellicle.plugins.component import words_of_type
+from pellicle.plugins.origins import Origin
 from pellicle.units import parts_of, quantity_of, readable
 from pellicle.variables import words_of_name
 

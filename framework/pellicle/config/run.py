@@ -34,13 +34,13 @@ from pellicle.components import (
     Output,
     Solver,
 )
-from pellicle.components.base import words_of_type
+from pellicle.components.installed import registry
 from pellicle.components.kernel import branches_of
 from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError
 from pellicle.files import is_file
 from pellicle.grid import Grid, grid_of_run
-from pellicle.plugins import registry
+from pellicle.plugins.component import words_of_type
 from pellicle.schema.from_file import FromFile
 from pellicle.schema.model import get, replaced, walk
 from pellicle.variables import VARIABLES, Variable, corrected_area, corrected_fraction

@@ -13,6 +13,7 @@ from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to
 from pellicle.components import Component, Force, Search, Setting
 from pellicle.components.indenter import profile_of
+from pellicle.components.installed import registry
 from pellicle.components.interaction import law_of
 from pellicle.components.kernel import branches_of, instantaneous
 from pellicle.components.prescription import check_value, target_of
@@ -22,7 +23,6 @@ from pellicle.config.run import Run, components_in
 from pellicle.contact.time_step import stiffness_after
 from pellicle.errors import ConfigError, PluginError
 from pellicle.grid import Grid
-from pellicle.plugins import registry
 from pellicle.surface.influence import warn_of_cells
 from pellicle.surface.operators import make_operator
 from pellicle.units import readable

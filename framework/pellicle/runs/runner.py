@@ -18,12 +18,12 @@ import xarray as xr
 from pellicle import memory
 from pellicle.checks import checked_threads, errors_attributed_to, read_only_dataset
 from pellicle.components import Output
+from pellicle.components.installed import registry
 from pellicle.components.output import Runs, files_of, stem_of
 from pellicle.config.doubtful_scales import warn_of_scale
 from pellicle.config.run import Run
 from pellicle.errors import ConfigError, ConvergenceWarning
 from pellicle.grid import Grid
-from pellicle.plugins import registry
 from pellicle.results.path import with_events
 from pellicle.results.record import Steps
 from pellicle.results.result import Result

@@ -22,6 +22,7 @@ from pellicle import memory
 from pellicle.batch import BatchProgress, locked, mapped
 from pellicle.checks import checked_threads, read_only_dataset
 from pellicle.components import Executor, Output, Say
+from pellicle.components.installed import registry
 from pellicle.config.doubtful_scales import warn_of_scale as warn_of_scale
 from pellicle.config.run import Run
 from pellicle.config.study import DEFAULT_EXECUTOR, Study
@@ -29,7 +30,6 @@ from pellicle.config.study import from_toml as from_toml
 from pellicle.contact.caveats import Status
 from pellicle.errors import ConfigError, ConvergenceWarning, PellicleError, StorageError
 from pellicle.files import check_writable, is_file, is_folder
-from pellicle.plugins import registry
 from pellicle.results import storage
 from pellicle.results.dimensions import with_paths, with_python_names
 from pellicle.results.path import with_events

@@ -17,8 +17,9 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from .errors import ConfigError, PellicleError, PluginError
-from .hookspecs import manager_of
+from pellicle.errors import ConfigError, PellicleError, PluginError
+
+from .hooks import manager_of
 from .origins import COMMAND, DISABLE, GROUP, REMEDY, Broken, Origin, claimed_by, in_order, isolated
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Command:
-    """A command, as `hookspecs.RegisterCommand` gets it."""
+    """A command, as `hooks.RegisterCommand` gets it."""
 
     function: Callable[..., None]
     file: str = ""

@@ -2,7 +2,7 @@
 
 from importlib.metadata import entry_points
 
-from .errors import PluginError
+from pellicle.errors import PluginError
 
 GROUP = "pellicle.applications"
 

@@ -11,7 +11,9 @@ import pluggy
 from .origins import GROUP
 
 if TYPE_CHECKING:
-    from .components import Component, Suite
+    from pellicle.components import Suite
+
+    from .component import Component
 
 hookspec = pluggy.HookspecMarker(GROUP)
 hookimpl = pluggy.HookimplMarker(GROUP)

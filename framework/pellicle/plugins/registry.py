@@ -1,4 +1,4 @@
-"""The registry of installed components, and components by the name of their type.
+"""The registry of components, by family and type, and how it is loaded from plugins.
 
 pluggy's own loader stops at the first broken plugin, silently drops the second of two equal names
 and leaves a failing plugin half registered. So each entry point is loaded separately here, and its
@@ -8,39 +8,25 @@ error is recorded instead of raised.
 from __future__ import annotations
 
 import inspect
-import os
 import re
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import cache, partial
-from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, version
-from typing import Any, Literal, TypeVar, get_args, get_origin
+from functools import partial
+from importlib.metadata import EntryPoint, PackageNotFoundError, version
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args, get_origin
 
-from . import hookspecs
-from .components import (
-    FAMILIES,
-    Component,
-    Indenter,
-    Interaction,
-    Kernel,
-    Output,
-    Prescription,
-    Solver,
-    Suite,
-)
-from .components.prescription import OPTIONS
-from .errors import ConfigError, PellicleError, PluginError, shown
-from .origins import COMMAND, REMEDY, claimed_by, in_order, isolated
-from .origins import DISABLE as DISABLE
-from .origins import GROUP as GROUP
-from .origins import Broken as Broken
-from .origins import Origin as Origin
-from .schema.messages import nearest
-from .units import quantity_of
-from .variables import COORDINATES, VARIABLES
+from pellicle.errors import ConfigError, PellicleError, PluginError, shown
+from pellicle.schema.messages import nearest
+from pellicle.units import quantity_of
 
-_INHERITED = Output.charts, Output.write
+from .component import Component
+from .hooks import manager_of
+from .origins import COMMAND, DISABLE, REMEDY, Broken, Origin, claimed_by, in_order, isolated
+
+if TYPE_CHECKING:
+    from pellicle.components import Suite
+
 AnyComponent = TypeVar("AnyComponent", bound=Component)
 
 
@@ -151,39 +137,17 @@ class Registry:
             raise
 
 
-@cache
-def registry() -> Registry:
-    """Return the registry of all installed plugins."""
-    return load(entry_points(group=GROUP), os.environ.get(DISABLE, ""))
-
-
-def _factory(family: type[AnyComponent], example: str) -> Callable[..., AnyComponent]:
-    def make(type: str, /, **fields: Any) -> AnyComponent:  # noqa: A002 - name of the field
-        return registry().make(family, {"type": type, **fields})
-
-    name = family.__name__.lower()
-    make.__name__ = make.__qualname__ = name
-    make.__doc__ = f"""Return the {name} of a type with its fields, such as ``{name}({example})``.
-
-    A type that does not exist, or fields that it does not allow, are a ConfigError.
-    """
-    return make
-
-
-kernel = _factory(Kernel, '"half_space", reduced_modulus="10 kPa"')
-indenter = _factory(Indenter, '"sphere", radius="5 um"')
-interaction = _factory(Interaction, '"jkr", work_of_adhesion="50 mJ/m2"')
-solver = _factory(Solver, '"conjugate_gradient", tolerance=1e-6')
-
-
-def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
+def load(
+    entries: Iterable[EntryPoint], disable: str = "", *, known: Mapping[str, type[Component]]
+) -> Registry:
     """Load each plugin separately, and return the registry.
 
-    Entry points name component classes, or modules with hooks of `pellicle.hookspecs`; those of
-    commands are skipped. ``disable`` is the value of the environment variable `DISABLE`.
+    Entry points name component classes, or modules with hooks of `pellicle.plugins.hooks`; those of
+    commands are skipped. ``disable`` is the value of the environment variable `DISABLE`. No plugin
+    can take the name of a ``known`` family, of which the base class is given.
     """
     claims: dict[tuple[str, str], list[Registered]] = {}
-    families = dict(FAMILIES)
+    families = dict(known)
     suites: list[Suite] = []
     broken: list[Broken] = []
     disabled: list[Origin] = []
@@ -235,7 +199,7 @@ def _call_hooks(
     if isinstance(plugin, type):
         register(plugin)
     else:
-        manager = hookspecs.manager_of(plugin)
+        manager = manager_of(plugin)
         hooks = ["register_components", "register_validations", "register_commands"]
         implemented = [caller.name for caller in manager.get_hookcallers(plugin) or ()]
         if not implemented:
@@ -306,33 +270,7 @@ def checked_type(component: Any) -> str:
             raise PluginError(f"{name}.{field_} lacks Field(description=…) with its unit")
         if (quantity := quantity_of(its)) and not quantity.has_known_unit:
             raise PluginError(f"{name}.{field_}: Quantity({quantity.unit!r}) has an unknown unit")
-    if issubclass(component, Output) and (component.charts, component.write) == _INHERITED:
-        raise PluginError(f"{name} lacks the method charts, or write")
-    if issubclass(component, Prescription):
-        _check_prescription(component, str(names[0]))
+    component.check_class()
     # Raises if JSON cannot represent the type of a field, which would break the whole schema.
     component.model_json_schema()
     return str(names[0])
-
-
-def _check_prescription(component: type[Prescription], type_: str) -> None:
-    """Raise PluginError if ``[loading]`` cannot hold a prescription, or a result its variables."""
-    name = component.__name__
-    if not isinstance(getattr(component, "unit", None), str):
-        raise PluginError(f"{name} lacks the class variable unit: the SI unit of its values")
-    if not component.quantity().has_known_unit:
-        raise PluginError(f"{name}.unit is {component.unit!r}, which is not a known unit")
-    if reserved := {type_, *component.model_fields} & OPTIONS:
-        raise PluginError(
-            f"{name}: {min(reserved)!r} is an option of [loading]; choose another name"
-        )
-    if type_ in component.model_fields:
-        raise PluginError(f"{name} has a field with the name of its type; choose another name")
-    for variable in component.variables:
-        is_taken = variable.name in {*VARIABLES, *COORDINATES}
-        if is_taken or not variable.name.isidentifier():
-            reason = "the name of another variable" if is_taken else "not a name"
-            raise PluginError(
-                f"{name}: variables has {shown(variable.name)}, which is {reason}; choose one of "
-                "letters, digits and _ that no result has yet"
-            )

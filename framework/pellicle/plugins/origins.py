@@ -15,7 +15,7 @@ from functools import cache
 from importlib.metadata import Distribution, EntryPoint
 from typing import TypeVar
 
-from .errors import PluginError
+from pellicle.errors import PluginError
 
 GROUP = "pellicle"
 DISABLE = "PELLICLE_DISABLE_PLUGINS"

@@ -1,18 +1,13 @@
-"""The base class of all components, and fields that hold a component."""
+"""The base class of all components."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Final
+from typing import ClassVar
 
-from pydantic import GetCoreSchemaHandler, PlainSerializer, PlainValidator, WithJsonSchema
 from pydantic.fields import FieldInfo
-from pydantic_core import core_schema
 
 from pellicle.schema.model import Model
 from pellicle.variables import ROLE, words_of_name
-
-FAMILY: Final = "x-pellicle-family"
-"""Keyword of a JSON schema for a choice among the components of a family."""
 
 
 class Component(Model):
@@ -34,6 +29,13 @@ class Component(Model):
         # A base class with a field ``type: str`` would not let components narrow it to a literal.
         return str(getattr(self, "type", type(self).__name__))
 
+    @classmethod
+    def check_class(cls) -> None:
+        """Refuse, by a PluginError, a class that breaks a rule of its family.
+
+        A family's base class overrides this; it is called when a plugin is loaded.
+        """
+
 
 def words_of_type(component: type[Component], type_: str) -> str:
     """Return the words of a component for figures and tables.
@@ -49,30 +51,3 @@ def role_of(field: FieldInfo) -> str:
     """Return the role of a component's field, such as `pellicle.variables.SEED`; "" without one."""
     extra = field.json_schema_extra
     return str(extra.get(ROLE, "")) if isinstance(extra, dict) else ""
-
-
-class FromRegistry:
-    """Annotation of a field that holds an installed component of the field's family.
-
-    ``kernel: Annotated[Kernel, FromRegistry()]`` takes a table with ``type`` and the fields of that
-    component, or the component itself.
-    """
-
-    def __get_pydantic_core_schema__(
-        self, source: type[Component], handler: GetCoreSchemaHandler
-    ) -> core_schema.CoreSchema:
-        def made(value: object) -> Component:
-            from pellicle.plugins import registry
-
-            return registry().make(source, value)
-
-        # `json_schema` replaces this keyword later: not all components are known while plugins
-        # load, and a component may hold another one of its own family.
-        choice = Annotated[Any, WithJsonSchema({FAMILY: source.family})]
-        dump = PlainSerializer(
-            lambda component, info: component.model_dump(
-                mode=info.mode, exclude_none=info.exclude_none, context=info.context
-            )
-        )
-        validate = PlainValidator(made, json_schema_input_type=choice)
-        return handler.generate_schema(Annotated[source, validate, dump])

@@ -1,0 +1,1 @@
+"""What brings components, commands and names to pellicle: how it is found, loaded and checked."""
