@@ -121,7 +121,7 @@ class Series:
 
 
 def _drawn(shown: Chart | Fields) -> bytes:
-    from pellicle.show import png
+    from pellicle.show.notebook import png
 
     return png(shown)
 

@@ -36,7 +36,6 @@ from pellicle.components import (
 )
 from pellicle.components.installed import registry
 from pellicle.components.kernel import branches_of
-from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError
 from pellicle.files import is_file
 from pellicle.grid import Grid, grid_of_run
@@ -45,6 +44,7 @@ from pellicle.schema.from_file import FromFile
 from pellicle.schema.model import get, replaced, walk
 from pellicle.variables import VARIABLES, Variable, corrected_area, corrected_fraction
 
+from .file_names import refuse_shared_files
 from .loading import Loading, fields_from
 
 DEFAULT_SOLVER = "active_set"

@@ -14,6 +14,7 @@ from pellicle.config.study import Study
 from pellicle.results.result import Result
 
 from . import tables
+from .saving import png as png
 from .sentences import status_of_run
 
 _MOST = 12

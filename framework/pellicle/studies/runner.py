@@ -38,6 +38,7 @@ from pellicle.results.soundness import check, sound
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.memory_estimate import memory_of
+from pellicle.runs.outputs import all_done, standard_outputs, writers
 from pellicle.runs.progress import reporting
 from pellicle.show.sentences import caveats, failures, run_names, shared
 
@@ -223,9 +224,9 @@ def execute(
                 _collect(task, rows)
             rows.write(directory, at_once=True)
             whole = rows.dataset()
-            outputs = [o for o in runner.standard_outputs(first.outputs) if o.scope != "run"]
-            calls = runner.writers(outputs, runs, directory / "study", first)
-            of_outputs = runner.all_done([partial(written, call) for call in calls])
+            outputs = [o for o in standard_outputs(first.outputs) if o.scope != "run"]
+            calls = writers(outputs, runs, directory / "study", first)
+            of_outputs = all_done([partial(written, call) for call in calls])
     for message in (*messages, *caveats(whole)):
         warnings.warn(message, stacklevel=3)
     return runner.Executed(whole, (*rows.files, *chain(*of_outputs)), resumed)
