@@ -26,3 +26,4 @@ from .path_summary import legs as legs
 from .path_summary import path_summary as path_summary
 from .spectrum import Spectrum as Spectrum
 from .spectrum import spectrum as spectrum
+from .steepness import steepest as steepest

@@ -11,16 +11,18 @@ import numpy as np
 
 from pellicle.arrays import Array, DataArray, Dataset
 from pellicle.components.charts import Column
-from pellicle.config.describe import inputs
+from pellicle.config.describe import inputs, words_at
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Status, by_phrase, from_text
 from pellicle.errors import first_of
+from pellicle.results.derived import configuration_of
 from pellicle.results.path import has_interaction, has_times, label_of_step, prescribed_variable
 from pellicle.results.result import Result, first_message
 from pellicle.results.runs import axes_of, by_run, runs_of, short_files, statuses_of
 from pellicle.results.wording import column_of, has_one_shape, is_periodic
+from pellicle.schema.expression import formula
 from pellicle.units import decimal, readable
-from pellicle.variables import CAVEATS, VARIABLES
+from pellicle.variables import CAVEATS, VARIABLES, words_of_name
 
 if TYPE_CHECKING:
     from pellicle.runs.validation import CheckedCase
@@ -323,3 +325,15 @@ def larger_domain(file: Path, folder: Path) -> str:
         f"`pellicle check {file}` finds a grid.size that holds the contact of every step; -o DIR "
         f"solves it in another folder, --overwrite in place of the result in {folder}"
     )
+
+
+def in_words(text: str, data: Dataset) -> str:
+    """Return an expression over a result or a table with words in place of its names."""
+    configuration = configuration_of(data)
+
+    def words(name: str) -> str:
+        if name in data.variables:
+            return column_of(data[name]).words
+        return words_at(configuration, Run, name) if "." in name else words_of_name(name)
+
+    return formula(text, words)

@@ -12,12 +12,10 @@ import numpy as np
 from pydantic import Field
 
 from pellicle import analysis
-from pellicle.analysis.steepness import steepest
 from pellicle.arrays import Dataset
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
 from pellicle.errors import ConfigError
-from pellicle.results import Result, is_periodic
-from pellicle.results.path import FEW_CELLS
+from pellicle.results import FEW_CELLS, Result, is_periodic
 from pellicle.units import Quantity
 from pellicle_plugins.validation.adhesive_path import curve_of
 
@@ -155,7 +153,7 @@ def _status(
     last = path.isel(step=-1)
     profile = last["displacement"].values - last["depth"].item() - last["gap"].values
     path = path.isel(step=np.argsort(path["contact_radius"].values))
-    slopes = [steepest(profile, contact, grid) for contact in path["contact"].values]
+    slopes = [analysis.steepest(profile, contact, grid) for contact in path["contact"].values]
     missing, coarse, steep = list[str](), list[str](), list[str]()
     for mark, contact in points.items():
         radius = float(contact.contact_radius)
