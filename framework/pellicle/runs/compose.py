@@ -15,7 +15,7 @@ from pellicle.components import Component, Force, Search, Setting
 from pellicle.components.indenter import profile_of
 from pellicle.components.installed import registry
 from pellicle.components.interaction import law_of
-from pellicle.components.kernel import branches_of, instantaneous
+from pellicle.components.kernel import instantaneous
 from pellicle.components.prescription import check_value, target_of
 from pellicle.components.rules import CHEAP, Case, broken
 from pellicle.components.solver import check_solver
@@ -111,7 +111,7 @@ def _warn_of_liquid(run: Run) -> None:
     A kernel that states its time span has a share of its own for all times beyond.
     """
     _, longest = run.kernel.time_span()
-    if longest == math.inf and stiffness_after(branches_of(run.kernel), math.inf) < _LIQUID:
+    if longest == math.inf and stiffness_after(run.branches, math.inf) < _LIQUID:
         warnings.warn(
             f"kernel: the shares of {run.kernel.type_name!r} that relax sum to 1, which makes the "
             "solid a liquid: in the end only a skin carries; let them sum to less for a solid",

@@ -13,7 +13,6 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.checks import errors_attributed_to
 from pellicle.components import Kernel, Setting
-from pellicle.components.kernel import branches_of
 from pellicle.config.run import Run
 from pellicle.contact.load_step import FinishedStep
 from pellicle.contact.time_step import Memory, TimeStep
@@ -35,7 +34,7 @@ class Relaxation:
     """
 
     def __init__(self, run: Run) -> None:
-        kernel, branches = run.kernel, branches_of(run.kernel)
+        kernel, branches = run.kernel, run.branches
         # The solid is undeformed before the first step.
         self._steps = [TimeStep.of(branches, duration) for duration in run.loading.durations]
         self._memory = Memory.at_rest(branches, run.grid.shape)

@@ -10,7 +10,6 @@ from functools import partial
 import xarray as xr
 
 from pellicle.components import Monitor, Search, Setting
-from pellicle.components.kernel import branches_of
 from pellicle.components.prescription import target_of
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
@@ -31,7 +30,7 @@ class Physics:
     """What the load steps of a run have besides their equilibrium, made once."""
 
     def __init__(self, run: Run) -> None:
-        self.memory = Relaxation(run) if branches_of(run.kernel) else None
+        self.memory = Relaxation(run) if run.branches else None
         # Their measures are columns of a result in this order.
         named = {
             contact: True,
