@@ -3,6 +3,9 @@
 An indenter that derives from `BodyOfRevolution` needs its profile and `abel_slope`.
 """
 
+from .adhesion_from_path import AdhesiveContact as AdhesiveContact
+from .adhesion_from_path import AdhesiveCurve as AdhesiveCurve
+from .adhesion_from_path import adhesive_curve as adhesive_curve
 from .adhesive_contact import Adhesion as Adhesion
 from .adhesive_contact import punch_pull_off as punch_pull_off
 from .arguments import positive as positive

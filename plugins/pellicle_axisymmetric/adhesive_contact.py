@@ -25,11 +25,11 @@ from math import exp, inf, log, nan, pi, sqrt
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pellicle.analysis import AdhesiveContact, AdhesiveCurve
 from pellicle.arrays import Array
 from pellicle.components import HasAbelSlope
 from pellicle.errors import ConfigError
 
+from .adhesion_from_path import AdhesiveContact, AdhesiveCurve
 from .arguments import not_negative, positive
 from .equation import kinks_of
 from .radius_curves import END, RadiusCurves, radius_at, radius_curves, xi_at

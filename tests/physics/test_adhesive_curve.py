@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle.analysis import AdhesiveCurve
 from pellicle.components import Indenter
+from pellicle_axisymmetric import AdhesiveCurve
 from pellicle_axisymmetric.adhesive_contact import Adhesion
 from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid

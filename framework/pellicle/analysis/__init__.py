@@ -5,9 +5,6 @@ is ``result.grid``. On a free boundary there is no contact beyond the domain; on
 opposite edges are neighbours.
 """
 
-from .adhesive_curve import AdhesiveContact as AdhesiveContact
-from .adhesive_curve import AdhesiveCurve as AdhesiveCurve
-from .adhesive_curve import adhesive_curve as adhesive_curve
 from .border import perimeter as perimeter
 from .distribution import Distribution as Distribution
 from .distribution import distribution as distribution

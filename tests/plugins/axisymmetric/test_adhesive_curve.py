@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pellicle.analysis import AdhesiveCurve, adhesive_curve
 from pellicle.errors import ConfigError
+from pellicle_axisymmetric import AdhesiveCurve, adhesive_curve
 
 E, R, W = 5.0, 2.0, 0.3
 A0 = (W * R**2 / E) ** (1 / 3)
