@@ -11,6 +11,7 @@ from .path import has_interaction as has_interaction
 from .path import has_path as has_path
 from .path import has_times as has_times
 from .path import label_of_step as label_of_step
+from .path import prescribed_variable as prescribed_variable
 from .result import Result as Result
 from .result import load as load
 from .runs import StoredRuns as StoredRuns
@@ -21,6 +22,7 @@ from .storage import read as read
 from .storage import table as table
 from .storage import write as write
 from .wording import column_of as column_of
+from .wording import has_one_shape as has_one_shape
 from .wording import is_log_spaced as is_log_spaced
 from .wording import is_ordered as is_ordered
 from .wording import is_periodic as is_periodic

@@ -31,6 +31,14 @@ from pellicle.show import DIVERGING, Code, Frame, Maps, Notice, Picture, Section
 from pellicle.variables import WALL_PRESSURE
 
 from .html_curves import curves_of_outputs, curves_of_run, curves_of_study, picture
+from .html_sentences import (
+    aim_of_path,
+    caption_of_runs,
+    caption_of_steps,
+    range_of_path,
+    sentence_of_step,
+    sentence_of_study,
+)
 from .step_figures import cross_section
 
 _FIELDS = {
@@ -100,12 +108,12 @@ class Html(Output):
         data = result.dataset
         maps, chosen = self._maps_of_steps(result)
         step_shown = show.default_step(data) % data.sizes["step"]
-        first = show.sentences.sentence_of_step(data, step_shown)
+        first = sentence_of_step(data, step_shown)
         label = label_of_step(data, step_shown)
         section = cross_section(data.isel(step=step_shown))
         setup = picture(section, show.sentences.caption_of_setup(configuration, label))
-        aim = show.sentences.aim_of_path(data, result.path_summary)
-        lead, rest = (aim, first) if aim else (first, show.sentences.range_of_path(data))
+        aim = aim_of_path(data, result.path_summary)
+        lead, rest = (aim, first) if aim else (first, range_of_path(data))
         in_short = [Text(lead, lead=True), *([Text(rest)] if rest else [])]
         of_steps, off = show.tables.all_steps(data), data["contact_area"].values == 0
         if off.any() and not off.all():
@@ -140,9 +148,9 @@ class Html(Output):
             if not setups:
                 caption = show.sentences.caption_of_setup(first_run, label)
                 setups.append(picture(cross_section(step), caption))
-        sentence = show.sentences.sentence_of_study(table, len(rows))
+        sentence = sentence_of_study(table, len(rows))
         lead = [Text(sentence, lead=True)] if sentence else []
-        caption = show.sentences.caption_of_runs(table, len(frames))
+        caption = caption_of_runs(table, len(frames))
         maps = Maps(caption, "run", mapped, list(frames.values()))
         numbers = [show.tables.runs(table, mapped=list(frames)), *show.tables.paths_of_runs(table)]
         return [
@@ -162,11 +170,11 @@ class Html(Output):
             step = data.isel(step=index)
             label = f"{index + 1}: {label_of_step(data, index)}"
             label += "" if step["converged"].item() else ", NOT CONVERGED"
-            note = show.sentences.sentence_of_step(data, index)
+            note = sentence_of_step(data, index)
             frames.append(replace(frame_of(label, step), note=note))
         begin = int(np.searchsorted(chosen, show.default_step(data) % steps, side="right")) - 1
         names = [field.name for field in mapped]
-        caption = show.sentences.caption_of_steps(data, names, len(chosen))
+        caption = caption_of_steps(data, names, len(chosen))
         return Maps(caption, "load step", mapped, frames, max(begin, 0)), chosen
 
     def _mapped(

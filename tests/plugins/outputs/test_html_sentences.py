@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from pellicle.show.sentences import aim_of_path, sentence_of_study
 from pellicle.variables import VARIABLES
+from pellicle_plugins.outputs.html_sentences import aim_of_path, sentence_of_study
 
 RADII = {"contact_radius": [[1e-6, 6.33e-6], [1e-6, 4.62e-6]], "patches": [[1, 1], [1, 1]]}
 
