@@ -44,7 +44,7 @@ class FieldRow(NamedTuple):
     unit: str = ""
     """SI unit, "1" of a pure number; empty for what is no number."""
     kind: str = ""
-    """What it takes: unit and bounds, or the kind of value."""
+    """Allowed values: unit and bounds, or the kind of value."""
     default: str = ""
     """The default as a file would give it, or in words, such as "none" or "required"."""
     origin: Origin | None = None

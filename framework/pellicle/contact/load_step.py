@@ -46,7 +46,7 @@ class LoadStep:
     measures: Mapping[str, Value] = field(default_factory=dict)
     """Numbers besides those of the equilibrium, by the name of their variable."""
     caveats: tuple[Caveat, ...] = ()
-    """What limits the step, `ranked`."""
+    """Caveats of the step, `ranked`."""
 
     @property
     def converged(self) -> bool:
@@ -64,7 +64,7 @@ class LoadStep:
 
 @dataclass(frozen=True)
 class FinishedStep:
-    """What a load step leaves to those after it; its fields are views of those of the result."""
+    """The end of a load step, for later ones; its fields are views of those of the result."""
 
     state: State
     gap: Array

@@ -1,1 +1,1 @@
-"""What brings components, commands and names to pellicle: how it is found, loaded and checked."""
+"""Plugins: how components, commands and names of packages are found, loaded and checked."""

@@ -20,9 +20,9 @@ from pellicle.errors import PluginError
 GROUP = "pellicle"
 DISABLE = "PELLICLE_DISABLE_PLUGINS"
 COMMAND = "command."
-"""What the names of entry points of commands begin with."""
+"""Prefix of the names of entry points of commands."""
 REMEDY = f"uninstall one, or name its distribution in {DISABLE}"
-"""What to do where several plugins claim one name."""
+"""Remedy where several plugins claim one name."""
 Loaded = TypeVar("Loaded")
 # Standard output is the process's: of two threads that redirect it at once the second would restore
 # what the first has redirected.

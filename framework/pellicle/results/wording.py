@@ -1,4 +1,4 @@
-"""Which variables mean something, and how figures and tables show them: words, unit, digits."""
+"""Variables for readers: words, unit and digits, and whether they mean something."""
 
 from __future__ import annotations
 

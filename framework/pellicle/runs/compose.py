@@ -17,7 +17,7 @@ from pellicle.components.installed import registry
 from pellicle.components.interaction import law_of
 from pellicle.components.kernel import instantaneous
 from pellicle.components.prescription import check_value, target_of
-from pellicle.components.rules import CHEAP, Case, broken
+from pellicle.components.rules import CHEAP, Case, first_violation
 from pellicle.components.solver import check_solver
 from pellicle.config.run import Run, components_in
 from pellicle.contact.time_step import stiffness_after
@@ -77,7 +77,7 @@ def _is_own(kind: type[Component]) -> bool:
 @lru_cache(maxsize=256)
 def _ask_stranger(component: Component, case: Case) -> None:
     """Refuse a component of others that breaks a rule; those inside it are asked on their own."""
-    if violation := broken(CHEAP[component.family], component, case):
+    if violation := first_violation(CHEAP[component.family], component, case):
         raise PluginError(f"{component_name(component)} breaks the rule {violation}")
 
 

@@ -1,4 +1,4 @@
-"""What a notebook shows of runs, studies and results: short HTML."""
+"""Short HTML of runs, studies and results, for notebooks."""
 
 from __future__ import annotations
 

@@ -160,7 +160,7 @@ def done(files: Sequence[Path], resumed: int, whole: str, seconds: float) -> Ite
     yield f"took {decimal(seconds, 2)} s"
 
 
-def shared(runs: int, seconds: float) -> str:
+def shared_among_processes(runs: int, seconds: float) -> str:
     """Return that runs that would take long are shared among processes."""
     return (
         f"the other {runs} runs would take {seconds:.0f} s here: they go to processes, as many as "

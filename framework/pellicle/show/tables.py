@@ -35,9 +35,9 @@ _OF_PATHS = [
     *("pull_off", "pull_off_accuracy", "detach", "jump_in", "dissipated_energy"),
     *("storage_stiffness", "loss_stiffness", "phase", "cycle_dissipation"),
 ]
-"""What the terminal shows of the path of each run of a study."""
+"""Variables of the path of each run of a study, for the terminal."""
 _OF_PATH = "pull_off", "pull_off_accuracy", "detach", "jump_in", "work", "dissipated_energy"
-"""What the terminal shows of the path of a run that it has just solved."""
+"""Variables of the path of a run that has just been solved, for the terminal."""
 _COMPARED = 8
 """Digits of values that are compared."""
 _POWERS = str.maketrans("²³", "23")

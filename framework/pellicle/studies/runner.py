@@ -40,7 +40,7 @@ from pellicle.runs.journal import Journal
 from pellicle.runs.memory_estimate import memory_of
 from pellicle.runs.outputs import all_done, standard_outputs, writers
 from pellicle.runs.progress import reporting
-from pellicle.show.sentences import caveats, failures, run_names, shared
+from pellicle.show.sentences import caveats, failures, run_names, shared_among_processes
 
 from . import table
 
@@ -281,7 +281,7 @@ def _solve_all(
         needed = 2 * (max(task.memory for task in todo) + memory.PROCESS)
         if (available := memory.available()) is None or needed <= available:
             executor = registry().make(Executor, {"type": "processes", "threads": threads or 1})
-            bar.say(shared(len(todo), left))
+            bar.say(shared_among_processes(len(todo), left))
     if executor:
         solve_by(executor, todo)
 

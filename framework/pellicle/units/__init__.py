@@ -83,7 +83,7 @@ class Quantity:
     at_most: float | None = None
     hint: str = ""
     left_out: ClassVar[str] = "none"
-    """What a value that is not given is, in words."""
+    """Words for a value that is not given."""
 
     def __call__(self, value: object) -> float:
         """Return ``value`` in SI.

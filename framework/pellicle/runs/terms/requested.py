@@ -1,4 +1,4 @@
-"""What a configuration asks for: corrected areas, measures of its prescription, the stiffness."""
+"""Measures on request: corrected areas, those of the prescription, the stiffness."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle.surface.outside import PlaneOperator, from_outside
+from pellicle.surface.plane import PlaneOperator, from_outside
 
 MODULUS = 1e4
 
