@@ -11,7 +11,7 @@ import xarray as xr
 from scipy.optimize import brentq
 
 import pellicle as pl
-from pellicle.components.solver import solution_of
+from pellicle.components.calls import solution_of
 from pellicle.contact import Problem, measure
 from pellicle.surface import make_operator
 from pellicle_axisymmetric.indentation import indent

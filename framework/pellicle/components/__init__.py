@@ -18,6 +18,7 @@ from pellicle.plugins.component import role_of as role_of
 from pellicle.plugins.component import words_of_type as words_of_type
 from pellicle.variables import Variable as Variable
 
+from .calls import profile_of as profile_of
 from .charts import Axis as Axis
 from .charts import Chart as Chart
 from .charts import Column as Column
@@ -47,7 +48,6 @@ from .indenter import HasForceCurve as HasForceCurve
 from .indenter import HasLayerForceCurve as HasLayerForceCurve
 from .indenter import Indenter as Indenter
 from .indenter import LayerForceCurve as LayerForceCurve
-from .indenter import profile_of as profile_of
 from .installed import FromRegistry as FromRegistry
 from .interaction import Interaction as Interaction
 from .kernel import Kernel as Kernel

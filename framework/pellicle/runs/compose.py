@@ -12,13 +12,11 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to
 from pellicle.components import Component, Force, Search, Setting
-from pellicle.components.indenter import profile_of
+from pellicle.components.calls import check_solver, check_value, profile_of, target_of
 from pellicle.components.installed import registry
 from pellicle.components.interaction import law_of
 from pellicle.components.kernel import instantaneous
-from pellicle.components.prescription import check_value, target_of
 from pellicle.components.rules import CHEAP, Case, first_violation
-from pellicle.components.solver import check_solver
 from pellicle.config.run import Run, components_in
 from pellicle.contact.time_step import stiffness_after
 from pellicle.errors import ConfigError, PluginError

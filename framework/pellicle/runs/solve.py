@@ -10,7 +10,7 @@ from functools import partial
 import xarray as xr
 
 from pellicle.components import Monitor, Search, Setting
-from pellicle.components.prescription import target_of
+from pellicle.components.calls import target_of
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
 from pellicle.contact.load_step import FinishedStep, LoadStep, end_of

@@ -15,8 +15,8 @@ from typing import Final
 import numpy as np
 
 from pellicle.components import Monitor, Solver
+from pellicle.components.calls import solution_of
 from pellicle.components.prescription import Search, Setting
-from pellicle.components.solver import solution_of
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import equilibrium_of
 from pellicle.contact.load_step import LoadStep, start_of

@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from pellicle.components import Force, Prescription, Search, Setting, Solver
-from pellicle.components.prescription import check_value, report_of, target_of
+from pellicle.components.calls import check_value, report_of, target_of
 from pellicle.config.run import Run
 from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.load_step import LoadStep
