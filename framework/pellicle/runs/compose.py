@@ -108,8 +108,9 @@ def _warn_of_liquid(run: Run) -> None:
 
     A kernel that states its time span has a share of its own for all times beyond.
     """
-    _, longest = run.kernel.time_span()
-    if longest == math.inf and stiffness_after(run.branches, math.inf) < _LIQUID:
+    if not run.branches or run.kernel.time_span()[1] < math.inf:
+        return
+    if stiffness_after(run.branches, math.inf) < _LIQUID:
         warnings.warn(
             f"kernel: the shares of {run.kernel.type_name!r} that relax sum to 1, which makes the "
             "solid a liquid: in the end only a skin carries; let them sum to less for a solid",
