@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property, lru_cache
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,8 +28,24 @@ _THINNEST = 1e-3
 """Least thickness of a layer over the greatest depth."""
 _LIMITS = np.arange(0.0, _FINE * _ROWS, 0.5)
 """Logarithms of thickness over the least one at which depth limits are tabulated."""
+_Value = TypeVar("_Value")
 Row = Callable[[float, Array], tuple[Array, Array]]
 """Areas [m²] at one σ and depths [m], and their derivatives by σ."""
+
+
+def last(function: Callable[[Any], _Value]) -> Callable[[Any], _Value]:
+    """Return a function that computes nothing anew while its argument is the same object."""
+    known: tuple[Any, Any] = object(), None
+
+    def of(argument: Any) -> _Value:
+        nonlocal known
+        of_last = known  # Threads may share it.
+        if of_last[0] is not argument:
+            known = of_last = argument, function(argument)
+        value: _Value = of_last[1]
+        return value
+
+    return of
 
 
 def checked_area(indenter: object, curve: object, depth: Array) -> Array:
@@ -74,7 +91,7 @@ class Table:
             self.coefficients[:, :, i] = np.moveaxis(CubicSpline(self.log, both).c, 2, 0)
             self.known[i] = True
 
-    def _of(self, sigma: Array) -> Array:
+    def of(self, sigma: Array) -> Array:
         """Return the coefficients of the spline at each σ, of shape (4, 1 or k, intervals)."""
         if not sigma.any():
             if not self.known[0]:
@@ -90,29 +107,35 @@ class Table:
         of_low = (1 + 2 * u) * w**2 * low[0] + u * w**2 * low[1]
         return np.asarray(of_low + u**2 * (3 - 2 * u) * high[0] + u**2 * w * high[1])
 
-    def __call__(self, depth: Array, sigma: Array) -> Array:
-        """Return A [m²] at depths of shape (n,) or (k, n), and σ of shape (1,) or (k,)."""
+    def areas(self, depth: Array, coefficients: Array) -> Array:
+        """Return A [m²] at depths of shape (n,) or (k, n), of the splines of each σ."""
         inside = np.minimum(np.maximum(depth, 0.0), self.depth[-1])
         x = np.log(np.maximum(inside, self.depth[0])) - self.log[0]
-        value = cubic(self._of(sigma), x, _DEPTHS)
+        value = cubic(coefficients, x, _DEPTHS)
         value *= inside
         value *= np.sqrt(inside)
         return value
 
-    def slopes(self, depth: Array, sigma: Array) -> tuple[Array, Array]:
+    def slopes(self, depth: Array, coefficients: Array) -> tuple[Array, Array]:
         """Return A [m²] and ∂A/∂δ [m] of the same."""
         inside = np.clip(depth, self.depth[0], self.depth[-1])
-        x, of = np.log(inside) - self.log[0], self._of(sigma)
-        rates = of[:-1] * np.array([3.0, 2.0, 1.0])[:, None, None]
-        value, root = cubic(of, x, _DEPTHS), np.sqrt(inside)
+        x = np.log(inside) - self.log[0]
+        rates = coefficients[:-1] * np.array([3.0, 2.0, 1.0])[:, None, None]
+        value, root = cubic(coefficients, x, _DEPTHS), np.sqrt(inside)
         return value * inside * root, (1.5 * value + cubic(rates, x, _DEPTHS)) * root
+
+
+@lru_cache(maxsize=8)
+def _of_values(count: int) -> Array:
+    """Coefficients of the splines through nodes of which one is 1, (powers, nodes, intervals)."""
+    from scipy.interpolate import CubicSpline
+
+    return np.asarray(CubicSpline(np.arange(count), np.eye(count)).c.transpose(0, 2, 1)).copy()
 
 
 def cubics(values: Array) -> Array:
     """Return the splines through rows of values, of shape (k, nodes), a step of 1 apart."""
-    from scipy.interpolate import CubicSpline
-
-    return np.asarray(CubicSpline(np.arange(values.shape[1]), values.T).c.transpose(0, 2, 1))
+    return np.asarray(values @ _of_values(values.shape[1]))
 
 
 def cubic(coefficients: Array, x: Array, step: float) -> Array:
@@ -138,6 +161,12 @@ class Areas:
     ) -> None:
         self.body, self.deepest, self.scale, self.nodes = body, deepest, scale, nodes
         self.table = Table(self._row, deepest, nodes)
+        self._splines = last(lambda length: self.table.of(self._sigma(length)))
+        self._wide_splines = last(lambda length: self.wide.of(self._sigma(length)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # A result that goes to another process takes no table along.
+        return Areas, (self.body, self.deepest, self.scale, self.nodes)
 
     @cached_property
     def wide(self) -> Table:
@@ -155,11 +184,11 @@ class Areas:
 
     def __call__(self, depth: Array, length: Array | float) -> Array:
         """Return F/E* [m²]."""
-        return self.table(depth, self._sigma(length))
+        return self.table.areas(depth, self._splines(length))
 
     def slopes(self, depth: Array, length: Array | float) -> tuple[Array, Array]:
         """Return F/E* [m²] and its derivative by the depth [m]."""
-        return self.wide.slopes(depth, self._sigma(length))
+        return self.wide.slopes(depth, self._wide_splines(length))
 
 
 @lru_cache(maxsize=64)
@@ -187,8 +216,10 @@ def layer(
     depths = [body.layer_depth_limit(thinnest * float(np.exp(x)), ratio) for x in _LIMITS]
     limits = np.maximum(depths, 1e-300)
 
+    splines = last(lambda thickness: table.of(np.log(np.ravel(thickness) / thinnest)))
+
     def area(depth: Array, thickness: Array) -> Array:
-        return table(depth, np.log(np.ravel(thickness) / thinnest))
+        return table.areas(depth, splines(thickness))
 
     def limit(thickness: Array) -> Array:
         return np.exp(np.interp(np.log(thickness / thinnest), _LIMITS, np.log(limits)))

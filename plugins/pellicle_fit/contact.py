@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any, cast
 
 import numpy as np
@@ -112,6 +112,11 @@ class Contact:
             error=max(1e-6, getattr(indenter, "accuracy", 0.0)),
         )
 
+    @cached_property
+    def length(self) -> float:
+        """Elastocapillary length s = 2τ₀/E* [m]."""
+        return 2 * self.tension / self.modulus
+
     @property
     def own_radius(self) -> float:
         """Radius of a round tip of size 1 [m], 0 of any other."""
@@ -134,8 +139,8 @@ class Contact:
 
     def force(self, depth: Array) -> Array:
         """Return the force [N] at depths [m]."""
-        length = 2 * self.tension / self.modulus
-        return np.asarray(self.modulus * self.area(np.minimum(depth, self.depth_limit), length))
+        area = self.area(np.minimum(depth, self.depth_limit), self.length)
+        return np.asarray(self.modulus * area)
 
     def stiffness(self, depth: Array) -> Array:
         """Return ∂F/∂δ [N/m] at depths [m]."""
@@ -153,10 +158,9 @@ class Contact:
         The stiffness at depths > 0 [m] is that of a flat punch of the radius: 2E*a without tension.
         """
         assert isinstance(self.area, OwnArea)
-        length = 2 * self.tension / self.modulus
-        area, by_depth = self.area.slopes(depth, length)
-        if np.any(length):
-            lengths = np.broadcast_to(np.maximum(length, _LEAST * self.deepest), depth.shape)
+        area, by_depth = self.area.slopes(depth, self.length)
+        if np.any(self.length):
+            lengths = np.broadcast_to(np.maximum(self.length, _LEAST * self.deepest), depth.shape)
             found = punch_radius(by_depth.ravel(), lengths.ravel())
             radius, slope = (part.reshape(depth.shape) for part in found)
         else:

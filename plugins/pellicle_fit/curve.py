@@ -50,6 +50,8 @@ class Curve:
     """Contact point [m] if it is given: as a position that is read, which an offset shifts."""
     counts: Array | None = None
     """How many measured rows each row is the mean of; None if one."""
+    is_rough: bool = False
+    """Whether it only has to tell where a minimum is."""
 
     @cached_property
     def base(self) -> Array:
@@ -141,7 +143,7 @@ class Curve:
     @cached_property
     def coarse(self) -> Curve:
         """Few means, which tell where a minimum is."""
-        return self.binned(_COARSE)
+        return replace(self.binned(_COARSE), is_rough=True)
 
     @cached_property
     def span(self) -> float:

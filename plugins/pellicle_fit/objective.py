@@ -185,13 +185,12 @@ class Objective:
         """Return the force [N] of each curve that the explanation records."""
         return [self.known(at, i).force(curve) for i, curve in enumerate(self.curves)]
 
-    def trials(self, at: Array, near: Trials | None = None) -> Trials:
-        """Return trials of coordinates of shape (k, coordinates), sought from others near them."""
+    def trials(self, at: Array) -> Trials:
+        """Return trials of coordinates of shape (k, coordinates)."""
         terms, balances = [], []
         for i, curve in enumerate(self.curves):
-            start = None if near is None else near.balances[i].depth
             shape = (len(at), curve.force.size)
-            found = self.known(at, i).balance(curve, start, together=self.takes_columns)
+            found = self.known(at, i).balance(curve, together=self.takes_columns)
             balance = Balance(*(np.array(np.broadcast_to(part, shape)) for part in found))
             terms.append(self._term(balance.recorded - curve.force, i))
             balances.append(balance)

@@ -70,8 +70,8 @@ class LeastSquares(Protocol):
     def limits(self) -> Array:
         """Least and greatest coordinates, of shape (2, coordinates)."""
 
-    def trials(self, at: Array, near: Any = None) -> Any:
-        """Return trials of coordinates, sought from others near them."""
+    def trials(self, at: Array) -> Any:
+        """Return trials of coordinates."""
 
     def derivatives(self, at: Array, trials: Any) -> Array:
         """Return the derivatives of the terms of trials, of shape (k, coordinates, terms)."""
@@ -128,7 +128,7 @@ def descend(
             move = -_solved(normal[going] + damping[rows, None, None] * eye, steep[going])
             to = np.clip(at[rows] + scale[going] * move, low, high)
             to = np.where(held[rows], at[rows], to)
-            others = problem.trials(to, trials.of(rows))
+            others = problem.trials(to)
             cost_there = cost_of(others.terms)
             gain = cost[rows] - cost_there
             better = gain > 0
