@@ -11,8 +11,8 @@ from pellicle.arrays import Array, Mask
 from pellicle_fit.effect import Contact, Curve, Fitted, Responds, Response, Sizes, Values, fitted
 from pellicle_fit.row_splines import RowSplines
 
-_SEARCHED, _REFINED, _NODES = 61, 3, 120
-"""Contacts among which the end of a branch is sought, and how often; nodes that describe it."""
+_SEARCHED, _NODES = 61, 120
+"""Contacts among which the end of a branch is sought, twice; nodes that describe it."""
 _HIGHER = 10.0
 """How far above the first guess the other end is sought, in logarithms of the depth."""
 _LEVEL = 1e-3
@@ -109,18 +109,24 @@ class Adhesion(Responds):
         reaches = self._equilibria(contact, np.exp(tops), softness)[0] >= deepest
         reaches[..., -1] = True
         top = at(tops, np.argmax(reaches, axis=-1))
-        grid = first = top + np.linspace(-_DECADES * np.log(10), 0, _SEARCHED)
-        position = self._equilibria(contact, np.exp(grid), softness)[0]
+        first = top + np.linspace(-_DECADES * np.log(10), 0, _SEARCHED)
+        position = self._equilibria(contact, np.exp(first), softness)[0]
         rise = position - position[..., :1]
         # The edge of a flat end holds the rim until the punch lets go, at the depth 0.
         level = np.abs(rise[..., 1]) < _LEVEL * np.abs(position[..., 0])
         edge = (level & (rise.min(axis=-1) >= 0))[..., None]
-        for _ in range(_REFINED):
-            least = np.argmin(self._equilibria(contact, np.exp(grid), softness)[0], axis=-1)
-            low = at(grid, np.maximum(least - 1, 0))
-            high = at(grid, np.minimum(least + 1, _SEARCHED - 1))
-            grid = low + (high - low) * np.linspace(0, 1, _SEARCHED)
-        start, ramp = grid[..., [_SEARCHED // 2]], np.linspace(0, 1, _NODES)
+        least = np.argmin(position, axis=-1)
+        low = at(first, np.maximum(least - 1, 0))
+        high = at(first, np.minimum(least + 1, _SEARCHED - 1))
+        grid = low + (high - low) * np.linspace(0, 1, _SEARCHED)
+        position = self._equilibria(contact, np.exp(grid), softness)[0]
+        # The end is that of the parabola through the least and those beside it.
+        least = np.clip(np.argmin(position, axis=-1), 1, _SEARCHED - 2)
+        before, here, after = (at(position, least + step) for step in (-1, 0, 1))
+        bend = np.maximum(before - 2 * here + after, 1e-300)
+        share = np.clip((before - after) / (2 * bend), -1.0, 1.0)
+        start = at(grid, least) + share * (high - low) / (_SEARCHED - 1)
+        ramp = np.linspace(0, 1, _NODES)
         nodes = start + (top - start) * ramp**2
         if edge.any():
             leaves = at(first, np.argmax(rise > _LEVEL * rise[..., -1:], axis=-1))
