@@ -64,6 +64,9 @@ def fit(
         ),
     ] = None,
     pool: Annotated[bool, Option("--pool", help="Fit one solid to all curves.")] = False,
+    every_rival: Annotated[
+        bool, Option("--every-rival", help="Of a folder, compare what a neighbour rules out, too.")
+    ] = False,
     set_: Annotated[
         Texts,
         Option("--set", metavar="KEY=VALUE", help='Any other: --set indenter.radius_x="5 um".'),
@@ -115,6 +118,7 @@ def fit(
         sensitivity=sensitivity,
         columns=columns,
         pool=pool or None,
+        every_rival=every_rival or None,
     )
     kinds = [str(kind) for kind in formats or [Format.PNG]]
     result, name, title = _fit(config, directory, kinds, quiet=quiet)

@@ -78,6 +78,10 @@ class Trials(NamedTuple):
                 part[rows] = new
 
 
+def _of_shape(part: Array, shape: tuple[int, int]) -> Array:
+    return part if part.shape == shape else np.array(np.broadcast_to(part, shape))
+
+
 @dataclass(frozen=True, eq=False)
 class Objective:
     """χ² = Σ (recorded − measured)²/noise², and a term for each quantity that is weighed.
@@ -191,7 +195,7 @@ class Objective:
         for i, curve in enumerate(self.curves):
             shape = (len(at), curve.force.size)
             found = self.known(at, i).balance(curve, together=self.takes_columns)
-            balance = Balance(*(np.array(np.broadcast_to(part, shape)) for part in found))
+            balance = Balance(*(_of_shape(part, shape) for part in found))
             terms.append(self._term(balance.recorded - curve.force, i))
             balances.append(balance)
         for k, slot, given in self._weighed:

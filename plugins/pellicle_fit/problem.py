@@ -26,6 +26,7 @@ from .files.cleaning import clean
 from .files.measurement import Measurement
 from .files.missing import MissingInputError
 from .files.sources import Source
+from .neighbour import Neighbour
 from .objective import CONTACT_POINT
 from .recipe import answer
 from .result import Fit, Member
@@ -51,10 +52,14 @@ class Problem:
     began: float
     """Value of ``perf_counter`` at the start."""
 
-    def fit(self, *, progress: bool = False) -> Fit:
-        """Return the fit of the curves: one modulus, and what else they share."""
+    def fit(self, *, like: Sequence[Neighbour] = (), progress: bool = False) -> Fit:
+        """Return the fit of the curves: one modulus, and what else they share.
+
+        Of a curve, beside others that are ``like`` it.
+        """
         with status_line("fitting", progress):
-            found = answer([member.curve for member in self.members], **self.question)
+            curves = [member.curve for member in self.members]
+            found = answer(curves, **self.question, like=like)
             advice = steps(found, self.members, self.config)
         data = [member.data for member in self.members]
         record = record_of(self.config, data, self.began)

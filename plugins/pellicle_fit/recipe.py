@@ -12,10 +12,11 @@ from scipy.special import chdtrc
 
 from pellicle.errors import ConfigError
 
-from .candidate import Candidate, Types, best_of
+from .candidate import NONE, Candidate, Types, best_of
 from .curve import Curve
 from .effect import Effect, Records, Responds, Solid
 from .intervals import Estimate, common_value, estimates, threshold_of
+from .neighbour import Neighbour
 from .noise import CHANCE, Judged
 from .objective import CONTACT_POINT, MODULUS
 from .rivals import Question, comparison
@@ -47,6 +48,8 @@ class Answer:
     """Whether several curves agree on what they share."""
     untried: tuple[Types, ...]
     """Responses that act alone and whose force beside what is asked is not known."""
+    not_weighed: tuple[Types, ...] = ()
+    """Explanations that curves alike rule out."""
 
     @property
     def verdict(self) -> Verdict:
@@ -177,6 +180,7 @@ def answer(
     kept: Sequence[Effect] = (),
     fix: Mapping[str, float | str] | None = None,
     uncertainty: Sequence[Effect] = (),
+    like: Sequence[Neighbour] = (),
 ) -> Answer:
     """Fit modulus, contact point and a model to curves of one solid, and weigh its rivals.
 
@@ -184,7 +188,8 @@ def answer(
     its others, and those ``kept``, are in all explanations.  Each set of rivals is compared alone
     and beside what is asked for.  ``fix`` has values of quantities of the solid, in SI or with
     units.  Effects of ``uncertainty``, whose quantities are weighed, widen intervals and are in no
-    comparison.
+    comparison.  What all curves that are ``like`` this one rule out is not compared, unless the
+    choice then ties on none of them.
 
     Raises
     ------
@@ -204,19 +209,24 @@ def answer(
     if word in excused:
         raise ConfigError(f"cannot be fitted to this curve: {excused[word]}", "model")
     candidates = {types: one for types, one in candidates.items() if types not in excused}
-    fits = dict(comparison(word, candidates, curves))
+    spared = frozenset[Types].intersection(*(one.ruled_out for one in like)) if like else NONE
+    not_weighed = [t for t in candidates if t in spared and t not in (NONE, word)]
+    weighed = {t: one for t, one in candidates.items() if t not in not_weighed}
+    fits = dict(comparison(word, weighed, curves, like[0] if like else None))
     best = best_of(fits.values())
     threshold = threshold_of(min(judged.noise.freedom for judged in best.judgements))
     margin, doubted = max(MARGIN, threshold), doubtful(best.judgements)
     decided = decision(fits, word, doubted=doubted, margin=margin)
     chosen = choice(fits, word, decided)
+    undescribed = decided.verdict is Verdict.UNDESCRIBED
+    if not_weighed and not any(one.has(chosen, not doubted) for one in like):
+        return answer(curves, model, sets, kept=kept, fix=fix, uncertainty=uncertainty)
     agreement = agreement_of(fits[chosen])
     threshold *= agreement.factor
     alone = {types: candidates.get(types - word) for types in excused if word < types}
     responses = {types: known.of(Responds) for types, known in alone.items() if known}
     untried = [types for types, own in responses.items() if any(e.type_name in types for e in own)]
     # Of what no model describes few ends are worth seeking; none if what may be right has no model.
-    undescribed = decided.verdict is Verdict.UNDESCRIBED
     own = (MODULUS, TENSION, CONTACT_POINT, *question.wanted) if undescribed else ()
     rise, tied = np.inf if undescribed and untried else threshold, ties(fits, word, decided, chosen)
     for types in tied:
@@ -233,6 +243,7 @@ def answer(
         threshold,
         agreement,
         tuple(untried),
+        tuple(not_weighed),
     )
 
 

@@ -179,6 +179,7 @@ class Fit:
                 {"effects": sorted(types), "reason": reason}
                 for types, reason in answer.excused.items()
             ],
+            "not_weighed": [sorted(types) for types in answer.not_weighed],
             "curves": [self._curve(i, own) for i in range(len(self.members))],
             "messages": self.messages,
             "notes": self.notes,

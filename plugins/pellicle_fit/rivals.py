@@ -14,6 +14,7 @@ from .candidate import NONE, Candidate, Types, best_of
 from .curve import Curve
 from .effect import Adds, Effect, Records, Sizes, Solid
 from .explanation import Explanation
+from .neighbour import RULED_OUT, Neighbour
 from .noise import neighbour_noise
 from .objective import Objective
 from .search import Minimum, cost_of, descend
@@ -24,7 +25,7 @@ Explanations = Mapping[Types, Explanation]
 _ROWS, _FEW, _ROWS_OF_FEW = 400, 2, 12_000
 """Means that stand for the rows of each pass, where the force has no jumps, and those of a few
 explanations."""
-_FAR, _NEAR, _LEADS, _BESIDE = 20.0, 4.0, 2.0, 1.0
+_FAR, _NEAR, _LEADS, _BESIDE = RULED_OUT, 4.0, 2.0, 1.0
 """Differences of AIC to the best beyond which an explanation is given up, and not sought to all
 digits; of a pair to its parts, and to the best."""
 _STARTS, _STEPS, _KEPT = 6, 4, 2
@@ -74,10 +75,15 @@ class Question:
 
 
 def comparison(
-    word: Types, candidates: Explanations, curves: tuple[Curve, ...], memory: tuple[float, ...] = ()
+    word: Types,
+    candidates: Explanations,
+    curves: tuple[Curve, ...],
+    like: Neighbour | None = None,
+    memory: tuple[float, ...] = (),
 ) -> Fits:
     """Return all explanations at their least χ², at the noise of the best.
 
+    All but the simple ones are sought from what they are on a curve that is ``like`` these.
     Noise that is correlated counts as such, unless the best explanation then fails: a bent baseline
     is no noise, and differences of it would remove the contact.
     """
@@ -86,11 +92,13 @@ def comparison(
     of = Objective(candidates[NONE], curves, noise, sizes, memory, sizes.time)
     rows = _ROWS if len(candidates) > _FEW else _ROWS_OF_FEW
     means = tuple(curve.binned(rows) for curve in curves)
-    simple = _sought({types: candidates[types] for types in (NONE, word)}, word, {}, of, means)
+    simple = _sought(
+        {types: candidates[types] for types in (NONE, word)}, word, {}, of, means, None
+    )
     simple = at_common_noise({types: fit.polished() for types, fit in simple.items()})
     best = best_of(simple.values())
     if not memory and any(found := tuple(judged.memory for judged in best.judgements)):
-        fits = comparison(word, candidates, curves, found)
+        fits = comparison(word, candidates, curves, like, found)
         other = best_of(fits.values())
         # What a wrong explanation leaves before contact may look like noise with a memory.
         if all(judged.describes for judged in other.judgements) and any(
@@ -98,8 +106,9 @@ def comparison(
         ):
             return fits
     # Another noise only scales χ²; at last it is that of the best.
-    fits = _sought(candidates, word, simple, best.of_rows, means)
-    fits = {types: _restarted(fit, word, fits) for types, fit in fits.items()}
+    fits = _sought(candidates, word, simple, best.of_rows, means, like)
+    if like is None:
+        fits = {types: _restarted(fit, word, fits) for types, fit in fits.items()}
     ends = {t: _end(t, word, fits, _NEAR) for t in fits}
     fits = {t: f.polished() if f.aic < ends[t] else f for t, f in fits.items()}
     fits = at_common_noise(_nearest_sought(fits, word))
@@ -112,7 +121,12 @@ def comparison(
 
 
 def _sought(
-    candidates: Explanations, word: Types, simple: Fits, of: Objective, means: tuple[Curve, ...]
+    candidates: Explanations,
+    word: Types,
+    simple: Fits,
+    of: Objective,
+    means: tuple[Curve, ...],
+    like: Neighbour | None,
 ) -> Fits:
     """Return explanations of all rows at their least χ², beside the simple ones if there are any.
 
@@ -126,13 +140,17 @@ def _sought(
         curves = of.curves if is_whole else means
         objective = replace(of, explanation=explanation, curves=curves)
         parts = [fit for part, fit in fits.items() if part < types]
-        # A pair starts from its parts.
-        at = starts(objective, parts, scan=not word < types or not word)
+        beside = fits.get(word if word <= types else NONE)
+        at = near = like.starts(objective, types, beside, parts) if like and beside else []
+        if not near:
+            # A pair starts from its parts.
+            at = starts(objective, parts, scan=not word < types or not word)
         goal = np.inf
         if simple:
             goal = _end(types, word, fits, _FAR) - objective.criterion(0.0)
         known = fits.get(word)
-        fits[types] = Candidate(types, objective, _least(objective, at, goal, known), of.curves)
+        least = _least(objective, at, goal, known, steps=0 if near else _STEPS)
+        fits[types] = Candidate(types, objective, least, of.curves)
     return fits
 
 
@@ -165,8 +183,9 @@ def _least(
     starts: Sequence[Array],
     goal: float,
     known: Candidate | None,
+    steps: int = _STEPS,
 ) -> Minimum:
-    """Return the least minimum from several starts: few steps of all, more of the best.
+    """Return the least minimum from several starts: few ``steps`` of all, more of the best.
 
     One that does not come below a goal for χ² of all rows is given up.
     """
@@ -175,11 +194,12 @@ def _least(
         of_means -= _scatter(known, objective.curves)
         of_coarse -= _scatter(known, coarse.curves)
     left = np.array(starts)
-    if len(left) > _STARTS:
+    most = _STARTS if steps else _KEPT
+    if len(left) > most:
         terms = coarse.trials(np.clip(left, *coarse.limits)).terms
-        left = left[np.argsort(cost_of(terms))[:_STARTS]]
+        left = left[np.argsort(cost_of(terms))[:most]]
     if len(left) > _KEPT:
-        minima = descend(coarse, left, steps=_STEPS, goal=of_coarse)
+        minima = descend(coarse, left, steps=steps, goal=of_coarse)
         minima.sort(key=lambda minimum: minimum.chi_squared)
         left = np.array([minimum.at for minimum in minima[:_KEPT]])
     minima = descend(objective, left, goal=of_means, fall=_COMPARED, rivals=True)

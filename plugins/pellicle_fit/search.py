@@ -144,7 +144,7 @@ def descend(
             enough = share * cost[rows] + fall
             ends = (most[going] <= enough) | (damping[rows] > _LARGEST)
             ends |= better & (gain <= enough) & (damping[rows] <= _SHORT)
-            if number > 0:
+            if number > 0 or rivals:
                 least = min(goal, float(cost.min())) if rivals else goal
                 given_up[rows] = ~ends & (
                     cost[rows] - _HOPE * np.maximum(most[going], gain) > least

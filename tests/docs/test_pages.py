@@ -27,7 +27,7 @@ CEILINGS = {
     "outputs": 1200,
     "studies": 1200,
     "fits": 1680,
-    "curves": 1610,
+    "curves": 1665,
     "gallery": 550,
     "explore": 230,
     "howdoi": 550,

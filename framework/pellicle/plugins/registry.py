@@ -12,7 +12,7 @@ import re
 from collections.abc import Collection, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cache, partial
 from importlib.metadata import EntryPoint, PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args, get_origin
 
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from pellicle.components import Suite
 
 AnyComponent = TypeVar("AnyComponent", bound=Component)
+_version = cache(version)
 
 
 @dataclass(frozen=True)
@@ -102,12 +103,12 @@ class Registry:
         self, used: Collection[type[Component]], others: Iterable[str] = ()
     ) -> dict[str, str]:
         """Return the version of pellicle, of the owners of components, and of libraries."""
-        numbers = {name: version(name) for name in ("pellicle", "numpy", "scipy")}
+        numbers = {name: _version(name) for name in ("pellicle", "numpy", "scipy")}
         numbers |= self.versions(used)
         for name in sorted({*others, *(name for one in used for name in one.libraries)}):
             # A worker may receive data that a library has read without having the library itself.
             with suppress(PackageNotFoundError):
-                numbers[name] = version(name)
+                numbers[name] = _version(name)
         return numbers
 
     def make(self, base: type[AnyComponent], value: object) -> AnyComponent:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from pellicle.errors import first_of
 from pellicle_fit.intervals import CONFIDENCE
+from pellicle_fit.neighbour import RULED_OUT
 from pellicle_fit.population.row import Row
 
 from .names import listed
@@ -31,6 +32,11 @@ def sentences_of_population(rows: Sequence[Row]) -> list[str]:
     sentences = [counts]
     if far := [row.name for row in rows if row.outlier]:
         sentences.append(f"far from the median modulus, and counted: {listed(far, most=_NAMES)}")
+    if spared := sum(bool(row.fit.get("not_weighed")) for row in rows):
+        sentences.append(
+            f"in {spared} of them what curves beside them rule out by {RULED_OUT:.0f} in AIC was "
+            "not compared; --every-rival compares it"
+        )
     if any(row.fit.get("tension_needed") for row in rows):
         sentences.append(NOT_WEIGHED)
     calibrations = {row.fit["calibration"] for row in rows if row.is_fitted}
