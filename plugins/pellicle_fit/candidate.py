@@ -66,6 +66,27 @@ class Candidate:
         return found
 
     @property
+    def correlations(self) -> dict[tuple[str, str], float]:
+        """Coefficients of correlation of its open quantities, of logarithms of those that are one.
+
+        What is at a limit, or what the curves do not determine at all, has none.
+        """
+        objective, minimum = self.weighed or (self.objective, self.minimum)
+        low, high = objective.limits
+        free = np.flatnonzero((minimum.at > low) & (minimum.at < high))
+        jacobian = objective.jacobian(minimum.at, free.tolist())
+        sizes = np.linalg.norm(jacobian, axis=0)
+        free, unit = free[sizes > 0], jacobian[:, sizes > 0] / sizes[sizes > 0]
+        covariance = np.linalg.pinv(unit.T @ unit, rcond=1e-14, hermitian=True)
+        deviations = np.sqrt(np.diag(covariance))
+        names = [objective.slots[k].full_name for k in free]
+        return {
+            (names[i], names[j]): float(covariance[i, j] / (deviations[i] * deviations[j]))
+            for i in range(len(names))
+            for j in range(i)
+        }
+
+    @property
     def sought(self) -> dict[str, Estimate]:
         """Those of the quantities that were given or whose ends were sought."""
         return {n: e for n, e in self.parameters.items() if e.held or n in self.estimates}

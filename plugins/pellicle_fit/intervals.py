@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from enum import Enum
 from itertools import permutations
 from typing import Any
 
@@ -33,6 +34,17 @@ _ALIKE = 1e-5
 """Least singular value of derivatives of unit length that are not alike."""
 
 
+class End(Enum):
+    """What an end of an interval is."""
+
+    CLOSED = "closed"
+    LIMIT = "reaches the limit of the quantity"
+    RANGE = "sought up to a factor of 100"
+    STEPS = "not found"
+    LACKING = "what lacks it describes the data as well"
+    NOT_SOUGHT = "not sought"
+
+
 @dataclass(frozen=True)
 class Estimate:
     """A quantity of a fit: its value in SI and the ends of its 95 % interval."""
@@ -45,6 +57,8 @@ class Estimate:
     unit: str
     held: bool = False
     """Whether it was given, not fitted."""
+    ends: tuple[End, End] = (End.NOT_SOUGHT, End.NOT_SOUGHT)
+    """What the lower and the upper end are."""
 
     @property
     def is_narrow(self) -> bool:
@@ -59,12 +73,15 @@ class Estimate:
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as JSON data, in which a value that is not quoted is null."""
-        return vars(self) | ({"value": None} if np.isnan(self.value) else {})
+        value = None if np.isnan(self.value) else self.value
+        return vars(self) | {"value": value, "ends": [end.name.lower() for end in self.ends]}
 
     @classmethod
     def of_dict(cls, data: Mapping[str, Any]) -> Estimate:
         """Return the estimate of which `to_dict` returned the data."""
-        return cls(**{**data, "value": np.nan if data["value"] is None else data["value"]})
+        low, high = (End[name.upper()] for name in data["ends"])
+        value = np.nan if data["value"] is None else data["value"]
+        return cls(**{**data, "value": value, "ends": (low, high)})
 
 
 def common_value(estimates: Sequence[Estimate]) -> float:
@@ -119,7 +136,8 @@ def estimates(
     for k, low, high in zip(wanted, ways[::2], ways[1::2], strict=True):
         slot = objective.slots[k]
         value = slot.value(minimum.at[k])
-        found[slot.full_name] = Estimate(value, low.end, high.end, slot.quantity.unit)
+        unit, ends = slot.quantity.unit, (low.kind, high.kind)
+        found[slot.full_name] = Estimate(value, low.end, high.end, unit, ends=ends)
     return minimum, found
 
 
@@ -150,12 +168,15 @@ class _Way:
         # To first order an end lies here.
         first = self.rise / max(float(np.linalg.norm(jacobian @ self.along)), 1e-12)
         far = _REACH if self.slot.quantity.log else _FAR * max(abs(at[k]), 1.0)
-        self.limit = min(abs(objective.limits[(sign + 1) // 2][k] - at[k]), far)
+        to_limit = abs(objective.limits[(sign + 1) // 2][k] - at[k])
+        self.limit = min(to_limit, far)
         self.distance = min(first, self.limit)
         self.below, self.above = (0.0, -self.rise, at), (np.inf, 0.0, at)
         self.before = self.below
         self.ended = not (self.limit > 0 and np.isfinite(threshold))
         self.end: float | None = None
+        self._open = End.LIMIT if to_limit <= far else End.RANGE
+        self._is_sought = bool(np.isfinite(threshold))
 
     @property
     def start(self) -> Array:
@@ -204,11 +225,20 @@ class _Way:
         """The quantity at the present distance, in SI."""
         return self.slot.value(self.minimum.at[self.k] + self.sign * self.distance)
 
+    @property
+    def kind(self) -> End:
+        """What the end is that was reached."""
+        if not self._is_sought:
+            return End.NOT_SOUGHT
+        return End.CLOSED if self.end is not None else self._open
+
     def stop(self) -> None:
         """Take what brackets an end for it, where χ² jumps."""
         if not self.ended and np.isfinite(self.above[0]):
             self.distance = self.above[0]
             self.end = self._value
+        elif not self.ended:
+            self._open = End.STEPS
 
 
 def _followed(

@@ -21,9 +21,10 @@ def print_fit(fit: Fit, *, quiet: bool, details: bool, si: bool) -> None:
     """Print numbers, verdict and next step, then warnings; in detail what they rest on."""
     for line in () if quiet else told(fit, si=si):
         echo(line)
-    for table in (tables.estimates, tables.explanations, tables.curves):
-        if details and not quiet:
+    if details and not quiet:
+        for table in (tables.estimates, tables.explanations, tables.curves):
             print_table(table(fit, si=si), si=si)
+        print_table(tables.correlations(fit), si=si)
     if fit.answer.agreement.factor > 1:
         echo(f"warning: {fit.agreement}", err=True)
     all_checks = details or quiet or len(fit.members) > 1

@@ -15,7 +15,7 @@ from pellicle.errors import ConfigError
 from .candidate import NONE, Candidate, Types, best_of
 from .curve import Curve
 from .effect import Effect, Records, Responds, Solid
-from .intervals import Estimate, common_value, estimates, threshold_of
+from .intervals import End, Estimate, common_value, estimates, threshold_of
 from .neighbour import Neighbour
 from .noise import CHANCE, Judged
 from .objective import CONTACT_POINT, MODULUS
@@ -119,9 +119,18 @@ class Answer:
         highs = [e.high for e in found if e.high is not None]
         low = min(lows) if len(lows) == len(tied) else None
         high = max(highs) if len(highs) == len(found) else None
+        ends = _over([e.ends[0] for e in found], len(tied)), _over([e.ends[1] for e in found])
         # Of what some of them lack, and need not lack, no value is one that all allow.
         shared = len(found) == len(tied) or self.verdict is Verdict.NO_SIGN
-        return Estimate(common_value(found) if shared else np.nan, low, high, found[0].unit)
+        value = common_value(found) if shared else np.nan
+        return Estimate(value, low, high, found[0].unit, ends=ends)
+
+
+def _over(ends: Sequence[End], count: int = 0) -> End:
+    """Return what an end is over several explanations, of which ``count`` should have one."""
+    if len(ends) < count:
+        return End.LACKING
+    return next((end for end in ends if end is not End.CLOSED), End.CLOSED)
 
 
 class Agreement(NamedTuple):

@@ -161,6 +161,9 @@ class Fit:
         return {
             **{name: e.to_dict() for name, e in self.estimates().items() if name in asked},
             "parameters": {name: estimate.to_dict() for name, estimate in parameters.items()},
+            "correlations": [
+                {"of": [*pair], "value": value} for pair, value in chosen.correlations.items()
+            ],
             "if_present": {name: estimate.to_dict() for name, estimate in self.if_present.items()},
             "model": {"effects": sorted(chosen.types), "words": words_of(chosen)},
             "verdict": self.verdict.value,
@@ -197,7 +200,7 @@ class Fit:
             "chi_squared": answer.chi_squared(fit),
             "delta_aic": fit.aic - answer.explanations[0].aic,
             "tied": fit in answer.tied,
-            "given_up": fit.minimum.given_up,
+            "search": fit.minimum.ending.name.lower(),
             "holds_modulus": fit not in answer.not_held,
             "parameters": bare | {name: e.to_dict() for name, e in fit.sought.items()},
         }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import Enum
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
@@ -27,6 +28,16 @@ _SHARE, _ROUGH_SHARE = 1e-10, 1e-4
 """The same over χ²."""
 
 
+class Ending(Enum):
+    """How a search ended."""
+
+    CONVERGED = "no step would gain more"
+    GIVEN_UP = "it was not going to come below its goal"
+    STALLED = "its steps gained next to nothing, as in a valley without end"
+    OUT_OF_STEPS = "it took as many steps as it may"
+    UNBALANCED = "forces do not balance where it began"
+
+
 class Minimum(NamedTuple):
     """A minimum of χ²."""
 
@@ -35,10 +46,9 @@ class Minimum(NamedTuple):
     squares: tuple[float, ...]
     """χ² of each curve, then of each term of what is weighed.
 
-    Their sum is an upper bound where the search did not end, in a valley without end.
+    Their sum is an upper bound where the search did not converge.
     """
-    given_up: bool = False
-    """Whether the search was not going to come below its goal, so that χ² is an upper bound."""
+    ending: Ending = Ending.CONVERGED
 
     @property
     def chi_squared(self) -> float:
@@ -105,7 +115,9 @@ def descend(
     damping, eye = np.full(len(at), _ROUGHLY if steps else _DAMPING), np.eye(at.shape[1])
     left = np.flatnonzero(np.isfinite(cost) & ~held.all(axis=1))
     past: list[Array] = []
-    given_up = np.zeros(len(at), dtype=bool)
+    endings = np.full(len(at), Ending.CONVERGED, dtype=object)
+    endings[left] = Ending.OUT_OF_STEPS
+    endings[~np.isfinite(cost)] = Ending.UNBALANCED
     for number in range(steps or _MOST):
         if not left.size:
             break
@@ -144,22 +156,24 @@ def descend(
             enough = share * cost[rows] + fall
             ends = (most[going] <= enough) | (damping[rows] > _LARGEST)
             ends |= better & (gain <= enough) & (damping[rows] <= _SHORT)
+            endings[rows[ends]] = Ending.CONVERGED
             if number > 0 or rivals:
                 least = min(goal, float(cost.min())) if rivals else goal
-                given_up[rows] = ~ends & (
-                    cost[rows] - _HOPE * np.maximum(most[going], gain) > least
-                )
-                ends |= given_up[rows]
+                hopeless = ~ends & (cost[rows] - _HOPE * np.maximum(most[going], gain) > least)
+                endings[rows[hopeless]] = Ending.GIVEN_UP
+                ends |= hopeless
             ended[going[ends]] = True
             going = going[~better & ~ends]
             if not going.size:
                 break
         past.append(cost.copy())
         if number >= _STALLED:
-            ended |= past[number - _STALLED][left] - cost[left] < _STALLED * fall
+            stalled = ~ended & (past[number - _STALLED][left] - cost[left] < _STALLED * fall)
+            endings[left[stalled]] = Ending.STALLED
+            ended |= stalled
         left = left[~ended]
     squares = map(problem.squares, trials.terms)
-    return [Minimum(*of) for of in zip(at, squares, given_up.tolist(), strict=True)]
+    return [Minimum(*of) for of in zip(at, squares, endings, strict=True)]
 
 
 def _solved(matrices: Array, sides: Array) -> Array:

@@ -85,7 +85,7 @@ def _one(fit: Fit) -> list[Block]:
         agree = fit.answer.agreement.factor == 1
         blocks.append(Notice(_sentence(fit.agreement), good=agree))
     blocks += [tables.estimates(fit), *_told(fit.warnings, fit.notes)]
-    return [*blocks, tables.explanations(fit), tables.curves(fit)]
+    return [*blocks, tables.explanations(fit), tables.curves(fit), tables.correlations(fit)]
 
 
 def _many(fits: ManyFits) -> list[Block]:

@@ -16,7 +16,7 @@ from pellicle_fit.area_table import half_space
 from pellicle_fit.effect import Array, Contact, Effect, Solid
 from pellicle_fit.explanation import Explanation, columns_are_rows
 from pellicle_fit.row_splines import RowSplines
-from pellicle_fit.search import descend
+from pellicle_fit.search import Ending, descend
 from tests.plugins.fit.test_effects import Soft, bead
 
 DEEPEST = 1e-6
@@ -153,7 +153,7 @@ def test_a_search_ends_at_the_minimum() -> None:
     for k in (0, 1, 3):
         np.testing.assert_allclose(found[k].at, 1.0, atol=1e-4)
     assert not np.isfinite(found[2].chi_squared)
-    assert not any(one.given_up for one in found)
+    assert all(one.ending is Ending.CONVERGED for one in found)
 
 
 def test_a_search_keeps_what_is_held_and_the_limits() -> None:
@@ -173,8 +173,8 @@ def test_a_search_keeps_what_is_held_and_the_limits() -> None:
 def test_a_search_that_cannot_come_below_its_goal_is_given_up() -> None:
     """It says so, and its χ² is an upper bound; a goal within reach is none to give up."""
     (one,) = descend(Valley(), STARTS[:1], goal=-1.0)
-    assert one.given_up
+    assert one.ending is Ending.GIVEN_UP
     assert one.chi_squared > 0
     (one,) = descend(Valley(), STARTS[:1], goal=1.0)
-    assert not one.given_up
+    assert one.ending is Ending.CONVERGED
     assert one.chi_squared < 1e-4
