@@ -42,7 +42,7 @@ def alike(
     kinds: list[Hashable] = []
     for source, row in zip(sources, rows, strict=True):
         curve = source.curve
-        if isinstance(curve, PellicleError) or (row.status and not row.is_fitted):
+        if isinstance(curve, PellicleError) or row.failure:
             kinds.append(row)
             continue
         of_instrument = curve.stiffness, curve.speed, curve.time is None, curve.is_depth

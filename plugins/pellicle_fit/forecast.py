@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from typing import Any, cast
+from enum import Enum
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.errors import PellicleError
-from pellicle.units import readable
 
 from .candidate import Candidate
 from .curve import Curve
@@ -32,16 +32,35 @@ _MANY = 30
 """Largest number of curves that is proposed."""
 
 
-def telling(asked: Candidate, others: Sequence[Candidate]) -> tuple[str, int]:
-    """Return the measurement that tells an explanation from others that are as good now.
+class Means(Enum):
+    """What tells explanations apart."""
 
-    Beside its words, which are empty if none does, stands how many curves of this kind it takes.
+    RETRACTION = "retraction"
+    DWELL = "dwell"
+    SPEED = "speed"
+    SHALLOWER = "shallower"
+    DEEPER = "deeper"
+    RADIUS = "radius"
+
+
+class Proposal(NamedTuple):
+    """A measurement."""
+
+    means: Means
+    value: float = 0.0
+    """Time of a dwell [s], speed [m/s], largest depth or radius [m]."""
+
+
+def telling(asked: Candidate, others: Sequence[Candidate]) -> tuple[Proposal | None, int]:
+    """Return the measurement that tells an explanation from others that are as good now, if any.
+
+    Beside it stands how many curves of this kind it takes.
     Each explanation makes the measurement that it predicts, without noise, and the rest are fitted
     to this and to the curve itself; the least χ² is what a measurement is worth.
     """
-    words, most = "", 0.0
+    best, most = None, 0.0
     pairs = [(a, b) for other in others for a, b in ((asked, other), (other, asked))]
-    for kind, measurement in measurements(asked):
+    for proposal, measurement in measurements(asked):
         worth = np.inf
         for truth, guess in pairs:
             # What cannot be predicted, as by a cantilever that jumps, is worth nothing.
@@ -53,17 +72,17 @@ def telling(asked: Candidate, others: Sequence[Candidate]) -> tuple[str, int]:
             if worth < _USELESS:
                 break
         if worth > most:
-            words, most = kind, worth
+            best, most = proposal, worth
         if worth >= _NEEDED:
             break
-    count = int(np.ceil(_NEEDED / most)) if words else 1
-    return (words, count) if count <= _MANY else ("", 1)
+    count = int(np.ceil(_NEEDED / most)) if best else 1
+    return (best, count) if count <= _MANY else (None, 1)
 
 
-def measurements(fit: Candidate) -> Iterator[tuple[str, Curve]]:
-    """Yield measurements, the easiest first, that go beyond the first curve: words, and a curve.
+def measurements(fit: Candidate) -> Iterator[tuple[Proposal, Curve]]:
+    """Yield measurements, the easiest first, that go beyond the first curve, each with its curve.
 
-    It has no forces yet, and positions of the base over the contact point [m].
+    This has no forces yet, and positions of the base over the contact point [m].
     """
     curve, point, body = fit.whole[0], fit.contact_points[0], cast("Any", fit.whole[0].indenter)
     low, high = float(curve.base.min()) - point, float(curve.base.max()) - point
@@ -73,24 +92,24 @@ def measurements(fit: Candidate) -> Iterator[tuple[str, Curve]]:
     inward, out = np.zeros(_ROWS, dtype=bool), np.repeat([False, True], _ROWS)
     twice, unknown = np.append(forth, duration + forth), np.empty(0)
     if not curve.moves_out.any():
-        yield "the retraction", Curve(np.append(down, down[::-1]), unknown, body, twice, out)
+        back = Curve(np.append(down, down[::-1]), unknown, body, twice, out)
+        yield Proposal(Means.RETRACTION), back
     dwell = np.append(down, np.full(_ROWS, high))
-    words = f"a dwell of {readable(duration, 's', 2)} at the largest depth"
-    yield words, Curve(dwell, unknown, body, twice, np.zeros_like(out))
+    yield Proposal(Means.DWELL, duration), Curve(dwell, unknown, body, twice, np.zeros_like(out))
     for factor in (0.1, 10.0):
-        words = f"a second speed of {readable(factor * speed, 'm/s', 2)}"
-        yield words, Curve(down, unknown, body, forth / factor, inward)
+        slower = Curve(down, unknown, body, forth / factor, inward)
+        yield Proposal(Means.SPEED, factor * speed), slower
     radius: float | None = getattr(body, "radius", None)
     for factor in (1 / 3, 3.0):
         if high > 0 and (radius is None or factor * high <= _DEEPEST * radius):
-            kind = "shallower" if factor < 1 else "deeper"
-            words = f"a {kind} curve, to a depth of {readable(factor * high, 'm', 2)}"
-            yield words, Curve(factor * down, unknown, body, factor * forth, inward)
+            means = Means.SHALLOWER if factor < 1 else Means.DEEPER
+            to_depth = Curve(factor * down, unknown, body, factor * forth, inward)
+            yield Proposal(means, factor * high), to_depth
     for factor in (1 / 3, 3.0):
         if radius is not None and high <= _DEEPEST * factor * radius:
-            words = f"a second radius, {readable(factor * radius, 'm', 2)}"
             other = body.model_copy(update={"radius": factor * radius})
-            yield words, Curve(down, unknown, other, forth, inward)
+            on_other = Curve(down, unknown, other, forth, inward)
+            yield Proposal(Means.RADIUS, factor * radius), on_other
 
 
 def _foretold(truth: Candidate, guess: Candidate, other: Curve) -> tuple[Objective, Array]:

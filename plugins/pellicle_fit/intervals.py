@@ -79,9 +79,11 @@ class Estimate:
     @classmethod
     def of_dict(cls, data: Mapping[str, Any]) -> Estimate:
         """Return the estimate of which `to_dict` returned the data."""
-        low, high = (End[name.upper()] for name in data["ends"])
         value = np.nan if data["value"] is None else data["value"]
-        return cls(**{**data, "value": value, "ends": (low, high)})
+        known = {**data, "value": value}
+        if "ends" in data:
+            known["ends"] = tuple(End[name.upper()] for name in data["ends"])
+        return cls(**known)
 
 
 def common_value(estimates: Sequence[Estimate]) -> float:

@@ -33,7 +33,7 @@ from .objective import MODULUS
 from .population.fits import ManyFits, summary, table
 from .population.images import force_maps
 from .population.judgement import Names, group_of, judge
-from .population.row import FAILED, Row, as_json, sketch
+from .population.row import Row, as_json, sketch
 from .problem import Problem, components_of, data_of, problem, record_of
 from .report.paper_table import save_tables
 from .report.population import save_population
@@ -232,7 +232,7 @@ def _task(
         config = config.model_copy(update={"uncertainty": weighed})
         ready = problem(config, [source], progress=progress)
     except PellicleError as error:
-        row.status = _failure(error, row.name)
+        row.failure = _failure(error, row.name)
         return None
     # An executor need not pickle.
     serial = registry().make(Executor, {"type": "serial"})
@@ -254,7 +254,7 @@ def _keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool
     """Keep what came of a fit in its row and its file; return the status, and whether it failed."""
     row = task.row
     if isinstance(outcome, Exception):
-        row.status = _failure(outcome, row.name)
+        row.failure = _failure(outcome, row.name)
     else:
         if task.path is not None:
             write_sealed(outcome, task.path)
@@ -309,7 +309,7 @@ def _failure(error: Exception, name: str) -> str:
     text = text.removeprefix(f"curve {label}: ").replace(":\n  ", ": ")
     reason = "; ".join(text.splitlines()) or "no reason given"
     kind = "" if isinstance(error, PellicleError) else f"{type(error).__name__}: "
-    return f"{FAILED}{kind}{reason}"
+    return f"{kind}{reason}"
 
 
 def _write(fits: ManyFits, config: FitConfig, began: float, directory: Path) -> tuple[Path, ...]:

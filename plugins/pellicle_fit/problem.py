@@ -18,6 +18,7 @@ from pellicle.errors import ConfigError, PellicleError
 from pellicle.schema import walk
 from pellicle.units import readable
 
+from .advice import advise
 from .calibration import errors
 from .config import FitConfig
 from .curve import Curve
@@ -32,7 +33,6 @@ from .recipe import answer
 from .result import Fit, Member
 from .simulated.simulation import simulated_curve
 from .simulated.solid import solid
-from .words.advice import steps
 
 _BASELINES = {"none": (), "offset": ("offset",), "slope": ("offset", "slope")}
 _REACH = 1.5
@@ -60,7 +60,7 @@ class Problem:
         with status_line("fitting", progress):
             curves = [member.curve for member in self.members]
             found = answer(curves, **self.question, like=like)
-            advice = steps(found, self.members, self.config)
+            advice = advise(found, self.members, self.config)
         data = [member.data for member in self.members]
         record = record_of(self.config, data, self.began)
         return Fit(found, self.members, advice, self.poissons_ratio, self.config, record)

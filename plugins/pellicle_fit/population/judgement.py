@@ -133,7 +133,8 @@ def judge(rows: Sequence[Row], rules: Sequence[str], rejected: Names | None) -> 
             why = rejected.reasons[entry]
             row.reason = f"in {rejected.path.name}{f': {why}' if why else ''}"
         elif not checks and row.fit["verdict"] == Verdict.UNDESCRIBED.value:
-            row.reason = row.fit["comparison"].partition(": ")[2].partition("; ")[0]
+            # The plainest is the first.
+            row.reason = row.curve["failed_checks"][0]["message"]
         else:
             row.reason = "; ".join(filter(None, (rule.objection(row) for rule in checks)))
         row.accepted = not row.reason

@@ -117,7 +117,7 @@ def rows(of: Sequence[Row], *, si: bool = False) -> Table:
     states = [
         f"rejected: {row.reason}"
         if row.is_fitted and not row.accepted
-        else "modulus stands out" * row.outlier or row.status.partition(":")[0]
+        else "modulus stands out" * row.outlier or (FITTED if row.is_fitted else "failed")
         for row in of
     ]
     radii = [row.curve.get("indenter", {}).get("radius", "") for row in of]

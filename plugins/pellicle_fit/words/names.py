@@ -13,8 +13,6 @@ from pellicle_fit.effect import Adds, Effect, Records
 from pellicle_fit.intervals import Estimate
 from pellicle_fit.rivals import Question
 
-PLAUSIBLE = {"reduced_modulus": (1.0, 1e12), "tension": (0.0, 1.0), "thickness": (1e-9, 1.0)}
-"""Values [SI] beyond which a unit is probably wrong."""
 FEW = 3
 """Significant digits in sentences, and in tables of many curves."""
 _SMALL = 1e-3

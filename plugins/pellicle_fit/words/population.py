@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Sequence
 
@@ -45,14 +44,11 @@ def sentences_of_population(rows: Sequence[Row]) -> list[str]:
 
 
 def advice_of_population(rows: Sequence[Row]) -> list[str]:
-    """Return what to do next, a line for each kind of step with the curves that it would help.
-
-    Steps of one kind differ in numbers alone.
-    """
+    """Return what to do next, a line for each kind of step with the curves that it would help."""
     kinds: dict[str, dict[str, dict[str, str]]] = {}
     for row in rows:
         for step in row.fit.get("next", ()):
-            kinds.setdefault(re.sub(r"\d[\d.]*", "", step["do"]), {})[row.name] = step
+            kinds.setdefault(step["kind"], {})[row.name] = step
     lines, fitted = [], sum(row.is_fitted for row in rows)
     for steps in sorted(kinds.values(), key=len, reverse=True)[:_STEPS]:
         (first, step), *others = steps.items()
