@@ -23,7 +23,7 @@ from pellicle.plugins.commands import commands, typer_command
 from pellicle.units import readable
 from pellicle.variables import VARIABLES, Variable
 from pellicle_fit.effect import quantities
-from pellicle_fit.noise import Flaw
+from pellicle_fit.estimation.noise import Flaw
 
 _HEADINGS = {
     "kernel": "Kernels",

@@ -12,10 +12,10 @@ from pellicle.arrays import Array
 from pellicle.errors import PellicleError
 
 from .config import FitConfig, described
+from .estimation.noise import neighbour_noise
 from .files.sources import Source
-from .neighbour import Neighbour
-from .noise import neighbour_noise
 from .population.row import Row
+from .selection.neighbour import Neighbour
 
 _EVERY = 16
 """One in how many curves that are alike has all explanations compared."""

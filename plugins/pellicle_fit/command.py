@@ -18,9 +18,9 @@ from pellicle.files import write_json
 Text = str | None
 Texts = list[str] | None
 if TYPE_CHECKING:
-    from pellicle_fit.config import FitConfig
-    from pellicle_fit.population.fits import ManyFits
-    from pellicle_fit.result import Fit
+    from .config import FitConfig
+    from .population.fits import ManyFits
+    from .result import Fit
 
 
 def fit(
@@ -88,12 +88,12 @@ def fit(
 
     Exit code 0 only if every curve was fitted, 1 if some could not be fitted.
     """
-    from pellicle_fit.config import FitConfig
-    from pellicle_fit.population.fits import ManyFits
-    from pellicle_fit.print_fits import print_fit, print_fits
-    from pellicle_fit.report.figures import save_figure
-    from pellicle_fit.report.page import save_report
-    from pellicle_fit.stored import StoredFit, exit_by_fits
+    from .config import FitConfig
+    from .population.fits import ManyFits
+    from .print_fits import print_fit, print_fits
+    from .report.figures import save_figure
+    from .report.page import save_report
+    from .stored import StoredFit, exit_by_fits
 
     curves = [*(files or ())]
     is_first = bool(curves) and curves[0].suffix.lower() in (".toml", ".json")
@@ -155,8 +155,8 @@ def _fit(
     config: FitConfig, directory: Path | None, formats: Sequence[str], *, quiet: bool
 ) -> tuple[Fit | ManyFits, str, str]:
     """Return the fit of the curves, the name of its files and the title of its page."""
-    from pellicle_fit.many import fit_sources
-    from pellicle_fit.problem import problem
+    from .many import fit_sources
+    from .problem import problem
 
     progress, stream = not quiet and sys.stderr.isatty(), config.sources()
     first = [*islice(stream, None if config.pool else 2)]

@@ -24,12 +24,10 @@ from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.files import atomic_write, check_writable, is_file
 
 from .alike import alike, beside
-from .calibration import common_errors
 from .config import FitConfig, described
+from .estimation.objective import MODULUS
 from .files.measurement import Measurement
 from .files.sources import Curves, Source
-from .neighbour import Neighbour
-from .objective import MODULUS
 from .population.fits import ManyFits, summary, table
 from .population.images import force_maps
 from .population.judgement import Names, group_of, judge
@@ -38,6 +36,8 @@ from .problem import Problem, components_of, data_of, problem, record_of
 from .report.paper_table import save_tables
 from .report.population import save_population
 from .sealed import read_sealed, write_sealed
+from .selection.calibration import common_errors
+from .selection.neighbour import Neighbour
 from .words.story import calibration_of, shares
 
 _JOURNAL = "curves"

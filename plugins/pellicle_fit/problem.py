@@ -18,19 +18,19 @@ from pellicle.errors import ConfigError, PellicleError
 from pellicle.schema import walk
 from pellicle.units import readable
 
-from .advice import advise
-from .calibration import errors
 from .config import FitConfig
-from .curve import Curve
+from .contact.curve import Curve
 from .effect import Effect, Solid, quantities
+from .estimation.objective import CONTACT_POINT
 from .files.cleaning import clean
 from .files.measurement import Measurement
 from .files.missing import MissingInputError
 from .files.sources import Source
-from .neighbour import Neighbour
-from .objective import CONTACT_POINT
-from .recipe import answer
 from .result import Fit, Member
+from .selection.advice import advise
+from .selection.calibration import errors
+from .selection.neighbour import Neighbour
+from .selection.recipe import answer
 from .simulated.simulation import simulated_curve
 from .simulated.solid import solid
 

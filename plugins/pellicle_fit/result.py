@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from pellicle.arrays import Array
 from pellicle.files import json_text
 
-from .advice import Advice
-from .candidate import Candidate
 from .config import FitConfig, described
-from .curve import Curve
+from .contact.curve import Curve
+from .estimation.candidate import Candidate
+from .estimation.intervals import CONFIDENCE, Estimate
+from .estimation.objective import MODULUS
 from .files.measurement import Measurement, Note
-from .intervals import CONFIDENCE, Estimate
-from .objective import MODULUS
-from .recipe import TENSION, Answer
-from .verdict import Verdict
+from .selection.advice import Advice
+from .selection.recipe import TENSION, Answer
+from .selection.verdict import Verdict
 from .words.advice import Step, step
 from .words.names import words_of
 from .words.story import agreement, calibration_of, headline, remarks, told, verdict

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array, Mask
+from pellicle_fit.contact.row_splines import RowSplines
 from pellicle_fit.effect import Contact, Curve, Fitted, Responds, Response, Sizes, Values, fitted
-from pellicle_fit.row_splines import RowSplines
 
 _SEARCHED, _NODES = 61, 120
 """Contacts among which the end of a branch is sought, twice; nodes that describe it."""

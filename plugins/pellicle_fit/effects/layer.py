@@ -8,7 +8,7 @@ from pydantic import Field
 
 from pellicle.components import HasLayerForceCurve
 from pellicle.units import Quantity
-from pellicle_fit.area_table import checked_area, cubic, cubics, last, layer
+from pellicle_fit.contact.area_table import checked_area, cubic, cubics, last, layer
 from pellicle_fit.effect import Array, Bends, Contact, Curve, Fitted, fitted
 
 _ERROR = 1e-4

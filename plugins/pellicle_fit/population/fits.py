@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from pellicle_fit.intervals import threshold_of
+from pellicle_fit.estimation.intervals import threshold_of
 
 from .row import ENDS, OVER_TIED, SHOWN, Row, counted, units
 

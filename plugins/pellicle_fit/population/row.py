@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from pellicle import registry
 from pellicle.arrays import Array
 from pellicle_fit.effect import Effect, Solid, quantities
+from pellicle_fit.estimation.intervals import Estimate
 from pellicle_fit.files.measurement import Site
-from pellicle_fit.intervals import Estimate
 
 FITTED = "fitted"
 NUMBERS = {

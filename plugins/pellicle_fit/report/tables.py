@@ -8,14 +8,14 @@ import numpy as np
 
 from pellicle.components import Column, Table
 from pellicle.units import DIGITS, Scale
-from pellicle_fit.candidate import Candidate
-from pellicle_fit.intervals import CONFIDENCE, End, Estimate
-from pellicle_fit.objective import CONTACT_POINT, MODULUS
+from pellicle_fit.estimation.candidate import Candidate
+from pellicle_fit.estimation.intervals import CONFIDENCE, End, Estimate
+from pellicle_fit.estimation.objective import CONTACT_POINT, MODULUS
+from pellicle_fit.estimation.search import Ending
 from pellicle_fit.population.fits import QUARTILES, summary
 from pellicle_fit.population.row import FITTED, OVER_TIED, SHOWN, Row
-from pellicle_fit.recipe import TENSION, Answer
 from pellicle_fit.result import Fit
-from pellicle_fit.search import Ending
+from pellicle_fit.selection.recipe import TENSION, Answer
 from pellicle_fit.words.names import FEW, interval, quoted, unit_of, unit_of_one, words, words_of
 
 _OPEN = {End.LIMIT, End.RANGE, End.STEPS, End.LACKING}

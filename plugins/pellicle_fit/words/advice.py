@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from pellicle.units import readable
-from pellicle_fit.advice import Advice, Remedy
-from pellicle_fit.forecast import Means, Proposal
+from pellicle_fit.selection.advice import Advice, Remedy
+from pellicle_fit.selection.forecast import Means, Proposal
 
 from .names import words
 

@@ -8,10 +8,10 @@ import numpy as np
 
 from pellicle.components import Column, words_of_type
 from pellicle.units import DIGITS, Scale
-from pellicle_fit.candidate import Candidate, Types
 from pellicle_fit.effect import Adds, Effect, Records
-from pellicle_fit.intervals import Estimate
-from pellicle_fit.rivals import Question
+from pellicle_fit.estimation.candidate import Candidate, Types
+from pellicle_fit.estimation.intervals import Estimate
+from pellicle_fit.selection.rivals import Question
 
 FEW = 3
 """Significant digits in sentences, and in tables of many curves."""

@@ -6,9 +6,9 @@ from collections import Counter
 from collections.abc import Sequence
 
 from pellicle.errors import first_of
-from pellicle_fit.intervals import CONFIDENCE
-from pellicle_fit.neighbour import RULED_OUT
+from pellicle_fit.estimation.intervals import CONFIDENCE
 from pellicle_fit.population.row import Row
+from pellicle_fit.selection.neighbour import RULED_OUT
 
 from .names import listed
 from .story import NOT_WEIGHED

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellicle.units import decimal, readable
-from pellicle_fit.candidate import NONE, Candidate
+from pellicle_fit.estimation.candidate import NONE, Candidate
+from pellicle_fit.estimation.intervals import CONFIDENCE
+from pellicle_fit.estimation.noise import Flaw
+from pellicle_fit.estimation.objective import MODULUS
 from pellicle_fit.files.measurement import Note
-from pellicle_fit.intervals import CONFIDENCE
-from pellicle_fit.noise import Flaw
-from pellicle_fit.objective import MODULUS
-from pellicle_fit.recipe import Answer
-from pellicle_fit.verdict import Verdict
+from pellicle_fit.selection.recipe import Answer
+from pellicle_fit.selection.verdict import Verdict
 
 from .names import in_figures, in_words, listed, words, words_of, words_of_types
 

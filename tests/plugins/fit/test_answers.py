@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 import pellicle as pl
-from pellicle_fit.candidate import Candidate
 from pellicle_fit.config import DEFAULT_RIVALS
-from pellicle_fit.intervals import Estimate, common_value
-from pellicle_fit.noise import Flaw
-from pellicle_fit.verdict import Verdict, decision
+from pellicle_fit.estimation.candidate import Candidate
+from pellicle_fit.estimation.intervals import Estimate, common_value
+from pellicle_fit.estimation.noise import Flaw
+from pellicle_fit.selection.verdict import Verdict, decision
 from pellicle_plugins.indenters.of_revolution import Cone, FlatPunch, Paraboloid, Sphere
 from tests.physics.frozen.fit_curves import MODULUS, RADIUS, Array
 from tests.plugins.fit.conftest import ends_of, holds
@@ -175,7 +175,7 @@ def test_means_of_rows_answer_as_all_rows_do(
     """Of a long curve, that may touch in its last hundredth, means lose little of the intervals."""
     rows = curve(tension, points=3000, noise=0.02, before=before)
     long = fit(*rows)
-    monkeypatch.setattr("pellicle_fit.rivals._FEW", 0)
+    monkeypatch.setattr("pellicle_fit.selection.rivals._FEW", 0)
     short = fit(*rows)
     assert short.answer.chosen.objective.curves[0].force.size <= 400
     low, high = ends_of(long.reduced_modulus)

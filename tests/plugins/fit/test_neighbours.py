@@ -11,7 +11,7 @@ import xarray as xr
 
 import pellicle as pl
 from pellicle_fit.alike import kind_of, neighbours
-from pellicle_fit.neighbour import RULED_OUT
+from pellicle_fit.selection.neighbour import RULED_OUT
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 COUNT, OTHER = 18, 6

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 import pellicle as pl
-from pellicle_fit.area_table import half_space
+from pellicle_fit.contact.area_table import half_space
+from pellicle_fit.contact.row_splines import RowSplines
 from pellicle_fit.effect import Array, Contact, Effect, Solid
-from pellicle_fit.explanation import Explanation, columns_are_rows
-from pellicle_fit.row_splines import RowSplines
-from pellicle_fit.search import Ending, descend
+from pellicle_fit.estimation.explanation import Explanation, columns_are_rows
+from pellicle_fit.estimation.search import Ending, descend
 from tests.plugins.fit.test_effects import Soft, bead
 
 DEEPEST = 1e-6

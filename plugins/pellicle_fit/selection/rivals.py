@@ -9,16 +9,16 @@ from functools import lru_cache
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle_fit.contact.curve import Curve
+from pellicle_fit.effect import Adds, Effect, Records, Sizes, Solid
+from pellicle_fit.estimation.candidate import NONE, Candidate, Types, best_of
+from pellicle_fit.estimation.explanation import Explanation
+from pellicle_fit.estimation.noise import neighbour_noise
+from pellicle_fit.estimation.objective import Objective
+from pellicle_fit.estimation.search import Minimum, cost_of, descend
+from pellicle_fit.estimation.starts import starts
 
-from .candidate import NONE, Candidate, Types, best_of
-from .curve import Curve
-from .effect import Adds, Effect, Records, Sizes, Solid
-from .explanation import Explanation
 from .neighbour import RULED_OUT, Neighbour
-from .noise import neighbour_noise
-from .objective import Objective
-from .search import Minimum, cost_of, descend
-from .starts import starts
 from .verdict import Fits
 
 Explanations = Mapping[Types, Explanation]

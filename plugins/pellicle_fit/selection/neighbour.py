@@ -8,9 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pellicle.arrays import Array
-
-from .candidate import Candidate, Types
-from .objective import CONTACT_POINT, MODULUS, Objective
+from pellicle_fit.estimation.candidate import Candidate, Types
+from pellicle_fit.estimation.objective import CONTACT_POINT, MODULUS, Objective
 
 RULED_OUT = 40.0
 """ΔAIC to the best beyond which an explanation is not compared on curves alike."""

@@ -12,11 +12,10 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.errors import PellicleError
-
-from .candidate import Candidate
-from .curve import Curve
-from .explanation import Explanation
-from .objective import CONTACT_POINT, Objective
+from pellicle_fit.contact.curve import Curve
+from pellicle_fit.estimation.candidate import Candidate
+from pellicle_fit.estimation.explanation import Explanation
+from pellicle_fit.estimation.objective import CONTACT_POINT, Objective
 
 _ROWS = 150
 """Rows of each pass of a forecast."""

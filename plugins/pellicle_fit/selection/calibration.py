@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 
 from pellicle import registry
-
-from .candidate import Candidate
-from .effect import Effect
+from pellicle_fit.effect import Effect
+from pellicle_fit.estimation.candidate import Candidate
 
 _ERRORS = {"spring_constant": "spring", "sensitivity": "sensitivity", "radius": "size"}
 """What may be known to an uncertainty, and the effect whose error that is."""

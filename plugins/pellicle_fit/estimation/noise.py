@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from scipy.special import fdtrc, ndtri
 
 from pellicle.arrays import Array
+from pellicle_fit.contact.curve import Curve
 
-from .curve import Curve
 from .long_memory import differenced, exponent_of
 
 CHANCE = 1e-3

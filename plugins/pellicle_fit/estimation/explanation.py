@@ -11,10 +11,9 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
-
-from .contact import Contact
-from .curve import Curve
-from .effect import (
+from pellicle_fit.contact.contact import Contact
+from pellicle_fit.contact.curve import Curve
+from pellicle_fit.effect import (
     Adds,
     Bends,
     Effect,

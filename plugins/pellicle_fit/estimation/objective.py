@@ -5,25 +5,26 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array
+from pellicle_fit.contact.curve import BEFORE, Curve
+from pellicle_fit.effect import Fitted, Records, Responds, Sizes, Weighed
+from pellicle_fit.strangers import is_own
 
-from .curve import BEFORE, Curve
-from .effect import Fitted, Records, Responds, Sizes, Weighed
 from .explanation import Balance, Explanation, columns_are_rows
 from .long_memory import differenced
 from .search import Minimum, descend
-from .strangers import is_own
 
 _STEP = 1e-6
 """Step of derivatives by differences, in coordinates of the order of 1."""
 _DECADES = 6.0
 """How far a logarithm may go from the size of its quantity."""
-MODULUS, CONTACT_POINT = "reduced_modulus", "contact_point"
+MODULUS: Final = "reduced_modulus"
+CONTACT_POINT: Final = "contact_point"
 
 
 class Slot(NamedTuple):

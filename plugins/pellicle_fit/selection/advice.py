@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from pellicle_fit.estimation.noise import FEWEST, Flaw
+from pellicle_fit.estimation.objective import CONTACT_POINT
+
 from .forecast import telling
-from .noise import FEWEST, Flaw
-from .objective import CONTACT_POINT
 from .recipe import Answer
 from .verdict import Verdict
 
 if TYPE_CHECKING:
-    from .config import FitConfig
-    from .result import Member
+    from pellicle_fit.config import FitConfig
+    from pellicle_fit.result import Member
 
 PLAUSIBLE = {"reduced_modulus": (1.0, 1e12), "tension": (0.0, 1.0), "thickness": (1e-9, 1.0)}
 """Values [SI] beyond which a unit is probably wrong."""

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 from scipy.special import bdtrc
 
-from .candidate import NONE, Candidate, Types, best_of
-from .noise import Judged
-from .objective import MODULUS
+from pellicle_fit.estimation.candidate import NONE, Candidate, Types, best_of
+from pellicle_fit.estimation.noise import Judged
+from pellicle_fit.estimation.objective import MODULUS
 
 MARGIN = 4.0
 """Difference of AIC below which explanations cannot be told apart."""

@@ -9,9 +9,9 @@ from functools import cached_property
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle_fit.contact.curve import Curve
+from pellicle_fit.effect import Effect, quantities
 
-from .curve import Curve
-from .effect import Effect, quantities
 from .explanation import Explanation
 from .intervals import Estimate
 from .noise import Flaw, Judged, judged

@@ -11,16 +11,16 @@ import numpy as np
 from scipy.special import chdtrc
 
 from pellicle.errors import ConfigError
+from pellicle_fit.contact.curve import Curve
+from pellicle_fit.effect import Effect, Records, Responds, Solid
+from pellicle_fit.estimation.candidate import NONE, Candidate, Types, best_of
+from pellicle_fit.estimation.intervals import End, Estimate, common_value, estimates, threshold_of
+from pellicle_fit.estimation.noise import CHANCE, Judged
+from pellicle_fit.estimation.objective import CONTACT_POINT, MODULUS
+from pellicle_fit.strangers import refuse_broken, strangers_named
 
-from .candidate import NONE, Candidate, Types, best_of
-from .curve import Curve
-from .effect import Effect, Records, Responds, Solid
-from .intervals import End, Estimate, common_value, estimates, threshold_of
 from .neighbour import Neighbour
-from .noise import CHANCE, Judged
-from .objective import CONTACT_POINT, MODULUS
 from .rivals import Question, comparison
-from .strangers import refuse_broken, strangers_named
 from .verdict import MARGIN, SMALL, Decision, Verdict, choice, decision, doubtful, ties
 
 TENSION = "tension"

@@ -9,10 +9,10 @@ from itertools import product
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle_fit.contact.curve import BEFORE
+from pellicle_fit.effect import Records, powers
 
 from .candidate import Candidate
-from .curve import BEFORE
-from .effect import Records, powers
 from .objective import CONTACT_POINT, MODULUS, Objective, Slot
 from .search import descend
 
