@@ -24,7 +24,7 @@ from pellicle.units import quantity_of
 from .contact.contact import Contact
 from .contact.curve import Curve
 from .effect import Adds, Bends, Effect, Records, Responds, Sizes, Solid, Yields, quantities
-from .estimation.explanation import Explanation
+from .explanation import Explanation
 
 _PLACES = Bends, Responds, Adds, Yields, Records
 _MODULUS, _STIFFNESS, _SPEED = 2e3, 0.05, 1e-6

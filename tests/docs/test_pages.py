@@ -42,7 +42,7 @@ CEILINGS = {
     "compare": 520,
     "plugin": 1400,
     "families": 1660,
-    "architecture": 450,
+    "architecture": 820,
     "decisions": 1500,
     "run-file": 150,
     "commands": 450,

@@ -11,8 +11,8 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle_fit.contact.curve import Curve
 from pellicle_fit.effect import Effect, quantities
+from pellicle_fit.explanation import Explanation
 
-from .explanation import Explanation
 from .intervals import Estimate
 from .noise import Flaw, Judged, judged
 from .objective import MODULUS, Objective

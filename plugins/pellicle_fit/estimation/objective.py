@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from pellicle.arrays import Array
 from pellicle_fit.contact.curve import BEFORE, Curve
 from pellicle_fit.effect import Fitted, Records, Responds, Sizes, Weighed
+from pellicle_fit.explanation import Balance, Explanation, columns_are_rows
 from pellicle_fit.strangers import is_own
 
-from .explanation import Balance, Explanation, columns_are_rows
 from .long_memory import differenced
 from .search import Minimum, descend
 

@@ -14,8 +14,8 @@ from pellicle.arrays import Array
 from pellicle.errors import PellicleError
 from pellicle_fit.contact.curve import Curve
 from pellicle_fit.estimation.candidate import Candidate
-from pellicle_fit.estimation.explanation import Explanation
 from pellicle_fit.estimation.objective import CONTACT_POINT, Objective
+from pellicle_fit.explanation import Explanation
 
 _ROWS = 150
 """Rows of each pass of a forecast."""

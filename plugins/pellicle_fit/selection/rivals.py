@@ -12,11 +12,11 @@ from pellicle.arrays import Array
 from pellicle_fit.contact.curve import Curve
 from pellicle_fit.effect import Adds, Effect, Records, Sizes, Solid
 from pellicle_fit.estimation.candidate import NONE, Candidate, Types, best_of
-from pellicle_fit.estimation.explanation import Explanation
 from pellicle_fit.estimation.noise import neighbour_noise
 from pellicle_fit.estimation.objective import Objective
 from pellicle_fit.estimation.search import Minimum, cost_of, descend
 from pellicle_fit.estimation.starts import starts
+from pellicle_fit.explanation import Explanation
 
 from .neighbour import RULED_OUT, Neighbour
 from .verdict import Fits

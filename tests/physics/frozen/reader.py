@@ -25,10 +25,10 @@ from pellicle_fit.config import FitConfig
 from pellicle_fit.contact.curve import Curve
 from pellicle_fit.effect import Effect, Sizes, Solid
 from pellicle_fit.estimation.candidate import Candidate
-from pellicle_fit.estimation.explanation import Explanation
 from pellicle_fit.estimation.intervals import Estimate
 from pellicle_fit.estimation.objective import Objective
 from pellicle_fit.estimation.search import Ending, Minimum
+from pellicle_fit.explanation import Explanation
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.selection.recipe import answer, with_estimates

@@ -32,7 +32,7 @@ from pellicle_fit.effect import (
     quantities,
 )
 from pellicle_fit.effects.tension import Tension
-from pellicle_fit.estimation.explanation import Explanation
+from pellicle_fit.explanation import Explanation
 from pellicle_fit.selection.recipe import answer
 from pellicle_fit.selection.verdict import Verdict
 from pellicle_fit.testing import check_effect

@@ -15,8 +15,8 @@ import pellicle as pl
 from pellicle_fit.contact.area_table import half_space
 from pellicle_fit.contact.row_splines import RowSplines
 from pellicle_fit.effect import Array, Contact, Effect, Solid
-from pellicle_fit.estimation.explanation import Explanation, columns_are_rows
 from pellicle_fit.estimation.search import Ending, descend
+from pellicle_fit.explanation import Explanation, columns_are_rows
 from tests.plugins.fit.test_effects import Soft, bead
 
 DEEPEST = 1e-6

@@ -11,9 +11,10 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
-from pellicle_fit.contact.contact import Contact
-from pellicle_fit.contact.curve import Curve
-from pellicle_fit.effect import (
+
+from .contact.contact import Contact
+from .contact.curve import Curve
+from .effect import (
     Adds,
     Bends,
     Effect,
