@@ -15,15 +15,15 @@ from typing import Any
 
 import pellicle as pl
 from pellicle import analysis, testing
-from pellicle.commands import commands, typer_command
 from pellicle.components import words_of_type
 from pellicle.components.rules import CHEAP, required
 from pellicle.config.describe import FieldRow, field_rows
 from pellicle.config.explain import explanations
+from pellicle.plugins.commands import commands, typer_command
 from pellicle.units import readable
 from pellicle.variables import VARIABLES, Variable
 from pellicle_fit.effect import quantities
-from pellicle_fit.noise import Flaw
+from pellicle_fit.estimation.noise import Flaw
 
 _HEADINGS = {
     "kernel": "Kernels",

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 import pellicle as pl
-from pellicle.axisymmetric.adhesive_contact import Adhesion
+from pellicle_axisymmetric.adhesive_contact import Adhesion
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 FORCE = pi

@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib.metadata import Distribution, EntryPoint
 from pathlib import Path
 
-from pellicle.origins import GROUP
+from pellicle.plugins.origins import GROUP
 
 
 class Installed(Distribution):

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from pellicle_fit.recipe import Answer, answer
+from pellicle_fit.selection.recipe import Answer, answer
 
 ANSWER = "pellicle_fit.problem.answer"
 

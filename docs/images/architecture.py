@@ -27,11 +27,8 @@ WAY = {
 def layers() -> list[list[str]]:
     """Return the plugins, then the modules of each layer of the framework, the highest first."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    linter = project["tool"]["importlinter"]
-    return [
-        [package for package in linter["root_packages"] if package != PACKAGE.name],
-        *(layer.split(" | ") for layer in linter["contracts"][0]["layers"]),
-    ]
+    folders, _, packages, *_ = project["tool"]["importlinter"]["contracts"]
+    return [layer.split(" | ") for layer in (*packages["layers"][:-1], *folders["layers"])]
 
 
 def main() -> None:

@@ -11,8 +11,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import pellicle as pl
-from pellicle.axisymmetric.indentation import indent
 from pellicle.show import save_figure
+from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 RADIUS, MODULUS, DEEPEST = 1e-3, 10e3, 40e-6

@@ -11,9 +11,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import pellicle as pl
-from pellicle.axisymmetric.indentation import indent
 from pellicle.show import save_figure
 from pellicle.show.style import OKABE_ITO
+from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 RADIUS, MODULUS, DEPTH = 1e-3, 10e3, 50e-6

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 
 from pellicle.show import save_figure
 from pellicle.show.style import OKABE_ITO
-from pellicle_fit.verdict import Verdict
+from pellicle_fit.selection.verdict import Verdict
 
 TABLE = Path(__file__).parents[1] / "measurements" / "fit_verdicts.csv"
 ORDER = {

@@ -1,8 +1,8 @@
 """Make the tables behind the force curves of indenters of revolution.
 
 ``python docs/reference-data/curve_tables.py`` replaces ``punches.npz``, which
-``axisymmetric.reciprocity`` describes, in half a minute, and ``layer_curves.npz``, which
-``axisymmetric.layer_curves`` describes, in about ten.
+``pellicle_axisymmetric.reciprocity`` describes, in half a minute, and ``layer_curves.npz``, which
+``pellicle_axisymmetric.layer_curves`` describes, in about ten.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from numpy.polynomial import chebyshev
 from numpy.polynomial.legendre import legval
 
 from pellicle.arrays import Array
-from pellicle.axisymmetric import layer_curves, reciprocity
-from pellicle.axisymmetric.equation import influence
-from pellicle.axisymmetric.layer_curves import Shape
-from pellicle.axisymmetric.panels import gauss, graded
-from pellicle.axisymmetric.product_integration import clustering, collocation
+from pellicle_axisymmetric import layer_curves, reciprocity
+from pellicle_axisymmetric.equation import influence
+from pellicle_axisymmetric.layer_curves import Shape
+from pellicle_axisymmetric.panels import gauss, graded
+from pellicle_axisymmetric.product_integration import clustering, collocation
 
 SHAPES: tuple[Shape, ...] = ("smooth", "pointed", "punch")
 _ORDER, _FINEST = 12, 1e-3

@@ -2,8 +2,8 @@
 
 A layer of thickness h has the compliance 2 L(qh) / (E* q (1 + s q L(qh))), s = 2τ₀/E*, where L is
 the ratio of its compliance without tension (Hayes et al. 1972) to that of a half-space.  So its
-equation is that of ``axisymmetric.equation`` or, for a flat punch, ``reciprocity``, with a smooth
-part of the kernel more, whose transform
+equation is that of ``pellicle_axisymmetric.equation`` or, for a flat punch, ``reciprocity``, with a
+smooth part of the kernel more, whose transform
 
     L/(1 + s q L) − 1/(1 + s q) = (L − 1) / ((1 + s q L)(1 + s q))
 
@@ -21,11 +21,11 @@ from numpy.polynomial.legendre import leggauss
 
 from pellicle import kernel
 from pellicle.arrays import Array
-from pellicle.axisymmetric.equation import LEVELS, influence
-from pellicle.axisymmetric.layer_curves import Shape
-from pellicle.axisymmetric.panels import Panel, Points, gauss, graded, joined, points_at
-from pellicle.axisymmetric.product_integration import clustering, collocation, weights
-from pellicle.axisymmetric.tension_kernel import primitive
+from pellicle_axisymmetric.equation import LEVELS, influence
+from pellicle_axisymmetric.layer_curves import Shape
+from pellicle_axisymmetric.panels import Panel, Points, gauss, graded, joined, points_at
+from pellicle_axisymmetric.product_integration import clustering, collocation, weights
+from pellicle_axisymmetric.tension_kernel import primitive
 
 _ENDS = np.concatenate([[0.0], np.geomspace(1e-5, 0.5, 12), np.arange(1.0, 15.0)])
 """Ends of intervals of qh; beyond the last the layer is a half-space to 1e-10."""

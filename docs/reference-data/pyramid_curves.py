@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 import pellicle as pl
-from pellicle.axisymmetric import cone
+from pellicle_axisymmetric import cone
 from pellicle_plugins.indenters.pyramid import LENGTHS
 
 POINTS = 128, 256, 512

@@ -1,6 +1,6 @@
 """Make the reference tables anew: ``python docs/reference-data/reference_tables.py [folder]``.
 
-Every table is computed by the closed theory in ``pellicle.axisymmetric``, none by the
+Every table is computed by the closed theory in ``pellicle_axisymmetric``, none by the
 contact solver, which tests hold to these tables.  The column ``error`` bounds the relative error
 of the values in its row.
 """
@@ -21,11 +21,11 @@ from scipy.special import beta
 
 import pellicle as pl
 from pellicle.arrays import Array
-from pellicle.axisymmetric.adhesive_contact import Adhesion
-from pellicle.axisymmetric.indentation import indent
-from pellicle.axisymmetric.tensed_punch import punch
 from pellicle.errors import ConvergenceError
 from pellicle.surface.influence import cell_coefficients
+from pellicle_axisymmetric.adhesive_contact import Adhesion
+from pellicle_axisymmetric.indentation import indent
+from pellicle_axisymmetric.tensed_punch import punch
 from pellicle_plugins.closed_forms.hertz import sphere
 from pellicle_plugins.closed_forms.sneddon import cone
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid

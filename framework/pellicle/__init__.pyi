@@ -1,15 +1,6 @@
 __all__: list[str]
 
 from . import analysis as analysis
-from .applications import Estimate as Estimate
-from .applications import Fit as Fit
-from .applications import FitConfig as FitConfig
-from .applications import Measurement as Measurement
-from .applications import fit as fit
-from .applications import fit_many as fit_many
-from .applications import fit_map as fit_map
-from .applications import fit_pooled as fit_pooled
-from .applications import read_curves as read_curves
 from .components import AreaCorrection as AreaCorrection
 from .components import Case as Case
 from .components import Depth as Depth
@@ -30,6 +21,11 @@ from .components import Runs as Runs
 from .components import Search as Search
 from .components import Setting as Setting
 from .components import Solver as Solver
+from .components.installed import indenter as indenter
+from .components.installed import interaction as interaction
+from .components.installed import kernel as kernel
+from .components.installed import registry as registry
+from .components.installed import solver as solver
 from .config.json_schema import json_schema as json_schema
 from .config.loading import Loading as Loading
 from .config.run import Run as Run
@@ -46,13 +42,17 @@ from .errors import PellicleError as PellicleError
 from .errors import PluginError as PluginError
 from .errors import StorageError as StorageError
 from .grid import Grid as Grid
-from .hookspecs import RegisterCommand as RegisterCommand
-from .hookspecs import hookimpl as hookimpl
-from .plugins import indenter as indenter
-from .plugins import interaction as interaction
-from .plugins import kernel as kernel
-from .plugins import registry as registry
-from .plugins import solver as solver
+from .plugins.applications import Estimate as Estimate
+from .plugins.applications import Fit as Fit
+from .plugins.applications import FitConfig as FitConfig
+from .plugins.applications import Measurement as Measurement
+from .plugins.applications import fit as fit
+from .plugins.applications import fit_many as fit_many
+from .plugins.applications import fit_map as fit_map
+from .plugins.applications import fit_pooled as fit_pooled
+from .plugins.applications import read_curves as read_curves
+from .plugins.hooks import RegisterCommand as RegisterCommand
+from .plugins.hooks import hookimpl as hookimpl
 from .results.result import Result as Result
 from .results.result import load as load
 from .runs.gradient import gradient as gradient

@@ -30,11 +30,12 @@ def available(root: Path = Path("/")) -> float | None:
     for group in _lines(root / "proc/self/cgroup"):
         # A container may see its own group as the root, although the file gives its outer name.
         inner = PurePosixPath(group.removeprefix("0::").strip("/"))
-        for folder in (root / "sys/fs/cgroup" / path for path in (inner, *inner.parents)):
+        for path in (inner, *inner.parents):
+            folder = root / "sys/fs/cgroup" / path
             # A limit may be missing, not readable, or "max". The cache can be reclaimed.
             with suppress(OSError, ValueError):
-                names = "memory.max", "memory.current"
-                most, used = (float((folder / name).read_text()) for name in names)
+                most = float((folder / "memory.max").read_text())
+                used = float((folder / "memory.current").read_text())
                 for line in _lines(folder / "memory.stat"):
                     used -= float(line.split()[1]) if line.startswith("inactive_file ") else 0.0
                 limits.append(max(0.0, most - used))

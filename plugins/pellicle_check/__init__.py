@@ -1,1 +1,1 @@
-"""What to expect of the grid of a run, from the same run on coarser grids."""
+"""Expected errors of the grid of a run, from the same run on coarser grids."""

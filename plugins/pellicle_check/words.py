@@ -1,4 +1,4 @@
-"""What coarser grids say of the grid of a run: tables of expected errors, and advice."""
+"""Words on the grid of a run: tables of expected errors, and advice."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the explorer changes in a run: its quantities.
+"""The quantities of a run that the explorer changes.
 
 Configurations are mappings of the form of a run file, with the load steps as a list.
 """

@@ -1,11 +1,11 @@
 __all__: list[str]
 
 from .config import FitConfig as FitConfig
+from .estimation.intervals import Estimate as Estimate
 from .files.measurement import Measurement as Measurement
 from .files.sources import read_curves as read_curves
 from .fits import fit as fit
 from .fits import fit_pooled as fit_pooled
-from .intervals import Estimate as Estimate
 from .many import fit_many as fit_many
 from .many import fit_map as fit_map
 from .result import Fit as Fit

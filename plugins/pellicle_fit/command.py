@@ -18,9 +18,9 @@ from pellicle.files import write_json
 Text = str | None
 Texts = list[str] | None
 if TYPE_CHECKING:
-    from pellicle_fit.config import FitConfig
-    from pellicle_fit.population.fits import ManyFits
-    from pellicle_fit.result import Fit
+    from .config import FitConfig
+    from .population.fits import ManyFits
+    from .result import Fit
 
 
 def fit(
@@ -64,6 +64,9 @@ def fit(
         ),
     ] = None,
     pool: Annotated[bool, Option("--pool", help="Fit one solid to all curves.")] = False,
+    every_rival: Annotated[
+        bool, Option("--every-rival", help="Of a folder, compare what a neighbour rules out, too.")
+    ] = False,
     set_: Annotated[
         Texts,
         Option("--set", metavar="KEY=VALUE", help='Any other: --set indenter.radius_x="5 um".'),
@@ -85,12 +88,12 @@ def fit(
 
     Exit code 0 only if every curve was fitted, 1 if some could not be fitted.
     """
-    from pellicle_fit.config import FitConfig
-    from pellicle_fit.population.fits import ManyFits
-    from pellicle_fit.print_fits import print_fit, print_fits
-    from pellicle_fit.report.figures import save_figure
-    from pellicle_fit.report.page import save_report
-    from pellicle_fit.stored import StoredFit, exit_by_fits
+    from .config import FitConfig
+    from .population.fits import ManyFits
+    from .print_fits import print_fit, print_fits
+    from .report.figures import save_figure
+    from .report.page import save_report
+    from .stored import StoredFit, exit_by_fits
 
     curves = [*(files or ())]
     is_first = bool(curves) and curves[0].suffix.lower() in (".toml", ".json")
@@ -115,6 +118,7 @@ def fit(
         sensitivity=sensitivity,
         columns=columns,
         pool=pool or None,
+        every_rival=every_rival or None,
     )
     kinds = [str(kind) for kind in formats or [Format.PNG]]
     result, name, title = _fit(config, directory, kinds, quiet=quiet)
@@ -151,8 +155,8 @@ def _fit(
     config: FitConfig, directory: Path | None, formats: Sequence[str], *, quiet: bool
 ) -> tuple[Fit | ManyFits, str, str]:
     """Return the fit of the curves, the name of its files and the title of its page."""
-    from pellicle_fit.many import fit_sources
-    from pellicle_fit.problem import problem
+    from .many import fit_sources
+    from .problem import problem
 
     progress, stream = not quiet and sys.stderr.isatty(), config.sources()
     first = [*islice(stream, None if config.pool else 2)]

@@ -213,6 +213,11 @@ class FitConfig(FromFile, Calibration):
         "one value for each file",
     )
     pool: bool = Field(False, description="whether all curves share one modulus and one tension")
+    every_rival: bool = Field(
+        False,
+        description="whether every curve of a population is compared with all rivals, those too "
+        "that curves beside it rule out",
+    )
     accept: Annotated[
         tuple[str, ...],
         _list(tuple[str, ...] | str),

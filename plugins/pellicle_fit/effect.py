@@ -25,8 +25,8 @@ from pellicle.arrays import Array as Array
 from pellicle.components import Component
 from pellicle.units import Quantity, quantity_of
 
-from .contact import Contact as Contact
-from .curve import Curve as Curve
+from .contact.contact import Contact as Contact
+from .contact.curve import Curve as Curve
 
 Values = Mapping[str, float]
 """Values [SI] of quantities by name."""

@@ -12,8 +12,8 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
 
-from .contact import Contact
-from .curve import Curve
+from .contact.contact import Contact
+from .contact.curve import Curve
 from .effect import (
     Adds,
     Bends,
@@ -37,8 +37,8 @@ _LONGEST, _FAR = 4.0, 1e6
 """Longest step, over the root of the depth or of the way, and the greatest root over the latter."""
 _ROUNDING = 1e-6
 """Difference of forces that is none, over the largest."""
-_STEPS = 80
-"""Most steps of a search for a balance."""
+_STEPS, _SECANTS = 80, 8
+"""Most steps of a search for a balance, and those by secants; then slopes are sought."""
 _LEAST = 0.05
 """Least depth from which a balance is sought, over that of the base."""
 
@@ -150,22 +150,20 @@ class Explanation:
             )
         return force
 
-    def balance(
-        self, curve: Curve, start: Array | None = None, *, together: bool = True
-    ) -> Balance:
+    def balance(self, curve: Curve, *, together: bool = True) -> Balance:
         """Return forces and depths of a curve in balance, NaN where none balances.
 
         Quantities are numbers, or columns of shape (k, 1) of k trials, which are computed together
-        or one by one.  ``start`` are depths from which the balance is sought.
+        or one by one.
         """
         if not together:
             each = [known.balance(curve) for known in self._each()]
             return Balance(*map(np.array, zip(*each, strict=True)))
         of, step = self._forces(curve), _DIFFERENCE * curve.contact.deepest
-        depth = of.base
-        if of.give is not None:
-            depth = balanced(of.pushed, of.give, of.base, of.near if start is None else start)
-        force = of.pushed(depth)
+        if of.give is None:
+            depth, force = of.base, of.pushed(of.base)
+        else:
+            depth, force = balanced(of.pushed, of.give, of.base, of.near)
         rate = (of.pushed(depth + step) - force) / step
         if of.give is not None:
             way = of.give(force)
@@ -270,11 +268,11 @@ class _Forces(NamedTuple):
 
 def balanced(
     pushed: Callable[[Array], Array], give: Callable[[Array], Array], base: Array, start: Array
-) -> Array:
-    """Return the depth δ [m] at which δ + u(P(δ)) is that of the base, shape (n,) or (k, n).
+) -> tuple[Array, Array]:
+    """Return the depth δ [m] at which δ + u(P(δ)) is that of the base, and P, of shape (k, n).
 
-    The sum grows with δ, so that there is one root, which Newton's method finds from a good start;
-    a step that leaves what brackets it halves that.  NaN if there is no root.
+    The sum grows with δ, so that there is one root, which secants find from a good start, and else
+    Newton's method; a step that leaves what brackets it halves that.  NaN if there is no root.
     """
     way = np.sqrt(max(float(np.max(np.ptp(base, axis=-1))), 1e-300))
     step, far = _DIFFERENCE * way, _FAR * way
@@ -282,25 +280,32 @@ def balanced(
     def depth_of(root: Array) -> Array:
         return root * np.abs(root)
 
-    def excess(root: Array) -> Array:
+    def excess(root: Array) -> tuple[Array, Array]:
         depth = depth_of(root)
-        return depth + give(pushed(depth)) - base
+        force = pushed(depth)
+        return depth + give(force) - base, force
 
     # In √δ a toe that is infinitely soft at first touch has a slope.
     root = np.sign(start) * np.sqrt(np.abs(start))
-    low, high = np.full(root.shape, -far), np.full(root.shape, far)
-    for _ in range(_STEPS):
-        above = excess(root)
-        slope = (excess(root + step) - above) / step
+    above, force = excess(root)
+    slope = (excess(root + step)[0] - above) / step
+    low, high = np.full(base.shape, -far), np.full(base.shape, far)
+    for number in range(_STEPS):
         low, high = np.where(above < 0, root, low), np.where(above > 0, root, high)
         longest = _LONGEST * np.maximum(np.abs(root), way)
-        new: Array = root - np.clip(above / np.maximum(slope, 1e-6 * step), -longest, longest)
-        is_out = (new < low) | (new > high)
-        new = np.where(is_out, (low + high) / 2, new)
-        change = np.abs(depth_of(new) - depth_of(root))
-        root = new
+        move = -np.clip(above / np.maximum(slope, 1e-6 * step), -longest, longest)
+        is_out = (root + move < low) | (root + move > high)
+        move = np.where(is_out, (low + high) / 2 - root, move)
+        change = np.abs(depth_of(root + move) - depth_of(root))
+        root, before = root + move, above
+        above, force = excess(root)
         if np.all(change <= np.where(is_out, _HALVED, _BALANCE) * way**2):
             break
+        if number < _SECANTS:
+            is_far = np.abs(move) > step
+            slope = np.where(is_far, (above - before) / np.where(is_far, move, 1.0), slope)
+        else:
+            slope = (excess(root + step)[0] - above) / step
     # Without a root halvings end at the end of the bracket.
     is_lost = (np.abs(root) >= 0.99 * far) | (change > _LOST * way**2)
-    return np.where(is_lost, np.nan, depth_of(root))
+    return np.where(is_lost, np.nan, depth_of(root)), force

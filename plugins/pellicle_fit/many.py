@@ -23,19 +23,21 @@ from pellicle.components import Component, Executor, HasForceCurve, Indenter, Sa
 from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.files import atomic_write, check_writable, is_file
 
-from .calibration import common_errors
+from .alike import alike, beside
 from .config import FitConfig, described
+from .estimation.objective import MODULUS
 from .files.measurement import Measurement
 from .files.sources import Curves, Source
-from .objective import MODULUS
 from .population.fits import ManyFits, summary, table
 from .population.images import force_maps
 from .population.judgement import Names, group_of, judge
-from .population.row import FAILED, Row, as_json, sketch
+from .population.row import Row, as_json, sketch
 from .problem import Problem, components_of, data_of, problem, record_of
 from .report.paper_table import save_tables
 from .report.population import save_population
 from .sealed import read_sealed, write_sealed
+from .selection.calibration import common_errors
+from .selection.neighbour import Neighbour
 from .words.story import calibration_of, shares
 
 _JOURNAL = "curves"
@@ -66,6 +68,8 @@ class FitTask:
     """File that keeps the fit."""
     common: Mapping[Any, float]
     """Uncertainty that all curves share, which stands beside medians and in no interval."""
+    like: Sequence[Neighbour] = ()
+    """Curves alike, of which all explanations were compared, the nearest first."""
 
 
 def fit_many(
@@ -175,9 +179,16 @@ def fit_sources(
             curves = iter(sources)
             while batch := [*islice(curves, _BATCH)]:
                 made = [_task(config, source, directory, fits, progress) for source in batch]
-                tasks = [task for task in made if task is not None]
-                bar.expect(len(fits.rows), len(batch) - len(tasks))
-                mapped(config.executor, work, tasks, dict, _keep, bar)
+                bar.expect(len(fits.rows), made.count(None))
+                rows = fits.rows[-len(batch) :]
+                near = [()] * len(batch) if config.every_rival else alike(config, batch, rows)
+                for is_spared in (False, True):
+                    tasks = [
+                        replace(task, like=beside(rows, others))
+                        for task, others in zip(made, near, strict=True)
+                        if task is not None and bool(others) is is_spared
+                    ]
+                    mapped(config.executor, work, tasks, dict, _keep, bar)
         notes = judge(fits.rows, config.accept, rejected)
         fits.maps, of_maps = force_maps(fits.rows)
         fits.notes += [*notes, *of_maps]
@@ -198,21 +209,22 @@ def _task(
         indenter = config.indenter_of(source)
     except ConfigError as error:
         raise source.named(error) from None
+    curve = source.curve
     try:
-        if isinstance(source.curve, PellicleError):
-            raise source.curve
-        row.map, row.site = source.map, source.curve.site
+        if isinstance(curve, PellicleError):
+            raise curve
+        row.map, row.site = source.map, curve.site
         with suppress(TypeError, ValueError):
-            row.sketch = sketch(position=source.curve.position, force=source.curve.force)
+            row.sketch = sketch(position=curve.position, force=curve.force)
         path, fields = None, source.fields.keys()
         own = {*fields, *(["radius"] if "diameter" in fields else [])}
         common = {name: x for name, x in config.uncertainty.items() if name not in own}
         if directory is not None:
-            identity = _identity(config, indenter, source.curve, [*common])
+            identity = _identity(config, indenter, curve, [*common])
             path = directory / _JOURNAL / f"{identity[:16]}.json"
             if is_file(path) and (earlier := _earlier(path, row, fits)):
                 # The file may have another name now.
-                earlier["curves"][0] |= {"name": source.name, "data": data_of(source.curve, config)}
+                earlier["curves"][0] |= {"name": source.name, "data": data_of(curve, config)}
                 row.keep(earlier)
                 fits.resumed += 1
                 return None
@@ -220,7 +232,7 @@ def _task(
         config = config.model_copy(update={"uncertainty": weighed})
         ready = problem(config, [source], progress=progress)
     except PellicleError as error:
-        row.status = _failure(error, row.name)
+        row.failure = _failure(error, row.name)
         return None
     # An executor need not pickle.
     serial = registry().make(Executor, {"type": "serial"})
@@ -242,7 +254,7 @@ def _keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool
     """Keep what came of a fit in its row and its file; return the status, and whether it failed."""
     row = task.row
     if isinstance(outcome, Exception):
-        row.status = _failure(outcome, row.name)
+        row.failure = _failure(outcome, row.name)
     else:
         if task.path is not None:
             write_sealed(outcome, task.path)
@@ -252,7 +264,7 @@ def _keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool
 
 def work(task: FitTask, say: Say) -> dict[str, Any]:
     """Fit a curve in a worker, and return JSON data of the fit, with what a population adds."""
-    fit = task.problem.fit()
+    fit = task.problem.fit(like=task.like)
     chosen, (member,), (force,) = fit.answer.chosen, fit.members, fit.forces()
     load = force - chosen.known[0].free_force(member.curve)
     measured, position = member.curve.force, member.curve.position
@@ -297,7 +309,7 @@ def _failure(error: Exception, name: str) -> str:
     text = text.removeprefix(f"curve {label}: ").replace(":\n  ", ": ")
     reason = "; ".join(text.splitlines()) or "no reason given"
     kind = "" if isinstance(error, PellicleError) else f"{type(error).__name__}: "
-    return f"{FAILED}{kind}{reason}"
+    return f"{kind}{reason}"
 
 
 def _write(fits: ManyFits, config: FitConfig, began: float, directory: Path) -> tuple[Path, ...]:

@@ -6,7 +6,6 @@ from pathlib import Path
 
 from pellicle.cli import echo, print_table
 
-from .noise import Flaw
 from .population.fits import ManyFits, summary
 from .report import tables
 from .result import Fit
@@ -21,24 +20,23 @@ def print_fit(fit: Fit, *, quiet: bool, details: bool, si: bool) -> None:
     """Print numbers, verdict and next step, then warnings; in detail what they rest on."""
     for line in () if quiet else told(fit, si=si):
         echo(line)
-    for table in (tables.estimates, tables.explanations, tables.curves):
-        if details and not quiet:
+    if details and not quiet:
+        for table in (tables.estimates, tables.explanations, tables.curves):
             print_table(table(fit, si=si), si=si)
+        print_table(tables.correlations(fit), si=si)
     if fit.answer.agreement.factor > 1:
         echo(f"warning: {fit.agreement}", err=True)
     all_checks = details or quiet or len(fit.members) > 1
-    for text in fit.warnings:
-        # The verdict tells the check that fails, and the next step what to do.
-        if all_checks or text not in {flaw.value for flaw in Flaw}:
-            echo(f"warning: {text}", err=True)
+    # The verdict tells the check that fails, and the next step what to do.
+    for text in fit.warnings if all_checks else fit.warnings_beside_checks:
+        echo(f"warning: {text}", err=True)
     for text in fit.notes if details or quiet else ():
         echo(f"note: {text}", err=True)
 
 
 def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None, si: bool) -> None:
     """Print a line for each curve, unless a folder has many, and the medians, and notes."""
-    reasons = [(row.status.partition(": ")[2], row.name) for row in fits.rows]
-    for line in by_text([pair for pair in reasons if pair[0]]):
+    for line in by_text([(row.failure, row.name) for row in fits.rows if row.failure]):
         echo(line, err=True)
     for note in fits.notes:
         echo(f"note: {note}", err=True)

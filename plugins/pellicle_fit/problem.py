@@ -18,20 +18,21 @@ from pellicle.errors import ConfigError, PellicleError
 from pellicle.schema import walk
 from pellicle.units import readable
 
-from .calibration import errors
 from .config import FitConfig
-from .curve import Curve
+from .contact.curve import Curve
 from .effect import Effect, Solid, quantities
+from .estimation.objective import CONTACT_POINT
 from .files.cleaning import clean
 from .files.measurement import Measurement
 from .files.missing import MissingInputError
 from .files.sources import Source
-from .objective import CONTACT_POINT
-from .recipe import answer
 from .result import Fit, Member
+from .selection.advice import advise
+from .selection.calibration import errors
+from .selection.neighbour import Neighbour
+from .selection.recipe import answer
 from .simulated.simulation import simulated_curve
 from .simulated.solid import solid
-from .words.advice import steps
 
 _BASELINES = {"none": (), "offset": ("offset",), "slope": ("offset", "slope")}
 _REACH = 1.5
@@ -51,11 +52,15 @@ class Problem:
     began: float
     """Value of ``perf_counter`` at the start."""
 
-    def fit(self, *, progress: bool = False) -> Fit:
-        """Return the fit of the curves: one modulus, and what else they share."""
+    def fit(self, *, like: Sequence[Neighbour] = (), progress: bool = False) -> Fit:
+        """Return the fit of the curves: one modulus, and what else they share.
+
+        Of a curve, beside others that are ``like`` it.
+        """
         with status_line("fitting", progress):
-            found = answer([member.curve for member in self.members], **self.question)
-            advice = steps(found, self.members, self.config)
+            curves = [member.curve for member in self.members]
+            found = answer(curves, **self.question, like=like)
+            advice = advise(found, self.members, self.config)
         data = [member.data for member in self.members]
         record = record_of(self.config, data, self.began)
         return Fit(found, self.members, advice, self.poissons_ratio, self.config, record)

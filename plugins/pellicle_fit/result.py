@@ -9,17 +9,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from pellicle.arrays import Array
 from pellicle.files import json_text
 
-from .candidate import Candidate
 from .config import FitConfig, described
-from .curve import Curve
+from .contact.curve import Curve
+from .estimation.candidate import Candidate
+from .estimation.intervals import CONFIDENCE, Estimate
+from .estimation.objective import MODULUS
 from .files.measurement import Measurement, Note
-from .intervals import CONFIDENCE, Estimate
-from .objective import MODULUS
-from .recipe import TENSION, Answer
-from .verdict import Verdict
-from .words.advice import Step
+from .selection.advice import Advice
+from .selection.recipe import TENSION, Answer
+from .selection.verdict import Verdict
+from .words.advice import Step, step
 from .words.names import words_of
-from .words.story import agreement, calibration_of, remarks, told, verdict
+from .words.story import agreement, calibration_of, headline, remarks, told, verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -45,7 +46,7 @@ class Fit:
     """All explanations that were compared, and the verdict."""
     members: tuple[Member, ...]
     """The curves."""
-    steps: list[Step]
+    needs: tuple[Advice, ...]
     """What to do next, the most urgent first; empty if nothing would help."""
     poissons_ratio: float | None
     """ν, if it was given."""
@@ -116,9 +117,14 @@ class Fit:
         return verdict(self.answer)
 
     @property
+    def steps(self) -> list[Step]:
+        """What to do next in words, the most urgent first; empty if nothing would help."""
+        return [step(advice) for advice in self.needs]
+
+    @property
     def advice(self) -> str:
-        """What to do next, in words; empty if nothing would help."""
-        return ": ".join(self.steps[0]) if self.steps else ""
+        """What to do first, in words; empty if nothing would help."""
+        return f"{self.steps[0].do}: {self.steps[0].why}" if self.needs else ""
 
     @property
     def agreement(self) -> str:
@@ -128,9 +134,15 @@ class Fit:
     @property
     def messages(self) -> list[str]:
         """Warnings, and notes of what was done; those of one of several curves with its name."""
+        return self._messages(with_checks=True)
+
+    def _messages(self, *, with_checks: bool) -> list[str]:
         several, found = len(self.members) > 1, []
         for member, judged in zip(self.members, self.answer.judgements, strict=True):
-            own = [*member.measured.messages, *judged.failed_checks.values()]
+            own = [
+                *member.measured.messages,
+                *(judged.failed_checks.values() if with_checks else ()),
+            ]
             found += [type(text)(f"{member.name}: {text}") if several else text for text in own]
         return [*found, *remarks(self.answer)]
 
@@ -138,6 +150,12 @@ class Fit:
     def warnings(self) -> list[str]:
         """Messages that call for care."""
         return [text for text in self.messages if not isinstance(text, Note)]
+
+    @property
+    def warnings_beside_checks(self) -> list[str]:
+        """Those but for the checks that residuals fail."""
+        found = self._messages(with_checks=False)
+        return [text for text in found if not isinstance(text, Note)]
 
     @property
     def notes(self) -> list[str]:
@@ -161,13 +179,17 @@ class Fit:
         return {
             **{name: e.to_dict() for name, e in self.estimates().items() if name in asked},
             "parameters": {name: estimate.to_dict() for name, estimate in parameters.items()},
+            "correlations": [
+                {"of": [*pair], "value": value} for pair, value in chosen.correlations.items()
+            ],
             "if_present": {name: estimate.to_dict() for name, estimate in self.if_present.items()},
             "model": {"effects": sorted(chosen.types), "words": words_of(chosen)},
             "verdict": self.verdict.value,
+            "headline": headline(answer),
             "comparison": self.comparison,
             "tension_needed": self.tension_needed,
             "agreement": self.agreement,
-            "next": [step._asdict() for step in self.steps],
+            "next": [one._asdict() for one in self.steps],
             "confidence": CONFIDENCE,
             "calibration": calibration_of(self),
             "chi_squared": self.chi_squared,
@@ -179,6 +201,7 @@ class Fit:
                 {"effects": sorted(types), "reason": reason}
                 for types, reason in answer.excused.items()
             ],
+            "not_weighed": [sorted(types) for types in answer.not_weighed],
             "curves": [self._curve(i, own) for i in range(len(self.members))],
             "messages": self.messages,
             "notes": self.notes,
@@ -196,7 +219,7 @@ class Fit:
             "chi_squared": answer.chi_squared(fit),
             "delta_aic": fit.aic - answer.explanations[0].aic,
             "tied": fit in answer.tied,
-            "given_up": fit.minimum.given_up,
+            "search": fit.minimum.ending.name.lower(),
             "holds_modulus": fit not in answer.not_held,
             "parameters": bare | {name: e.to_dict() for name, e in fit.sought.items()},
         }

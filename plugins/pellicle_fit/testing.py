@@ -21,8 +21,8 @@ from pellicle.errors import ConvergenceError
 from pellicle.testing import check, rules_of
 from pellicle.units import quantity_of
 
-from .contact import Contact
-from .curve import Curve
+from .contact.contact import Contact
+from .contact.curve import Curve
 from .effect import Adds, Bends, Effect, Records, Responds, Sizes, Solid, Yields, quantities
 from .explanation import Explanation
 

@@ -24,9 +24,9 @@ import numpy as np
 from tables import print_head, print_row
 
 import pellicle as pl
-from pellicle_fit.candidate import Candidate
-from pellicle_fit.recipe import Answer
-from pellicle_fit.verdict import Verdict
+from pellicle_fit.estimation.candidate import Candidate
+from pellicle_fit.selection.recipe import Answer
+from pellicle_fit.selection.verdict import Verdict
 from tests.physics.frozen.fit_curves import MODULUS, RADIUS, Array, path
 from tests.physics.frozen.fit_curves import Path as Rows
 from tests.physics.frozen.fit_curves import force as force_of

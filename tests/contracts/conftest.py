@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from pellicle.components import FAMILIES, Component
-from pellicle.plugins import registry
+from pellicle.components import Component
+from pellicle.components.installed import FAMILIES, registry
 from pellicle.schema.from_file import paths_relative_to
 
 EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {

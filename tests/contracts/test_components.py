@@ -7,8 +7,8 @@ import pytest
 from pydantic import create_model
 
 from pellicle.components import Component, FromRegistry
+from pellicle.components.installed import registry
 from pellicle.config.json_schema import model_schema
-from pellicle.plugins import registry
 
 
 @pytest.fixture(scope="module")

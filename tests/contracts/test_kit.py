@@ -6,8 +6,9 @@ import pytest
 
 import pellicle as pl
 from pellicle import testing
-from pellicle.components import FAMILIES, Component
-from pellicle.plugins import family_of, registry
+from pellicle.components import Component
+from pellicle.components.installed import FAMILIES, registry
+from pellicle.plugins.registry import family_of
 from pellicle.testing.component import kit_of, require_close
 
 

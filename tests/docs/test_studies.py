@@ -15,10 +15,10 @@ from jsonschema import Draft202012Validator
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.axisymmetric.adhesive_contact import Adhesion
-from pellicle.axisymmetric.indentation import indent
 from pellicle.cli.app import app
 from pellicle.config.study import from_toml
+from pellicle_axisymmetric.adhesive_contact import Adhesion
+from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.docs.blocks import ROOT
 

@@ -7,7 +7,7 @@ from importlib.metadata import EntryPoint
 import pytest
 
 import pellicle as pl
-from pellicle import applications
+from pellicle.plugins import applications
 
 GROUP = "pellicle.applications"
 

@@ -14,7 +14,7 @@ from typer.testing import CliRunner, Result
 
 import pellicle as pl
 from pellicle.cli.app import app
-from pellicle.plugins import registry
+from pellicle.components.installed import registry
 from tests.pictures import drawn_width
 
 SMALL = ["--set", "grid.points=32", "--set", "loading.depth=['10 um', '20 um']"]

@@ -11,9 +11,10 @@ import pytest
 import xarray as xr
 from typer.testing import CliRunner, Result
 
-from pellicle import commands, results
+from pellicle import results
 from pellicle.cli.app import app
-from pellicle.origins import GROUP
+from pellicle.plugins import commands
+from pellicle.plugins.origins import GROUP
 from tests.installed import entry_point
 
 HELLO = '''
@@ -51,7 +52,7 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install
     """Return a function that installs ``hello`` of a package beside the commands that there are."""
     entries = {*entry_points(group=GROUP)}
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setattr("pellicle.commands.entry_points", lambda group: entries)
+    monkeypatch.setattr("pellicle.plugins.commands.entry_points", lambda group: entries)
     monkeypatch.chdir(tmp_path)
 
     def write(more: str = "", name: str = "hello", package: str = "greetings") -> None:

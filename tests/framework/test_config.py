@@ -16,9 +16,9 @@ from jsonschema import Draft202012Validator
 
 import pellicle as pl
 from pellicle.components import AreaCorrection, Output
+from pellicle.components.installed import registry
 from pellicle.components.prescription import OPTIONS
 from pellicle.config.loading import Options
-from pellicle.plugins import registry
 from pellicle.schema import get
 
 BASE: dict[str, Any] = {

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import pellicle as pl
-from pellicle.plugins import registry
+from pellicle.components.installed import registry
 from pellicle.runs.runner import default_threads
 from tests.framework.broken.catalogue import PARTS
 

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pellicle.analysis import PathSummary, adhesive_curve, legs, path_summary
+from pellicle.analysis import PathSummary, legs, path_summary
 from pellicle.variables import names_of
+from pellicle_axisymmetric import adhesive_curve
 
 # A paraboloid on a half-space; lengths in a₀, depths in a₀²/R, forces and energies to match.
 E = R = W = 1.0

@@ -5,6 +5,7 @@ import json
 import sys
 import tomllib
 from collections.abc import Callable
+from functools import partial
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
@@ -16,10 +17,12 @@ from typer.testing import CliRunner
 
 from pellicle import ConfigError, Kernel, PluginError, Run
 from pellicle.cli.app import app
-from pellicle.components import FAMILIES
+from pellicle.components.installed import FAMILIES, registry
 from pellicle.config.explain import explanations, words_by_kind
 from pellicle.config.json_schema import model_schema
-from pellicle.plugins import GROUP, Origin, Registry, load, registry
+from pellicle.plugins.origins import GROUP, Origin
+from pellicle.plugins.registry import Registry
+from pellicle.plugins.registry import load as load_plugins
 from pellicle_fit.effect import Effect
 from tests.installed import Installed, entry_point
 
@@ -97,6 +100,7 @@ BROKEN = {
 """What is replaced in `SOFT`, by what (nothing is replaced: put in front), and what is said."""
 
 Plugin = Callable[..., EntryPoint]
+load = partial(load_plugins, known=FAMILIES)
 _numbers = itertools.count()
 
 
@@ -190,7 +194,7 @@ def install(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Registry]:
 
     def install(*entries: EntryPoint) -> Registry:
         installed = load([*entries, *entry_points(group=GROUP)])
-        for module in ("plugins", "config.explain", "config.json_schema"):
+        for module in ("components.installed", "config.explain", "config.json_schema"):
             monkeypatch.setattr(f"pellicle.{module}.registry", lambda: installed)
         return installed
 
@@ -222,6 +226,20 @@ def test_a_plugin_may_bring_a_family(plugin: Plugin, install: Callable[..., Regi
     (explanation,) = explanations("artefact.drift", {})
     assert explanation.example.startswith("[[rivals]]\n")
     assert stranger.Fit(**tomllib.loads(explanation.example)).rivals[0].rate == 1e-9
+
+
+def test_a_family_checks_its_own_classes(plugin: Plugin) -> None:
+    """The rule of a stranger's family holds for its components, as those of ours do."""
+    rule = """
+    @classmethod
+    def check_class(cls):
+        if len(cls.model_fields) > 1:
+            raise PluginError(f"{cls.__name__} has a field")
+"""
+    place = 'place = "rivals[]"\n'
+    source = "from pellicle import PluginError" + ARTEFACT.replace(place, place + rule)
+    (broken,) = load([plugin(source, name="artefact.drift", class_="Drift")]).broken
+    assert broken.error == "Drift has a field"
 
 
 def test_a_family_has_one_base(plugin: Plugin, install: Callable[..., Registry]) -> None:

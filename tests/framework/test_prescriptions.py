@@ -10,8 +10,8 @@ import pytest
 from pydantic import Field
 
 import pellicle as pl
-from pellicle import plugins
-from pellicle.plugins import checked_type
+from pellicle.components.installed import FAMILIES
+from pellicle.plugins.registry import checked_type, load
 from pellicle.runs import solve as solving
 from pellicle.units import Quantity
 from tests.framework.broken.catalogue import Broken, Taken, make
@@ -50,7 +50,7 @@ def test_not_registered(broken: Broken, words: str) -> None:
 def test_broken_prescription_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     """A key whose plugin cannot be loaded is not called unknown."""
     entry = EntryPoint("prescription.volume", "no.such.module", "pellicle")
-    loaded = plugins.load([entry, *entry_points(group="pellicle")])
+    loaded = load([entry, *entry_points(group="pellicle")], known=FAMILIES)
     monkeypatch.setattr("pellicle.config.loading.registry", lambda: loaded)
     with pytest.raises(pl.PluginError, match="prescription 'volume' is broken"):
         pl.Loading(volume=1.0)

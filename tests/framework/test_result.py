@@ -17,7 +17,8 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli.app import app
-from pellicle.plugins import Origin, registry
+from pellicle.components.installed import registry
+from pellicle.plugins.origins import Origin
 from pellicle.results import storage
 
 CONFIGURATION: dict[str, Any] = {

@@ -9,8 +9,8 @@ from typer.testing import CliRunner
 from pellicle import ConfigError, StorageError
 from pellicle.cli.app import app
 from pellicle.cli.new import write_plugin
-from pellicle.components import FAMILIES
-from pellicle.plugins import Registry
+from pellicle.components.installed import FAMILIES
+from pellicle.plugins.registry import Registry
 
 
 @pytest.mark.parametrize("family", [*FAMILIES, "effect"])
@@ -85,7 +85,9 @@ def test_family_of_a_plugin(
     )
     monkeypatch.syspath_prepend(tmp_path)
     families = {"effect": import_module(name).Effect}
-    monkeypatch.setattr("pellicle.plugins.registry", lambda: Registry({"effect": {}}, families))
+    monkeypatch.setattr(
+        "pellicle.components.installed.registry", lambda: Registry({"effect": {}}, families)
+    )
     if is_package:
         folder = write_plugin("effect", "mine", tmp_path)
         assert (folder / "pellicle_mine.py").read_text(encoding="utf-8") == "module of Mine\n"

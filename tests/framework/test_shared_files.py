@@ -10,8 +10,8 @@ import pytest
 
 import pellicle as pl
 from pellicle.components import Output
-from pellicle.components.output import refuse_shared_files
-from pellicle.plugins import registry
+from pellicle.components.installed import registry
+from pellicle.config.file_names import refuse_shared_files
 
 RUN: dict[str, Any] = {
     "grid": {"points": 16, "size": "1 mm"},

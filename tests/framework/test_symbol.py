@@ -9,7 +9,7 @@ from pydantic import Field
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.components import KernelOf
-from pellicle.components.rules import CHEAP, Case, broken
+from pellicle.components.rules import CHEAP, Case, first_violation
 from pellicle.contact import measure
 from pellicle.surface import along_axes, operator_of
 from pellicle.testing.kernels import runs_converge
@@ -75,10 +75,10 @@ def test_it_keeps_the_rules_and_its_runs_converge() -> None:
         pl.kernel("coated", tension="0.1 N/m", bending="1e-12 N*m", substrate=Grained(angle=0.4)),
         pl.kernel("viscoelastic", solid=Grained(), relaxation=[{"fraction": 0.5, "time": "1 s"}]),
     ):
-        assert broken(CHEAP["kernel"], kernel, case) == ""
+        assert first_violation(CHEAP["kernel"], kernel, case) == ""
         assert not kernel.is_isotropic
         runs_converge(kernel)
-    assert "symbol_is_even" in broken(CHEAP["kernel"], Grained(odd=0.1), case)
+    assert "symbol_is_even" in first_violation(CHEAP["kernel"], Grained(odd=0.1), case)
 
 
 @pytest.mark.parametrize("solver", ["active_set", "conjugate_gradient"])

@@ -13,7 +13,7 @@ from pellicle.components import Solver
 from pellicle.contact import Problem
 from pellicle.contact.load_step import LoadStep
 from pellicle.contact.solution import State
-from pellicle.runs.target_search import reach
+from pellicle.runs.target_search import search_target
 from pellicle.surface import operator_of
 
 GRID = pl.Grid(points=11, size=11.0, boundary="periodic")
@@ -51,7 +51,7 @@ def search(cells: Callable[[float], int], area: float, start: float | None = Non
     here = setting(start)
     target = pl.registry().find("prescription", "contact_area")().target(here, area)  # type: ignore[attr-defined]
     Staircase.starts.clear()
-    return reach(here, target, Staircase(cells=cells), lambda *_: None)
+    return search_target(here, target, Staircase(cells=cells), lambda *_: None)
 
 
 @pytest.mark.parametrize("start", [None, 1e-6, 1.0, 1e6])
@@ -118,7 +118,7 @@ def test_any_quantity_by_depth(
         resolution=resolution,
         guess=guess,
     )
-    reached = reach(setting(), target, Staircase(cells=lambda depth: 5), lambda *_: None)
+    reached = search_target(setting(), target, Staircase(cells=lambda depth: 5), lambda *_: None)
     assert not reached.caveats
     assert reached.equilibrium.problem.control.value == pytest.approx((goal + 2) / slope, abs=1e-6)
 

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 import pellicle
-from pellicle.commands import commands
+from pellicle.plugins.commands import commands
 
 HEAVY = {
     *("numpy", "scipy", "pydantic", "pint", "xarray", "h5py", "h5netcdf", "pandas", "matplotlib"),

@@ -15,7 +15,7 @@ import pytest
 
 import pellicle as pl
 from pellicle.cli.new import write_plugin
-from pellicle.components import FAMILIES as OWN
+from pellicle.components.installed import FAMILIES as OWN
 
 FAMILIES = *OWN, "effect"
 HERE = Path(__file__).parent

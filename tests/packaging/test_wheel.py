@@ -16,6 +16,7 @@ from pellicle.components import Component
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = (
     "framework/pellicle",
+    "plugins/pellicle_axisymmetric",
     "plugins/pellicle_plugins",
     "plugins/pellicle_fit",
     "plugins/pellicle_check",
@@ -23,7 +24,10 @@ PACKAGES = (
 )
 DATA = {
     "pellicle/py.typed",
-    "pellicle/applications.pyi",
+    "pellicle/plugins/applications.pyi",
+    "pellicle_axisymmetric/layer_curves.npz",
+    "pellicle_axisymmetric/punches.npz",
+    "pellicle_axisymmetric/py.typed",
     "pellicle_check/py.typed",
     "pellicle_explore/py.typed",
     "pellicle_explore/start.toml",

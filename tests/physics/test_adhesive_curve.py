@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle.analysis import AdhesiveCurve
-from pellicle.axisymmetric.adhesive_contact import Adhesion
-from pellicle.axisymmetric.indentation import indent
 from pellicle.components import Indenter
+from pellicle_axisymmetric import AdhesiveCurve
+from pellicle_axisymmetric.adhesive_contact import Adhesion
+from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid
 from pellicle_plugins.validation.adhesive_path import curve_of
 from tests.layered_contact import LayeredContact, layered_contact

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pellicle.axisymmetric.indentation import indent
+from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.physics.tables import paraboloid, tensed
 from tests.physics.tables import step as solved

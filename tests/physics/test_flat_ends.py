@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from pellicle.axisymmetric import Adhesion
+from pellicle_axisymmetric import Adhesion
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from pellicle_plugins.validation.adhesive_path import curve_of
 from tests.physics.tables import steps, tensed

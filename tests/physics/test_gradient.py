@@ -15,7 +15,7 @@ from pydantic import Field
 
 import pellicle as pl
 from pellicle.arrays import Array
-from pellicle.components.solver import solution_of
+from pellicle.components.calls import solution_of
 from pellicle.contact.equilibrium import equilibrium_of
 from pellicle.runs.compose import compose
 from pellicle.schema.model import get, replaced

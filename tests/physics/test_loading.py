@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 import pellicle as pl
-from pellicle.axisymmetric.indentation import indent
+from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.physics.tables import ROUGH as ROUGH_PUNCH
 from tests.physics.tables import half_space, paraboloid, steps, tensed

@@ -11,10 +11,10 @@ import xarray as xr
 from scipy.optimize import brentq
 
 import pellicle as pl
-from pellicle.axisymmetric.indentation import indent
-from pellicle.components.solver import solution_of
+from pellicle.components.calls import solution_of
 from pellicle.contact import Problem, measure
 from pellicle.surface import operator_of
+from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.physics.tables import ROUGH, Table, half_space, paraboloid, steps, tensed
 

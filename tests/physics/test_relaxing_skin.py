@@ -11,7 +11,7 @@ import pytest
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.runs.relaxation import Relaxation
-from pellicle.surface.outside import PlaneOperator
+from pellicle.surface.plane import PlaneOperator
 from tests.physics.tables import coated, half_space, paraboloid, reference_rows, relaxing, tensed
 
 MODULUS, TENSION = 5.0, 0.5

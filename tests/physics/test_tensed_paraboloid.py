@@ -64,7 +64,7 @@ def test_one_pressed_cell_gives_the_reference_influence_coefficients(s_over_d: f
 @pytest.mark.slow
 def test_the_published_figure_3(solver: str) -> None:
     """Yuan & Wang 2020, Figure 3: the counted area is 4 % off at N = 32, < 0.5 % beyond N = 256."""
-    from pellicle.axisymmetric.indentation import indent
+    from pellicle_axisymmetric.indentation import indent
     from pellicle_plugins.indenters.of_revolution import Paraboloid
 
     true = np.pi * indent(Paraboloid(radius=1e-3), 10e3, 1.0, depth=0.05e-3).contact_radius ** 2

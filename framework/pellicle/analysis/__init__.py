@@ -5,9 +5,7 @@ is ``result.grid``. On a free boundary there is no contact beyond the domain; on
 opposite edges are neighbours.
 """
 
-from .adhesive_curve import AdhesiveContact as AdhesiveContact
-from .adhesive_curve import AdhesiveCurve as AdhesiveCurve
-from .adhesive_curve import adhesive_curve as adhesive_curve
+from .border import perimeter as perimeter
 from .distribution import Distribution as Distribution
 from .distribution import distribution as distribution
 from .ellipse import Ellipse as Ellipse
@@ -23,6 +21,6 @@ from .path_summary import Leg as Leg
 from .path_summary import PathSummary as PathSummary
 from .path_summary import legs as legs
 from .path_summary import path_summary as path_summary
-from .perimeter import perimeter as perimeter
 from .spectrum import Spectrum as Spectrum
 from .spectrum import spectrum as spectrum
+from .steepness import steepest as steepest

@@ -15,9 +15,9 @@ import typer
 from rich.markup import escape
 from typer.core import TyperCommand, TyperGroup
 
-from pellicle.commands import commands, errors_attributed_to, load_command, typer_command
 from pellicle.errors import PellicleError, PluginError
-from pellicle.origins import Broken
+from pellicle.plugins.commands import commands, errors_attributed_to, load_command, typer_command
+from pellicle.plugins.origins import Broken
 
 from .printing import BAD_INPUT, CRASHED, INTERRUPTED, echo, only_json, print_warning
 

@@ -6,9 +6,9 @@ from typing import Annotated
 
 import typer
 
-from pellicle.commands import file_models
 from pellicle.errors import PluginError
-from pellicle.origins import Broken
+from pellicle.plugins.commands import file_models
+from pellicle.plugins.origins import Broken
 
 from .printing import echo, print_json, print_table
 

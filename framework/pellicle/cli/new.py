@@ -13,9 +13,9 @@ from typing import Annotated
 
 import typer
 
-from pellicle.commands import usable_commands
 from pellicle.errors import ConfigError, StorageError
 from pellicle.files import storage_errors
+from pellicle.plugins.commands import usable_commands
 
 from .printing import echo
 
@@ -135,7 +135,7 @@ def write_plugin(family: str, name: str, parent: Path) -> Path:
 
 def _template(family: str) -> Path:
     """Return the folder of a family's template, in the package of its base class."""
-    from pellicle.plugins import registry
+    from pellicle.components.installed import registry
 
     families = registry().families
     if family not in families:
@@ -150,7 +150,7 @@ def _template(family: str) -> Path:
 
 
 def _names(family: str, name: str) -> dict[str, str]:
-    from pellicle.plugins import registry
+    from pellicle.components.installed import registry
 
     type_ = name.replace("-", "_")
     class_name = "".join(word.capitalize() for word in type_.split("_"))

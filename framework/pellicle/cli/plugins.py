@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
-from pellicle.commands import commands, file_models, typer_command
 from pellicle.errors import ConfigError
-from pellicle.origins import Broken, Origin, claimed_by
+from pellicle.plugins.commands import commands, file_models, typer_command
+from pellicle.plugins.origins import Broken, Origin, claimed_by
 
 from .printing import NOT_CONVERGED, echo, print_json, print_table
 
@@ -30,7 +30,7 @@ def plugins(
 ) -> None:
     """List the components that are installed, and what is broken and why."""
     from pellicle.components import Table
-    from pellicle.plugins import registry
+    from pellicle.components.installed import registry
 
     if check:
         _check(name, json)
@@ -83,7 +83,7 @@ def plugins(
 def _check(name: str | None, json: bool) -> None:
     """Check the examples of the components of a name; exit with 1 if one breaks its contract."""
     from pellicle.components import Table
-    from pellicle.plugins import registry
+    from pellicle.components.installed import registry
     from pellicle.testing.component import verdict_on_examples
 
     rows, kept = [], True

@@ -15,9 +15,9 @@ from typing import Any
 import typer
 import xarray as xr
 
-from pellicle.commands import Command, commands, errors_attributed_to, load_command
 from pellicle.files import for_document
-from pellicle.origins import GROUP
+from pellicle.plugins.commands import Command, commands, errors_attributed_to, load_command
+from pellicle.plugins.origins import GROUP
 from pellicle.results import storage
 from pellicle.results.result import Result
 from pellicle.results.runs import axes_of, progress_of, runs_of

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from pellicle.hookspecs import RegisterCommand, hookimpl
+from pellicle.plugins.hooks import RegisterCommand, hookimpl
 
 from .printing import INTERRUPTED, AsJSON, InSI, echo, print_json, print_table
 
@@ -60,6 +60,7 @@ def run(
     from pellicle.contact.caveats import Status
     from pellicle.runs import runner
     from pellicle.runs.journal import Journal
+    from pellicle.runs.outputs import standard_outputs
     from pellicle.runs.progress import RunProgress
     from pellicle.show import sentences, tables
     from pellicle.studies import runner as studies
@@ -90,7 +91,7 @@ def run(
             steps = len(configuration.loading.values)
             whole, bar = f"{steps} steps", RunProgress(steps, not quiet)
             journal = Journal(stem, configuration.identity, overwrite)
-            outputs = runner.standard_outputs(configuration.outputs)
+            outputs = standard_outputs(configuration.outputs)
             outcome, files, resumed = runner.execute(
                 configuration, journal, outputs, bar, threads=threads
             )

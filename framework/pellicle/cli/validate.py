@@ -13,7 +13,7 @@ from .printing import echo, print_json, print_table
 
 def validate(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False) -> None:
     """Solve the shipped problems of known solution; exit code 0 only if all agree."""
-    from pellicle.plugins import registry
+    from pellicle.components.installed import registry
     from pellicle.runs import validation
     from pellicle.show import sentences, tables
 

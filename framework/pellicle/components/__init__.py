@@ -13,12 +13,12 @@ from pellicle.grid import Boundary as Boundary
 from pellicle.grid import boundary_of_run as boundary_of_run
 from pellicle.grid import pair as pair
 from pellicle.grid import shape_of_run as shape_of_run
+from pellicle.plugins.component import Component as Component
+from pellicle.plugins.component import role_of as role_of
+from pellicle.plugins.component import words_of_type as words_of_type
 from pellicle.variables import Variable as Variable
 
-from .base import Component as Component
-from .base import FromRegistry as FromRegistry
-from .base import role_of as role_of
-from .base import words_of_type as words_of_type
+from .calls import profile_of as profile_of
 from .charts import Axis as Axis
 from .charts import Chart as Chart
 from .charts import Column as Column
@@ -48,7 +48,7 @@ from .indenter import HasForceCurve as HasForceCurve
 from .indenter import HasLayerForceCurve as HasLayerForceCurve
 from .indenter import Indenter as Indenter
 from .indenter import LayerForceCurve as LayerForceCurve
-from .indenter import profile_of as profile_of
+from .installed import FromRegistry as FromRegistry
 from .interaction import Interaction as Interaction
 from .kernel import Isotropic as Isotropic
 from .kernel import Kernel as Kernel
@@ -64,7 +64,3 @@ from .solver import Monitor as Monitor
 from .solver import Solver as Solver
 from .validation import Case as Case
 from .validation import Suite as Suite
-
-_OWN = Kernel, Indenter, Interaction, Solver, AreaCorrection, Output, Executor, Prescription
-FAMILIES: dict[str, type[Component]] = {base.family: base for base in _OWN}
-"""The base class of each of pellicle's own families, by name."""

@@ -35,7 +35,7 @@ def extent(values: Iterable[NDArray[Any]]) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Axis:
-    """What is shown along an axis."""
+    """The quantity along an axis, and how it is drawn."""
 
     words: str
     """Such as "contact radius"; the label adds the unit."""
@@ -121,7 +121,7 @@ class Series:
 
 
 def _drawn(shown: Chart | Fields) -> bytes:
-    from pellicle.show import png
+    from pellicle.show.notebook import png
 
     return png(shown)
 
@@ -203,7 +203,7 @@ class Column:
     texts: Mapping[str, str] = field(default_factory=dict)
     """Words for values that are texts, such as types of components."""
     bad: Sequence[bool] = ()
-    """Which cells a page marks, as what people should not rely on."""
+    """Whether a page marks each cell, as one not to be relied on."""
     frames: Sequence[int | None] = ()
     """The frame of the first maps of a page that a click on each cell shows, if any."""
 
@@ -284,5 +284,5 @@ class Table:
 
 
 Shown = Chart | Fields | Table | Sequence[Chart | Fields] | bytes
-"""What an output shows in one figure or file; charts and fields in a sequence are drawn side by
+"""The content of one figure or file of an output; charts and fields in a sequence are drawn side by
 side."""

@@ -10,8 +10,7 @@ from typing import Annotated, Any, ClassVar, Protocol, TypeVar
 from pydantic import BeforeValidator, Field
 
 from pellicle.checks import whole_number
-
-from .base import Component
+from pellicle.plugins.component import Component
 
 
 def _count(unit: str) -> BeforeValidator:

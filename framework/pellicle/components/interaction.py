@@ -13,9 +13,9 @@ from pellicle.checks import errors_attributed_to
 from pellicle.contact.law import GapLaw, Law
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid
+from pellicle.plugins.component import Component
 from pellicle.surface.operators import along_axes
 
-from .base import Component
 from .kernel import Kernel
 
 # Share of the cutoff over which a slope is measured.
@@ -33,8 +33,6 @@ class Interaction(Component):
 
     family: ClassVar[str] = "interaction"
     place: ClassVar[str] = "interaction"
-    needs_contact: ClassVar[bool] = False
-    """Whether it acts only on cells that are joined to a contact by cells within the cutoff."""
     averaged: ClassVar[bool] = False
     """Whether the traction of the law that is resolved is averaged over each cell.
 
@@ -53,7 +51,11 @@ class Interaction(Component):
 
     @abstractmethod
     def cutoff(self) -> float:
-        """Return the gap [m] beyond which nothing acts."""
+        """Return the gap [m] beyond which nothing acts.
+
+        If it is 0, the law that is resolved acts only on cells that are joined to a contact: the
+        range of the cells would attract too soon.
+        """
 
     def slope(self, gap: Array) -> Array:
         """Return dσ/dg [Pa/m]; by default from differences of `traction`."""
@@ -95,13 +97,9 @@ def law_of(
         with errors_attributed_to(interaction):
             return resolved(kernel, grid)
 
-    law = Law(
-        resolve(grid),
-        resolve,
-        interaction,
-        needs_contact=interaction.needs_contact,
-        averaged=interaction.averaged,
-    )
+    with errors_attributed_to(interaction):
+        needs_contact = interaction.cutoff() == 0
+    law = Law(resolve(grid), resolve, interaction, needs_contact, interaction.averaged)
     with errors_attributed_to(kernel):
         compliance = along_axes(kernel.symbol, np.array([np.pi / grid.cell_size])).item()
     cutoff, strength = law.cutoff(), law.strength()

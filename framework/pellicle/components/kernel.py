@@ -12,9 +12,8 @@ from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to, read_only, real_number
 from pellicle.contact.time_step import Branch
 from pellicle.errors import ConfigError, PluginError, shown
+from pellicle.plugins.component import Component
 from pellicle.surface.from_kernel import HasClosedForm, closed_form_of, mean_compliance
-
-from .base import Component
 
 # Rounding error of a sum of shares.
 _ROUNDING = 1e-12

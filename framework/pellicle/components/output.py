@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from fnmatch import fnmatchcase
-from itertools import product
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, ClassVar, Literal, Protocol
 
 from pellicle.arrays import DataArray, Dataset
-from pellicle.checks import component_name, errors_attributed_to
-from pellicle.errors import ConfigError, PluginError, shown
+from pellicle.checks import component_name
+from pellicle.errors import PluginError
+from pellicle.plugins.component import Component
 
-from .base import Component
 from .charts import Shown
 
 
@@ -78,6 +76,12 @@ class Output(Component):
         """Ends of its file names, which follow the stem; ``*`` stands for any text."""
         return ("*",)
 
+    @classmethod
+    def check_class(cls) -> None:
+        """Refuse a class that shows nothing."""
+        if (cls.charts, cls.write) == (Output.charts, Output.write):
+            raise PluginError(f"{cls.__name__} lacks the method charts, or write")
+
     def check(self, runs: Runs) -> None:
         """Refuse settings that do not fit a study, by a ConfigError; nothing is solved yet.
 
@@ -92,83 +96,16 @@ class Output(Component):
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write files whose paths begin with ``stem``, such as ``f"{stem}.txt"``; return the paths.
 
-        Existing files of an earlier call are replaced. By default the figures and tables of
-        `charts` are written, as PNG and CSV.
+        Existing files of an earlier call are replaced. Of an output that has `charts` alone the
+        framework writes the figures and tables, as PNG and CSV.
         """
-        from pellicle.show import write_charts
-
-        return write_charts(self.charts(runs), stem)
+        raise PluginError(
+            f"{component_name(self)} has charts alone; pellicle.show.write_charts(output.charts("
+            "runs), stem) writes them"
+        )
 
     def step(self, record: Dataset, stem: Path) -> None:
         """Receive a load step, with dimension ``step`` of length 1, as soon as it is solved.
 
         Each step is passed once, in order, including those that an earlier process solved.
         """
-
-
-def stem_of(output: Output, stem: Path) -> Path:
-    """Return the stem of an output in a run or study with the given stem."""
-    return stem.with_name(f"{stem.name}{_own_suffix(output)}")
-
-
-def refuse_shared_files(outputs: Sequence[Output], *, of_study: bool = False) -> None:
-    """Refuse outputs that would write the same file, or one that the framework writes itself."""
-    for index, output in enumerate(outputs):
-        whole = of_study and output.scope != "run"
-        others = {"the table of the study": [".h5", ".csv"]} if whole else {"the result": [".h5"]}
-        for number, earlier in enumerate(outputs[:index]):
-            others[f"outputs.{number} ({earlier.type_name!r})"] = _suffixes(earlier)
-        for owner, suffixes in others.items():
-            if shared := _shared(suffixes, _suffixes(output)):
-                raise ConfigError(
-                    f"{output.type_name!r} would write NAME{shared}, a file of {owner}; give it "
-                    "another name if it can have one, or leave it out",
-                    f"outputs.{index}.type",
-                )
-
-
-def _own_suffix(output: Output) -> str:
-    return "" if output.shares_stem else f"-{getattr(output, 'name', '') or output.type_name}"
-
-
-def _suffixes(output: Output) -> list[str]:
-    """Return the ends of an output's file names, which follow the stem of the run."""
-    suffixes: object = output.suffixes
-    if not isinstance(suffixes, tuple) or not all(isinstance(text, str) for text in suffixes):
-        raise PluginError(
-            f"{component_name(output)}: suffixes is {shown(suffixes)}; it has to be a tuple of "
-            'texts, such as (".txt",)'
-        )
-    return [f"{_own_suffix(output)}{suffix}" for suffix in suffixes]
-
-
-def _shared(some: Iterable[str], others: Sequence[str]) -> str:
-    """Return a suffix that both contain, whatever the case, as some file systems; else ""."""
-    for one, other in product(some, others):
-        if fnmatchcase(one.casefold(), other.casefold()):
-            return one
-        if fnmatchcase(other.casefold(), one.casefold()):
-            return other
-    return ""
-
-
-def files_of(output: Output, runs: Runs, stem: Path) -> tuple[Path, ...]:
-    """Let an output write its files for a run or study with the given stem; return their paths."""
-    with errors_attributed_to(output):
-        files = output.write(runs, stem_of(output, stem))
-    require_files(output, files, stem)
-    return tuple(files)
-
-
-def require_files(output: Output, files: object, stem: Path) -> None:
-    """Refuse the value that write() of an output returned unless it lists files of its own stem."""
-    own = stem_of(output, stem)
-    call = f"{component_name(output)}: write(runs, stem) returned"
-    if not isinstance(files, (tuple, list)) or not all(isinstance(path, Path) for path in files):
-        raise PluginError(
-            f"{call} {shown(files)}; it has to return a tuple of pathlib.Path, empty if there is "
-            "none"
-        )
-    for path in files:
-        if not str(path).startswith(str(own)):
-            raise PluginError(f"{call} {path}; its files have to begin with the stem, {own}")

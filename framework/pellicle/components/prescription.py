@@ -4,26 +4,25 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar, Final
 
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.checks import component_name, errors_attributed_to, real_number
 from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.initial_guess import overlap_pressure
 from pellicle.contact.law import Law
 from pellicle.contact.load_step import FinishedStep
 from pellicle.contact.problem import Depth, Force, Problem
 from pellicle.contact.solution import State
-from pellicle.errors import ConfigError, PluginError, shown
+from pellicle.errors import PluginError, shown
 from pellicle.grid import Grid
+from pellicle.plugins.component import Component
 from pellicle.surface.operators import Operator
 from pellicle.units import Quantity
-from pellicle.variables import Variable
+from pellicle.variables import COORDINATES, VARIABLES, Variable
 
-from .base import Component
 from .indenter import Footprint
 
 OPTIONS: Final = frozenset({"stiffness", "time"})
@@ -115,6 +114,29 @@ class Prescription(Component):
     """Variables that it adds to a result; kind ``residual`` is the relative error of its search."""
 
     @classmethod
+    def check_class(cls) -> None:
+        """Refuse a class that ``[loading]`` cannot hold, or whose variables a result cannot."""
+        name, type_ = cls.__name__, str(cls.model_fields["type"].default)
+        if not isinstance(getattr(cls, "unit", None), str):
+            raise PluginError(f"{name} lacks the class variable unit: the SI unit of its values")
+        if not cls.quantity().has_known_unit:
+            raise PluginError(f"{name}.unit is {cls.unit!r}, which is not a known unit")
+        if reserved := {type_, *cls.model_fields} & OPTIONS:
+            raise PluginError(
+                f"{name}: {min(reserved)!r} is an option of [loading]; choose another name"
+            )
+        if type_ in cls.model_fields:
+            raise PluginError(f"{name} has a field with the name of its type; choose another name")
+        for variable in cls.variables:
+            is_taken = variable.name in {*VARIABLES, *COORDINATES}
+            if is_taken or not variable.name.isidentifier():
+                reason = "the name of another variable" if is_taken else "not a name"
+                raise PluginError(
+                    f"{name}: variables has {shown(variable.name)}, which is {reason}; choose one "
+                    "of letters, digits and _ that no result has yet"
+                )
+
+    @classmethod
     def quantity(cls, interaction: bool = False) -> Quantity:
         """Return unit and range of its values, without or with an interaction."""
         if interaction and cls.may_pull:
@@ -132,72 +154,3 @@ class Prescription(Component):
     def report(self, setting: Setting, step: Equilibrium) -> dict[str, float]:
         """Return the `variables` of a solved step, except that of kind ``residual``."""
         return {}
-
-
-def check_value(prescription: Prescription, setting: Setting, value: float, field: str) -> None:
-    """Let a prescription check a prescribed value; its errors name ``field``.
-
-    If an error names a field already, it keeps that one.
-    """
-    try:
-        with errors_attributed_to(prescription):
-            prescription.check(setting, value)
-    except ConfigError as error:
-        named = any(problem.field for problem in error.problems)
-        raise (error if named else error.within(field)) from None
-
-
-def target_of(prescription: Prescription, setting: Setting, value: float) -> Depth | Force | Search:
-    """Return the depth, the force or the search for a prescribed value."""
-    with errors_attributed_to(prescription):
-        target = prescription.target(setting, value)
-    call = f"target(setting, {value:g})"
-    if not isinstance(target, (Depth, Force, Search)):
-        raise PluginError(
-            f"{component_name(prescription)}: {call} returned {shown(target)}; it has to return a "
-            "pellicle.Depth, Force or Search"
-        )
-    for field in ("value", "compliance", "goal", "resolution", "width", "guess"):
-        number = getattr(target, field, None)
-        if number is None:
-            continue
-        number = real_number(prescription, f"{call}.{field}", number)
-        signed = field in ("goal", "guess") or (
-            field == "value" and (isinstance(target, Depth) or setting.law is not None)
-        )
-        if not np.isfinite(number) or (number < 0 and not signed):
-            allowed = "finite" if signed else "finite and ≥ 0"
-            raise PluginError(
-                f"{component_name(prescription)}: {call}.{field} is {number:g}; it has to be "
-                f"{allowed}"
-            )
-    if not isinstance(target, Search):
-        return target
-    quantity = target.measure
-    if target.control not in (Depth, Force) or not callable(quantity):
-        raise PluginError(
-            f"{component_name(prescription)}: {call} has to search by control = Depth or Force, "
-            "with a function as measure"
-        )
-
-    def measure(step: Equilibrium) -> float:
-        with errors_attributed_to(prescription):
-            return real_number(prescription, f"{call}.measure(step)", quantity(step))
-
-    return replace(target, measure=measure)
-
-
-def report_of(prescription: Prescription, setting: Setting, step: Equilibrium) -> dict[str, float]:
-    """Return the variables that a prescription adds to a step."""
-    with errors_attributed_to(prescription):
-        report = prescription.report(setting, step)
-    declared = {v.name for v in prescription.variables if v.kind != "residual"}
-    if not isinstance(report, dict) or report.keys() != declared:
-        raise PluginError(
-            f"{component_name(prescription)}: report() returned {shown(report)}; it has to return "
-            f"a dict of {', '.join(sorted(declared)) or 'nothing'}, as its variables declare"
-        )
-    return {
-        name: real_number(prescription, f"report()[{name!r}]", value)
-        for name, value in report.items()
-    }

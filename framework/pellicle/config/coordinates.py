@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pellicle.components import Component
-from pellicle.components.base import role_of, words_of_type
+from pellicle.plugins.component import role_of, words_of_type
 from pellicle.schema.from_file import PORTABLE
 from pellicle.schema.model import Model, get, walk
 from pellicle.schema.ranges import Values

@@ -14,10 +14,11 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from pellicle.components import Component, HasForceCurve
-from pellicle.components.base import words_of_type
+from pellicle.components.installed import registry
 from pellicle.errors import ConfigError, PluginError
 from pellicle.grid import Grid
-from pellicle.plugins import Origin, registry
+from pellicle.plugins.component import words_of_type
+from pellicle.plugins.origins import Origin
 from pellicle.units import parts_of, quantity_of, readable
 from pellicle.variables import words_of_name
 
@@ -43,7 +44,7 @@ class FieldRow(NamedTuple):
     unit: str = ""
     """SI unit, "1" of a pure number; empty for what is no number."""
     kind: str = ""
-    """What it takes: unit and bounds, or the kind of value."""
+    """Allowed values: unit and bounds, or the kind of value."""
     default: str = ""
     """The default as a file would give it, or in words, such as "none" or "required"."""
     origin: Origin | None = None

@@ -51,7 +51,6 @@ def warn_of_scale(configuration: Run | Study) -> None:
 
 def _doubts(run: Run) -> Iterator[tuple[str, str]]:
     size = max(run.grid.size)
-    domain = f"on a domain of {readable(size, 'm', 3)}"
     values = list(_values(run))
     moduli = [value for path, value, unit in values if path[:7] == "kernel." and unit == "Pa"]
     # Displacement by a pressure, both over the whole domain, over its size [1/Pa].
@@ -67,18 +66,22 @@ def _doubts(run: Run) -> Iterator[tuple[str, str]]:
         # Of a line contact the indenter may have any length along the line, heights any unit.
         is_scale = min(run.grid.points) == 1 or path.endswith(".unit")
         if part == "indenter" and unit == "m" and value > _LENGTHS * size and not is_scale:
-            yield _doubt(path, value, unit, domain)
+            yield _doubt(path, value, unit, _on_domain(size))
         if part == "kernel" and unit == "N/m" and moduli:
             length = value / max(moduli)
             if length > _ELASTOCAPILLARY * size:
                 over = f"over the modulus {readable(length, 'm', 3)}"
-                yield _doubt(path, value, unit, f"{over}, {domain}")
+                yield _doubt(path, value, unit, f"{over}, {_on_domain(size)}")
         if part == "interaction" and unit == "J/m2" and value * softness > _STICKY * size:
             yield _doubt(path, value, unit, "which displaces this solid by more than the domain")
         if part == "loading" and not (unit == "m" and _has_spring(run)):
             reached = {"m": value / size, "N": value / size**2 * softness, "Pa": value * softness}
             if reached.get(unit, 0.0) > 1.0:
-                yield _doubt(path, value, unit, domain)
+                yield _doubt(path, value, unit, _on_domain(size))
+
+
+def _on_domain(size: float) -> str:
+    return f"on a domain of {readable(size, 'm', 3)}"
 
 
 def _has_spring(run: Run) -> bool:
@@ -92,10 +95,11 @@ def _values(run: Run) -> Iterator[tuple[str, float, str]]:
     for path, value, field in walk(run):
         if path.startswith("loading.") or path[-1].isdecimal():
             continue
-        quantity = quantity_of(field) if field else None
-        several = value if isinstance(value, (tuple, list)) else [value]
-        largest = max((abs(v) for v in several if isinstance(v, float)), default=0.0)
-        if quantity and largest > 0:
+        if not isinstance(value, (float, tuple, list)):
+            continue
+        several = [value] if isinstance(value, float) else value
+        largest = max([abs(v) for v in several if isinstance(v, float)], default=0.0)
+        if field and largest > 0 and (quantity := quantity_of(field)):
             yield path, largest, quantity.unit
     loading = run.loading
     yield f"loading.{loading.prescribed}", max(map(abs, loading.values)), loading.prescription.unit

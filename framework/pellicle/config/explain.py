@@ -12,9 +12,10 @@ from typing import Any, NamedTuple
 from pydantic import BaseModel
 
 from pellicle.components import Prescription
+from pellicle.components.installed import registry
 from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import Grid
-from pellicle.plugins import Registered, registry
+from pellicle.plugins.registry import Registered
 from pellicle.schema.messages import similar
 
 from .describe import FieldRow, field_rows

@@ -10,8 +10,7 @@ from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
 from pellicle.components import Component
-from pellicle.components.base import FAMILY
-from pellicle.plugins import registry
+from pellicle.components.installed import FAMILY, registry
 
 from .run import Run
 from .study import Study

@@ -25,9 +25,9 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
 from pellicle.components import FromRegistry, Prescription
+from pellicle.components.installed import registry
 from pellicle.components.prescription import OPTIONS
 from pellicle.errors import ConfigError, Problem, all_problems
-from pellicle.plugins import registry
 from pellicle.schema.messages import nearest
 from pellicle.schema.model import Model
 from pellicle.units import Quantity

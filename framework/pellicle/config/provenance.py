@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
+from pellicle.components.installed import registry
 from pellicle.files import for_document
-from pellicle.plugins import registry
 
 from .run import Run, components_in
 

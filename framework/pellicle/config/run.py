@@ -10,7 +10,7 @@ import hashlib
 import json
 import math
 from collections.abc import Iterable, Mapping
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Annotated, Any, Self
 
@@ -26,6 +26,7 @@ from pydantic import (
 from pellicle.checks import errors_attributed_to
 from pellicle.components import (
     AreaCorrection,
+    Branch,
     Component,
     FromRegistry,
     Indenter,
@@ -34,18 +35,18 @@ from pellicle.components import (
     Output,
     Solver,
 )
-from pellicle.components.base import words_of_type
+from pellicle.components.installed import registry
 from pellicle.components.kernel import branches_of
-from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError, all_problems
 from pellicle.files import is_file
 from pellicle.grid import Grid, grid_of_run
-from pellicle.plugins import registry
+from pellicle.plugins.component import words_of_type
 from pellicle.schema.from_file import FromFile
 from pellicle.schema.model import get, replaced, walk
 from pellicle.surface import along_axes
 from pellicle.variables import VARIABLES, Variable, corrected_area, corrected_fraction
 
+from .file_names import refuse_shared_files
 from .gradient import derivatives_of, refuse_undefined
 from .loading import Loading, fields_from
 
@@ -117,7 +118,7 @@ class Run(FromFile):
 
     @model_validator(mode="after")
     def _relaxes_in_time(self) -> Self:
-        if not branches_of(self.kernel):
+        if not self.branches:
             return self
         name = self.kernel.type_name
         if self.loading.times is None:
@@ -142,7 +143,7 @@ class Run(FromFile):
     def _legs_begin_at_rest(self) -> Self:
         loading = self.loading
         begins = loading.prescription.is_zero_at_rest or not loading.samples
-        if begins or not (self.interaction or branches_of(self.kernel)):
+        if begins or not (self.interaction or self.branches):
             return self
         if loading.durations[0] > 0 or (len(loading.values) > 1 and loading.samples[1].leg == 0):
             raise ConfigError(
@@ -161,7 +162,7 @@ class Run(FromFile):
         has no limit as the cells shrink, unless an elastic skin is much stiffer than it there.
         """
         kernel, interaction = self.kernel, self.interaction
-        if interaction is None or not branches_of(kernel) or interaction.cutoff() > 0:
+        if interaction is None or not self.branches or interaction.cutoff() > 0:
             return self
         q = np.array([np.pi / self.grid.cell_size])
         with errors_attributed_to(kernel):
@@ -216,6 +217,11 @@ class Run(FromFile):
 
         return of_run(self)
 
+    @cached_property
+    def branches(self) -> tuple[Branch, ...]:
+        """The branches of a solid that relaxes; none of one that is elastic."""
+        return branches_of(self.kernel)
+
     @property
     def variables(self) -> list[Variable]:
         """The variables that its steps and its path will have, without fields and texts."""
@@ -246,13 +252,14 @@ class Run(FromFile):
         identifying = self.model_dump(
             mode="json", exclude_none=True, exclude={"title", "outputs"}
         ) | {"schema": _NUMBERS_VERSION}
+        used: set[type[Component]] = {type(self.loading.prescription)}
         for path, value, _ in walk(self):
+            if isinstance(value, Component) and not path.startswith("outputs."):
+                used.add(type(value))
             if isinstance(value, Path) and isinstance(get(identifying, path), str):
                 stat = value.stat() if is_file(value) else None
                 content = stat and _digest(value.absolute(), stat.st_mtime_ns, stat.st_size)
                 identifying = replaced(identifying, path, content or str(value))
-        solving = self.kernel, self.indenter, self.interaction, self.solver, self.corrections
-        used = {*map(type, components_in((*solving, self.loading.prescription)))}
         versions = registry().versions(used)
         if others := {name: number for name, number in versions.items() if name != "pellicle"}:
             identifying["plugins"] = others

@@ -14,7 +14,6 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from pellicle.components import Executor, FromRegistry
-from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError, Problem, all_problems, first_of, problems_within, shown
 from pellicle.results.derived import constants
 from pellicle.schema.expression import CONSTANTS, FUNCTIONS, evaluate, names_in
@@ -24,6 +23,7 @@ from pellicle.schema.ranges import Axes, expand
 from pellicle.variables import FIELDS, VARIABLES
 
 from .coordinates import Coordinate, as_json, coordinate, short, tell_apart
+from .file_names import refuse_shared_files
 from .run import Run
 
 DEFAULT_EXECUTOR = "serial"

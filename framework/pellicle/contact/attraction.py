@@ -1,4 +1,4 @@
-"""What a law exerts on the cells of a grid, averaged over each cell where the law asks for it."""
+"""The traction of a law on the cells of a grid, averaged over each where the law asks for it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What limits a load step, as data: a status, and the values that its sentence states."""
+"""Caveats of a load step, as data: a status, and the values that its sentence states."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Status(Enum):
     """
 
     phrase: str
-    """What a caveat limits, to follow "in 2 of 3 steps"; empty where the step did not converge."""
+    """Words to follow "in 2 of 3 steps"; empty where the step did not converge."""
 
     def __new__(cls, template: str, phrase: str = "") -> Self:
         """Return a member with its template and phrase."""
@@ -194,7 +194,7 @@ _VARIANTS: Final = {
 
 
 class Caveat(NamedTuple):
-    """What limits a load step: a status, and the values that its sentence states."""
+    """A limit of a load step: a status, and the values that its sentence states."""
 
     status: Status
     values: Mapping[str, float | str] = MappingProxyType({})

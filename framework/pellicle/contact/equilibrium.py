@@ -100,7 +100,7 @@ class Equilibrium:
 
     @cached_property
     def attraction(self) -> Attraction | None:
-        """What the law of the problem exerts across the gap; None without a law."""
+        """The traction of the law across the gap; None without a law."""
         return self.problem.attraction(self.gap, self.contact) if self.problem.law else None
 
     @cached_property

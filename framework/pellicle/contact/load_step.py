@@ -50,7 +50,7 @@ class LoadStep:
     response: tuple[Array, float] | None = None
     """dp/dδ [Pa/m] and dF/dδ [N/m] of the contact, once known; of an infinite one any multiple."""
     caveats: tuple[Caveat, ...] = ()
-    """What limits the step, `ranked`."""
+    """Caveats of the step, `ranked`."""
 
     @property
     def converged(self) -> bool:
@@ -74,7 +74,7 @@ class LoadStep:
 
 @dataclass(frozen=True)
 class FinishedStep:
-    """What a load step leaves to those after it; its fields are views of those of the result."""
+    """The end of a load step, for later ones; its fields are views of those of the result."""
 
     state: State
     gap: Array

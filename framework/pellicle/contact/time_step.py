@@ -3,12 +3,12 @@
 The stiffness of the solid is k₀ (gₑ + Σ gⱼ e^(−t/τⱼ)), with the instantaneous stiffness k₀ and
 shares g of it. A skin adds a stiffness that does not relax. If the displacement is linear in time
 over a step, the problem at its end is exactly that of an elastic solid, γ times as stiff as the
-instantaneous one, whose surface the steps before have displaced. Without a skin the memory of the
+instantaneous one, whose surface the steps before have displaced. Without a skin the history of the
 solid consists of displacements, cell by cell; under a skin, of pressures that the solid carries.
 
-With `Memory.history` h, the displacement u that a step without pressure leaves, to which A p adds,
-is −A h, and −h/γ without a skin: A = 1/(k_skin + γ k₀) is the operator of the step. Under a skin
-the strain is s = k₀ u = B (p − h), by the operator B = k₀/(k_skin + γ k₀) without unit.
+With `History.residual_stress` h, the displacement u that a step without pressure leaves, to which
+A p adds, is −A h, and −h/γ without a skin: A = 1/(k_skin + γ k₀) is the operator of the step. Under
+a skin the strain is s = k₀ u = B (p − h), by the operator B = k₀/(k_skin + γ k₀) without unit.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ class TimeStep:
 
 
 @dataclass(frozen=True)
-class Memory:
+class History:
     """The state of a solid with m branches at the end of a step, in units of its strain.
 
     The strain is the displacement u [m] of a solid without a skin. Under a skin it is s = k₀ u
@@ -87,25 +87,25 @@ class Memory:
 
     @classmethod
     def at_rest(cls, branches: Sequence[Branch], shape: tuple[int, ...]) -> Self:
-        """Return the memory of a solid that has never been deformed."""
+        """Return the history of a solid that has never been deformed."""
         return cls(np.zeros(shape), np.zeros((len(branches), *shape)))
 
-    def history(self, step: TimeStep) -> Array:
+    def residual_stress(self, step: TimeStep) -> Array:
         """Return the stress at the end of ``step`` less γ times the strain there, whatever it is.
 
         It is Σ (e vⱼ − c gⱼ · strain), with the part vⱼ that a branch carries and the decay e and
         weight c gⱼ of the step.
         """
-        history = np.zeros_like(self.strain)
+        stress = np.zeros_like(self.strain)
         for part, decay, weight in zip(self.branches, step.decays, step.weights, strict=True):
-            history += decay * part
-            history -= weight * self.strain
-        return history
+            stress += decay * part
+            stress -= weight * self.strain
+        return stress
 
-    def after(self, step: TimeStep, strain: Array) -> Memory:
-        """Return the memory at the end of ``step``, where the strain is ``strain``."""
+    def after(self, step: TimeStep, strain: Array) -> History:
+        """Return the history at the end of ``step``, where the strain is ``strain``."""
         growth = strain - self.strain
         branches = np.empty_like(self.branches)
         for index, (decay, weight) in enumerate(zip(step.decays, step.weights, strict=True)):
             branches[index] = decay * self.branches[index] + weight * growth
-        return Memory(strain, branches)
+        return History(strain, branches)

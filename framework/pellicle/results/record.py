@@ -100,7 +100,7 @@ class Steps:
         self._fields: dict[str, xr.Variable] = {}
         self._scalars: list[xr.Dataset] = []
         self.path: list[FinishedStep] = []
-        """What the finished steps leave to those after them."""
+        """The finished steps, as later ones see them."""
 
     def __len__(self) -> int:
         return len(self._scalars)

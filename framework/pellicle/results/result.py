@@ -92,7 +92,7 @@ class Result:
         return self._of(Status.STEEP)
 
     def cramped(self) -> list[tuple[int, str]]:
-        """Return number and status of each step whose domain is small for the solid's memory."""
+        """Return number and status of each step whose domain is small for a relaxing solid."""
         return self._of(Status.SMALL_DOMAIN)
 
     def warnings(self) -> list[str]:

@@ -25,7 +25,7 @@ from .path import with_path
 
 @dataclass(frozen=True)
 class StoredRuns:
-    """What outputs are given, `pellicle.Runs`, from the datasets of its runs."""
+    """A `pellicle.Runs` for outputs, from the datasets of its runs."""
 
     table: Dataset
     source: Callable[[str], Dataset]

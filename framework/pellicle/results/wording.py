@@ -1,4 +1,4 @@
-"""Which variables mean something, and how figures and tables show them: words, unit, digits."""
+"""Variables for readers: words, unit and digits, and whether they mean something."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import Final
 
 import numpy as np
 
-from pellicle.arrays import DataArray, Dataset
+from pellicle.arrays import Array, DataArray, Dataset
 from pellicle.components.charts import Column
 from pellicle.units import DIGITS
-from pellicle.variables import CORRECTED_FRACTION, WORDS, WORDS_OF_VALUES, words_of_name
+from pellicle.variables import CORRECTED_FRACTION, ROLE, SEED, WORDS, WORDS_OF_VALUES, words_of_name
 
 _ALL_DIGITS = 15
 _AXES: Final = {"semi_major_axis", "semi_minor_axis", "major_axis_angle"}
@@ -68,3 +68,29 @@ def means_something(data: Dataset, name: str) -> bool:
     if name in _OF_A_PERIOD or name.startswith(CORRECTED_FRACTION):
         return is_periodic(data)
     return True
+
+
+def is_ordered(table: Dataset, dim: str | None) -> bool:
+    """Return whether the values along a dimension are numbers to compare, which seeds are not."""
+    return (
+        dim is not None
+        and dim in table.coords
+        and table[dim].dtype.kind in "if"
+        and not is_seed(table[dim])
+    )
+
+
+def is_seed(axis: DataArray) -> bool:
+    """Return whether the values of an axis only repeat a random run."""
+    return bool(axis.attrs.get(ROLE) == SEED)
+
+
+def is_log_spaced(values: Array) -> bool:
+    """Return whether at least three positive values over half a decade grow by about even factors.
+
+    Rounded series such as 1, 2, 5, 10 or 1, 3, 10 count too.
+    """
+    if values.size < 3 or values.min() <= 0 or values.max() < 4 * values.min():
+        return False
+    steps = np.diff(np.log(np.sort(values)))
+    return bool(steps.max() <= 1.5 * steps.min())

@@ -12,17 +12,15 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to
 from pellicle.components import Component, Force, Search, Setting
-from pellicle.components.indenter import profile_of
+from pellicle.components.calls import check_solver, check_value, profile_of, target_of
+from pellicle.components.installed import registry
 from pellicle.components.interaction import law_of
-from pellicle.components.kernel import branches_of, instantaneous
-from pellicle.components.prescription import check_value, target_of
-from pellicle.components.rules import CHEAP, Case, broken
-from pellicle.components.solver import check_solver
+from pellicle.components.kernel import instantaneous
+from pellicle.components.rules import CHEAP, Case, first_violation
 from pellicle.config.run import Run, components_in
 from pellicle.contact.time_step import stiffness_after
 from pellicle.errors import ConfigError, PluginError
 from pellicle.grid import Grid
-from pellicle.plugins import registry
 from pellicle.surface.from_kernel import operator_of
 from pellicle.surface.influence import warn_of_cells
 from pellicle.surface.operators import along_axes
@@ -78,7 +76,7 @@ def _is_own(kind: type[Component]) -> bool:
 @lru_cache(maxsize=256)
 def _ask_stranger(component: Component, case: Case) -> None:
     """Refuse a component of others that breaks a rule; those inside it are asked on their own."""
-    if violation := broken(CHEAP[component.family], component, case):
+    if violation := first_violation(CHEAP[component.family], component, case):
         raise PluginError(f"{component_name(component)} breaks the rule {violation}")
 
 
@@ -111,8 +109,9 @@ def _warn_of_liquid(run: Run) -> None:
 
     A kernel that states its time span has a share of its own for all times beyond.
     """
-    _, longest = run.kernel.time_span()
-    if longest == math.inf and stiffness_after(branches_of(run.kernel), math.inf) < _LIQUID:
+    if not run.branches or run.kernel.time_span()[1] < math.inf:
+        return
+    if stiffness_after(run.branches, math.inf) < _LIQUID:
         warnings.warn(
             f"kernel: the shares of {run.kernel.type_name!r} that relax sum to 1, which makes the "
             "solid a liquid: in the end only a skin carries; let them sum to less for a solid",

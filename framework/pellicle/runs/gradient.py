@@ -10,7 +10,7 @@ import scipy.fft
 import xarray as xr
 
 from pellicle.components import Depth, Force, Search
-from pellicle.components.prescription import target_of
+from pellicle.components.calls import target_of
 from pellicle.config.gradient import derivatives_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import from_text

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pellicle.components.kernel import branches_of
 from pellicle.config.gradient import HEIGHTS
 from pellicle.config.run import Run
 from pellicle.contact.time_step import TimeStep
@@ -41,7 +40,7 @@ def memory_of(run: Run) -> float:
     solid that relaxes is its branches, twice as they are brought forward, what they leave behind
     and the profile that it displaces; under a skin also the strain and the operators that are kept.
     """
-    grid, solver, branches = run.grid, run.solver, branches_of(run.kernel)
+    grid, solver, branches = run.grid, run.solver, run.branches
     cells = grid.points[0] * grid.points[1]
     operator = _LINE if grid.points[1] == 1 else _OPERATOR[grid.boundary]
     iterating = solver.arrays(grid) + (_STICKS if run.interaction else 0.0)

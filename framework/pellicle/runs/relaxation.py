@@ -1,4 +1,4 @@
-"""Carry the memory of a solid that relaxes from one load step to the next."""
+"""Carry the history of a solid that relaxes from one load step to the next."""
 
 from __future__ import annotations
 
@@ -13,13 +13,12 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.checks import errors_attributed_to
 from pellicle.components import Kernel, Setting
-from pellicle.components.kernel import branches_of
 from pellicle.config.run import Run
 from pellicle.contact.load_step import FinishedStep
-from pellicle.contact.time_step import Memory, TimeStep
+from pellicle.contact.time_step import History, TimeStep
 from pellicle.grid import Grid
 from pellicle.surface import HasSymbol, mean_compliance
-from pellicle.surface.outside import PlaneOperator
+from pellicle.surface.plane import PlaneOperator
 
 KEPT: Final = 4
 """Number of stiffnesses γ for which `skin_operators` are kept."""
@@ -28,19 +27,19 @@ _DIGITS: Final = 12
 
 
 class Relaxation:
-    """The memory of a solid, brought forward by the pressures and displacements of the steps.
+    """The history of a solid, brought forward by the pressures and displacements of the steps.
 
-    The memory is a function of these alone, so a resumed run brings it forward from those in its
+    The history is a function of these alone, so a resumed run brings it forward from those in its
     file and goes on with the same numbers.
     """
 
     def __init__(self, run: Run) -> None:
-        kernel, branches = run.kernel, branches_of(run.kernel)
+        kernel, branches = run.kernel, run.branches
         # The solid is undeformed before the first step.
         self._steps = [TimeStep.of(branches, duration) for duration in run.loading.durations]
-        self._memory = Memory.at_rest(branches, run.grid.shape)
+        self._history = History.at_rest(branches, run.grid.shape)
         # Integrals over the plane [N]: long waves do not bend the skin, so the solid carries all.
-        self._integral = Memory.at_rest(branches, ())
+        self._integral = History.at_rest(branches, ())
         self._cell_area = run.grid.cell_area
         has_skin = kernel.without_skin() != kernel
         self._skin = skin_operators(kernel, run.grid) if has_skin else None
@@ -48,7 +47,7 @@ class Relaxation:
 
     @property
     def applications(self) -> int:
-        """Operator applications of the last `setting` to bring the memory forward by one step."""
+        """Operator applications of the last `setting` to bring the history forward by one step."""
         return 2 if self._skin and self._done else 0
 
     def setting(self, setting: Setting, path: Sequence[FinishedStep]) -> Setting:
@@ -62,16 +61,16 @@ class Relaxation:
         step, left = self._steps[self._done], None
         if self._skin and not self._done and step.is_jump:
             return setting
-        history = self._memory.history(step)
+        stress = self._history.residual_stress(step)
         if self._skin:
             whole = self._skin[0](step)
             operator = whole.operator
             if self._done:
-                left = -whole(history, float(self._integral.history(step)))
+                left = -whole(stress, float(self._integral.residual_stress(step)))
         else:
             operator = setting.operator.scaled(1 / step.stiffness)
             if self._done:
-                left = history / -step.stiffness
+                left = stress / -step.stiffness
         return replace(setting, operator=operator, left=left)
 
     def _advance(self, pressure: Array, displacement: Array) -> None:
@@ -79,11 +78,11 @@ class Relaxation:
         strain = displacement
         if self._skin:
             force = np.asarray(pressure.sum() * self._cell_area)
-            remaining = float(force - self._integral.history(step))
+            remaining = float(force - self._integral.residual_stress(step))
             # What the solid carries of the pressure, in units of its strain s = k₀ u.
-            strain = self._skin[1](step)(pressure - self._memory.history(step), remaining)
+            strain = self._skin[1](step)(pressure - self._history.residual_stress(step), remaining)
             self._integral = self._integral.after(step, np.asarray(remaining / step.stiffness))
-        self._memory = self._memory.after(step, strain)
+        self._history = self._history.after(step, strain)
         self._done += 1
 
 

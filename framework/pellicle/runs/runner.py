@@ -5,9 +5,8 @@ from __future__ import annotations
 import os
 import re
 import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
-from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import Any, Generic, NamedTuple, TypeVar
@@ -16,14 +15,12 @@ import scipy.fft
 import xarray as xr
 
 from pellicle import memory
-from pellicle.checks import checked_threads, errors_attributed_to, read_only_dataset
-from pellicle.components import Output
-from pellicle.components.output import Runs, files_of, stem_of
+from pellicle.checks import checked_threads, read_only_dataset
+from pellicle.components import Output, Runs
 from pellicle.config.doubtful_scales import warn_of_scale
 from pellicle.config.run import Run
 from pellicle.errors import ConfigError, ConvergenceWarning
 from pellicle.grid import Grid
-from pellicle.plugins import registry
 from pellicle.results.path import with_events
 from pellicle.results.record import Steps
 from pellicle.results.result import Result
@@ -33,17 +30,15 @@ from .compose import compose
 from .journal import Journal
 from .lock import locked
 from .memory_estimate import memory_of
+from .outputs import all_done, hand_over, standard_outputs, writers
 from .progress import Bar, Report, RunProgress
 from .solve import solve_steps
 
-STANDARD_OUTPUTS = ("csv", "figures")
-"""Types of the outputs of a configuration that names none."""
 # Bytes; most file systems allow 255, and names of temporary files hold that of the host too.
 _LONGEST_STEM = 120
 # Points of a transform from which threads save time.
 _LARGE = 1024**2
 Outcome = TypeVar("Outcome", Result, xr.Dataset)
-Value = TypeVar("Value")
 
 
 def run(
@@ -156,13 +151,13 @@ def execute(
                 if not inner:
                     stack.enter_context(locked(journal.stem.parent, journal.stem.name))
                 for step in journal.resume():
-                    _hand_over(steps.append(step), outputs, journal)
+                    hand_over(steps.append(step), outputs, journal)
             resumed = len(steps)
             # closing frees the operator before the outputs draw.
             with closing(solved):
                 for step in solved:
                     if journal:
-                        _hand_over(step, outputs, journal, is_new=True)
+                        hand_over(step, outputs, journal, is_new=True)
         except MemoryError:
             raise ConfigError(
                 f"{run.grid.points} cells do not fit in memory; use fewer points", "grid.points"
@@ -174,59 +169,6 @@ def execute(
                     calls = [journal.close, *writers(outputs, runs, journal.stem, run)]
                     files = tuple(chain(*all_done(calls)))
     return Executed(result, files, resumed)
-
-
-def _hand_over(
-    step: xr.Dataset, outputs: Sequence[Output], journal: Journal, *, is_new: bool = False
-) -> None:
-    """Pass a step to every output; if it is new, first to the journal."""
-
-    def give(output: Output) -> None:
-        with errors_attributed_to(output):
-            output.step(read_only_dataset(step), stem_of(output, journal.stem))
-
-    calls = [partial(give, output) for output in outputs]
-    all_done([partial(journal.append, step), *calls] if is_new else calls)
-
-
-def writers(
-    outputs: Sequence[Output], runs: Callable[[], Runs], stem: Path, run: Run
-) -> list[Callable[[], tuple[Path, ...]]]:
-    """Return for each output a function that writes its files.
-
-    ``runs`` returns fresh data for each. A ConfigError names the output by its path in ``run``.
-    """
-
-    def write(output: Output) -> tuple[Path, ...]:
-        try:
-            return files_of(output, runs(), stem)
-        except ConfigError as error:
-            if not run.outputs:
-                raise
-            raise error.within(f"outputs.{run.outputs.index(output)}") from None
-
-    return [partial(write, output) for output in outputs]
-
-
-def all_done(calls: Iterable[Callable[[], Value]]) -> list[Value]:
-    """Call all functions, even if one raises; return the values, or raise the first exception."""
-    values: list[Value] = []
-    errors: list[Exception] = []
-    for call in calls:
-        try:
-            values.append(call())
-        except Exception as error:
-            errors.append(error)
-    if errors:
-        raise errors[0]
-    return values
-
-
-def standard_outputs(named: Sequence[Output] | None) -> Sequence[Output]:
-    """Return the outputs that a configuration names, or the standard ones if it names none."""
-    if named is not None:
-        return named
-    return [registry().make(Output, {"type": type_}) for type_ in STANDARD_OUTPUTS]
 
 
 def default_threads(grid: Grid) -> int:

@@ -10,8 +10,7 @@ from functools import partial
 import xarray as xr
 
 from pellicle.components import Monitor, Search, Setting
-from pellicle.components.kernel import branches_of
-from pellicle.components.prescription import target_of
+from pellicle.components.calls import target_of
 from pellicle.config.gradient import derivatives_of
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
@@ -19,7 +18,7 @@ from pellicle.contact.load_step import FinishedStep, LoadStep, end_of
 from pellicle.results.record import Steps, step_dataset
 
 from .relaxation import Relaxation
-from .target_search import reach, solved
+from .target_search import search_target, solve_at
 from .terms import Surroundings, Term
 from .terms.adhesion import adhesion
 from .terms.contact import contact
@@ -30,10 +29,10 @@ from .terms.theory import theory
 
 
 class Physics:
-    """What the load steps of a run have besides their equilibrium, made once."""
+    """The physics of the load steps of a run besides their equilibrium, made once."""
 
     def __init__(self, run: Run, setting: Setting) -> None:
-        self.memory = Relaxation(run) if branches_of(run.kernel) else None
+        self.history = Relaxation(run) if run.branches else None
         # Their measures are columns of a result in this order.
         named = {
             contact: True,
@@ -41,7 +40,7 @@ class Physics:
             prescription: True,
             stiffness: run.loading.stiffness,
             Gradient(run, setting).add: run.gradient,
-            relaxation: self.memory or run.loading.times,
+            relaxation: self.history or run.loading.times,
             adhesion: run.interaction,
             theory: True,
         }
@@ -66,9 +65,9 @@ def _next_step(
     started = time.perf_counter()
     state = path[-1].state if path else None
     setting, applications = replace(base, state=state, path=end_of(path)), 0
-    if memory := physics.memory:
-        setting = memory.setting(setting, path)
-        applications = memory.applications
+    if history := physics.history:
+        setting = history.setting(setting, path)
+        applications = history.applications
     step = solve_step(run, setting, run.loading.values[len(path)], monitor)
     step = replace(step, applications=step.applications + applications)
     surroundings = Surroundings(setting, path, monitor)
@@ -84,7 +83,7 @@ def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> Lo
     applied = setting.operator.applications
     target = target_of(run.loading.prescription, setting, value)
     if isinstance(target, Search):
-        step = reach(setting, target, run.solver, monitor)
+        step = search_target(setting, target, run.solver, monitor)
     else:
-        step = solved(setting, target, run.solver, monitor)
+        step = solve_at(setting, target, run.solver, monitor)
     return replace(step, applications=setting.operator.applications - applied)

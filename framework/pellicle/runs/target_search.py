@@ -15,8 +15,8 @@ from typing import Final
 import numpy as np
 
 from pellicle.components import Monitor, Solver
+from pellicle.components.calls import solution_of
 from pellicle.components.prescription import Search, Setting
-from pellicle.components.solver import solution_of
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import equilibrium_of
 from pellicle.contact.load_step import LoadStep, start_of
@@ -30,7 +30,7 @@ _SATURATED: Final = math.log(1e6)
 _NEAR: Final = 0.05
 
 
-def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) -> LoadStep:
+def search_target(setting: Setting, search: Search, solver: Solver, monitor: Monitor) -> LoadStep:
     """Return the load step at which the quantity of ``search`` has its goal.
 
     A bracket grows from the first trial; Brent's method (1973) then finds the root, in log F if the
@@ -58,7 +58,9 @@ def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) ->
     return step.having({}, _not_met(trials, jumps=jumps))
 
 
-def solved(setting: Setting, control: Depth | Force, solver: Solver, monitor: Monitor) -> LoadStep:
+def solve_at(
+    setting: Setting, control: Depth | Force, solver: Solver, monitor: Monitor
+) -> LoadStep:
     """Return the load step at a depth or a force."""
     problem = setting.problem(control)
     start = start_of(problem, setting.state, setting.path)
@@ -158,7 +160,7 @@ class _Trials:
 
     def _try(self, control: float) -> float:
         goal = self.search.goal
-        step = solved(self.setting, self.search.control(control), self.solver, self.monitor)
+        step = solve_at(self.setting, self.search.control(control), self.solver, self.monitor)
         self.iterations += step.iterations
         value = self.search.measure(step.equilibrium)
         missed = abs(value - goal) / (abs(goal) or 1.0)

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from itertools import chain, groupby
 
 from pellicle.components import Case
+from pellicle.components.installed import registry
 from pellicle.config.run import Run
-from pellicle.plugins import registry
 
 from .runner import solve
 

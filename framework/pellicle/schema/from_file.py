@@ -64,7 +64,7 @@ class FromFile(Model):
         except ConfigError:
             # Whether a file is for another command takes the import of every command.
             if _is_file.get():
-                from pellicle.commands import refuse_file_of_another
+                from pellicle.plugins.commands import refuse_file_of_another
 
                 refuse_file_of_another(type(self), data.keys())
             raise

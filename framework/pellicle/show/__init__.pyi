@@ -1,6 +1,14 @@
 __all__: list[str]
 
+from . import sentences as sentences
+from . import tables as tables
+from .drawing import DIVERGING as DIVERGING
+from .drawing import SIZE as SIZE
+from .drawing import Drawn as Drawn
 from .drawing import draw as draw
+from .drawing import marks_of as marks_of
+from .fields import contact_and_zone as contact_and_zone
+from .fields import default_step as default_step
 from .fields import up_to_rim as up_to_rim
 from .fields import with_rim as with_rim
 from .fields import without_round_off as without_round_off
@@ -16,7 +24,9 @@ from .maps import Frame as Frame
 from .maps import Maps as Maps
 from .maps import frame as frame
 from .maps import side as side
+from .methods import methods as methods
 from .notebook import summary as summary
+from .numbers import write_csv as write_csv
 from .saving import figure_of as figure_of
 from .saving import figures as figures
 from .saving import png as png
@@ -24,6 +34,7 @@ from .saving import save_figure as save_figure
 from .saving import save_pages as save_pages
 from .saving import svg as svg
 from .saving import write_charts as write_charts
+from .sentences import in_words as in_words
 from .style import LINES as LINES
 from .style import FigureStyle as FigureStyle
 from .tables import input_table as input_table

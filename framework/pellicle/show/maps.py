@@ -87,7 +87,7 @@ class Maps:
 
     caption: str
     what: str
-    """What a frame shows, such as ``"load step"``."""
+    """Noun for a frame, such as ``"load step"``."""
     fields: Sequence[Field]
     frames: Sequence[Frame]
     begin: int = 0

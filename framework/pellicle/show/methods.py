@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any, cast
 
 from pellicle.components import Prescription
+from pellicle.components.installed import registry
 from pellicle.components.prescription import OPTIONS
 from pellicle.config.describe import FieldRow, inputs
 from pellicle.config.run import Run
-from pellicle.plugins import registry
 from pellicle.units import DIGITS, axis_unit, readable
 from pellicle.variables import words_of_name
 from pellicle.version import CITATION

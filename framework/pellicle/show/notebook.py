@@ -1,4 +1,4 @@
-"""What a notebook shows of runs, studies and results: short HTML."""
+"""Short HTML of runs, studies and results, for notebooks."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from pellicle.config.study import Study
 from pellicle.results.result import Result
 
 from . import tables
+from .saving import png as png
 from .sentences import status_of_run
 
 _MOST = 12

@@ -14,9 +14,9 @@ import numpy as np
 from pellicle.arrays import Dataset
 from pellicle.components import Output
 from pellicle.components.charts import Chart, Fields, Shown, Table
+from pellicle.components.installed import registry
 from pellicle.errors import PluginError
 from pellicle.files import atomic_write, for_document, storage_errors
-from pellicle.plugins import registry
 from pellicle.results.result import Result
 from pellicle.results.runs import StoredRuns
 

@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from pydantic import Field
 
-from pellicle.arrays import Array, DataArray, Dataset
 from pellicle.errors import ConfigError
 from pellicle.schema.from_file import InputPath
 from pellicle.schema.model import Model
 from pellicle.units import Quantity
-from pellicle.variables import ROLE, SEED
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -94,32 +92,6 @@ def colour(number: int, count: int, *, ordered: bool = False) -> Any:
     if count > len(mpl.rcParams["axes.prop_cycle"]) or (ordered and count > 2):
         return mpl.colormaps["viridis"](_LIGHTEST * number / max(count - 1, 1))
     return f"C{number}"
-
-
-def is_ordered(table: Dataset, dim: str | None) -> bool:
-    """Return whether the values along a dimension are numbers to compare, which seeds are not."""
-    return (
-        dim is not None
-        and dim in table.coords
-        and table[dim].dtype.kind in "if"
-        and not is_seed(table[dim])
-    )
-
-
-def is_seed(axis: DataArray) -> bool:
-    """Return whether the values of an axis only repeat a random run."""
-    return bool(axis.attrs.get(ROLE) == SEED)
-
-
-def is_log_spaced(values: Array) -> bool:
-    """Return whether at least three positive values over half a decade grow by about even factors.
-
-    Rounded series such as 1, 2, 5, 10 or 1, 3, 10 count too.
-    """
-    if values.size < 3 or values.min() <= 0 or values.max() < 4 * values.min():
-        return False
-    steps = np.diff(np.log(np.sort(values)))
-    return bool(steps.max() <= 1.5 * steps.min())
 
 
 def label_log_axes(figure: Figure) -> None:

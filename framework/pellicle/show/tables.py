@@ -16,6 +16,7 @@ from pellicle.arrays import Dataset
 from pellicle.components.charts import Column, Table
 from pellicle.config import describe
 from pellicle.config.describe import FieldRow
+from pellicle.config.run import Run
 from pellicle.contact.caveats import from_text, verdict_of
 from pellicle.results.derived import DERIVED
 from pellicle.results.path import oscillations_of, path_variables, prescribed_variable
@@ -34,9 +35,9 @@ _OF_PATHS = [
     *("pull_off", "pull_off_accuracy", "detach", "jump_in", "dissipated_energy"),
     *("storage_stiffness", "loss_stiffness", "phase", "cycle_dissipation"),
 ]
-"""What the terminal shows of the path of each run of a study."""
+"""Variables of the path of each run of a study, for the terminal."""
 _OF_PATH = "pull_off", "pull_off_accuracy", "detach", "jump_in", "work", "dissipated_energy"
-"""What the terminal shows of the path of a run that it has just solved."""
+"""Variables of the path of a run that has just been solved, for the terminal."""
 _COMPARED = 8
 """Digits of values that are compared."""
 _POWERS = str.maketrans("²³", "23")
@@ -248,6 +249,19 @@ def input_table(
     return inputs(describe.inputs(configuration, model), caption)
 
 
+def inputs_of_run(configuration: Mapping[str, Any], study: Dataset | None = None) -> Table:
+    """Return the inputs of a run, in the form of its JSON, but those of outputs.
+
+    Of a study, whose table is given, they are its axes, and the inputs of its first run that do not
+    vary.
+    """
+    rows: Iterable[FieldRow] = describe.inputs(configuration, Run)
+    if study is not None:
+        rows = inputs_of_study(study, rows)
+    caption = "All inputs that determine the result, defaults included."
+    return inputs((row for row in rows if not row.name.startswith("outputs.")), caption)
+
+
 def inputs_of_study(table: Dataset, fields: Iterable[FieldRow]) -> list[FieldRow]:
     """Return the inputs of a study: its axes, and the inputs of its first run that do not vary."""
     axes = []
@@ -259,12 +273,12 @@ def inputs_of_study(table: Dataset, fields: Iterable[FieldRow]) -> list[FieldRow
     return [*axes, *(field for field in fields if not f"{field.name}.".startswith(names))]
 
 
-def origin(attributes: Mapping[str, Any], fields: Iterable[FieldRow]) -> list[Table]:
+def origin(attributes: Mapping[str, Any], configuration: Mapping[str, Any]) -> list[Table]:
     """Return the versions, date and identity of a result, and the packages of its components."""
     facts = [(n, attributes[n]) for n in ("versions", "date", "identity") if attributes.get(n)]
     rows = [
         (i.words, i.value, i.origin.distribution, i.origin.version, i.origin.entry_point)
-        for i in fields
+        for i in describe.inputs(configuration, Run)
         if i.origin
     ]
     heads = "used as", "type", "package", "version", "entry point"

@@ -22,6 +22,7 @@ from pellicle import memory
 from pellicle.batch import BatchProgress, locked, mapped
 from pellicle.checks import checked_threads, read_only_dataset
 from pellicle.components import Executor, Output, Say
+from pellicle.components.installed import registry
 from pellicle.config.doubtful_scales import warn_of_scale as warn_of_scale
 from pellicle.config.run import Run
 from pellicle.config.study import DEFAULT_EXECUTOR, Study
@@ -29,7 +30,6 @@ from pellicle.config.study import from_toml as from_toml
 from pellicle.contact.caveats import Status
 from pellicle.errors import ConfigError, ConvergenceWarning, PellicleError, StorageError
 from pellicle.files import check_writable, is_file, is_folder
-from pellicle.plugins import registry
 from pellicle.results import storage
 from pellicle.results.dimensions import with_paths, with_python_names
 from pellicle.results.path import with_events
@@ -38,8 +38,9 @@ from pellicle.results.soundness import check, sound
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.memory_estimate import memory_of
+from pellicle.runs.outputs import all_done, standard_outputs, writers
 from pellicle.runs.progress import reporting
-from pellicle.show.sentences import caveats, failures, run_names, shared
+from pellicle.show.sentences import caveats, failures, run_names, shared_among_processes
 
 from . import table
 
@@ -223,9 +224,9 @@ def execute(
                 _collect(task, rows)
             rows.write(directory, at_once=True)
             whole = rows.dataset()
-            outputs = [o for o in runner.standard_outputs(first.outputs) if o.scope != "run"]
-            calls = runner.writers(outputs, runs, directory / "study", first)
-            of_outputs = runner.all_done([partial(written, call) for call in calls])
+            outputs = [o for o in standard_outputs(first.outputs) if o.scope != "run"]
+            calls = writers(outputs, runs, directory / "study", first)
+            of_outputs = all_done([partial(written, call) for call in calls])
     for message in (*messages, *caveats(whole)):
         warnings.warn(message, stacklevel=3)
     return runner.Executed(whole, (*rows.files, *chain(*of_outputs)), resumed)
@@ -280,7 +281,7 @@ def _solve_all(
         needed = 2 * (max(task.memory for task in todo) + memory.PROCESS)
         if (available := memory.available()) is None or needed <= available:
             executor = registry().make(Executor, {"type": "processes", "threads": threads or 1})
-            bar.say(shared(len(todo), left))
+            bar.say(shared_among_processes(len(todo), left))
     if executor:
         solve_by(executor, todo)
 

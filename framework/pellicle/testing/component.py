@@ -15,11 +15,13 @@ import tomli_w
 from numpy.typing import ArrayLike
 
 from pellicle.components import Component
+from pellicle.components.installed import registry
 from pellicle.components.rules import CHEAP, Case, required
 from pellicle.components.rules.rule import difference
 from pellicle.components.rules.rule import rules_of as rules_of
 from pellicle.errors import PellicleError
-from pellicle.plugins import GROUP, Registered, checked_type, family_of, registry
+from pellicle.plugins.origins import GROUP
+from pellicle.plugins.registry import Registered, checked_type, family_of
 from pellicle.units import parts_of, quantity_of
 
 Rule = Callable[..., str | None]

@@ -6,7 +6,7 @@ import numpy as np
 
 from pellicle.arrays import Mask
 from pellicle.components import AreaCorrection
-from pellicle.components.correction import corrected_area
+from pellicle.components.calls import corrected_area
 from pellicle.grid import Boundary, Grid
 
 from .component import check, require, require_close, rules_of

@@ -7,7 +7,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.checks import read_only, real_array
 from pellicle.components import ForceCurve, HasForceCurve, Indenter
-from pellicle.components.indenter import profile_of
+from pellicle.components.calls import profile_of
 from pellicle.errors import shown
 from pellicle.grid import Grid
 

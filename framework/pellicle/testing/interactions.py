@@ -8,9 +8,9 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.components import Interaction
+from pellicle.components.installed import kernel
 from pellicle.components.rules import Case
 from pellicle.grid import Grid
-from pellicle.plugins import kernel
 
 from .component import check, require, require_close, rules_of
 from .small_runs import solved

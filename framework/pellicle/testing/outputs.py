@@ -14,12 +14,13 @@ import xarray as xr
 
 from pellicle.checks import read_only_dataset
 from pellicle.components import Output
-from pellicle.components.output import require_files, stem_of
+from pellicle.config.file_names import stem_of
 from pellicle.config.run import Run
 from pellicle.config.study import Study
 from pellicle.results.derived import FIRST_RUN
 from pellicle.results.runs import StoredRuns
 from pellicle.runs.journal import Journal
+from pellicle.runs.outputs import files_of
 from pellicle.runs.progress import RunProgress
 from pellicle.runs.runner import execute, solve
 from pellicle.studies import runner as studies
@@ -64,7 +65,7 @@ def _write(output: Output, stem: Path, steps: xr.Dataset) -> tuple[Path, ...]:
         attributes = {"axes": json.dumps({_VARIED: [_VARIED]}), FIRST_RUN: configuration}
         table = runs.table.expand_dims({_VARIED: [1.0]}).assign_attrs(attributes)
         runs = replace(runs, table=table)
-    return output.write(runs, own)
+    return files_of(output, runs, stem)
 
 
 def _contents(folder: Path) -> dict[str, bytes]:
@@ -92,7 +93,6 @@ def leaves_the_files_it_returns(output: Output) -> None:
         # Interrupted after each step, the run is repeated with the same stem.
         for steps in range(1, _STEPS + 1):
             files = _write(output, stem, _dataset().isel(step=slice(steps)))
-            require_files(output, files, stem)
             names = {path.relative_to(stem.parent).as_posix() for path in files}
             contents = _contents(stem.parent)
             require(

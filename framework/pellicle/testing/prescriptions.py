@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from pellicle.components import Force, Prescription, Search, Setting, Solver
-from pellicle.components.prescription import check_value, report_of, target_of
+from pellicle.components.calls import check_value, report_of, target_of
 from pellicle.config.run import Run
 from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.load_step import LoadStep
@@ -15,7 +15,7 @@ from pellicle.contact.solution import Stop
 from pellicle.errors import ConfigError
 from pellicle.results.record import step_dataset
 from pellicle.runs.compose import compose
-from pellicle.runs.target_search import reach, solved
+from pellicle.runs.target_search import search_target, solve_at
 
 from .component import check, require, require_close, rules_of
 from .small_runs import HALF_SPACE, ROUGH, ignore
@@ -42,7 +42,7 @@ def _reference_steps() -> tuple[Setting, tuple[Equilibrium, ...], Solver]:
     loading: Any = {"force": ["0.1 mN", "0.2 mN"]}
     run = Run(grid=grid, kernel=HALF_SPACE, indenter=ROUGH, loading=loading)
     setting = compose(run)
-    steps = [solved(setting, Force(force), run.solver, ignore) for force in run.loading.values]
+    steps = [solve_at(setting, Force(force), run.solver, ignore) for force in run.loading.values]
     return setting, tuple(step.equilibrium for step in steps), run.solver
 
 
@@ -116,9 +116,9 @@ def step_has_what_is_prescribed(prescription: Prescription, values: Sequence[flo
     for value, reference in zip(_values(prescription, values), steps, strict=True):
         target = target_of(prescription, setting, value)
         if isinstance(target, Search):
-            step = reach(setting, target, solver, ignore).equilibrium
+            step = search_target(setting, target, solver, ignore).equilibrium
         else:
-            step = solved(setting, target, solver, ignore).equilibrium
+            step = solve_at(setting, target, solver, ignore).equilibrium
         what = f"the force [N] at {value:g} {prescription.unit}"
         require_close(step.force, reference.force, what, relative=_NEAR)
         again = _value(prescription, step)

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from pellicle.components import Solver
-from pellicle.components.solver import response_of
+from pellicle.components.calls import response_of
 from pellicle.config.run import Run
 from pellicle.contact.equilibrium import measure_stiffness
 from pellicle.contact.problem import Depth, Force, Problem

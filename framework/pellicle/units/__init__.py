@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cached_property
@@ -83,7 +83,7 @@ class Quantity:
     at_most: float | None = None
     hint: str = ""
     left_out: ClassVar[str] = "none"
-    """What a value that is not given is, in words."""
+    """Words for a value that is not given."""
 
     def __call__(self, value: object) -> float:
         """Return ``value`` in SI.
@@ -199,11 +199,13 @@ def quantity_of(info: FieldInfo) -> Quantity | None:
     return None
 
 
-def parts_of(annotation: Any) -> Iterator[Any]:
-    """Yield a type, the types that it is made of, and what they are annotated with."""
-    yield annotation
-    for part in get_args(annotation):
-        yield from parts_of(part)
+def parts_of(annotation: Any) -> list[Any]:
+    """Return a type, the types that it is made of, and what they are annotated with."""
+    parts = [annotation]
+    # The list grows while it is gone through.
+    for part in parts:
+        parts += get_args(part)
+    return parts
 
 
 Length = Annotated[float, Quantity("m", above=0)]

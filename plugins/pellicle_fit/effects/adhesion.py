@@ -1,6 +1,6 @@
 """Adhesion in equilibrium, under tension and with a cantilever."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from functools import lru_cache
 from typing import Annotated, ClassVar, Literal
 
@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array, Mask
+from pellicle_fit.contact.row_splines import RowSplines
 from pellicle_fit.effect import Contact, Curve, Fitted, Responds, Response, Sizes, Values, fitted
 
-_SEARCHED, _REFINED, _NODES = 61, 3, 120
-"""Contacts among which the end of a branch is sought, and how often; nodes that describe it."""
+_SEARCHED, _NODES = 61, 120
+"""Contacts among which the end of a branch is sought, twice; nodes that describe it."""
 _HIGHER = 10.0
 """How far above the first guess the other end is sought, in logarithms of the depth."""
 _LEVEL = 1e-3
@@ -29,7 +30,8 @@ _CHANGE_POINT = 3
 _WIDTH, _JUMP = 3, 6.0
 """Rows whose means are compared, and standard errors beyond which they show a jump."""
 
-Spline = Callable[[Array], Array]
+_SAME = 1e-9
+"""Difference of two nodes that is none, over the largest."""
 
 
 class Adhesion(Responds):
@@ -69,10 +71,14 @@ class Adhesion(Responds):
         deepest = np.maximum(np.max(path, axis=-1, keepdims=True), _SHALLOW * curve.span)
         position, force = (np.atleast_2d(x) for x in self._branch(contact, deepest, softness))
         end = position[:, :1]
-        root = np.sqrt(np.maximum(position - end, 0.0))
-        splines = backs = [*map(_spline, root, force)]
+        root, one = np.sqrt(np.maximum(position - end, 0.0)), np.ones(end.shape, dtype=bool)
+        grows = root[:, 1:] > np.maximum.accumulate(root, axis=1)[:, :-1] + _SAME * root[:, -1:]
+        ahead = back = _splines(root, force, np.hstack([one, grows]))
         if np.any(np.diff(root) < 0):
-            backs = [*map(_spline_back, root, force)]
+            # The edge of a worn tip: what is pulled off it jumps to it from a wider contact.
+            wider = np.minimum.accumulate(root[:, ::-1], axis=1)[:, ::-1]
+            grows = root[:, :-1] < wider[:, 1:] - _SAME * root[:, -1:]
+            back = _splines(root, force, np.hstack([grows, one]))
         ramp, jumping = _RAMP * curve.span / curve.passes[0].size, _jumps(curve)
 
         def response(depth: Array) -> Array:
@@ -84,9 +90,9 @@ class Adhesion(Responds):
                 penalty = _PENALTY * curve.largest / curve.span
                 steep[:, rows] = penalty * np.minimum(beyond[:, rows], 0.0)
             at = np.sqrt(np.clip(beyond, 0.0, root[:, -1:] ** 2))
-            along = _each(splines, at)
-            if backs is not splines:
-                along = np.where(curve.moves_out, _each(backs, at), along)
+            along = ahead(at)
+            if back is not ahead:
+                along = np.where(curve.moves_out, back(at), along)
             force = touches * (along + steep)
             return np.asarray(force if depth.ndim > 1 or len(force) > 1 else force[0])
 
@@ -103,18 +109,24 @@ class Adhesion(Responds):
         reaches = self._equilibria(contact, np.exp(tops), softness)[0] >= deepest
         reaches[..., -1] = True
         top = at(tops, np.argmax(reaches, axis=-1))
-        grid = first = top + np.linspace(-_DECADES * np.log(10), 0, _SEARCHED)
-        position = self._equilibria(contact, np.exp(grid), softness)[0]
+        first = top + np.linspace(-_DECADES * np.log(10), 0, _SEARCHED)
+        position = self._equilibria(contact, np.exp(first), softness)[0]
         rise = position - position[..., :1]
         # The edge of a flat end holds the rim until the punch lets go, at the depth 0.
         level = np.abs(rise[..., 1]) < _LEVEL * np.abs(position[..., 0])
         edge = (level & (rise.min(axis=-1) >= 0))[..., None]
-        for _ in range(_REFINED):
-            least = np.argmin(self._equilibria(contact, np.exp(grid), softness)[0], axis=-1)
-            low = at(grid, np.maximum(least - 1, 0))
-            high = at(grid, np.minimum(least + 1, _SEARCHED - 1))
-            grid = low + (high - low) * np.linspace(0, 1, _SEARCHED)
-        start, ramp = grid[..., [_SEARCHED // 2]], np.linspace(0, 1, _NODES)
+        least = np.argmin(position, axis=-1)
+        low = at(first, np.maximum(least - 1, 0))
+        high = at(first, np.minimum(least + 1, _SEARCHED - 1))
+        grid = low + (high - low) * np.linspace(0, 1, _SEARCHED)
+        position = self._equilibria(contact, np.exp(grid), softness)[0]
+        # The end is that of the parabola through the least and those beside it.
+        least = np.clip(np.argmin(position, axis=-1), 1, _SEARCHED - 2)
+        before, here, after = (at(position, least + step) for step in (-1, 0, 1))
+        bend = np.maximum(before - 2 * here + after, 1e-300)
+        share = np.clip((before - after) / (2 * bend), -1.0, 1.0)
+        start = at(grid, least) + share * (high - low) / (_SEARCHED - 1)
+        ramp = np.linspace(0, 1, _NODES)
         nodes = start + (top - start) * ramp**2
         if edge.any():
             leaves = at(first, np.argmax(rise > _LEVEL * rise[..., -1:], axis=-1))
@@ -131,28 +143,20 @@ class Adhesion(Responds):
         return depth - retraction + softness * force, force
 
 
-def _each(splines: Sequence[Spline], at: Array) -> Array:
-    return np.array([spline(row) for spline, row in zip(splines, at, strict=True)])
-
-
-def _spline(root: Array, force: Array) -> Spline:
-    """Return the force over the root of the way from the end, at nodes from which that grows."""
+def _splines(root: Array, force: Array, kept: Mask) -> Callable[[Array], Array]:
+    """Return the forces over the root of the way from the end, at some nodes of each row."""
     from scipy.interpolate import CubicSpline
 
-    keep = np.append(True, root[1:] > np.maximum.accumulate(root)[:-1] + 1e-9 * root[-1])
-    spline: Spline = CubicSpline(root[keep], force[keep])
-    return spline
+    if kept.all():
+        return RowSplines(root, force)
+    rows = zip(root, force, kept, strict=True)
+    each = [CubicSpline(way[some], of_way[some]) for way, of_way, some in rows]
 
+    def splines(at: Array) -> Array:
+        rows = np.broadcast_to(at, (len(each), at.shape[-1]))
+        return np.array([spline(row) for spline, row in zip(each, rows, strict=True)])
 
-def _spline_back(root: Array, force: Array) -> Spline:
-    """Return the same where the indenter is pulled off."""
-    from scipy.interpolate import CubicSpline
-
-    # The edge of a worn tip: what is pulled off it jumps to it from a wider contact.
-    wider = np.minimum.accumulate(root[::-1])[::-1]
-    keep = np.append(root[:-1] < wider[1:] - 1e-9 * root[-1], True)
-    spline: Spline = CubicSpline(root[keep], force[keep])
-    return spline
+    return splines
 
 
 @lru_cache(maxsize=16)

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from pellicle.components import HasLayerForceCurve
 from pellicle.units import Quantity
-from pellicle_fit.area_table import checked_area, cubic, cubics, layer
+from pellicle_fit.contact.area_table import checked_area, cubic, cubics, last, layer
 from pellicle_fit.effect import Array, Bends, Contact, Curve, Fitted, fitted
 
 _ERROR = 1e-4
@@ -45,10 +45,7 @@ class Layer(Bends, title="a thin layer"):
         thickness = np.asarray(self.thickness / size)
         of_layer, limit = layer(body, contact.deepest, ratio)
 
-        def area(depth: Array, length: float) -> Array:
-            depth = depth / size
-            if not np.any(length):
-                return np.asarray(size**2 * of_layer(depth, thickness))
+        def under_tension(length: float) -> tuple[Array, Array]:
             pairs = np.broadcast_arrays(thickness, length / size)
             known: list[tuple[float, float, float, Any]] = []
             steps, values = [], []
@@ -66,9 +63,17 @@ class Layer(Bends, title="a thin layer"):
                 h_, s_, step, of = one
                 steps.append(step)
                 values.append(of.force + of.by_thickness * (h - h_) + of.by_length * (s - s_))
-            splines = cubics(np.array(values))
-            root = np.sqrt(np.maximum(depth, 0.0)) / np.reshape(steps, (-1, 1))
-            area = cubic(splines, np.minimum(root, _STEPS), 1.0)
+            return np.reshape(steps, (-1, 1)), cubics(np.array(values))
+
+        splines = last(under_tension)
+
+        def area(depth: Array, length: float) -> Array:
+            depth = depth / size
+            if not np.any(length):
+                return np.asarray(size**2 * of_layer(depth, thickness))
+            step, of = splines(length)
+            root = np.sqrt(np.maximum(depth, 0.0)) / step
+            area = cubic(of, np.minimum(root, _STEPS), 1.0)
             return np.asarray(size**2 * area.reshape(np.shape(depth + length + thickness)))
 
         deep: Any = size * limit(thickness)

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from pellicle_fit.effect import Array, Contact, Curve, Responds, Response, quantities
 
-_NODES = 97
-"""Nodes of the path while the indenter moves in; as many where it dwells or moves out."""
+_NODES, _FEW_NODES = 97, 49
+"""Nodes of the path while the indenter moves in, and of a rough one; as many where it dwells or
+moves out."""
 _MODULI = 6
 """Effective moduli between which the force under a tension is interpolated."""
 _TOGETHER = 12
@@ -114,7 +115,7 @@ class Relaxing(Responds):
         top = time[np.argmax(z >= 0.98 * z[:, -1:], axis=1)][:, None]
         dwells = end - top >= 0.1 * (top - start)
         top = np.where(dwells, top, end)
-        ramp = np.linspace(0, 1, _NODES)
+        ramp = np.linspace(0, 1, _FEW_NODES if curve.is_rough else _NODES)
         nodes = start + (top - start) * ramp**2
         if dwells.any():
             nodes = np.append(nodes, top + (end - top) * ramp[1:] ** 2, axis=1)
@@ -132,11 +133,11 @@ class Relaxing(Responds):
         if curve.moves_out.any():
             out = curve.moves_out
             back = clock[out], depth[:, out]
-            shares[:, out], depth[:, out] = self._shrinking(nodes, path, area, back)
+            shares[:, out], depth[:, out] = self._shrinking(nodes, path, area, back, ramp)
         return np.where(touches, shares, 1.0), np.where(touches, depth, whole)
 
     def _shrinking(
-        self, t: Array, z: Array, area: Array, back: tuple[Array, Array]
+        self, t: Array, z: Array, area: Array, back: tuple[Array, Array], ramp: Array
     ) -> tuple[Array, Array]:
         """Return the same while the contact shrinks, for ``back``: times [s] and depths [m].
 
@@ -144,7 +145,7 @@ class Relaxing(Responds):
         ∫ E(t − t′) dδ from the time of equal contact on is 0.
         """
         turn, end = t[0, -1], back[0][-1]
-        u = turn + (end - turn) * np.linspace(0, 1, _NODES)[1:] ** 1.5
+        u = turn + (end - turn) * ramp[1:] ** 1.5
         out, before = np.append(turn, u), np.append(turn, back[0])
         ways = np.append(z[:, -1:], back[1], axis=1)
         down = np.array([np.interp(out, before, way) for way in ways])

@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 
-from pellicle_fit.area_table import cubic, cubics
+from pellicle_fit.contact.area_table import cubic, cubics
 from pellicle_fit.effect import Array, Bends, Contact, Curve, Fitted, fitted
 
 _NODES, _SHARES = np.polynomial.legendre.leggauss(10)

@@ -8,8 +8,8 @@ import numpy as np
 
 from pellicle import indenter
 from pellicle.components import HasForceCurve
-from pellicle_fit.area_table import Areas
-from pellicle_fit.contact import Area, OwnArea
+from pellicle_fit.contact.area_table import Areas
+from pellicle_fit.contact.contact import Area, OwnArea
 from pellicle_fit.effect import Array, Contact, Fitted, fitted
 
 from .shape import Shape, in_place

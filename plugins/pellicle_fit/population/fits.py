@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from pellicle_fit.intervals import threshold_of
+from pellicle_fit.estimation.intervals import threshold_of
 
 from .row import ENDS, OVER_TIED, SHOWN, Row, counted, units
 
@@ -80,6 +80,7 @@ def _cells(row: Row) -> dict[str, Any]:
         "next": "; ".join(f"{step['do']}: {step['why']}" for step in row.fit.get("next", ())),
         **{name: getattr(row, name) for name in ("group", "accepted", "outlier", "reason")},
         **place,
+        "not_weighed": "; ".join(map(" + ".join, row.fit.get("not_weighed", ()))),
         "failed_checks": "; ".join(row.failed_checks),
         **{name: data.get(name) for name in _MEASURED},
         **{name: data.get(name) or "" for name in ("segment", "baseline", "file", "sha256")},

@@ -15,8 +15,8 @@ from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.files import read_text
 from pellicle.schema import evaluate, names_in, nearest
 from pellicle.units import one, readable, split
-from pellicle_fit.objective import MODULUS
-from pellicle_fit.verdict import Verdict
+from pellicle_fit.estimation.objective import MODULUS
+from pellicle_fit.selection.verdict import Verdict
 
 from .row import Row, counted, units
 
@@ -133,7 +133,8 @@ def judge(rows: Sequence[Row], rules: Sequence[str], rejected: Names | None) -> 
             why = rejected.reasons[entry]
             row.reason = f"in {rejected.path.name}{f': {why}' if why else ''}"
         elif not checks and row.fit["verdict"] == Verdict.UNDESCRIBED.value:
-            row.reason = row.fit["comparison"].partition(": ")[2].partition("; ")[0]
+            # The plainest is the first.
+            row.reason = row.curve["failed_checks"][0]["message"]
         else:
             row.reason = "; ".join(filter(None, (rule.objection(row) for rule in checks)))
         row.accepted = not row.reason

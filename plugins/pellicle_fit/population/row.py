@@ -12,11 +12,10 @@ from numpy.typing import ArrayLike
 from pellicle import registry
 from pellicle.arrays import Array
 from pellicle_fit.effect import Effect, Solid, quantities
+from pellicle_fit.estimation.intervals import Estimate
 from pellicle_fit.files.measurement import Site
-from pellicle_fit.intervals import Estimate
 
 FITTED = "fitted"
-FAILED = "failed: "
 NUMBERS = {
     **dict.fromkeys(("r_squared", "chi_squared", "points"), "1"),
     "noise": "N",
@@ -60,8 +59,8 @@ class Row:
     group: str = ""
     map: str = ""
     site: Site | None = None
-    status: str = ""
-    """`FITTED`, or why there is no fit."""
+    failure: str = ""
+    """Why there is no fit."""
     fit: dict[str, Any] = field(default_factory=dict)
     """JSON data of the fit, with r_squared, indentation [m] and largest_force [N]."""
     sketch: dict[str, Array] = field(default_factory=dict)
@@ -76,7 +75,7 @@ class Row:
 
     def keep(self, fit: dict[str, Any]) -> None:
         """Take the JSON data of a fit, which may hold a sketch, as workers return them."""
-        self.status, self.fit = FITTED, {k: value for k, value in fit.items() if k != "sketch"}
+        self.fit = {k: value for k, value in fit.items() if k != "sketch"}
         self.sketch = sketch(**fit["sketch"]) if "sketch" in fit else {}
         (self.curve,) = fit["curves"]
         headline = {name: fit[name] for name in OVER_TIED if name in fit}
@@ -87,7 +86,12 @@ class Row:
     @property
     def is_fitted(self) -> bool:
         """Whether there is a fit."""
-        return self.status == FITTED
+        return bool(self.fit)
+
+    @property
+    def status(self) -> str:
+        """`FITTED`, or why there is no fit."""
+        return FITTED if self.is_fitted else f"failed: {self.failure}"
 
     def values(self) -> dict[str, float]:
         """Return all numbers in SI by name, ends of intervals too; NaN is an open end, or none."""
@@ -121,8 +125,7 @@ class Row:
     @property
     def verdict(self) -> str:
         """What is said of the curve, as far as it fits a table; empty without a fit."""
-        text = str(self.fit.get("comparison", "")).replace("this curve", "it")
-        return text.partition(":")[0].removeprefix("it ")
+        return str(self.fit.get("headline", ""))
 
     @property
     def failed_checks(self) -> list[str]:
@@ -132,18 +135,19 @@ class Row:
     @classmethod
     def of_dict(cls, data: dict[str, Any]) -> Row:
         """Return the row of which `to_dict` returned the data, with its sketch if they hold one."""
-        own = {name: data[name] for name in ("group", "status", "accepted", "reason", "outlier")}
+        own = {name: data[name] for name in ("group", "failure", "accepted", "reason", "outlier")}
         row = cls(data["curve"], **own)
         if site := data.get("site"):
             row.map, row.site = site["map"], Site(site["x"], site["y"])
-        if row.is_fitted:
-            row.keep({k: v for k, v in data.items() if k not in {"curve", "site", *own}})
+        if not row.failure:
+            row.keep({k: v for k, v in data.items() if k not in {"curve", "site", "status", *own}})
         row.sketch = sketch(**data["sketch"]) if data.get("sketch") else {}
         return row
 
     def to_dict(self) -> dict[str, Any]:
         """Return the row as JSON data, without the sketch."""
-        row: dict[str, Any] = {"curve": self.name, "status": self.status, "group": self.group}
+        row: dict[str, Any] = {"curve": self.name, "status": self.status}
+        row |= {"failure": self.failure, "group": self.group}
         if self.site is not None:
             row["site"] = {"map": self.map, **self.site._asdict()}
         judgement = {"accepted": self.accepted, "reason": self.reason, "outlier": self.outlier}

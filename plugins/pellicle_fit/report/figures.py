@@ -14,11 +14,11 @@ from pellicle.analysis import Leg
 from pellicle.components import Axis, Chart, Look, Series
 from pellicle.show import figure_of
 from pellicle.show import save_figure as save_drawing
-from pellicle_fit.candidate import Candidate
-from pellicle_fit.objective import MODULUS
+from pellicle_fit.estimation.candidate import Candidate
+from pellicle_fit.estimation.objective import MODULUS
 from pellicle_fit.population.fits import ManyFits
-from pellicle_fit.recipe import TENSION
 from pellicle_fit.result import Fit
+from pellicle_fit.selection.recipe import TENSION
 from pellicle_fit.words.names import words_of
 
 from .contact_sheet import PAGE, sheets

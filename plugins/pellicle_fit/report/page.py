@@ -14,7 +14,7 @@ from pellicle.show import Block, Code, Notice, Picture, Section, Text
 from pellicle_fit.config import FitConfig
 from pellicle_fit.population.fits import ManyFits, summary
 from pellicle_fit.result import Fit
-from pellicle_fit.verdict import Verdict
+from pellicle_fit.selection.verdict import Verdict
 from pellicle_fit.words.population import advice_of_population, by_text, sentences_of_population
 from pellicle_fit.words.story import story
 
@@ -85,7 +85,7 @@ def _one(fit: Fit) -> list[Block]:
         agree = fit.answer.agreement.factor == 1
         blocks.append(Notice(_sentence(fit.agreement), good=agree))
     blocks += [tables.estimates(fit), *_told(fit.warnings, fit.notes)]
-    return [*blocks, tables.explanations(fit), tables.curves(fit)]
+    return [*blocks, tables.explanations(fit), tables.curves(fit), tables.correlations(fit)]
 
 
 def _many(fits: ManyFits) -> list[Block]:

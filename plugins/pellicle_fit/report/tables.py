@@ -8,15 +8,18 @@ import numpy as np
 
 from pellicle.components import Column, Table
 from pellicle.units import DIGITS, Scale
-from pellicle_fit.candidate import Candidate
-from pellicle_fit.intervals import CONFIDENCE, Estimate
-from pellicle_fit.objective import CONTACT_POINT, MODULUS
+from pellicle_fit.estimation.candidate import Candidate
+from pellicle_fit.estimation.intervals import CONFIDENCE, End, Estimate
+from pellicle_fit.estimation.objective import CONTACT_POINT, MODULUS
+from pellicle_fit.estimation.search import Ending
 from pellicle_fit.population.fits import QUARTILES, summary
 from pellicle_fit.population.row import FITTED, OVER_TIED, SHOWN, Row
-from pellicle_fit.recipe import TENSION, Answer
 from pellicle_fit.result import Fit
+from pellicle_fit.selection.recipe import TENSION, Answer
 from pellicle_fit.words.names import FEW, interval, quoted, unit_of, unit_of_one, words, words_of
 
+_OPEN = {End.LIMIT, End.RANGE, End.STEPS, End.LACKING}
+"""What an end is that needs a reason."""
 _SI_DIGITS = 6
 """Significant digits of numbers in SI."""
 
@@ -30,14 +33,37 @@ def estimates(fit: Fit, *, si: bool = False) -> Table:
         if not (several and name in of_one) and (estimate.value or not estimate.held):
             unit = _unit(fit, name, si)
             value = "" if np.isnan(estimate.value) else unit.number(estimate.value)
-            ends = interval(estimate, unit)
-            rows.append((words(name), value, ends, unit.unit))
+            why = " and ".join(dict.fromkeys(e.value for e in estimate.ends if e in _OPEN))
+            rows.append((words(name), value, interval(estimate, unit), unit.unit, why))
     caption = (
         f"The quantities of the model that was chosen, {words_of(fit.answer.chosen)}; intervals of "
         "modulus and tension are over all models that describe the data as well."
     )
-    heads = "parameter", "value", f"{100 * CONFIDENCE:.0f} % interval", "unit"
-    return Table.of_rows(heads, rows, caption)
+    heads = "parameter", "value", f"{100 * CONFIDENCE:.0f} % interval", "unit", "open end"
+    count = len(heads) - (not any(why for *_, why in rows))
+    return Table.of_rows(heads[:count], [row[:count] for row in rows], caption)
+
+
+def correlations(fit: Fit) -> Table:
+    """Return a row for each pair of quantities of the chosen explanation, the strongest first."""
+    several = len(fit.members) > 1
+    slots = fit.answer.chosen.objective.slots
+    own = {slot.full_name for slot in slots if slot.curve is not None} if several else set()
+    pairs = {
+        pair: value
+        for pair, value in fit.answer.chosen.correlations.items()
+        if not own.intersection(pair)
+    }
+    ranked = sorted(pairs, key=lambda pair: -abs(pairs[pair]))
+    columns = [
+        Column("parameter", [words(one) for one, _ in ranked]),
+        Column("and", [words(other) for _, other in ranked]),
+        Column("correlation", [f"{pairs[pair]:.3f}" for pair in ranked]),
+    ]
+    caption = (
+        "Correlations of the quantities at the least χ²; ± 1 where one makes up for the other."
+    )
+    return Table(columns, caption, folded=True)
 
 
 def explanations(fit: Fit, *, si: bool = False) -> Table:
@@ -59,7 +85,10 @@ def explanations(fit: Fit, *, si: bool = False) -> Table:
 
 
 def _standing(answer: Answer, one: Candidate) -> str:
-    return "yes" if one in answer.tied else "given up" if one.minimum.given_up else ""
+    ending = one.minimum.ending
+    if one in answer.tied or ending is Ending.CONVERGED:
+        return "yes" if one in answer.tied else ""
+    return "given up" if ending is Ending.GIVEN_UP else "not converged"
 
 
 def curves(fit: Fit, *, si: bool = False) -> Table:
@@ -88,7 +117,7 @@ def rows(of: Sequence[Row], *, si: bool = False) -> Table:
     states = [
         f"rejected: {row.reason}"
         if row.is_fitted and not row.accepted
-        else "modulus stands out" * row.outlier or row.status.partition(":")[0]
+        else "modulus stands out" * row.outlier or (FITTED if row.is_fitted else "failed")
         for row in of
     ]
     radii = [row.curve.get("indenter", {}).get("radius", "") for row in of]

@@ -8,13 +8,11 @@ import numpy as np
 
 from pellicle.components import Column, words_of_type
 from pellicle.units import DIGITS, Scale
-from pellicle_fit.candidate import Candidate, Types
 from pellicle_fit.effect import Adds, Effect, Records
-from pellicle_fit.intervals import Estimate
-from pellicle_fit.rivals import Question
+from pellicle_fit.estimation.candidate import Candidate, Types
+from pellicle_fit.estimation.intervals import Estimate
+from pellicle_fit.selection.rivals import Question
 
-PLAUSIBLE = {"reduced_modulus": (1.0, 1e12), "tension": (0.0, 1.0), "thickness": (1e-9, 1.0)}
-"""Values [SI] beyond which a unit is probably wrong."""
 FEW = 3
 """Significant digits in sentences, and in tables of many curves."""
 _SMALL = 1e-3

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Sequence
 
 from pellicle.errors import first_of
-from pellicle_fit.intervals import CONFIDENCE
+from pellicle_fit.estimation.intervals import CONFIDENCE
 from pellicle_fit.population.row import Row
+from pellicle_fit.selection.neighbour import RULED_OUT
 
 from .names import listed
 from .story import NOT_WEIGHED
@@ -31,6 +31,11 @@ def sentences_of_population(rows: Sequence[Row]) -> list[str]:
     sentences = [counts]
     if far := [row.name for row in rows if row.outlier]:
         sentences.append(f"far from the median modulus, and counted: {listed(far, most=_NAMES)}")
+    if spared := sum(bool(row.fit.get("not_weighed")) for row in rows):
+        sentences.append(
+            f"in {spared} of them what curves beside them rule out by {RULED_OUT:.0f} in AIC was "
+            "not compared; --every-rival compares it"
+        )
     if any(row.fit.get("tension_needed") for row in rows):
         sentences.append(NOT_WEIGHED)
     calibrations = {row.fit["calibration"] for row in rows if row.is_fitted}
@@ -39,14 +44,11 @@ def sentences_of_population(rows: Sequence[Row]) -> list[str]:
 
 
 def advice_of_population(rows: Sequence[Row]) -> list[str]:
-    """Return what to do next, a line for each kind of step with the curves that it would help.
-
-    Steps of one kind differ in numbers alone.
-    """
+    """Return what to do next, a line for each kind of step with the curves that it would help."""
     kinds: dict[str, dict[str, dict[str, str]]] = {}
     for row in rows:
         for step in row.fit.get("next", ()):
-            kinds.setdefault(re.sub(r"\d[\d.]*", "", step["do"]), {})[row.name] = step
+            kinds.setdefault(step["kind"], {})[row.name] = step
     lines, fitted = [], sum(row.is_fitted for row in rows)
     for steps in sorted(kinds.values(), key=len, reverse=True)[:_STEPS]:
         (first, step), *others = steps.items()

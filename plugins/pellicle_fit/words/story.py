@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellicle.units import decimal, readable
-from pellicle_fit.candidate import NONE, Candidate
+from pellicle_fit.estimation.candidate import NONE, Candidate
+from pellicle_fit.estimation.intervals import CONFIDENCE
+from pellicle_fit.estimation.noise import Flaw
+from pellicle_fit.estimation.objective import MODULUS
 from pellicle_fit.files.measurement import Note
-from pellicle_fit.intervals import CONFIDENCE
-from pellicle_fit.noise import Flaw
-from pellicle_fit.objective import MODULUS
-from pellicle_fit.recipe import Answer
-from pellicle_fit.verdict import Verdict
+from pellicle_fit.selection.recipe import Answer
+from pellicle_fit.selection.verdict import Verdict
 
 from .names import in_figures, in_words, listed, words, words_of, words_of_types
 
@@ -86,40 +86,55 @@ def shares(uncertainty: Mapping[Any, float]) -> str:
 
 def verdict(answer: Answer) -> str:
     """Return whether what is asked for is needed, with the strongest rival, in plain words."""
+    curves = "these curves" if len(answer.judgements) > 1 else "this curve"
+    reason = _reason(answer)
+    return f"{headline(answer, curves)}{f': {reason}' if reason else ''}"
+
+
+def headline(answer: Answer, curves: str = "") -> str:
+    """Return the verdict without its reason, in a table without its subject, the ``curves``."""
     several = len(answer.judgements) > 1
-    curves = "these curves" if several else "this curve"
     question, fits = answer.question, {fit.types: fit for fit in answer.explanations}
-    word, asked, other = question.word, answer.decision.asked, words_of(fits[answer.decision.other])
+    word, asked = question.word, answer.decision.asked
     subject = words_of(fits[word]) if word else "an elastic half-space"
     if question.kept and not word:
         subject += f" with {in_words(question.kept)}"
+    text = f"no sign of {subject if word else f'more than {subject}'}"
     match answer.verdict:
         case Verdict.UNDESCRIBED:
-            flaws = {flaw for one in answer.judgements if not one.describes for flaw in one.flaws}
-            why = next(flaw.value for flaw in Flaw if flaw in flaws)
-            untried = listed([words_of_types(question, types) for types in answer.untried])
-            text = f"no model describes {curves}: {why}"
-            return f"{text}; {untried} could not be tried" if untried else text
+            text = f"no model describes {curves or 'it'}"
         case Verdict.NEEDED:
-            beside = words_of_types(question, asked - word)
-            pair = f", beside {beside}" if asked != word else ""
-            if fits.keys() <= {NONE, word}:
-                return f"{subject} is needed{pair}; no rival was tried"
-            nearest = f"; the nearest is {other}" if answer.decision.other else ""
-            return f"{subject} is needed{pair}: nothing else tried fits as well{nearest}"
+            pair = f", beside {words_of_types(question, asked - word)}" if asked != word else ""
+            alone = "; no rival was tried" if fits.keys() <= {NONE, word} else ""
+            text = f"{subject} is needed{pair}{alone}"
         case Verdict.CANNOT_TELL:
             names = _named(answer.tied_without)
-            return f"{curves} cannot tell {words_of(fits[asked])} from {names}"
+            text = f"{curves} cannot tell {words_of(fits[asked])} from {names}".lstrip()
         case Verdict.OTHER:
             alike = [fit for fit in answer.explanations if fit in answer.tied]
             better = [fit for fit in alike if not (word <= fit.types if word else not fit.types)]
-            by = f"described better by {_named(better)}"
-            if word:
-                return f"{subject} is not needed; {by}"
-            return f"{curves} {'show' if several else 'shows'} more than {subject}; {by}"
-    if not word and len(fits) == 1:
-        return f"{subject} was compared with nothing"
-    return f"no sign of {subject if word else f'more than {subject}'}"
+            shows = f"{curves} {'show' if several else 'shows'} more than {subject}".lstrip()
+            known = f"{subject} is not needed" if word else shows
+            text = f"{known}; described better by {_named(better)}"
+        case _ if not word and len(fits) == 1:
+            text = f"{subject} was compared with nothing"
+    return text
+
+
+def _reason(answer: Answer) -> str:
+    """Return why that is the verdict; empty if its words say it."""
+    question = answer.question
+    if answer.verdict is Verdict.UNDESCRIBED:
+        flaws = {flaw for one in answer.judgements if not one.describes for flaw in one.flaws}
+        untried = listed([words_of_types(question, types) for types in answer.untried])
+        why = next(flaw.value for flaw in Flaw if flaw in flaws)
+        return f"{why}; {untried} could not be tried" if untried else why
+    fits = {fit.types: fit for fit in answer.explanations}
+    if answer.verdict is Verdict.NEEDED and not fits.keys() <= {NONE, question.word}:
+        other = answer.decision.other
+        nearest = f"; the nearest is {words_of(fits[other])}" if other else ""
+        return f"nothing else tried fits as well{nearest}"
+    return ""
 
 
 def _named(fits: Sequence[Candidate]) -> str:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from scipy.special import elliprd, elliprf
 
 from pellicle.arrays import Array
-from pellicle.axisymmetric import positive, single
+from pellicle_axisymmetric import positive, single
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
-from pellicle.axisymmetric import positive, single
 from pellicle.errors import ConfigError
+from pellicle_axisymmetric import positive, single
 
 
 @dataclass(frozen=True)

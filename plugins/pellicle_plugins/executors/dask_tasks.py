@@ -29,7 +29,7 @@ _END_TIMEOUT = 10.0
 """Largest time to wait for running tasks to end at their next report [s]."""
 _POLL_INTERVAL = 0.05
 _WORKERS = {"add-worker": "a worker joined", "remove-worker": "a worker was lost"}
-"""What the scheduler tells of workers, and its words."""
+"""Words for the events of workers of which the scheduler tells."""
 _KEPT = {-1: 2**30, -3: 2**25}
 """Options of mallopt of glibc: freed bytes that are kept, bytes of an array of its own."""
 

@@ -1,4 +1,4 @@
-"""What a file holds in place of heights, for a message that says what to do."""
+"""Files that hold something else than heights, for a message that says what to do."""
 
 from __future__ import annotations
 

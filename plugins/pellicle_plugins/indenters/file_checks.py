@@ -1,4 +1,4 @@
-"""What is asked of a file of heights before it is read."""
+"""Checks of a file of heights before it is read."""
 
 from __future__ import annotations
 

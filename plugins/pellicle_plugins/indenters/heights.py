@@ -23,7 +23,7 @@ from .from_heights import FromHeights, HeightUnit, marks_in
 from .text_table import FORMAT_MARKS, read_tables, text_in
 
 _KINDS = {".npy": "npy", ".h5": "hdf5", ".hdf5": "hdf5", ".nc": "hdf5", ".mat": "mat"}
-"""What a file is by its ending; text otherwise."""
+"""Kind of a file by its ending; text otherwise."""
 _BEYOND = 1e30
 """Number that no height is, in any unit; files mark missing points with such numbers."""
 

@@ -9,7 +9,10 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from pellicle.arrays import Array
-from pellicle.axisymmetric import (
+from pellicle.components import ContactRadius, ForceCurve, Indenter, LayerForceCurve
+from pellicle.errors import ConfigError, shown
+from pellicle.units import Length, Quantity
+from pellicle_axisymmetric import (
     BodyOfRevolution,
     Profile,
     Punch,
@@ -22,9 +25,6 @@ from pellicle.axisymmetric import (
     smooth_profile,
     stretched,
 )
-from pellicle.components import ContactRadius, ForceCurve, Indenter, LayerForceCurve
-from pellicle.errors import ConfigError, shown
-from pellicle.units import Length, Quantity
 
 _TINY = 1e-12
 """Height of a tip that is lost, over the depth, below which no force shows it."""

@@ -10,10 +10,10 @@ import numpy as np
 from pydantic import Field
 
 from pellicle.arrays import Array
-from pellicle.axisymmetric import Interpolant, cone, spread, stretched_spline, touching
 from pellicle.components import ForceCurve, Indenter
 from pellicle.errors import ConfigError
 from pellicle.units import Length, Quantity
+from pellicle_axisymmetric import Interpolant, cone, spread, stretched_spline, touching
 
 SCALE = 0.03
 LENGTHS: Array = SCALE * np.expm1(np.arange(0.0, 15.1, 0.5))

@@ -28,7 +28,7 @@ class Scan(NamedTuple):
     unit: float
     """Length that 1 in the file stands for [m]."""
     missing: str
-    """What is known of the missing points, in words."""
+    """Words on the missing points."""
 
 
 class Channel(NamedTuple):
@@ -44,7 +44,7 @@ class Channel(NamedTuple):
     read: Callable[[], Array]
     """Return the values along x, then y; NaN where a point is missing."""
     missing: str = "missing"
-    """What is known of the missing points, in words."""
+    """Words on the missing points."""
 
 
 def known(edges: Sequence[Edge]) -> Sequence[Edge]:

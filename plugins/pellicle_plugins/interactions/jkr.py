@@ -35,7 +35,6 @@ class JKR(Interaction):
 
     model_config = ConfigDict(title="JKR")
 
-    needs_contact: ClassVar[bool] = True
     averaged: ClassVar[bool] = True
     least_cells: ClassVar[float] = 1.25
 

@@ -11,14 +11,14 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from pellicle import analysis
-from pellicle.analysis.steepness import steepest
+from pellicle.analysis import steepest
 from pellicle.arrays import Dataset
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown, Table
 from pellicle.errors import ConfigError
-from pellicle.results import Result, is_periodic
-from pellicle.results.path import FEW_CELLS
+from pellicle.results import FEW_CELLS, Result, is_periodic
 from pellicle.units import Quantity
+from pellicle_axisymmetric import AdhesiveContact
+from pellicle_axisymmetric import AdhesiveCurve as AxisymmetricCurve
 from pellicle_plugins.validation.adhesive_path import curve_of
 
 from .base import Label, TableFigure
@@ -49,8 +49,8 @@ class _Drawn(NamedTuple):
 
     name: Label
     path: Dataset
-    curve: analysis.AdhesiveCurve | None
-    points: dict[str, analysis.AdhesiveContact]
+    curve: AxisymmetricCurve | None
+    points: dict[str, AdhesiveContact]
     """Pull-off, zero load and the instability at fixed depth, NaN where unknown."""
     status: str
 
@@ -58,7 +58,7 @@ class _Drawn(NamedTuple):
 class AdhesiveCurve(TableFigure):
     """Force against depth of an indenter that sticks, computed from its path without adhesion.
 
-    `pellicle.analysis.adhesive_curve` has the equations, for an axisymmetric contact on a free
+    `pellicle_axisymmetric.adhesive_curve` has the equations, for an axisymmetric contact on a free
     boundary and any kernel. The run needs ``stiffness = true`` in its loading and at least eight
     steps; the curve covers the contact radii of the path. The figure ends at a push as large as the
     strongest pull; the whole curve is written as CSV beside it. ``-summary.csv`` has pull-off, the
@@ -104,7 +104,7 @@ class AdhesiveCurve(TableFigure):
         try:
             curve = curve_of(path, self.work_of_adhesion)
         except ConfigError as error:
-            unknown = analysis.AdhesiveContact(*np.full(3, np.nan))
+            unknown = AdhesiveContact(*np.full(3, np.nan))
             return _Drawn(name, path, None, dict.fromkeys(_MARKERS, unknown), str(error))
         contacts = curve.instability(), curve.at_zero_load(), curve.instability(inf)
         points = dict(zip(_MARKERS, contacts, strict=True))
@@ -147,9 +147,7 @@ class AdhesiveCurve(TableFigure):
         return Chart(depth, [force], series, self.title, note, hues=len(drawn), ordered=ordered)
 
 
-def _status(
-    curve: analysis.AdhesiveCurve, points: dict[str, analysis.AdhesiveContact], path: Dataset
-) -> str:
+def _status(curve: AxisymmetricCurve, points: dict[str, AdhesiveContact], path: Dataset) -> str:
     """Return which points are not on the path, not resolved, or steeper than the theory allows."""
     (low, high), grid = curve.contact_radius[[0, -1]], Result(path).grid
     last = path.isel(step=-1)

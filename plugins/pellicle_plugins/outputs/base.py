@@ -12,19 +12,13 @@ from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field
 
-from pellicle import Run
 from pellicle.arrays import Dataset
 from pellicle.components import Axis, Output, Runs
-from pellicle.config.describe import words_at
 from pellicle.errors import ConfigError, StorageError
-from pellicle.results import Result, StoredRuns, column_of
-from pellicle.results.derived import configuration_of, names
+from pellicle.results import Result, StoredRuns, column_of, is_ordered, names
 from pellicle.schema import evaluate, nearest
-from pellicle.schema.expression import formula
-from pellicle.show import FigureStyle, without_round_off, write_charts
-from pellicle.show.style import is_ordered
+from pellicle.show import FigureStyle, in_words, without_round_off, write_charts
 from pellicle.units import DIGITS, Quantity, readable
-from pellicle.variables import words_of_name
 
 MOST_LEGS = 4
 """Largest number of legs of a path in time that are told apart."""
@@ -218,15 +212,3 @@ def axis_of(text: str, label: str | None, data: Dataset) -> Axis:
     if label is not None or name not in data.variables:
         return Axis(in_words(text, data) if label is None else label, as_given=True)
     return Axis(column_of(data[name]).words, str(data[name].attrs.get("units", "1")))
-
-
-def in_words(text: str, data: Dataset) -> str:
-    """Return an expression over a result or a table with words in place of its names."""
-    configuration = configuration_of(data)
-
-    def words(name: str) -> str:
-        if name in data.variables:
-            return column_of(data[name]).words
-        return words_at(configuration, Run, name) if "." in name else words_of_name(name)
-
-    return formula(text, words)

@@ -5,10 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import ClassVar, Literal
 
+from pellicle import show
 from pellicle.arrays import Dataset
 from pellicle.components import Output, Runs
-from pellicle.show import tables
-from pellicle.show.numbers import write_csv
 from pellicle.variables import CAVEATS
 
 
@@ -23,8 +22,8 @@ class Csv(Output):
 
     def step(self, record: Dataset, stem: Path) -> None:
         """Write the row of the step, the first with a header."""
-        numbers = tables.numbers(record.drop_vars(CAVEATS))
-        write_csv(numbers, Path(f"{stem}.csv"), append=record["step"].item() > 1)
+        numbers = show.tables.numbers(record.drop_vars(CAVEATS))
+        show.write_csv(numbers, Path(f"{stem}.csv"), append=record["step"].item() > 1)
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Return the file, which is complete."""

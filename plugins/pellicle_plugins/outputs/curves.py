@@ -15,9 +15,9 @@ from pydantic import Field, model_validator
 from pellicle.arrays import DataArray, Dataset
 from pellicle.components import Axis, Chart, Look, Runs, Series, Shown
 from pellicle.errors import ConfigError
-from pellicle.results import has_path
+from pellicle.results import has_path, is_log_spaced, is_ordered
 from pellicle.schema import Model, names_in
-from pellicle.show.style import is_log_spaced, is_ordered
+from pellicle.show import in_words
 from pellicle.units import printed, readable
 from pellicle.variables import FIELDS, WALL_PRESSURE
 from pellicle_plugins.validation.reference import exact
@@ -32,7 +32,6 @@ from .base import (
     YLabel,
     along,
     axis_of,
-    in_words,
     label,
     require_axes,
 )

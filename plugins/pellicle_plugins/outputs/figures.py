@@ -13,9 +13,16 @@ import numpy as np
 from pellicle.analysis import legs
 from pellicle.arrays import DataArray, Dataset
 from pellicle.components import Axis, Chart, Fields, Look, Output, Runs, Series
-from pellicle.results import Result, StoredRuns, column_of, has_interaction, has_times, is_periodic
+from pellicle.results import (
+    Result,
+    StoredRuns,
+    column_of,
+    has_interaction,
+    has_times,
+    is_periodic,
+    is_seed,
+)
 from pellicle.show import FigureStyle, write_charts
-from pellicle.show.style import is_seed
 from pellicle.variables import CONTACT_AREA, CORRECTED_AREA
 
 from .base import MOST_LEGS, Formats, StyleField

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar, Literal
@@ -13,22 +13,32 @@ import numpy as np
 import tomli_w
 from pydantic import Field
 
-from pellicle import Run, show
+from pellicle import show
 from pellicle.arrays import Dataset
-from pellicle.components import Output, Runs, Table
-from pellicle.config.describe import FieldRow, inputs
+from pellicle.components import Output, Runs
 from pellicle.errors import StorageError
 from pellicle.files import atomic_write
-from pellicle.results import Result, has_interaction, label_of_step
-from pellicle.results.derived import FIRST_RUN
-from pellicle.results.runs import axes_of, progress_of, runs_of
-from pellicle.show import Code, Frame, Maps, Notice, Picture, Section, Text, sentences, tables
-from pellicle.show.drawing import DIVERGING
-from pellicle.show.fields import default_step
-from pellicle.show.methods import methods
+from pellicle.results import (
+    Result,
+    axes_of,
+    configuration_of,
+    has_interaction,
+    label_of_step,
+    progress_of,
+    runs_of,
+)
+from pellicle.show import DIVERGING, Code, Frame, Maps, Notice, Picture, Section, Text
 from pellicle.variables import WALL_PRESSURE
 
 from .html_curves import curves_of_outputs, curves_of_run, curves_of_study, picture
+from .html_sentences import (
+    aim_of_path,
+    caption_of_runs,
+    caption_of_steps,
+    range_of_path,
+    sentence_of_step,
+    sentence_of_study,
+)
 from .step_figures import cross_section
 
 _FIELDS = {
@@ -77,11 +87,11 @@ class Html(Output):
         if runs.axes is None:
             sections = self._sections_of_run(Result(runs.open()), run, runs)
         else:
-            kind, run, varied = "Study", json.loads(table.attrs[FIRST_RUN]), axes_of(table)
+            kind, run, varied = "Study", configuration_of(table), axes_of(table)
             sections = self._sections_of_study(runs, run)
         sections += [
-            Section("Methods", [Text(methods(run, table.attrs, tuple(varied)))]),
-            Section("Provenance", tables.origin(table.attrs, inputs(run, Run))),
+            Section("Methods", [Text(show.methods(run, table.attrs, tuple(varied)))]),
+            Section("Provenance", show.tables.origin(table.attrs, run)),
             Section("How to reproduce it", [*_reproduce(configuration, stem)]),
         ]
         date = table.attrs["date"].replace("T", " ").replace("+00:00", " UTC")
@@ -97,31 +107,32 @@ class Html(Output):
     ) -> list[Section]:
         data = result.dataset
         maps, chosen = self._maps_of_steps(result)
-        step_shown = default_step(data) % data.sizes["step"]
-        first, label = sentences.sentence_of_step(data, step_shown), label_of_step(data, step_shown)
+        step_shown = show.default_step(data) % data.sizes["step"]
+        first = sentence_of_step(data, step_shown)
+        label = label_of_step(data, step_shown)
         section = cross_section(data.isel(step=step_shown))
-        setup = picture(section, sentences.caption_of_setup(configuration, label))
-        aim = sentences.aim_of_path(data, result.path_summary)
-        lead, rest = (aim, first) if aim else (first, sentences.range_of_path(data))
+        setup = picture(section, show.sentences.caption_of_setup(configuration, label))
+        aim = aim_of_path(data, result.path_summary)
+        lead, rest = (aim, first) if aim else (first, range_of_path(data))
         in_short = [Text(lead, lead=True), *([Text(rest)] if rest else [])]
-        of_steps, off = tables.all_steps(data), data["contact_area"].values == 0
+        of_steps, off = show.tables.all_steps(data), data["contact_area"].values == 0
         if off.any() and not off.all():
-            apart, *_ = tables.all_steps(data.isel(step=off))
+            apart, *_ = show.tables.all_steps(data.isel(step=off))
             apart = replace(apart, caption="Results of the steps out of contact.", folded=True)
-            of_steps = [*tables.all_steps(data.isel(step=~off))[:-1], apart, of_steps[-1]]
-        numbers = [*tables.path(data), *of_steps, *tables.oscillations(data)]
+            of_steps = [*show.tables.all_steps(data.isel(step=~off))[:-1], apart, of_steps[-1]]
+        numbers = [*show.tables.path(data), *of_steps, *show.tables.oscillations(data)]
         return [
-            Section("In short", [*in_short, Notice(*sentences.status_of_run(result))]),
+            Section("In short", [*in_short, Notice(*show.sentences.status_of_run(result))]),
             Section("Maps", [maps]),
             Section("Curves", curves_of_run(result, chosen, maps.begin)),
             Section("Outputs", [*curves_of_outputs(runs, configuration, chosen)]),
             Section("Numbers", numbers),
-            Section("Set-up", [setup, _inputs(inputs(configuration, Run))]),
+            Section("Set-up", [setup, show.tables.inputs_of_run(configuration)]),
         ]
 
     def _sections_of_study(self, runs: Runs, first_run: dict[str, Any]) -> list[Section]:
         table = runs.table
-        rows, names_of_runs = list(runs_of(table)), sentences.run_names(table)
+        rows, names_of_runs = list(runs_of(table)), show.sentences.run_names(table)
         frames, setups = dict[int, Frame](), list[Picture]()
         solved = [index for index, row in enumerate(rows) if progress_of(row)[0]]
         chosen, mapped, frame_of = self._mapped(table, len(solved))
@@ -130,26 +141,25 @@ class Html(Output):
                 run = runs.open(rows[index]["run"].item())
             except StorageError:
                 continue
-            step, label = run.isel(step=default_step(run)), names_of_runs[index]
+            step, label = run.isel(step=show.default_step(run)), names_of_runs[index]
             if WALL_PRESSURE not in step:
                 step = step.assign({WALL_PRESSURE: step["pressure"]})
             frames[index] = frame_of(label, step)
             if not setups:
-                caption = sentences.caption_of_setup(first_run, label)
+                caption = show.sentences.caption_of_setup(first_run, label)
                 setups.append(picture(cross_section(step), caption))
-        sentence = sentences.sentence_of_study(table, len(rows))
+        sentence = sentence_of_study(table, len(rows))
         lead = [Text(sentence, lead=True)] if sentence else []
-        caption = sentences.caption_of_runs(table, len(frames))
+        caption = caption_of_runs(table, len(frames))
         maps = Maps(caption, "run", mapped, list(frames.values()))
-        numbers = [tables.runs(table, mapped=list(frames)), *tables.paths_of_runs(table)]
-        given = tables.inputs_of_study(table, inputs(first_run, Run))
+        numbers = [show.tables.runs(table, mapped=list(frames)), *show.tables.paths_of_runs(table)]
         return [
-            Section("In short", [*lead, Notice(*sentences.status_of_study(table))]),
+            Section("In short", [*lead, Notice(*show.sentences.status_of_study(table))]),
             Section("Maps", [maps] if frames else []),
             Section("Curves", [*curves_of_study(runs)]),
             Section("Outputs", [*curves_of_outputs(runs, first_run)]),
             Section("Numbers", numbers),
-            Section("Set-up", [*setups, _inputs(given)]),
+            Section("Set-up", [*setups, show.tables.inputs_of_run(first_run, table)]),
         ]
 
     def _maps_of_steps(self, result: Result) -> tuple[Maps, list[int]]:
@@ -160,10 +170,11 @@ class Html(Output):
             step = data.isel(step=index)
             label = f"{index + 1}: {label_of_step(data, index)}"
             label += "" if step["converged"].item() else ", NOT CONVERGED"
-            note = sentences.sentence_of_step(data, index)
+            note = sentence_of_step(data, index)
             frames.append(replace(frame_of(label, step), note=note))
-        begin = int(np.searchsorted(chosen, default_step(data) % steps, side="right")) - 1
-        caption = sentences.caption_of_steps(data, [field.name for field in mapped], len(chosen))
+        begin = int(np.searchsorted(chosen, show.default_step(data) % steps, side="right")) - 1
+        names = [field.name for field in mapped]
+        caption = caption_of_steps(data, names, len(chosen))
         return Maps(caption, "load step", mapped, frames, max(begin, 0)), chosen
 
     def _mapped(
@@ -186,11 +197,6 @@ class Html(Output):
 
         chosen = [(count * (index + 1) + number - 1) // number - 1 for index in range(number)]
         return chosen, tuple(fields.values()), frame_of
-
-
-def _inputs(fields: Iterable[FieldRow]) -> Table:
-    caption = "All inputs that determine the result, defaults included."
-    return tables.inputs((i for i in fields if not i.name.startswith("outputs.")), caption)
 
 
 def _reproduce(configuration: dict[str, Any], stem: Path) -> Iterator[Code]:

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 from pellicle import registry
 from pellicle.components import Chart, Fields, Output, Runs, Table
 from pellicle.results import Result, column_of, label_of_step
-from pellicle.show import Picture, figure_of, svg
-from pellicle.show.drawing import SIZE, Drawn, marks_of
+from pellicle.show import SIZE, Drawn, Picture, figure_of, marks_of, svg
 
 from .figures import figures_of, figures_of_study
 from .step_figures import profile

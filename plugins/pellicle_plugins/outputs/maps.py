@@ -11,7 +11,7 @@ from pellicle.arrays import Mask
 from pellicle.components import Axis, Fields, Panel, Runs, Shown
 from pellicle.results import Result, as_array, has_interaction
 from pellicle.schema import names_in
-from pellicle.show.fields import contact_and_zone
+from pellicle.show import contact_and_zone
 from pellicle.variables import WALL_PRESSURE, words_of_name
 
 from .base import TableFigure, axis_of

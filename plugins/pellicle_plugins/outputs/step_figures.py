@@ -7,8 +7,7 @@ import numpy as np
 from pellicle.arrays import Dataset
 from pellicle.components import Axis, Chart, Fields, Look, Panel, Series
 from pellicle.results import Result, has_interaction, label_of_step
-from pellicle.show import with_rim, without_round_off
-from pellicle.show.fields import contact_and_zone, default_step
+from pellicle.show import contact_and_zone, default_step, with_rim, without_round_off
 from pellicle.units import readable
 
 _OPEN = 4.0

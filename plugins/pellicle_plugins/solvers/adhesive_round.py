@@ -30,7 +30,7 @@ class Round:
     gap: Array
     depth: float
     attraction: Attraction
-    """What the law exerts across `gap`."""
+    """The traction of the law across `gap`."""
     settled: bool = True
     """Whether the wall pressure is ≥ 0 and no cell penetrates."""
     history: tuple[tuple[Mask, Tried], ...] = ()
@@ -56,7 +56,7 @@ class Round:
 
     @property
     def tried(self) -> Tried:
-        """What it was given, and what came of it."""
+        """The traction that was given, what it misses, and the wall pressure."""
         return Tried(self.traction, self.missed, self.wall)
 
     @cached_property

@@ -11,7 +11,7 @@ from pellicle.arrays import Array, Mask
 
 
 class Tried(NamedTuple):
-    """What a round was given, and what came of it, each of the shape of the grid."""
+    """Input and outcome of a round, each of the shape of the grid."""
 
     traction: Array
     """Traction across the gap [Pa]."""

@@ -142,7 +142,7 @@ class _Iterate:
         self.residual = np.subtract(self._depth, u_minus_f, out=u_minus_f)
         """Minus the gap on the contact [m], but for its mean under force control."""
         self._change: NDArray[Any] | None = None
-        """What the last iteration adds to the displacement, over `_factor` [m]; None once added."""
+        """Change of the displacement by the last iteration, over `_factor` [m]; None once added."""
         self._factor, self._depth_change = 1.0, 0.0
         if uniform:
             # The uniform pressure that closes the mean gap on the contact.

@@ -1,1 +1,1 @@
-"""What results of runs are compared with."""
+"""Known results, with which runs are compared."""

@@ -12,6 +12,7 @@ from pellicle.components import Kernel
 from pellicle.errors import ConfigError
 from pellicle.results import Result
 from pellicle.surface import along_axes
+from pellicle_axisymmetric import AdhesiveCurve, adhesive_curve
 
 _ROUND = 0.02
 """Relative difference of a circle's semi-axes, or of its area from the ellipse's, beyond a cell."""
@@ -25,7 +26,7 @@ _EXCESS_CELLS = 0.115
 """Excess of the radius counted in cells, per power of q in the stiffness of a wave, 1/G."""
 
 
-def curve_of(path: Dataset, work_of_adhesion: float) -> analysis.AdhesiveCurve:
+def curve_of(path: Dataset, work_of_adhesion: float) -> AdhesiveCurve:
     """Return the adhesive curve of the load steps of a run, for a work of adhesion [J/m²]."""
     grid = Result(path).grid
     area = path["contact_area"].values
@@ -42,7 +43,7 @@ def curve_of(path: Dataset, work_of_adhesion: float) -> analysis.AdhesiveCurve:
                 "axisymmetric indenter"
             )
     kernel = Run.from_json(path.attrs["configuration"]).kernel
-    curve = analysis.adhesive_curve(
+    curve = adhesive_curve(
         path["depth"].values,
         path["force"].values,
         np.sqrt(area / pi) - excess_radius(kernel, sqrt(grid.cell_area)),
@@ -51,7 +52,7 @@ def curve_of(path: Dataset, work_of_adhesion: float) -> analysis.AdhesiveCurve:
     )
     pinned = curve.contact_radius[0] == curve.contact_radius[1]
     if pinned and curve.contact_radius[0] < _CELLS_OF_FLAT * min(grid.spacing):
-        return analysis.AdhesiveCurve(*(values[2:] for values in curve))
+        return AdhesiveCurve(*(values[2:] for values in curve))
     last = path.isel(step=-1)
     heights = (last["displacement"] - last["gap"]).values
     flat = sqrt(np.count_nonzero(heights > (1 - _LEVEL) * heights.max()) * grid.cell_area / pi)

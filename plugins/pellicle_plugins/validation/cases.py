@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from pellicle import hookimpl
-from pellicle.axisymmetric import Adhesion, indent
 from pellicle.components import Case, Suite
 from pellicle.results import Result
+from pellicle_axisymmetric import Adhesion, indent
 from pellicle_plugins.closed_forms import hertz, sneddon
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid, Sphere
 

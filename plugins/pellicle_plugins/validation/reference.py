@@ -10,12 +10,11 @@ import numpy as np
 
 from pellicle import Run
 from pellicle.arrays import Dataset
-from pellicle.axisymmetric import AxisymmetricContact, indent, kinks_of
 from pellicle.components import HasAbelSlope, Runs
 from pellicle.errors import ConfigError
-from pellicle.results import Result, StoredRuns
-from pellicle.results.derived import DERIVED, derive
+from pellicle.results import DERIVED, Result, StoredRuns, derive
 from pellicle.variables import CORRECTED_AREA, CORRECTED_FRACTION, names_of
+from pellicle_axisymmetric import AxisymmetricContact, indent, kinks_of
 from pellicle_plugins.kernels.half_spaces import HalfSpace, TensedMembrane
 
 _PRESCRIBED = "depth", "force", "contact_radius", "contact_area"

@@ -9,7 +9,7 @@ from types import FunctionType
 from typing import Any, ClassVar, NamedTuple
 
 import pellicle as pl
-from pellicle.plugins import registry
+from pellicle.components.installed import registry
 
 
 class Refused:

@@ -13,7 +13,8 @@ import pytest
 import pellicle as pl
 from pellicle import testing
 from pellicle.components import Variable
-from pellicle.plugins import checked_type, registry
+from pellicle.components.installed import registry
+from pellicle.plugins.registry import checked_type
 from pellicle.testing import component as component_rules
 from tests.framework.broken.catalogue import GRID, PARTS, Broken, Taken, make, run
 from tests.framework.broken.corrections import Correction

@@ -10,40 +10,40 @@ import pytest
 
 from pellicle.arrays import Array
 from pellicle.components import Branch
-from pellicle.contact.time_step import Memory, TimeStep
+from pellicle.contact.time_step import History, TimeStep
 
 STIFFNESS, SKIN = 3e7, 1e7  # [Pa/m] of one wave
 SOLID = (Branch(0.4, 1.0), Branch(0.3, 0.05), Branch(0.1, 40.0))
 LIQUID = (Branch(0.7, 1.0), Branch(0.3, 20.0))
 SLS = (Branch(0.8, 2.0),)
 
-Stepper = Callable[[Sequence[Branch], Memory, TimeStep, Array], tuple[Array, Memory]]
+Stepper = Callable[[Sequence[Branch], History, TimeStep, Array], tuple[Array, History]]
 
 
 def press_bare(
-    branches: Sequence[Branch], memory: Memory, step: TimeStep, displacement: Array
-) -> tuple[Array, Memory]:
+    branches: Sequence[Branch], memory: History, step: TimeStep, displacement: Array
+) -> tuple[Array, History]:
     """Return the pressure that makes a displacement, and the memory, without a skin."""
-    left = memory.history(step) / -step.stiffness
+    left = memory.residual_stress(step) / -step.stiffness
     pressure = STIFFNESS * step.stiffness * (displacement - left)
     return pressure, memory.after(step, displacement)
 
 
 def press_skin(
-    branches: Sequence[Branch], memory: Memory, step: TimeStep, displacement: Array
-) -> tuple[Array, Memory]:
+    branches: Sequence[Branch], memory: History, step: TimeStep, displacement: Array
+) -> tuple[Array, History]:
     """Return the pressure that makes a displacement, and the memory, under a skin."""
     stiffness = SKIN + step.stiffness * STIFFNESS
-    left = -memory.history(step) / stiffness
+    left = -memory.residual_stress(step) / stiffness
     pressure = stiffness * (displacement - left)
-    strain = (pressure - memory.history(step)) * (STIFFNESS / stiffness)
+    strain = (pressure - memory.residual_stress(step)) * (STIFFNESS / stiffness)
     np.testing.assert_allclose(strain, STIFFNESS * displacement, rtol=1e-12, atol=1e-15)
     return pressure, memory.after(step, strain)
 
 
 def path(stepper: Stepper, branches: Sequence[Branch], times: Array, displacement: Array) -> Array:
     """Return the pressure [Pa] at each time, the first of which is a jump."""
-    memory, before, pressures = Memory.at_rest(branches, (1, 1)), times[0], []
+    memory, before, pressures = History.at_rest(branches, (1, 1)), times[0], []
     for t, u in zip(times, displacement, strict=True):
         step = TimeStep.of(branches, t - before)
         pressure, memory = stepper(branches, memory, step, np.full((1, 1), u))
@@ -89,11 +89,11 @@ def test_path_of_straight_lines_is_exact(
 
 def creep(stepper: Stepper, skin: float, number: int) -> float:
     """Return the displacement at t = 5 s under 1 Pa from t = 0, by ``number`` equal steps."""
-    memory, displacement = Memory.at_rest(SLS, (1, 1)), np.zeros((1, 1))
+    memory, displacement = History.at_rest(SLS, (1, 1)), np.zeros((1, 1))
     for duration in [0.0] + [5.0 / number] * number:
         step = TimeStep.of(SLS, duration)
         stiffness = skin + step.stiffness * STIFFNESS
-        history = memory.history(step)
+        history = memory.residual_stress(step)
         left = -history / stiffness if skin else history / -step.stiffness
         displacement = left + 1 / stiffness
         _, memory = stepper(SLS, memory, step, displacement)
@@ -120,7 +120,7 @@ def test_step_in_parts_is_the_same_step() -> None:
     """A straight line in seven parts leaves the memory of the whole, of every cell its own."""
     rng = np.random.default_rng(5)
     start, end = rng.normal(size=(2, 4, 3))
-    first = Memory.at_rest(SOLID, (4, 3)).after(TimeStep.of(SOLID, 0.0), start)
+    first = History.at_rest(SOLID, (4, 3)).after(TimeStep.of(SOLID, 0.0), start)
     whole = first.after(TimeStep.of(SOLID, 0.7), end)
     parts = first
     for i in range(1, 8):

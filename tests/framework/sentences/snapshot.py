@@ -24,8 +24,8 @@ HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE.parents[2])]
 
 from pellicle.cli.app import app  # noqa: E402
-from pellicle.commands import typer_command  # noqa: E402
 from pellicle.contact import Status  # noqa: E402
+from pellicle.plugins.commands import typer_command  # noqa: E402
 from tests.framework.sentences import bad_files  # noqa: E402
 from tests.physics.frozen.fit_curves import CASES  # noqa: E402
 

@@ -21,17 +21,17 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import pellicle as pl
-from pellicle_fit.candidate import Candidate
 from pellicle_fit.config import FitConfig
-from pellicle_fit.curve import Curve
+from pellicle_fit.contact.curve import Curve
 from pellicle_fit.effect import Effect, Sizes, Solid
+from pellicle_fit.estimation.candidate import Candidate
+from pellicle_fit.estimation.intervals import Estimate
+from pellicle_fit.estimation.objective import Objective
+from pellicle_fit.estimation.search import Ending, Minimum
 from pellicle_fit.explanation import Explanation
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.measurement import Measurement
-from pellicle_fit.intervals import Estimate
-from pellicle_fit.objective import Objective
-from pellicle_fit.recipe import answer, with_estimates
-from pellicle_fit.search import Minimum
+from pellicle_fit.selection.recipe import answer, with_estimates
 from tests import adhesive_paths
 from tests.physics.frozen.fit_curves import RADIUS, Case
 from tests.physics.frozen.not_frozen import VARIABLES
@@ -258,7 +258,7 @@ def fit(case: Case) -> dict[str, Any]:
             _key(fit.types): {
                 "chi_squared": fit.chi_squared,
                 "delta_aic": fit.aic - none,
-                "given_up": fit.minimum.given_up,
+                "given_up": fit.minimum.ending is Ending.GIVEN_UP,
                 "parameters": {name: _estimate(e) for name, e in fit.estimates.items()},
             }
             for fit in explanations

@@ -11,9 +11,9 @@ import pytest
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.axisymmetric.indentation import indent
 from pellicle.cli.app import app
 from pellicle.components import HasAbelSlope
+from pellicle_axisymmetric.indentation import indent
 from pellicle_check.advice import advise
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid
 

@@ -21,7 +21,7 @@ from dask import config as configuration
 
 import pellicle as pl
 from pellicle.components import Say
-from pellicle.plugins import registry
+from pellicle.components.installed import registry
 from tests.plugins.executors.jobs import Job, silence
 
 # Workers cannot import a module of a folder that is no package.

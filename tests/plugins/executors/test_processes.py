@@ -16,7 +16,7 @@ import pytest
 import pellicle as pl
 from pellicle import memory
 from pellicle.components import Say
-from pellicle.plugins import registry
+from pellicle.components.installed import registry
 from tests.plugins.executors.jobs import Job, silence
 
 # Workers cannot import a module of a folder that is no package.

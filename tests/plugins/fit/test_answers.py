@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 import pellicle as pl
-from pellicle_fit.candidate import Candidate
 from pellicle_fit.config import DEFAULT_RIVALS
-from pellicle_fit.intervals import Estimate, common_value
-from pellicle_fit.noise import Flaw
-from pellicle_fit.verdict import Verdict, decision
+from pellicle_fit.estimation.candidate import Candidate
+from pellicle_fit.estimation.intervals import End, Estimate, common_value
+from pellicle_fit.estimation.noise import Flaw
+from pellicle_fit.selection.verdict import Verdict, decision
 from pellicle_plugins.indenters.of_revolution import Cone, FlatPunch, Paraboloid, Sphere
 from tests.physics.frozen.fit_curves import MODULUS, RADIUS, Array
 from tests.plugins.fit.conftest import ends_of, holds
@@ -147,6 +147,27 @@ def test_a_shallow_curve_leaves_the_modulus_open_and_a_deep_one_the_tension() ->
     deep = fit(*curve(0.005 * TENSION))
     assert deep.tension.low is None
     assert deep.tension.high is not None
+    # What lacks a tension describes the deep curve as well; alone it would reach its limit.
+    assert deep.tension.ends == (End.LACKING, End.CLOSED)
+    tension = next(one for one in deep.answer.tied if "tension" in one.types)
+    assert tension.estimates["tension"].ends == (End.LIMIT, End.CLOSED)
+
+
+def test_correlations_are_those_of_the_ellipse() -> None:
+    """Along the profile of the tension the modulus moves as much as they say (Wilks 1938)."""
+    found = fit(*curve(TENSION)).answer.chosen
+    objective, minimum = found.objective, found.minimum
+    correlation = found.correlations["tension", "reduced_modulus"]
+    deviations, at = objective.deviations(minimum.at), minimum.at.copy()
+    modulus, tension = objective.index("reduced_modulus"), objective.index("tension")
+    assert modulus is not None
+    assert tension is not None
+    step = 0.1 * deviations[tension]
+    at[tension] += step
+    moved = objective.minimise(at, [tension]).at[modulus] - minimum.at[modulus]
+    slope = moved / step * deviations[tension] / deviations[modulus]
+    assert slope == pytest.approx(correlation, rel=0.02)
+    assert correlation < -0.9
 
 
 @pytest.mark.parametrize(("kind", "points", "size"), [("sphere", 96, 14), ("paraboloid", 64, 13)])
@@ -175,7 +196,7 @@ def test_means_of_rows_answer_as_all_rows_do(
     """Of a long curve, that may touch in its last hundredth, means lose little of the intervals."""
     rows = curve(tension, points=3000, noise=0.02, before=before)
     long = fit(*rows)
-    monkeypatch.setattr("pellicle_fit.rivals._FEW", 0)
+    monkeypatch.setattr("pellicle_fit.selection.rivals._FEW", 0)
     short = fit(*rows)
     assert short.answer.chosen.objective.curves[0].force.size <= 400
     low, high = ends_of(long.reduced_modulus)

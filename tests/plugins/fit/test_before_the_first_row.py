@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import pellicle as pl
-from pellicle_fit.verdict import Verdict
+from pellicle_fit.selection.verdict import Verdict
 
 MODULUS, RADIUS, DEEPEST, TOUCH = 2e3, 5e-6, 1e-6, 3e-6
 SPRING = 0.02

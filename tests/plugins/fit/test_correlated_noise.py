@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle_fit.long_memory import differenced, exponent_of
-from pellicle_fit.noise import Flaw
+from pellicle_fit.estimation.long_memory import differenced, exponent_of
+from pellicle_fit.estimation.noise import Flaw
 
 
 def test_differences_of_order_one_and_their_composition() -> None:

@@ -15,11 +15,11 @@ from scipy.special import beta
 
 import pellicle as pl
 from pellicle.arrays import Array
-from pellicle.axisymmetric import Adhesion
 from pellicle.testing import rules_of
+from pellicle_axisymmetric import Adhesion
 from pellicle_fit import testing
-from pellicle_fit.contact import Contact
-from pellicle_fit.curve import Curve
+from pellicle_fit.contact.contact import Contact
+from pellicle_fit.contact.curve import Curve
 from pellicle_fit.effect import (
     Adds,
     Bends,
@@ -33,9 +33,9 @@ from pellicle_fit.effect import (
 )
 from pellicle_fit.effects.tension import Tension
 from pellicle_fit.explanation import Explanation
-from pellicle_fit.recipe import answer
+from pellicle_fit.selection.recipe import answer
+from pellicle_fit.selection.verdict import Verdict
 from pellicle_fit.testing import check_effect
-from pellicle_fit.verdict import Verdict
 
 R, E = 5e-6, 2e3
 DEPTH = np.linspace(-0.4e-6, 1.2e-6, 81)

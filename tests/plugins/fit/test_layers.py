@@ -9,8 +9,8 @@ import pytest
 
 import pellicle as pl
 from pellicle.arrays import Array
+from pellicle_fit.selection.verdict import Verdict
 from pellicle_fit.simulated import simulation
-from pellicle_fit.verdict import Verdict
 from tests.plugins.fit.conftest import ends_of, holds
 
 TRUE_MODULUS, TRUE_TENSION, THICK, RATIO, RADIUS = 3e3, 2e-3, 4e-6, 0.5, 5e-6

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle.components import AnyTask, Executor, Outcome, Report, Say
-from pellicle.plugins import Registry
+from pellicle.plugins.registry import Registry
 from pellicle_fit.many import fit_sources
 from pellicle_fit.population.fits import ManyFits, summary
 from pellicle_fit.population.row import Row

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import pellicle as pl
-from pellicle_fit.verdict import Verdict
+from pellicle_fit.selection.verdict import Verdict
 from tests.plugins.fit.conftest import ends_of, holds
 
 MODULUS, RADIUS, DEEPEST = 100e3, 5e-6, 50e-9

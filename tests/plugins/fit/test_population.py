@@ -24,11 +24,11 @@ from pellicle.batch import locked
 from pellicle.cli.app import app
 from pellicle.errors import ConfigError, StorageError
 from pellicle_fit import many
+from pellicle_fit.estimation.intervals import Estimate
+from pellicle_fit.estimation.objective import MODULUS
 from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.files.sources import Source
-from pellicle_fit.intervals import Estimate
 from pellicle_fit.many import fit_sources
-from pellicle_fit.objective import MODULUS
 from pellicle_fit.population.fits import QUARTILES, summary
 from pellicle_fit.population.judgement import (
     Names,
@@ -71,14 +71,14 @@ def row(
 ) -> Row:
     """Return the row of a curve; without a modulus it could not be fitted."""
     if modulus is None:
-        return Row(name, group, status="failed: no contact")
+        return Row(name, group, failure="no contact")
     curve = {"points": 50, "noise": {"value": 1e-9, "unit": "N"}, "failed_checks": [], "data": {}}
     ends = (0.9, None) if is_open else CLOSED
     parameters = {"reduced_modulus": estimate(modulus, ends=ends), **others}
     numbers = {"r_squared": 0.99, "chi_squared": 50.0, "indentation": 1e-6, "largest_force": 1e-8}
     model = {"effects": [], "words": "no effect"}
     fit = {"parameters": parameters, "curves": [curve], "messages": [], "model": model}
-    told = {"verdict": "no sign", "comparison": "no sign of tension", "calibration": "as exact"}
+    told = {"verdict": "no sign", "headline": "no sign of tension", "calibration": "as exact"}
     found = Row(name, group)
     found.keep(numbers | fit | parameters | told)
     return found

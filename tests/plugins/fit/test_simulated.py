@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle_fit.contact import Contact
-from pellicle_fit.curve import Curve
+from pellicle_fit.contact.contact import Contact
+from pellicle_fit.contact.curve import Curve
 from pellicle_fit.effects.layer import Layer
 from pellicle_fit.effects.tension import Tension
 from pellicle_fit.problem import problem
-from pellicle_fit.recipe import answer
+from pellicle_fit.selection.recipe import answer
 from pellicle_fit.simulated import simulation
 from pellicle_fit.simulated.interpolated import SimulatedCurve
 from pellicle_fit.simulated.simulation import plan, simulated_curve

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import pickle
+from dataclasses import replace
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
 import pellicle as pl
-from pellicle_fit.area_table import half_space
-from pellicle_fit.effect import Array, Effect, Solid
+from pellicle_fit.contact.area_table import half_space
+from pellicle_fit.contact.row_splines import RowSplines
+from pellicle_fit.effect import Array, Contact, Effect, Solid
+from pellicle_fit.estimation.search import Ending, descend
 from pellicle_fit.explanation import Explanation, columns_are_rows
-from pellicle_fit.search import descend
 from tests.plugins.fit.test_effects import Soft, bead
 
 DEEPEST = 1e-6
@@ -42,6 +46,26 @@ def test_a_table_of_areas(name: str, length: float) -> None:
     np.testing.assert_allclose(found[150:], exact[150:], rtol=1e-4)
     exact = body.force_curve(depth, length).by_depth
     np.testing.assert_allclose(slope[150:], exact[150:], rtol=2e-3)
+
+
+def test_splines_of_rows() -> None:
+    """Each is the spline of its row alone."""
+    random = np.random.default_rng(1)
+    nodes = np.cumsum(random.uniform(0.1, 1.0, (5, 40)), axis=1)
+    values, share = random.standard_normal(nodes.shape), np.linspace(0, 1, 301)
+    at = nodes[:, :1] + share * (nodes[:, -1:] - nodes[:, :1])
+    each = [CubicSpline(*row)(x) for *row, x in zip(nodes, values, at, strict=True)]
+    np.testing.assert_allclose(RowSplines(nodes, values)(at), each, atol=1e-13)
+
+
+def test_a_contact_goes_to_another_process_without_its_tables() -> None:
+    """What it knew is computed there anew."""
+    body: Any = pl.indenter("paraboloid", radius=5e-6)
+    contact = replace(Contact.on_half_space(body, 1e3, DEEPEST), tension=1e-3)
+    depth = np.linspace(0, DEEPEST, 50)
+    force, sent = contact.force(depth), pickle.dumps(contact)
+    assert len(sent) < 2000
+    np.testing.assert_array_equal(pickle.loads(sent).force(depth), force)
 
 
 def _takes(effect: type[Effect]) -> bool:
@@ -129,7 +153,8 @@ def test_a_search_ends_at_the_minimum() -> None:
     for k in (0, 1, 3):
         np.testing.assert_allclose(found[k].at, 1.0, atol=1e-4)
     assert not np.isfinite(found[2].chi_squared)
-    assert not any(one.given_up for one in found)
+    assert [one.ending is Ending.UNBALANCED for one in found] == [False, False, True, False]
+    assert sum(one.ending is Ending.CONVERGED for one in found) == 3
 
 
 def test_a_search_keeps_what_is_held_and_the_limits() -> None:
@@ -149,8 +174,8 @@ def test_a_search_keeps_what_is_held_and_the_limits() -> None:
 def test_a_search_that_cannot_come_below_its_goal_is_given_up() -> None:
     """It says so, and its χ² is an upper bound; a goal within reach is none to give up."""
     (one,) = descend(Valley(), STARTS[:1], goal=-1.0)
-    assert one.given_up
+    assert one.ending is Ending.GIVEN_UP
     assert one.chi_squared > 0
     (one,) = descend(Valley(), STARTS[:1], goal=1.0)
-    assert not one.given_up
+    assert one.ending is Ending.CONVERGED
     assert one.chi_squared < 1e-4

@@ -7,7 +7,7 @@ import pytest
 
 import pellicle as pl
 from pellicle import Grid, Problem
-from pellicle.components.solver import solution_of
+from pellicle.components.calls import solution_of
 from pellicle.surface import operator_of
 
 T = (0.02, 0.08)

@@ -10,7 +10,7 @@ import pytest
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.components import Branch
-from pellicle.contact.time_step import Memory, TimeStep
+from pellicle.contact.time_step import History, TimeStep
 from pellicle.runs.relaxation import CarriedShare
 from pellicle.surface import mean_compliance, operator_of
 from pellicle.surface.from_kernel import closed_form_of
@@ -131,17 +131,17 @@ def test_full_contact_under_a_tensed_skin_is_exact_in_time() -> None:
     wave = np.cos(2 * np.pi * x / grid.size[0]) + 0 * y
     q = 2 * np.pi / grid.size[0]
     branches, speed = kernel.branches(), 1e-7
-    memory, before = Memory.at_rest(branches, grid.shape), 0.0
+    memory, before = History.at_rest(branches, grid.shape), 0.0
     for t in (0.0, 0.3, 0.4, 2.0, 90.0):
         step = TimeStep.of(branches, t - before)
         scaled = kernel.scaled(step.stiffness)
         operator = operator_of(scaled, grid)
-        left = -operator(memory.history(step))
+        left = -operator(memory.residual_stress(step))
         # One wave, so that the pressure follows from its compliance.
         stiffness = 1 / scaled.compliance(np.array([q])).item()
         pressure = (speed * t * wave - left) * stiffness
         carried = operator_of(CarriedShare(scaled, kernel.without_skin()), grid)
-        strain = carried(pressure - memory.history(step))
+        strain = carried(pressure - memory.residual_stress(step))
         memory, before = memory.after(step, strain), t
         integral = 0.2 * t + sum(g * tau * -np.expm1(-t / tau) for g, tau in branches)
         expected = speed * (5e3 * q * integral + 0.05 * q**2 * t) * wave

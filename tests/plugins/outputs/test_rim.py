@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle.axisymmetric.indentation import indent
 from pellicle.components import Chart, Table
 from pellicle.results.runs import StoredRuns
 from pellicle.show import up_to_rim
+from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from pellicle_plugins.outputs.profiles import Profiles
 from pellicle_plugins.outputs.step_figures import profile

@@ -7,7 +7,7 @@ component, and a run, before it starts, of components that pellicle does not shi
 from . import interactions, kernels
 from .rule import Case as Case
 from .rule import Rule as Rule
-from .rule import broken as broken
+from .rule import first_violation as first_violation
 from .rule import required as required
 from .rule import rules_of
 

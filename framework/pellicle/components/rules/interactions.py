@@ -1,4 +1,4 @@
-"""What the law of an interaction keeps, as it is resolved on a grid."""
+"""Rules of interactions, for the law as it is resolved on a grid."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def slope_is_the_derivative_of_the_traction(interaction: Interaction, case: Case
 
 
 def resolved_keeps_the_work_of_adhesion(interaction: Interaction, case: Case) -> str:
-    """What `resolved` returns has the work of adhesion of the interaction, on every grid."""
+    """The law that `resolved` returns has the interaction's work of adhesion, on every grid."""
     at_rest = -float(np.ravel(interaction.energy(np.zeros(1)))[0])
     resolved = _law(interaction, case).work_of_adhesion()
     if abs(resolved - at_rest) <= 1e-9 * abs(at_rest):

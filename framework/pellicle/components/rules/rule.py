@@ -1,4 +1,4 @@
-"""What a rule is, where it is asked, and how it tells that arrays differ."""
+"""Rules of a contract: where they are asked, and how they tell that arrays differ."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Rule = Callable[[Any, Case], str]
 """Return what breaks the rule, and nothing if it is kept; its docstring says what is required."""
 
 
-def broken(rules: Iterable[Rule], component: object, case: Case) -> str:
+def first_violation(rules: Iterable[Rule], component: object, case: Case) -> str:
     """Return the first rule that a component breaks, with what breaks it; nothing if it keeps all.
 
     Exceptions that the component raises are attributed to it.

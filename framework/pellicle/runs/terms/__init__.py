@@ -1,4 +1,4 @@
-"""What a load step has besides its equilibrium: each term adds measures and caveats of its own."""
+"""Terms of a load step besides its equilibrium: each adds measures and caveats of its own."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from pellicle.contact.load_step import FinishedStep, LoadStep
 
 
 class Surroundings(NamedTuple):
-    """What a term knows besides the load step and the run."""
+    """Data for a term besides the load step and the run."""
 
     setting: Setting
-    """That of the run, with what the steps before have left behind."""
+    """The setting of the run, with the displacement that earlier steps have left behind."""
     path: Sequence[FinishedStep]
     """The steps before."""
     monitor: Monitor

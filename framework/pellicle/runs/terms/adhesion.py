@@ -8,8 +8,8 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from pellicle.components import Force, Monitor
+from pellicle.components.calls import solution_of
 from pellicle.components.interaction import law_of
-from pellicle.components.solver import solution_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import Equilibrium, equilibrium_of

@@ -88,7 +88,7 @@ def _has_no_end(reach: Mask, boundary: Boundary) -> bool:
 def _coarse(run: Run, equilibrium: Equilibrium) -> Iterator[Caveat]:
     contact, problem = equilibrium.contact, equilibrium.problem
     # An interaction of a range of its own acts beyond the contact, however small that is.
-    ranged = run.interaction is not None and not run.interaction.needs_contact
+    ranged = run.interaction is not None and run.interaction.cutoff() > 0
     cells = int(np.count_nonzero(contact | equilibrium.zone if ranged else contact))
     enough = _RESOLVED_ACROSS if min(contact.shape) == 1 else _RESOLVED
     # A surface that was left behind may be out of the indenter's reach at a depth above 0.

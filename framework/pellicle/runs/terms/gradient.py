@@ -16,9 +16,8 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.components import Depth, Search, Setting
-from pellicle.components.indenter import profile_of
+from pellicle.components.calls import profile_of, target_of
 from pellicle.components.kernel import Kernel, instantaneous
-from pellicle.components.prescription import target_of
 from pellicle.config.gradient import HEIGHTS
 from pellicle.config.run import Run
 from pellicle.contact.load_step import LoadStep

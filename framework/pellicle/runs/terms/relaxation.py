@@ -7,7 +7,6 @@ from typing import Final
 
 import numpy as np
 
-from pellicle.components.kernel import branches_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.load_step import LoadStep, Value
@@ -35,7 +34,7 @@ def relaxation(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep
         measures["time"] = loading.times[index]
     if loading.oscillates:
         measures["cycle"] = loading.samples[index].cycle
-    if surroundings.setting.law and branches_of(run.kernel) and loading.durations[index] > 0:
+    if surroundings.setting.law and run.branches and loading.durations[index] > 0:
         # The energy of a solid that has relaxed on its way does not follow from its surface.
         measures["energy"] = np.nan
     area = np.count_nonzero(step.equilibrium.counted_contact) * run.grid.cell_area
@@ -62,7 +61,7 @@ def _least_domain(run: Run, index: int, largest_area: float) -> float:
     under a tension. It is 0 where there is nothing outside: at the first step, without a skin, and
     on a periodic boundary.
     """
-    kernel, branches = run.kernel, branches_of(run.kernel)
+    kernel, branches = run.kernel, run.branches
     if not index or not branches or run.grid.boundary == "periodic":
         return 0.0
     solid = kernel.without_skin()

@@ -1,4 +1,4 @@
-"""What a configuration asks for: corrected areas, measures of its prescription, the stiffness."""
+"""Measures on request: corrected areas, those of the prescription, the stiffness."""
 
 from __future__ import annotations
 
@@ -7,9 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from pellicle.components import Depth
-from pellicle.components.correction import corrected_area
-from pellicle.components.prescription import report_of
-from pellicle.components.solver import response_of
+from pellicle.components.calls import corrected_area, report_of, response_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import Stiffness, measure_stiffness

@@ -1,1 +1,1 @@
-"""What a skin with bending stiffness needs, where cells cannot change sides one by one."""
+"""Contact under a skin with bending stiffness, where cells cannot change sides one by one."""

@@ -1,0 +1,1 @@
+"""Quantities of an explanation from curves: χ², searches, starts, intervals and the noise."""

@@ -1,0 +1,340 @@
+"""χ² of one or more curves under an explanation, as a function of its open quantities."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pellicle.arrays import Array
+from pellicle_fit.contact.curve import BEFORE, Curve
+from pellicle_fit.effect import Fitted, Records, Responds, Sizes, Weighed
+from pellicle_fit.explanation import Balance, Explanation, columns_are_rows
+from pellicle_fit.strangers import is_own
+
+from .long_memory import differenced
+from .search import Minimum, descend
+
+_STEP = 1e-6
+"""Step of derivatives by differences, in coordinates of the order of 1."""
+_DECADES = 6.0
+"""How far a logarithm may go from the size of its quantity."""
+MODULUS: Final = "reduced_modulus"
+CONTACT_POINT: Final = "contact_point"
+
+
+class Slot(NamedTuple):
+    """A coordinate of a search: an open quantity, of one curve unless it is shared."""
+
+    name: str
+    part: int
+    """Which part of the explanation has it: 0 the solid, then the effects."""
+    curve: int | None
+    """The first curve that it belongs to; None if all share it."""
+    quantity: Fitted
+    scale: float
+    """What a coordinate of 1 stands for, or a logarithm of 0, in SI."""
+
+    @property
+    def full_name(self) -> str:
+        """The name, of further curves with their number."""
+        return f"{self.name}_{self.curve}" if self.curve else self.name
+
+    def value(self, coordinate: float) -> float:
+        """Return the value in SI."""
+        return float(np.exp(coordinate) if self.quantity.log else coordinate) * self.scale
+
+    def coordinate(self, value: float) -> float:
+        """Return the coordinate of a value in SI."""
+        if self.quantity.log:
+            return float(np.log(max(value, 1e-300) / self.scale))
+        return value / self.scale
+
+
+class Trials(NamedTuple):
+    """Trials of coordinates of shape (k, coordinates)."""
+
+    terms: Array
+    """(recorded − measured)/noise of all curves, then the terms of what is weighed, (k, terms).
+
+    NaN where forces do not balance.
+    """
+    balances: tuple[Balance, ...]
+    """Forces and depths of each curve, of shape (k, n)."""
+
+    def of(self, rows: NDArray[Any]) -> Trials:
+        """Return some of the trials."""
+        balances = (Balance(*(part[rows] for part in balance)) for balance in self.balances)
+        return Trials(self.terms[rows], tuple(balances))
+
+    def put(self, rows: NDArray[Any], others: Trials) -> None:
+        """Put others in the places of some."""
+        self.terms[rows] = others.terms
+        for mine, other in zip(self.balances, others.balances, strict=True):
+            for part, new in zip(mine, other, strict=True):
+                part[rows] = new
+
+
+def _of_shape(part: Array, shape: tuple[int, int]) -> Array:
+    return part if part.shape == shape else np.array(np.broadcast_to(part, shape))
+
+
+@dataclass(frozen=True, eq=False)
+class Objective:
+    """χ² = Σ (recorded − measured)²/noise², and a term for each quantity that is weighed.
+
+    The modulus that it varies is the one at the end of the loading, which explanations with and
+    without relaxation share, and not E* of the law of relaxation.
+    """
+
+    explanation: Explanation
+    curves: tuple[Curve, ...]
+    noise: tuple[float, ...]
+    """Standard deviation of the force of each curve [N]."""
+    sizes: Sizes
+    """Orders of magnitude, in which coordinates are counted."""
+    memory: tuple[float, ...] = ()
+    """Exponent d of each curve whose noise has a power that falls as f^(−2d); 0 or none if white.
+
+    The noise is then that of fractional differences.
+    """
+    loading_time: float = 1.0
+    """Time from first touch to the end of the loading [s]."""
+
+    @cached_property
+    def slots(self) -> tuple[Slot, ...]:
+        """The coordinates, in order."""
+        owners = {"all": [None], "curve": range(len(self.curves)), "indenter": {*self.beads}}
+        return tuple(
+            Slot(name, part, curve, quantity, self.sizes.of(quantity.unit))
+            for part, component in enumerate(self.explanation.parts)
+            for name, quantity in component.open.items()
+            for curve in owners[quantity.scope]
+        )
+
+    @cached_property
+    def beads(self) -> list[int]:
+        """The first curve with the indenter of each curve."""
+        indenters = [curve.indenter for curve in self.curves]
+        return [indenters.index(indenter) for indenter in indenters]
+
+    def index(self, name: str) -> int | None:
+        """Return the number of the first coordinate of a quantity; None if it is not open."""
+        return next((k for k, slot in enumerate(self.slots) if slot.name == name), None)
+
+    @cached_property
+    def limits(self) -> Array:
+        """Least and greatest coordinates, of shape (2, coordinates)."""
+        known: dict[str, tuple[float, float]] = {}
+        for effect in self.explanation.effects:
+            known |= effect.limits(self.sizes)
+        ends = []
+        for slot in self.slots:
+            q, reach = slot.quantity, 10**_DECADES
+            low = next((end for end in (q.at_least, q.above) if end is not None), -np.inf)
+            high = next((end for end in (q.at_most, q.below) if end is not None), np.inf)
+            if slot.name == CONTACT_POINT and slot.curve is not None:
+                curve = self.curves[slot.curve]
+                # A free cantilever may be bent, if the force before contact is one.
+                bent = np.array([0.0, curve.shallow_force / (curve.stiffness or np.inf)])
+                low = float(curve.position.min() + bent.min() - BEFORE * curve.span)
+                high = float(curve.position.max() + bent.max())
+            elif q.log:
+                low, high = slot.scale / reach, slot.scale * reach
+            low, high = known.get(slot.name, (low, high))
+            ends.append((slot.coordinate(low), slot.coordinate(high)))
+        return np.array(ends).reshape(-1, 2).T
+
+    def acts(self, slot: Slot, curve: int) -> bool:
+        """Return whether a coordinate is of a curve."""
+        owner = self.beads[curve] if slot.quantity.scope == "indenter" else curve
+        return slot.curve in (None, owner)
+
+    @cached_property
+    def _scales(self) -> tuple[NDArray[np.intp], Array]:
+        """Which coordinates are logarithms, and all scales."""
+        logs = np.flatnonzero([slot.quantity.log for slot in self.slots])
+        return logs, np.array([slot.scale for slot in self.slots])
+
+    @cached_property
+    def _acting(self) -> list[list[int]]:
+        """The coordinates of each curve."""
+        slots = [*enumerate(self.slots)]
+        return [[k for k, s in slots if self.acts(s, i)] for i in range(len(self.curves))]
+
+    def known(self, at: Array, curve: int) -> Explanation:
+        """Return the explanation of a curve with values of its open quantities.
+
+        Of coordinates of shape (k, coordinates) they are columns of shape (k, 1).
+        """
+        logs, scales = self._scales
+        numbers = at * scales
+        if logs.size:
+            numbers[..., logs] = np.exp(at[..., logs]) * scales[logs]
+        of = numbers.T[:, :, None] if at.ndim > 1 else numbers.tolist()
+        values: list[dict[str, Any]] = [{} for _ in self.explanation.parts]
+        for k in self._acting[curve]:
+            values[self.slots[k].part][self.slots[k].name] = of[k]
+        pairs = zip(self.explanation.effects, values[1:], strict=True)
+        effects = tuple(effect.of_values(known) if known else effect for effect, known in pairs)
+        for effect in effects if MODULUS in values[0] else ():
+            if isinstance(effect, Responds):
+                values[0][MODULUS] = values[0][MODULUS] / effect.relaxed(self.loading_time)
+        return Explanation(self.explanation.solid.of_values(values[0]), effects)
+
+    def forces(self, at: Array) -> list[Array]:
+        """Return the force [N] of each curve that the explanation records."""
+        return [self.known(at, i).force(curve) for i, curve in enumerate(self.curves)]
+
+    def trials(self, at: Array) -> Trials:
+        """Return trials of coordinates of shape (k, coordinates)."""
+        terms, balances = [], []
+        for i, curve in enumerate(self.curves):
+            shape = (len(at), curve.force.size)
+            found = self.known(at, i).balance(curve, together=self.takes_columns)
+            balance = Balance(*(_of_shape(part, shape) for part in found))
+            terms.append(self._term(balance.recorded - curve.force, i))
+            balances.append(balance)
+        for k, slot, given in self._weighed:
+            values = np.array([slot.value(coordinate) for coordinate in at[:, k]])
+            terms.append((values[:, None] - given) / given.deviation)
+        return Trials(np.concatenate(terms, axis=1), tuple(balances))
+
+    def _term(self, difference: Array, i: int) -> Array:
+        """Return differences of the forces of a curve [N], of shape (k, n), over its noise."""
+        term = self.curves[i].weights * difference / self.noise[i]
+        if self.memory and self.memory[i]:
+            term = differenced(term.T, self.memory[i]).T
+        return np.asarray(term)
+
+    @cached_property
+    def _weighed(self) -> list[tuple[int, Slot, Weighed]]:
+        """Coordinates of what is weighed, and its values."""
+        parts = self.explanation.parts
+        given = [(k, s, getattr(parts[s.part], s.name)) for k, s in enumerate(self.slots)]
+        return [entry for entry in given if isinstance(entry[2], Weighed)]
+
+    def derivatives(self, at: Array, trials: Trials) -> Array:
+        """Return the derivatives of the terms of trials, of shape (k, coordinates, terms)."""
+        found = np.zeros((*at.shape, trials.terms.shape[1]))
+        steps = np.where(at + _STEP <= self.limits[1], _STEP, -_STEP)
+        end = 0
+        for i, (curve, balance) in enumerate(zip(self.curves, trials.balances, strict=True)):
+            of_instrument, touches, others = self._kinds[i]
+            begin, end = end, end + curve.force.size
+            for some in filter(None, (of_instrument, others)):
+                moved = np.repeat(at, len(some), axis=0)
+                step = steps[:, some].ravel()
+                moved[np.arange(step.size), np.tile(some, len(at))] += step
+                near = Balance(*(np.repeat(part, len(some), axis=0) for part in balance))
+                known = self.known(moved, i)
+                if some is of_instrument:
+                    forces = known.recorded(near.force, curve)
+                else:
+                    forces = known.beside(curve, near, together=self.takes_columns)
+                rates = self._term((forces - near.recorded) / step[:, None], i)
+                found[:, some, begin:end] = rates.reshape(len(at), len(some), -1)
+            if touches:
+                shift = _STEP * self.slots[touches[0]].scale
+                forces = self.known(at, i).recorded(balance.force - shift * balance.rate, curve)
+                found[:, touches[0], begin:end] = self._term((forces - balance.recorded) / _STEP, i)
+        for number, (k, slot, given) in enumerate(self._weighed):
+            move = [slot.value(x + _STEP) - slot.value(x - _STEP) for x in at[:, k]]
+            found[:, k, end + number] = np.array(move) / (2 * _STEP * given.deviation)
+        return found
+
+    @cached_property
+    def takes_columns(self) -> bool:
+        """Whether trials are computed together; where an effect is a stranger's, that is tried."""
+        own = all(is_own(type(effect)) for effect in self.explanation.effects)
+        return own or columns_are_rows(self.explanation, self.curves[0])
+
+    @cached_property
+    def _kinds(self) -> list[tuple[list[int], list[int], list[int]]]:
+        """Coordinates of each curve: of its instrument, of its contact point, and all others.
+
+        The former move what is recorded and no balance; a contact point moves depths of the base
+        and nothing else.
+        """
+        found = []
+        responds, together = self.explanation.of(Responds), self.takes_columns
+        # What is recorded of a path without a load is in the path that a memory sees.
+        remembers = any(not effect.balances for effect in responds)
+        for curve, acting in zip(self.curves, self._acting, strict=True):
+            kinds: tuple[list[int], list[int], list[int]] = [], [], []
+            for k in acting:
+                part = self.explanation.parts[self.slots[k].part]
+                alone = isinstance(part, Records) and type(part).stiffness is Records.stiffness
+                bound = curve.stiffness is not None and (remembers or curve.touch is not None)
+                is_record = alone and not bound
+                is_touch = self.slots[k].name == CONTACT_POINT and not responds
+                kinds[0 if together and is_record else 1 if together and is_touch else 2].append(k)
+            found.append(kinds)
+        return found
+
+    def terms(self, at: Array) -> Array:
+        """Return the terms of coordinates; if forces do not balance, it is a ConvergenceError."""
+        (terms,) = self.trials(np.asarray(at)[None]).terms
+        if not np.isfinite(terms).all():
+            self.forces(at)
+        return np.asarray(terms)
+
+    def squares(self, terms: Array) -> tuple[float, ...]:
+        """Return χ² of each curve, then of each term of what is weighed."""
+        ends = np.cumsum([curve.force.size for curve in self.curves])
+        parts = np.split(terms, [*ends, *range(ends[-1] + 1, terms.size)])
+        return tuple(float(part @ part) for part in parts if part.size)
+
+    def chi_squared(self, at: Array) -> float:
+        """Return χ²."""
+        return float(np.sum(self.terms(at) ** 2))
+
+    def criterion(self, chi_squared: float) -> float:
+        """Return Akaike's criterion, less a constant of the curves."""
+        effects = self.explanation.effects
+        searched = sum(effect.searched(curve) for effect in effects for curve in self.curves)
+        return chi_squared + 2 * (len(self.slots) + searched)
+
+    def jacobian(self, at: Array, free: Sequence[int]) -> Array:
+        """Return the derivatives of the terms by some coordinates, of shape (terms, free)."""
+        at = np.asarray(at)[None]
+        return np.asarray(self.derivatives(at, self.trials(at))[0][[*free]].T)
+
+    def deviations(self, at: Array) -> Array:
+        """Return the Cramér–Rao bound of each coordinate; infinite if it is not determined."""
+        jacobian = self.jacobian(at, range(at.size))
+        variances = np.diag(np.linalg.pinv(jacobian.T @ jacobian, rcond=1e-14))
+        return np.where(variances > 0, np.sqrt(np.abs(variances)), np.inf)
+
+    @cached_property
+    def coarse(self) -> Objective:
+        """χ² of a few means, unless no mean stands for rows."""
+        if any(self.memory) or any(effect.jumps for effect in self.explanation.effects):
+            return self
+        return replace(self, curves=tuple(curve.coarse for curve in self.curves))
+
+    def minimise(self, start: Array, held: Sequence[int] = (), *, steps: int = 0) -> Minimum:
+        """Return the minimum of χ² near a start, where the coordinates ``held`` stay.
+
+        With a number of ``steps``, roughly.  If forces do not balance there, it is a
+        ConvergenceError.
+        """
+        stays = np.isin(np.arange(len(self.slots)), [*held])
+        (found,) = descend(self, np.asarray(start, dtype=float)[None], stays[None], steps=steps)
+        if not np.isfinite(found.chi_squared):
+            self.forces(found.at)
+        return found
+
+    def values(self, at: Array) -> dict[tuple[str, int | None], float]:
+        """Return values in SI by name, and curve of what is not shared."""
+        pairs = zip(self.slots, at, strict=True)
+        return {(slot.name, slot.curve): slot.value(c) for slot, c in pairs}
+
+    def at_values(self, known: dict[tuple[str, int | None], float]) -> Array:
+        """Return coordinates of values, such as those of another explanation; NaN where unknown."""
+        values = [known.get((slot.name, slot.curve), np.nan) for slot in self.slots]
+        return np.array([s.coordinate(v) for s, v in zip(self.slots, values, strict=True)])

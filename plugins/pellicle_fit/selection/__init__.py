@@ -1,0 +1,1 @@
+"""Which explanations of curves hold: rivals, the verdict, and what to do next."""

@@ -1,0 +1,114 @@
+"""What to do next with a curve: mend how it is read, fit it otherwise, or measure more."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from enum import Enum
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from pellicle_fit.estimation.noise import FEWEST, Flaw
+from pellicle_fit.estimation.objective import CONTACT_POINT
+
+from .forecast import telling
+from .recipe import Answer
+from .verdict import Verdict
+
+if TYPE_CHECKING:
+    from pellicle_fit.config import FitConfig
+    from pellicle_fit.result import Member
+
+PLAUSIBLE = {"reduced_modulus": (1.0, 1e12), "tension": (0.0, 1.0), "thickness": (1e-9, 1.0)}
+"""Values [SI] beyond which a unit is probably wrong."""
+_DEPTHS = 1e-5, 10.0
+"""Depths over the radius beyond which a unit is probably wrong."""
+
+
+class Remedy(Enum):
+    """What may be done; behind it what is known of it."""
+
+    CHECK_RADIUS = "check_radius"
+    """depth, radius [m]"""
+    BEGIN_EARLIER = "begin_earlier"
+    """rows before contact"""
+    CHECK_UNITS = "check_units"
+    """name, value, unit of a quantity"""
+    FIT_SLOPE = "fit_slope"
+    FIT_OFFSET = "fit_offset"
+    ASK_ADHESION = "ask_adhesion"
+    DELETE_SPIKES = "delete_spikes"
+    FIT_BOTH = "fit_both"
+    """first and last row of the retraction"""
+    GIVE_THICKNESS = "give_thickness"
+    """needs_ratio: whether Poisson's ratio is not known"""
+    FIT_APPROACH = "fit_approach"
+    MEASURE = "measure"
+    """proposal, and how many curves"""
+    LESS_NOISE = "less_noise"
+
+
+class Advice(NamedTuple):
+    """Something to do."""
+
+    remedy: Remedy
+    values: Mapping[str, Any] = {}
+    """Numbers in SI and names that it rests on."""
+
+
+def advise(answer: Answer, members: Sequence[Member], config: FitConfig) -> tuple[Advice, ...]:
+    """Return what to do next, the most urgent first: mend the fit, else measure; or nothing."""
+    first = *_of_input(answer), *_of_options(answer, members, config)
+    is_open = answer.verdict is Verdict.CANNOT_TELL
+    return (_measurement(answer),) if is_open and not first else first
+
+
+def _of_input(answer: Answer) -> Iterator[Advice]:
+    """Yield what is probably wrong with radius or units."""
+    chosen = answer.chosen
+    depths = chosen.depths
+    for curve, of_rows in zip(chosen.whole, depths, strict=True):
+        radius, depth = getattr(curve.indenter, "radius", None), float(np.max(of_rows))
+        if radius and not _DEPTHS[0] <= depth / radius <= _DEPTHS[1]:
+            yield Advice(Remedy.CHECK_RADIUS, {"depth": depth, "radius": radius})
+            break
+    few = [int(count) for of_rows in depths if (count := np.sum(of_rows < 0)) < FEWEST]
+    if CONTACT_POINT in chosen.estimates and few:
+        yield Advice(Remedy.BEGIN_EARLIER, {"rows": few[0]})
+    for name, (least, most) in PLAUSIBLE.items():
+        if (found := answer.chosen.estimates.get(name)) is None:
+            continue
+        # The best value of an open interval is one of many.
+        low, high = found.low or 0.0, np.inf if found.high is None else found.high
+        if low > most or high < least:
+            known = {"name": name, "value": found.value, "unit": found.unit}
+            yield Advice(Remedy.CHECK_UNITS, known)
+
+
+def _of_options(answer: Answer, members: Sequence[Member], config: FitConfig) -> Iterator[Advice]:
+    """Yield what another option of the fit would mend."""
+    flaws = {flaw for one in answer.judgements for flaw in one.flaws}
+    types = answer.chosen.objective.explanation.types
+    if (Flaw.DRIFT in flaws or "slope" in types) and config.baseline != "slope":
+        yield Advice(Remedy.FIT_SLOPE)
+    elif (Flaw.OFFSET in flaws or "offset" in types) and config.baseline == "none":
+        yield Advice(Remedy.FIT_OFFSET)
+    if Flaw.DIP in flaws and not {"adhesion"} & types.union(*answer.excused):
+        yield Advice(Remedy.ASK_ADHESION)
+    if Flaw.SPIKES in flaws:
+        yield Advice(Remedy.DELETE_SPIKES)
+    rows = next((one for member in members if (one := member.measured.left_out)), None)
+    if answer.verdict is Verdict.CANNOT_TELL and rows:
+        yield Advice(Remedy.FIT_BOTH, {"first": rows[0], "last": rows[1]})
+    if config.thickness is None and any("layer" in fit.types for fit in answer.tied):
+        yield Advice(Remedy.GIVE_THICKNESS, {"needs_ratio": config.poissons_ratio is None})
+    if answer.untried and answer.verdict is Verdict.UNDESCRIBED:
+        yield Advice(Remedy.FIT_APPROACH)
+
+
+def _measurement(answer: Answer) -> Advice:
+    """Return what to measure, so that explanations can be told apart."""
+    proposal, curves = telling(answer.asked, answer.tied_without)
+    if proposal is None:
+        return Advice(Remedy.LESS_NOISE)
+    return Advice(Remedy.MEASURE, {"proposal": proposal, "curves": curves})

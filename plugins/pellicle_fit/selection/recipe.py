@@ -1,0 +1,275 @@
+"""Modulus, tension and contact point of curves, with intervals and a verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import chain
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import chdtrc
+
+from pellicle.errors import ConfigError
+from pellicle_fit.contact.curve import Curve
+from pellicle_fit.effect import Effect, Records, Responds, Solid
+from pellicle_fit.estimation.candidate import NONE, Candidate, Types, best_of
+from pellicle_fit.estimation.intervals import End, Estimate, common_value, estimates, threshold_of
+from pellicle_fit.estimation.noise import CHANCE, Judged
+from pellicle_fit.estimation.objective import CONTACT_POINT, MODULUS
+from pellicle_fit.strangers import refuse_broken, strangers_named
+
+from .neighbour import Neighbour
+from .rivals import Question, comparison
+from .verdict import MARGIN, SMALL, Decision, Verdict, choice, decision, doubtful, ties
+
+TENSION = "tension"
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What curves say about a solid, and about rivals of the model."""
+
+    explanations: tuple[Candidate, ...]
+    """Best first; estimates of those in `tied`."""
+    question: Question
+    decision: Decision
+    chosen: Candidate
+    """The explanation whose estimates count."""
+    tied: tuple[Candidate, ...]
+    """What the curves cannot tell from it, itself included."""
+    excused: Mapping[Types, str]
+    """Why explanations could not be compared."""
+    judgements: tuple[Judged, ...]
+    """Noise and flaws of each curve under the best explanation."""
+    threshold: float
+    """Δχ² at the ends of intervals, which a disagreement of curves widens."""
+    agreement: Agreement
+    """Whether several curves agree on what they share."""
+    untried: tuple[Types, ...]
+    """Responses that act alone and whose force beside what is asked is not known."""
+    not_weighed: tuple[Types, ...] = ()
+    """Explanations that curves alike rule out."""
+
+    @property
+    def verdict(self) -> Verdict:
+        """Whether what is asked for is needed."""
+        return self.decision.verdict
+
+    @property
+    def tension_needed(self) -> bool:
+        """Whether the curves need a tension."""
+        return self.question.word == {TENSION} and self.verdict is Verdict.NEEDED
+
+    @property
+    def not_held(self) -> tuple[Candidate, ...]:
+        """Tied explanations of so small a modulus that the curves do not hold it."""
+        moduli = {fit: e.value for fit in self.tied if (e := fit.estimates.get(MODULUS))}
+        # Only the least may be so beside all others.
+        limit = SMALL * max(sorted(moduli.values())[1:2], default=0.0)
+        return tuple(fit for fit, e in moduli.items() if fit is not self.chosen and e < limit)
+
+    @property
+    def asked(self) -> Candidate:
+        """The best explanation with what is asked for."""
+        return next(fit for fit in self.explanations if fit.types == self.decision.asked)
+
+    @property
+    def tied_without(self) -> list[Candidate]:
+        """What explains the curves as well as the best with what is asked for, without it."""
+        word, aic = self.question.word, self.asked.aic
+        return [
+            fit
+            for fit in self.explanations
+            if not word <= fit.types and abs(fit.aic - aic) < self.decision.margin
+        ]
+
+    def chi_squared(self, fit: Candidate) -> float:
+        """Return χ² of an explanation at the noise that is told, which is not widened."""
+        return fit.chi_squared_of([judged.widened for judged in self.judgements])
+
+    @property
+    def if_present(self) -> Mapping[str, Estimate]:
+        """Modulus and quantities of what is asked for if it were there, though there is no sign."""
+        if self.verdict is not Verdict.NO_SIGN or not self.question.word:
+            return {}
+        beside = next(fit for fit in self.tied if fit.types == self.question.word)
+        own = {name: beside.parameters[name] for name in self.question.wanted}
+        return {MODULUS: self.over_tied(MODULUS, self.tied)} | own
+
+    def over_tied(self, name: str, tied: Sequence[Candidate] = ()) -> Estimate:
+        """Return modulus (at the end of the loading) or tension over all that is tied.
+
+        The interval is the least that contains theirs; without a lower end if one of them has none.
+        The value is the one that all of them allow, NaN if there is none.  A tension that none of
+        them has is held at 0 and has no ends: they do not bound it.  Where there is no sign of what
+        is asked for, the modulus is that without it.
+        """
+        lacking = self.question.word if name == MODULUS and self.verdict is Verdict.NO_SIGN else ()
+        tied = tied or [fit for fit in self.tied if not lacking or not lacking <= fit.types]
+        tied = [fit for fit in tied if fit not in self.not_held]
+        if name == MODULUS:
+            tied = [fit for fit in tied if fit.holds_modulus]
+        found = [fit.estimates[name] for fit in tied if name in fit.estimates]
+        none = Estimate(0.0, None, None, "N/m", held=True)
+        own = self.chosen.parameters.get(name, none)
+        if not found:
+            return own if tied or own.held else replace(own, low=None, high=None)
+        lows = [e.low for e in found if e.low is not None]
+        highs = [e.high for e in found if e.high is not None]
+        low = min(lows) if len(lows) == len(tied) else None
+        high = max(highs) if len(highs) == len(found) else None
+        ends = _over([e.ends[0] for e in found], len(tied)), _over([e.ends[1] for e in found])
+        # Of what some of them lack, and need not lack, no value is one that all allow.
+        shared = len(found) == len(tied) or self.verdict is Verdict.NO_SIGN
+        value = common_value(found) if shared else np.nan
+        return Estimate(value, low, high, found[0].unit, ends=ends)
+
+
+def _over(ends: Sequence[End], count: int = 0) -> End:
+    """Return what an end is over several explanations, of which ``count`` should have one."""
+    if len(ends) < count:
+        return End.LACKING
+    return next((end for end in ends if end is not End.CLOSED), End.CLOSED)
+
+
+class Agreement(NamedTuple):
+    """Rise of χ² where curves share quantities, over that of each curve on its own."""
+
+    chi_squared: float
+    degrees: int
+    worst: int
+    """The curve that agrees least."""
+
+    @property
+    def factor(self) -> float:
+        """The factor by which it widens a rise of χ² (Birge 1932), 1 if it is within chance."""
+        if not self.degrees or chdtrc(self.degrees, self.chi_squared) >= CHANCE:
+            return 1.0
+        return max(self.chi_squared / self.degrees, 1.0)
+
+
+def agreement_of(fit: Candidate) -> Agreement:
+    """Return whether curves agree on the quantities that they share."""
+    objective, count = fit.of_rows, len(fit.whole)
+    shared = sum(slot.curve is None for slot in objective.slots)
+    if count == 1 or not shared:
+        return Agreement(0.0, 0, 0)
+    values, rises = objective.values(fit.minimum.at), []
+    for i in range(count):
+        names = ("curves", "noise", "memory")
+        one = replace(objective, **{name: getattr(objective, name)[i : i + 1] for name in names})
+        # A bead's own is that of the first curve that has the bead.
+        of = (None, objective.beads[i], i)
+        own = {(n, None if c is None else 0): v for (n, c), v in values.items() if c in of}
+        start = one.at_values(own)
+        rises.append(one.chi_squared(start) - one.minimise(start).chi_squared)
+    return Agreement(max(sum(rises), 0.0), shared * (count - 1), int(np.argmax(rises)))
+
+
+def timed(curves: Sequence[Curve]) -> tuple[Curve, ...]:
+    """Return curves with times.
+
+    Those whose times are not known have one speed, at which the longest takes 1 s.
+    """
+    ways = [np.append(0.0, np.cumsum(np.abs(np.diff(curve.base)))) for curve in curves]
+    longest = max(way[-1] for way in ways)
+    return tuple(
+        curve if curve.time is not None else replace(curve, time=way / longest)
+        for curve, way in zip(curves, ways, strict=True)
+    )
+
+
+@strangers_named()
+def answer(
+    curves: Sequence[Curve],
+    model: Sequence[Effect],
+    rivals: Iterable[Sequence[Effect]],
+    *,
+    kept: Sequence[Effect] = (),
+    fix: Mapping[str, float | str] | None = None,
+    uncertainty: Sequence[Effect] = (),
+    like: Sequence[Neighbour] = (),
+) -> Answer:
+    """Fit modulus, contact point and a model to curves of one solid, and weigh its rivals.
+
+    The question is whether the first effect of the model that is none of the instrument is needed;
+    its others, and those ``kept``, are in all explanations.  Each set of rivals is compared alone
+    and beside what is asked for.  ``fix`` has values of quantities of the solid, in SI or with
+    units.  Effects of ``uncertainty``, whose quantities are weighed, widen intervals and are in no
+    comparison.  What all curves that are ``like`` this one rule out is not compared, unless the
+    choice then ties on none of them.
+
+    Raises
+    ------
+    ConfigError, ConvergenceError, PluginError
+        A value is not allowed, cantilever and solid do not balance, or a stranger's effect breaks
+        its contract.
+    """
+    sets = tuple(map(tuple, rivals))
+    for effect in (*model, *kept, *chain(*sets), *uncertainty):
+        refuse_broken(effect)
+    curves = timed(curves)
+    asked = next((effect for effect in model if not isinstance(effect, Records)), None)
+    kept = (*kept, *(effect for effect in model if effect is not asked))
+    question = Question(Solid.model_validate(dict(fix or {})), asked, kept, sets)
+    candidates, word = question.candidates(), question.word
+    excused = {types: why for types, one in candidates.items() if (why := one.excuse(curves))}
+    if word in excused:
+        raise ConfigError(f"cannot be fitted to this curve: {excused[word]}", "model")
+    candidates = {types: one for types, one in candidates.items() if types not in excused}
+    spared = frozenset[Types].intersection(*(one.ruled_out for one in like)) if like else NONE
+    not_weighed = [t for t in candidates if t in spared and t not in (NONE, word)]
+    weighed = {t: one for t, one in candidates.items() if t not in not_weighed}
+    fits = dict(comparison(word, weighed, curves, like[0] if like else None))
+    best = best_of(fits.values())
+    threshold = threshold_of(min(judged.noise.freedom for judged in best.judgements))
+    margin, doubted = max(MARGIN, threshold), doubtful(best.judgements)
+    decided = decision(fits, word, doubted=doubted, margin=margin)
+    chosen = choice(fits, word, decided)
+    undescribed = decided.verdict is Verdict.UNDESCRIBED
+    if not_weighed and not any(one.has(chosen, not doubted) for one in like):
+        return answer(curves, model, sets, kept=kept, fix=fix, uncertainty=uncertainty)
+    agreement = agreement_of(fits[chosen])
+    threshold *= agreement.factor
+    alone = {types: candidates.get(types - word) for types in excused if word < types}
+    responses = {types: known.of(Responds) for types, known in alone.items() if known}
+    untried = [types for types, own in responses.items() if any(e.type_name in types for e in own)]
+    # Of what no model describes few ends are worth seeking; none if what may be right has no model.
+    own = (MODULUS, TENSION, CONTACT_POINT, *question.wanted) if undescribed else ()
+    rise, tied = np.inf if undescribed and untried else threshold, ties(fits, word, decided, chosen)
+    for types in tied:
+        names = own if types == chosen else (MODULUS, TENSION, *question.wanted)
+        fits[types] = with_estimates(fits[types], rise, uncertainty, names)
+    return Answer(
+        tuple(sorted(fits.values(), key=lambda fit: fit.aic)),
+        question,
+        decided,
+        fits[chosen],
+        tuple(fits[types] for types in tied),
+        excused,
+        tuple(best.judgements),
+        threshold,
+        agreement,
+        tuple(untried),
+        tuple(not_weighed),
+    )
+
+
+def with_estimates(
+    fit: Candidate, threshold: float, extra: Sequence[Effect], names: Sequence[str]
+) -> Candidate:
+    """Return an explanation with the estimates of some of its quantities, or of all."""
+    fit = fit.polished()
+    objective, minimum = fit.objective, fit.minimum
+    accuracy = max(
+        known.accuracy(curve) * curve.largest / noise
+        for known, curve, noise in zip(fit.known, objective.curves, objective.noise, strict=True)
+    )
+    if extra:
+        objective, at = fit.beside(extra)
+        minimum = objective.minimise(at)
+    minimum, found = estimates(objective, minimum, threshold * max(1.0, accuracy) ** 2, names)
+    if extra:
+        return replace(fit, estimates=found, weighed=(objective, minimum))
+    return replace(fit, estimates=found, minimum=minimum)

@@ -1,0 +1,242 @@
+"""Explanations of curves compared: with and without what is asked for, alone and beside rivals."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from pellicle.arrays import Array
+from pellicle_fit.contact.curve import Curve
+from pellicle_fit.effect import Adds, Effect, Records, Sizes, Solid
+from pellicle_fit.estimation.candidate import NONE, Candidate, Types, best_of
+from pellicle_fit.estimation.noise import neighbour_noise
+from pellicle_fit.estimation.objective import Objective
+from pellicle_fit.estimation.search import Minimum, cost_of, descend
+from pellicle_fit.estimation.starts import starts
+from pellicle_fit.explanation import Explanation
+
+from .neighbour import RULED_OUT, Neighbour
+from .verdict import Fits
+
+Explanations = Mapping[Types, Explanation]
+_ROWS, _FEW, _ROWS_OF_FEW = 400, 2, 12_000
+"""Means that stand for the rows of each pass, where the force has no jumps, and those of a few
+explanations."""
+_FAR, _NEAR, _LEADS, _BESIDE = RULED_OUT, 4.0, 2.0, 1.0
+"""Differences of AIC to the best beyond which an explanation is given up, and not sought to all
+digits; of a pair to its parts, and to the best."""
+_STARTS, _STEPS, _KEPT = 6, 4, 2
+"""Starts from which searches go, their rough steps, and how many are sought to the end."""
+_LOWER = 0.1
+"""Fall of χ² that is worth another search."""
+_COMPARED = 2e-2
+"""Fall of χ² that is left where explanations are compared."""
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is asked of curves: whether an effect is needed, beside others that are."""
+
+    solid: Solid
+    asked: Effect | None
+    kept: tuple[Effect, ...]
+    """Effects that all explanations have."""
+    rivals: tuple[tuple[Effect, ...], ...]
+    """Sets of effects, each compared alone and beside what is asked for."""
+
+    @property
+    def word(self) -> Types:
+        """The set of what is asked for."""
+        return frozenset({self.asked.type_name}) if self.asked else NONE
+
+    @property
+    def wanted(self) -> list[str]:
+        """Open quantities of what is asked for and of what is kept, unless it is a baseline."""
+        own = (e for e in (self.asked, *self.kept) if e and not isinstance(e, (Adds, Records)))
+        return [name for effect in own for name in effect.open]
+
+    def candidates(self) -> dict[Types, Explanation]:
+        """Return the explanations that are compared, by their types."""
+        found: dict[Types, Explanation] = {}
+        kept = {effect.type_name for effect in self.kept}
+        sides: list[tuple[Effect, ...]] = [(), (self.asked,)] if self.asked else [()]
+        for rival in ((), *self.rivals):
+            for side in sides:
+                taken = kept | {effect.type_name for effect in side}
+                own = side + tuple(e for e in rival if e.type_name not in taken)
+                types = frozenset(effect.type_name for effect in own)
+                # What derives from an effect that is kept is another form of it, in its place.
+                other = tuple(k for k in self.kept if not any(isinstance(e, type(k)) for e in own))
+                found.setdefault(types, Explanation(self.solid, other + own))
+        return found
+
+
+def comparison(
+    word: Types,
+    candidates: Explanations,
+    curves: tuple[Curve, ...],
+    like: Neighbour | None = None,
+    memory: tuple[float, ...] = (),
+) -> Fits:
+    """Return all explanations at their least χ², at the noise of the best.
+
+    All but the simple ones are sought from what they are on a curve that is ``like`` these.
+    Noise that is correlated counts as such, unless the best explanation then fails: a bent baseline
+    is no noise, and differences of it would remove the contact.
+    """
+    noise = tuple(neighbour_noise(curve.force).deviation for curve in curves)
+    sizes = Sizes.of_curve(curves[0])
+    of = Objective(candidates[NONE], curves, noise, sizes, memory, sizes.time)
+    rows = _ROWS if len(candidates) > _FEW else _ROWS_OF_FEW
+    means = tuple(curve.binned(rows) for curve in curves)
+    simple = _sought(
+        {types: candidates[types] for types in (NONE, word)}, word, {}, of, means, None
+    )
+    simple = at_common_noise({types: fit.polished() for types, fit in simple.items()})
+    best = best_of(simple.values())
+    if not memory and any(found := tuple(judged.memory for judged in best.judgements)):
+        fits = comparison(word, candidates, curves, like, found)
+        other = best_of(fits.values())
+        # What a wrong explanation leaves before contact may look like noise with a memory.
+        if all(judged.describes for judged in other.judgements) and any(
+            judged.memory for judged in other.without_memory.judgements
+        ):
+            return fits
+    # Another noise only scales χ²; at last it is that of the best.
+    fits = _sought(candidates, word, simple, best.of_rows, means, like)
+    if like is None:
+        fits = {types: _restarted(fit, word, fits) for types, fit in fits.items()}
+    ends = {t: _end(t, word, fits, _NEAR) for t in fits}
+    fits = {t: f.polished() if f.aic < ends[t] else f for t, f in fits.items()}
+    fits = at_common_noise(_nearest_sought(fits, word))
+    # The modulus of the end of the loading is that after the time since the best first touch.
+    best = best_of(fits.values())
+    pairs = zip(best.whole, best.contact_points, strict=True)
+    times = [curve.time_in_contact(point) for curve, point in pairs]
+    time = float(np.exp(np.mean(np.log(times))))
+    return {types: fit.relaxed_for(time) for types, fit in fits.items()}
+
+
+def _sought(
+    candidates: Explanations,
+    word: Types,
+    simple: Fits,
+    of: Objective,
+    means: tuple[Curve, ...],
+    like: Neighbour | None,
+) -> Fits:
+    """Return explanations of all rows at their least χ², beside the simple ones if there are any.
+
+    No mean stands for rows between which a force jumps, and none has their memory.
+    """
+    fits = dict(simple)
+    for types, explanation in candidates.items():
+        if types in fits:
+            continue
+        is_whole = any(of.memory) or any(effect.jumps for effect in explanation.effects)
+        curves = of.curves if is_whole else means
+        objective = replace(of, explanation=explanation, curves=curves)
+        parts = [fit for part, fit in fits.items() if part < types]
+        beside = fits.get(word if word <= types else NONE)
+        at = near = like.starts(objective, types, beside, parts) if like and beside else []
+        if not near:
+            # A pair starts from its parts.
+            at = starts(objective, parts, scan=not word < types or not word)
+        goal = np.inf
+        if simple:
+            goal = _end(types, word, fits, _FAR) - objective.criterion(0.0)
+        known = fits.get(word)
+        least = _least(objective, at, goal, known, steps=0 if near else _STEPS)
+        fits[types] = Candidate(types, objective, least, of.curves)
+    return fits
+
+
+def _nearest_sought(fits: Fits, word: Types) -> Fits:
+    """Return explanations of which the best without what is asked for is sought to the end."""
+    found, sought = dict(fits), set[Types]()
+    while True:
+        nearest = best_of(fit for fit in found.values() if not word or not word <= fit.types)
+        if nearest.types in sought:
+            return found
+        found[nearest.types] = nearest.polished()
+        sought.add(nearest.types)
+
+
+def _end(types: Types, word: Types, fits: Fits, far: float) -> float:
+    """Return the AIC above which an explanation decides nothing.
+
+    It is then far behind the best, or no better than nothing at all; or, of a pair, neither the
+    best nor ahead of its parts.
+    """
+    least = min(fit.aic for fit in fits.values())
+    if not word < types:
+        return min(least + far, fits[NONE].aic)
+    of_parts = min(fits[part].aic for part in (word, types - word) if part in fits) - _LEADS
+    return max(min(least + far, of_parts), least + _BESIDE)
+
+
+def _least(
+    objective: Objective,
+    starts: Sequence[Array],
+    goal: float,
+    known: Candidate | None,
+    steps: int = _STEPS,
+) -> Minimum:
+    """Return the least minimum from several starts: few ``steps`` of all, more of the best.
+
+    One that does not come below a goal for χ² of all rows is given up.
+    """
+    coarse, of_means, of_coarse = objective.coarse, goal, goal
+    if known is not None:
+        of_means -= _scatter(known, objective.curves)
+        of_coarse -= _scatter(known, coarse.curves)
+    left = np.array(starts)
+    most = _STARTS if steps else _KEPT
+    if len(left) > most:
+        terms = coarse.trials(np.clip(left, *coarse.limits)).terms
+        left = left[np.argsort(cost_of(terms))[:most]]
+    if len(left) > _KEPT:
+        minima = descend(coarse, left, steps=steps, goal=of_coarse)
+        minima.sort(key=lambda minimum: minimum.chi_squared)
+        left = np.array([minimum.at for minimum in minima[:_KEPT]])
+    minima = descend(objective, left, goal=of_means, fall=_COMPARED, rivals=True)
+    return min(minima, key=lambda minimum: minimum.chi_squared)
+
+
+def at_common_noise(fits: Fits) -> Fits:
+    """Return explanations at the noise of the best that passes its checks.
+
+    If none does, at that of the best, which is widened where it fails.
+    """
+    ranked = sorted(fits.values(), key=lambda fit: fit.aic)
+    passing = (fit for fit in ranked if all(judged.describes for judged in fit.judgements))
+    noise = [judged.noise.deviation for judged in next(passing, ranked[0]).judgements]
+    return {types: fit.at_noise(noise) for types, fit in fits.items()}
+
+
+@lru_cache(maxsize=4)
+def _scatter(known: Candidate, curves: tuple[Curve, ...]) -> float:
+    """Return by what χ² of all rows exceeds that of means: the scatter of the rows about them."""
+    of_means = replace(known.objective, curves=curves)
+    return known.chi_squared - of_means.chi_squared(known.minimum.at)
+
+
+def _restarted(fit: Candidate, word: Types, fits: Fits) -> Candidate:
+    """Return the least χ² from the minima of what it is a part of, too."""
+    # What is no better than its part is no better place to start from.
+    lower = fit.minimum.chi_squared - _LOWER
+    wholes = [
+        other
+        for types, other in fits.items()
+        if fit.types and fit.types < types and other.minimum.chi_squared < lower
+    ]
+    if not wholes:
+        return fit
+    values = [whole.objective.values(whole.minimum.at) for whole in wholes]
+    at = np.array([fit.objective.at_values(known) for known in values])
+    goal = min(_end(fit.types, word, fits, _FAR) - fit.objective.criterion(0.0), fit.chi_squared)
+    found = _least(fit.objective, [*at], goal - _LOWER, fits[word])
+    return min(fit, replace(fit, minimum=found), key=lambda one: one.minimum.chi_squared)

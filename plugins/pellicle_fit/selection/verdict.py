@@ -1,0 +1,123 @@
+"""The verdict on explanations of curves: what is needed, and what the curves cannot tell apart."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from enum import Enum
+from typing import NamedTuple
+
+from scipy.special import bdtrc
+
+from pellicle_fit.estimation.candidate import NONE, Candidate, Types, best_of
+from pellicle_fit.estimation.noise import Judged
+from pellicle_fit.estimation.objective import MODULUS
+
+MARGIN = 4.0
+"""Difference of AIC below which explanations cannot be told apart."""
+EFFECT_MARGIN = 6.0
+"""Difference of AIC by which an effect must beat its absence: chance does so in 0.2 %."""
+MANY_MARGIN = 12.0
+"""Difference of AIC by which the best of many rivals must beat no effect at all, and the best of
+many pairs all that lacks what is asked for."""
+SMALL = 0.2
+"""Share of the moduli of others below which an explanation says that E* is not held."""
+Fits = Mapping[Types, Candidate]
+"""Explanations by their types."""
+_FAILING = 0.01
+"""Probability that a curve without fault fails some check."""
+_RARE = 0.05
+"""Probability below which the number of failing curves is not attributed to chance."""
+
+
+class Verdict(Enum):
+    """The answer to whether a model is needed."""
+
+    NEEDED = "needed"
+    CANNOT_TELL = "cannot tell"
+    NO_SIGN = "no sign"
+    OTHER = "another explanation is better"
+    UNDESCRIBED = "no model describes"
+
+
+class Decision(NamedTuple):
+    """A verdict, the explanations that it rests on, and by how much."""
+
+    verdict: Verdict
+    asked: Types
+    """The best explanation with what is asked for."""
+    other: Types
+    """The best without."""
+    lead: float
+    """AIC of the latter over that of the former."""
+    margin: float
+    """ΔAIC below which explanations tie."""
+
+
+def decision(fits: Fits, word: Types, *, doubted: bool, margin: float) -> Decision:
+    """Return the verdict on explanations, the best of which fails its checks if ``doubted``."""
+    ranked = sorted(fits.values(), key=lambda fit: fit.aic)
+    # Beside another effect it explains the curves only if neither does as well alone.
+    asked = next(fit for fit in ranked if fit.types == word or leads(fit, word, fits))
+    other = next(fit for fit in ranked if not word <= fit.types or not word)
+    none, lead = fits[NONE].aic, other.aic - asked.aic
+    if lead > 0 and asked.types != word:
+        margin = max(margin, MANY_MARGIN)
+    if doubted:
+        verdict = Verdict.UNDESCRIBED
+    elif none - asked.aic < EFFECT_MARGIN:
+        # The best of many rivals beats a clean curve by more than one of them does.
+        verdict = Verdict.OTHER if none - other.aic >= MANY_MARGIN else Verdict.NO_SIGN
+    elif abs(lead) >= margin:
+        verdict = Verdict.NEEDED if lead > 0 else Verdict.OTHER
+    else:
+        verdict = Verdict.CANNOT_TELL
+    return Decision(verdict, asked.types, other.types, lead, margin)
+
+
+def leads(pair: Candidate, word: Types, fits: Fits) -> bool:
+    """Return whether a pair has less AIC than each of its parts by what chance does not bring.
+
+    Of a dozen pairs that all see the same noise, some gain a little in many a curve; and one that
+    does without the solid, whose E* is a small part of that without the rival, is no explanation.
+    """
+    if not word < pair.types:
+        return False
+    parts = [fits[part] for part in (word, pair.types - word) if part in fits]
+    alone, beside = (fit.parameters[MODULUS].value for fit in (fits[word], pair))
+    return beside >= SMALL * alone and min(part.aic for part in parts) - pair.aic >= EFFECT_MARGIN
+
+
+def choice(fits: Fits, word: Types, decision: Decision) -> Types:
+    """Return the explanation whose estimates count."""
+    known = {Verdict.NEEDED: decision.asked, Verdict.OTHER: decision.other, Verdict.NO_SIGN: NONE}
+    best = best_of(fits.values())
+    nearest = word if fits[word].aic - best.aic < decision.margin else best.types
+    return known.get(decision.verdict, nearest)
+
+
+def ties(fits: Fits, word: Types, decision: Decision, chosen: Types) -> list[Types]:
+    """Return the explanations that the curves cannot tell from the best and that lend values.
+
+    The best is one of those that the verdict weighs: a pair that is little better than its parts
+    does not push out what ties with them.  Where there is no sign of what is asked for, what has
+    it alone lends its bounds.
+    """
+    none = decision.verdict is Verdict.NO_SIGN
+    least = min(fits[decision.asked].aic, fits[decision.other].aic)
+
+    def lends(fit: Candidate) -> bool:
+        if fit.types == chosen or (none and fit.types == word):
+            return True
+        if fit.aic - least >= decision.margin or not fit.holds_modulus:
+            return False
+        if none:
+            return fit.aic + EFFECT_MARGIN <= fits[NONE].aic
+        return not word < fit.types or leads(fit, word, fits)
+
+    return [fit.types for fit in fits.values() if lends(fit)]
+
+
+def doubtful(judgements: Sequence[Judged]) -> bool:
+    """Return whether more curves fail than do so by chance."""
+    failing = sum(not judgement.describes for judgement in judgements)
+    return failing > 0 and bool(bdtrc(failing - 1, len(judgements), _FAILING) <= _RARE)
