@@ -265,8 +265,8 @@ def _keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool
 def work(task: FitTask, say: Say) -> dict[str, Any]:
     """Fit a curve in a worker, and return JSON data of the fit, with what a population adds."""
     fit = task.problem.fit(like=task.like)
-    chosen, (member,), (force,) = fit.answer.chosen, fit.members, fit.forces()
-    load = force - chosen.known[0].free_force(member.curve)
+    selected, (member,), (force,) = fit.answer.selected, fit.members, fit.forces()
+    load = force - selected.known[0].free_force(member.curve)
     measured, position = member.curve.force, member.curve.position
     scatter = measured - np.mean(measured)
     drawn = sketch(position=position, force=measured, fit=force)
@@ -275,13 +275,13 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
         own = [calibration_of(fit)] if fit.config.uncertainty else []
         beside = f"common error, beside the medians alone: {shares(task.common)}"
         kept["calibration"] = "; ".join([*own, beside])
-        moved = kept["common_errors"] = common_errors(chosen, task.common)
+        moved = kept["common_errors"] = common_errors(selected, task.common)
         if MODULUS in moved and (ratio := fit.poissons_ratio) is not None:
             of_youngs = {name: (1 - ratio**2) * error for name, error in moved[MODULUS].items()}
             moved["youngs_modulus"] = of_youngs
     return kept | {
         "r_squared": 1 - float(np.sum((force - measured) ** 2) / np.sum(scatter**2)),
-        "indentation": float(np.max(chosen.depths[0])),
+        "indentation": float(np.max(selected.depths[0])),
         "largest_force": float(np.max(load)),
         "sketch": as_json(drawn),
     }

@@ -110,7 +110,7 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
     question = {
         "model": [effect for effect in model if effect not in given],
         "rivals": [r for rival in (*config.rivals, *forms) if (r := _known(rival, fix, ratio))],
-        "kept": [*given, *baseline, *layers],
+        "common": [*given, *baseline, *layers],
         "fix": {name: fix[name] for name in quantities(Solid).keys() & fix.keys()},
         "uncertainty": errors(config.uncertainty),
     }

@@ -88,7 +88,7 @@ class Fit:
     @property
     def contact_point(self) -> Estimate:
         """Position of first touch [m], of the first curve."""
-        return self.answer.chosen.parameters["contact_point"]
+        return self.answer.selected.parameters["contact_point"]
 
     def estimates(self) -> dict[str, Estimate]:
         """Return modulus and tension, and the other quantities of the chosen explanation by name.
@@ -99,7 +99,7 @@ class Fit:
         found = {"reduced_modulus": self.reduced_modulus, "tension": self.tension}
         if youngs := self.youngs_modulus:
             found["youngs_modulus"] = youngs
-        return {**found, **self.answer.if_present, **self.answer.chosen.sought, **found}
+        return {**found, **self.answer.if_present, **self.answer.selected.sought, **found}
 
     @property
     def verdict(self) -> Verdict:
@@ -138,10 +138,10 @@ class Fit:
 
     def _messages(self, *, with_checks: bool) -> list[str]:
         several, found = len(self.members) > 1, []
-        for member, judged in zip(self.members, self.answer.judgements, strict=True):
+        for member, checked in zip(self.members, self.answer.judgements, strict=True):
             own = [
                 *member.measured.messages,
-                *(judged.failed_checks.values() if with_checks else ()),
+                *(checked.failed_checks.values() if with_checks else ()),
             ]
             found += [type(text)(f"{member.name}: {text}") if several else text for text in own]
         return [*found, *remarks(self.answer)]
@@ -165,25 +165,25 @@ class Fit:
     @property
     def chi_squared(self) -> float:
         """Sum of squared residuals over the noise, of the chosen explanation."""
-        return self.answer.chi_squared(self.answer.chosen)
+        return self.answer.chi_squared(self.answer.selected)
 
     def forces(self) -> list[Array]:
         """Return the force [N] of the chosen explanation at the rows of each curve."""
-        return self.answer.chosen.forces()
+        return self.answer.selected.forces()
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as JSON data."""
-        answer, chosen = self.answer, self.answer.chosen
-        own, asked = chosen.sought, ("reduced_modulus", "tension", "youngs_modulus")
+        answer, selected = self.answer, self.answer.selected
+        own, target = selected.sought, ("reduced_modulus", "tension", "youngs_modulus")
         parameters = {**answer.if_present, **own}
         return {
-            **{name: e.to_dict() for name, e in self.estimates().items() if name in asked},
+            **{name: e.to_dict() for name, e in self.estimates().items() if name in target},
             "parameters": {name: estimate.to_dict() for name, estimate in parameters.items()},
             "correlations": [
-                {"of": [*pair], "value": value} for pair, value in chosen.correlations.items()
+                {"of": [*pair], "value": value} for pair, value in selected.correlations.items()
             ],
             "if_present": {name: estimate.to_dict() for name, estimate in self.if_present.items()},
-            "model": {"effects": sorted(chosen.types), "words": words_of(chosen)},
+            "model": {"effects": sorted(selected.types), "words": words_of(selected)},
             "verdict": self.verdict.value,
             "headline": headline(answer),
             "comparison": self.comparison,
@@ -195,7 +195,7 @@ class Fit:
             "chi_squared": self.chi_squared,
             "threshold": answer.threshold,
             "margin": answer.decision.margin,
-            "lead": answer.decision.lead,
+            "lead": answer.decision.delta_aic,
             "explanations": [self._explanation(fit) for fit in answer.explanations],
             "excused": [
                 {"effects": sorted(types), "reason": reason}
@@ -226,16 +226,16 @@ class Fit:
 
     def _curve(self, i: int, parameters: Mapping[str, Estimate]) -> dict[str, Any]:
         """Return one of the curves, with what the chosen explanation says of it alone."""
-        member, judged = self.members[i], self.answer.judgements[i]
-        slots = [slot for slot in self.answer.chosen.objective.slots if slot.curve == i]
+        member, checked = self.members[i], self.answer.judgements[i]
+        slots = [slot for slot in self.answer.selected.objective.slots if slot.curve == i]
         return {
             "name": member.name,
             "indenter": described(member.curve.indenter),
             "points": member.curve.position.size,
-            "noise": {"value": judged.deviation, "unit": "N"},
-            "noise_weighed": {"value": judged.noise.deviation, "unit": "N"},
+            "noise": {"value": checked.deviation, "unit": "N"},
+            "noise_weighed": {"value": checked.noise.deviation, "unit": "N"},
             "failed_checks": [
-                {"code": code, "message": text} for code, text in judged.failed_checks.items()
+                {"code": code, "message": text} for code, text in checked.failed_checks.items()
             ],
             "messages": list(member.measured.messages),
             **{

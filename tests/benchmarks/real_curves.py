@@ -131,7 +131,7 @@ def outcome(curve: Measurement | PellicleError) -> Outcome:
     )
     assert hertz.youngs_modulus is not None
     modulus, total = nanite_fit(rows)
-    squares = hertz.chi_squared * hertz.answer.chosen.objective.noise[0] ** 2
+    squares = hertz.chi_squared * hertz.answer.selected.objective.noise[0] ** 2
     is_open = None in (hertz.reduced_modulus.low, hertz.reduced_modulus.high)
     return Outcome(
         seconds,

@@ -14,7 +14,7 @@ from pellicle_fit.effect import Effect, quantities
 from pellicle_fit.explanation import Explanation
 
 from .intervals import Estimate
-from .noise import Flaw, Judged, judged
+from .noise import Flaw, ResidualCheck, check_residuals
 from .objective import MODULUS, Objective
 from .search import Minimum
 
@@ -166,7 +166,7 @@ class Candidate:
         return replace(self, minimum=self.objective.minimise(self.minimum.at))
 
     @cached_property
-    def judgements(self) -> list[Judged]:
+    def judgements(self) -> list[ResidualCheck]:
         """Noise and flaws of each curve under it, from all rows."""
         at, forces = self.minimum.at, self.forces()
         objective = replace(self.of_rows, memory=())
@@ -180,7 +180,7 @@ class Candidate:
         columns, found = (self.known, self.whole, forces, objective.noise, by_curve, memory), []
         for known, curve, force, noise, derivatives, d in zip(*columns, strict=True):
             depth = known.base_depth(curve)
-            one = judged(curve, curve.force - force, derivatives * noise, depth, d)
+            one = check_residuals(curve, curve.force - force, derivatives * noise, depth, d)
             if np.max(known.depth(curve)) > known.contact(curve).depth_limit:
                 one = one._replace(flaws=one.flaws | {Flaw.TOO_DEEP})
             found.append(one)

@@ -64,7 +64,7 @@ class Noise(NamedTuple):
         return ratio > 1 and bool(fdtrc(self.freedom, other.freedom, ratio) < CHANCE)
 
 
-class Judged(NamedTuple):
+class ResidualCheck(NamedTuple):
     """The noise of a curve, widened where an explanation fails, and the flaws."""
 
     noise: Noise
@@ -91,9 +91,9 @@ class Judged(NamedTuple):
         return {flaw.name.lower(): flaw.value for flaw in Flaw if flaw in self.flaws}
 
 
-def judged(
+def check_residuals(
     curve: Curve, residuals: Array, jacobian: Array, depth: Array, memory: float = 0.0
-) -> Judged:
+) -> ResidualCheck:
     """Return the noise that an explanation of least χ² leaves in a curve.
 
     Of noise with a memory d, that of its fractional differences.  Residuals are the recorded force
@@ -113,7 +113,7 @@ def judged(
         # Without a baseline neighbours tell the noise.
         if noise.exceeds(neighbour_noise(residuals, least)):
             flaws.add(Flaw.MISFIT)
-        return Judged(noise, frozenset(flaws), noise.deviation)
+        return ResidualCheck(noise, frozenset(flaws), noise.deviation)
     # Towards contact, on a retraction too.
     rows = np.flatnonzero(before)[:: -1 if curve.moves_out[before][0] else 1]
     found, white, noise = _before_contact(residuals[rows], curve.base[rows], least)
@@ -140,7 +140,7 @@ def judged(
         noise = max(noise, usual, sums)
     slow = Flaw.SLOW in flaws and Flaw.DIP not in flaws and not memory
     exponent = exponent_of(residuals[before]) if slow else 0.0
-    return Judged(noise, frozenset(flaws), deviation, exponent)
+    return ResidualCheck(noise, frozenset(flaws), deviation, exponent)
 
 
 def _before_contact(force: Array, base: Array, least: float) -> tuple[set[Flaw], Noise, Noise]:

@@ -115,8 +115,8 @@ class Row:
         of = "reduced_modulus" if name == "youngs_modulus" else name
         ratio = self.curve["data"]["poissons_ratio"] if of != name else 0.0
         # An explanation without the quantity has none of it.
-        chosen = self.fit["parameters"].get(of, {"value": 0.0})
-        return replace(found, value=(1 - ratio**2) * chosen["value"])
+        selected = self.fit["parameters"].get(of, {"value": 0.0})
+        return replace(found, value=(1 - ratio**2) * selected["value"])
 
     def has_no_sign(self, name: str) -> bool:
         """Return whether there is no sign of what was asked for, which has the quantity."""

@@ -66,15 +66,15 @@ def charts(fit: Fit) -> dict[str, list[Chart]]:
 
     The pairs of modulus and tension are those of the chosen explanation or of one tied with it.
     """
-    answer, chosen = fit.answer, fit.answer.chosen
-    types, rival = {answer.decision.asked, answer.decision.other} - {chosen.types}, None
+    answer, selected = fit.answer, fit.answer.selected
+    types, rival = {answer.decision.target, answer.decision.other} - {selected.types}, None
     caption = "Data and fit of each curve, each over its maxima; below, residuals."
     if len(fit.members) == 1:
         rival = next((one for one in answer.explanations if one.types in types), None)
         beside = f", and {words_of(rival)}" if rival else ""
-        caption = f"Data, the fit, by {words_of(chosen)}{beside}; below, residuals."
+        caption = f"Data, the fit, by {words_of(selected)}{beside}; below, residuals."
     found = {caption: [_curves(fit, rival)]}
-    for one in (chosen, *answer.tied):
+    for one in (selected, *answer.tied):
         if {MODULUS, TENSION} <= {slot.name for slot in one.objective.slots}:
             caption = f"The pairs of modulus and tension that describe the data by {words_of(one)}."
             return found | {caption: [likelihood_map(one, answer.agreement.factor)]}
@@ -112,10 +112,10 @@ def plot(fit: Fit) -> Figure:
 
 def _curves(fit: Fit, rival: Candidate | None = None) -> Chart:
     """Return data and fits over the indentation, of several curves over its largest; residuals."""
-    chosen, forces, count, series = fit.answer.chosen, fit.forces(), len(fit.members), []
-    subtracted, depths = False, chosen.depths
+    selected, forces, count, series = fit.answer.selected, fit.forces(), len(fit.members), []
+    subtracted, depths = False, selected.depths
     for number, (member, force) in enumerate(zip(fit.members, forces, strict=True)):
-        curve, known = member.curve, chosen.known[number]
+        curve, known = member.curve, selected.known[number]
         baseline, turn = known.free_force(curve), int(curve.moves_out.argmax())
         subtracted, data = subtracted or bool(baseline.any()), curve.force - baseline
         measured = depths[number]
@@ -125,7 +125,7 @@ def _curves(fit: Fit, rival: Candidate | None = None) -> Chart:
         x, legend = measured / deepest, "data" if number == 0 else ""
         dots = Look(None, None, 0, filled=False if legs else None)
         series.append(Series(x, data / largest, legend=legend, look=dots, legs=legs))
-        own = member.name * (count <= _LEGEND_CURVES) if count > 1 else f"fit: {words_of(chosen)}"
+        own = member.name * (count <= _LEGEND_CURVES) if count > 1 else f"fit: {words_of(selected)}"
         models = [(words_of(rival), 1, rival.forces()[0])] if rival else []
         for name, hue, modelled in [*models, (own, number, force)]:
             # The noise of the force is in the position of the tip, too, not in that of the base.

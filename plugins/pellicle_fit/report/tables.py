@@ -27,7 +27,7 @@ _SI_DIGITS = 6
 def estimates(fit: Fit, *, si: bool = False) -> Table:
     """Return a row for each quantity of a fit, of several curves those that they share."""
     several, rows = len(fit.members) > 1, []
-    slots = fit.answer.chosen.objective.slots
+    slots = fit.answer.selected.objective.slots
     of_one = {slot.full_name for slot in slots if slot.curve is not None}
     for name, estimate in fit.estimates().items():
         if not (several and name in of_one) and (estimate.value or not estimate.held):
@@ -36,8 +36,8 @@ def estimates(fit: Fit, *, si: bool = False) -> Table:
             why = " and ".join(dict.fromkeys(e.value for e in estimate.ends if e in _OPEN))
             rows.append((words(name), value, interval(estimate, unit), unit.unit, why))
     caption = (
-        f"The quantities of the model that was chosen, {words_of(fit.answer.chosen)}; intervals of "
-        "modulus and tension are over all models that describe the data as well."
+        f"The quantities of the model that was chosen, {words_of(fit.answer.selected)}; intervals "
+        "of modulus and tension are over all models that describe the data as well."
     )
     heads = "parameter", "value", f"{100 * CONFIDENCE:.0f} % interval", "unit", "open end"
     count = len(heads) - (not any(why for *_, why in rows))
@@ -47,11 +47,11 @@ def estimates(fit: Fit, *, si: bool = False) -> Table:
 def correlations(fit: Fit) -> Table:
     """Return a row for each pair of quantities of the chosen explanation, the strongest first."""
     several = len(fit.members) > 1
-    slots = fit.answer.chosen.objective.slots
+    slots = fit.answer.selected.objective.slots
     own = {slot.full_name for slot in slots if slot.curve is not None} if several else set()
     pairs = {
         pair: value
-        for pair, value in fit.answer.chosen.correlations.items()
+        for pair, value in fit.answer.selected.correlations.items()
         if not own.intersection(pair)
     }
     ranked = sorted(pairs, key=lambda pair: -abs(pairs[pair]))
@@ -99,13 +99,13 @@ def curves(fit: Fit, *, si: bool = False) -> Table:
     found = (own.get(f"{CONTACT_POINT}_{i}", own[CONTACT_POINT]) for i in range(len(members)))
     unit = _unit(fit, CONTACT_POINT, si)
     points = [f"{unit.number(e.value)} ({interval(e, unit)})" for e in found]
-    checks = [", ".join(judged.failed_checks) for judged in judgements]
+    checks = [", ".join(checked.failed_checks) for checked in judgements]
     columns = [
         Column("curve", [member.name for member in members]),
         *([Column("radius", radii, "m")] if any(radii) else []),
         Column(f"contact point [{unit.unit}]", points),
         Column("points", [member.curve.position.size for member in members]),
-        Column("noise", [judged.deviation for judged in judgements], "N", digits=3),
+        Column("noise", [checked.deviation for checked in judgements], "N", digits=3),
         Column("failed checks", checks),
     ]
     caption = "The curves, each with its own contact point and noise."

@@ -65,18 +65,18 @@ def advise(answer: Answer, members: Sequence[Member], config: FitConfig) -> tupl
 
 def _of_input(answer: Answer) -> Iterator[Advice]:
     """Yield what is probably wrong with radius or units."""
-    chosen = answer.chosen
-    depths = chosen.depths
-    for curve, of_rows in zip(chosen.whole, depths, strict=True):
+    selected = answer.selected
+    depths = selected.depths
+    for curve, of_rows in zip(selected.whole, depths, strict=True):
         radius, depth = getattr(curve.indenter, "radius", None), float(np.max(of_rows))
         if radius and not _DEPTHS[0] <= depth / radius <= _DEPTHS[1]:
             yield Advice(Remedy.CHECK_RADIUS, {"depth": depth, "radius": radius})
             break
     few = [int(count) for of_rows in depths if (count := np.sum(of_rows < 0)) < FEWEST]
-    if CONTACT_POINT in chosen.estimates and few:
+    if CONTACT_POINT in selected.estimates and few:
         yield Advice(Remedy.BEGIN_EARLIER, {"rows": few[0]})
     for name, (least, most) in PLAUSIBLE.items():
-        if (found := answer.chosen.estimates.get(name)) is None:
+        if (found := answer.selected.estimates.get(name)) is None:
             continue
         # The best value of an open interval is one of many.
         low, high = found.low or 0.0, np.inf if found.high is None else found.high
@@ -88,7 +88,7 @@ def _of_input(answer: Answer) -> Iterator[Advice]:
 def _of_options(answer: Answer, members: Sequence[Member], config: FitConfig) -> Iterator[Advice]:
     """Yield what another option of the fit would mend."""
     flaws = {flaw for one in answer.judgements for flaw in one.flaws}
-    types = answer.chosen.objective.explanation.types
+    types = answer.selected.objective.explanation.types
     if (Flaw.DRIFT in flaws or "slope" in types) and config.baseline != "slope":
         yield Advice(Remedy.FIT_SLOPE)
     elif (Flaw.OFFSET in flaws or "offset" in types) and config.baseline == "none":
@@ -108,7 +108,7 @@ def _of_options(answer: Answer, members: Sequence[Member], config: FitConfig) ->
 
 def _measurement(answer: Answer) -> Advice:
     """Return what to measure, so that explanations can be told apart."""
-    proposal, curves = telling(answer.asked, answer.tied_without)
+    proposal, curves = telling(answer.target, answer.tied_without)
     if proposal is None:
         return Advice(Remedy.LESS_NOISE)
     return Advice(Remedy.MEASURE, {"proposal": proposal, "curves": curves})

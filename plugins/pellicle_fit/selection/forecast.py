@@ -50,7 +50,7 @@ class Proposal(NamedTuple):
     """Time of a dwell [s], speed [m/s], largest depth or radius [m]."""
 
 
-def telling(asked: Candidate, others: Sequence[Candidate]) -> tuple[Proposal | None, int]:
+def telling(target: Candidate, others: Sequence[Candidate]) -> tuple[Proposal | None, int]:
     """Return the measurement that tells an explanation from others that are as good now, if any.
 
     Beside it stands how many curves of this kind it takes.
@@ -58,8 +58,8 @@ def telling(asked: Candidate, others: Sequence[Candidate]) -> tuple[Proposal | N
     to this and to the curve itself; the least χ² is what a measurement is worth.
     """
     best, most = None, 0.0
-    pairs = [(a, b) for other in others for a, b in ((asked, other), (other, asked))]
-    for proposal, measurement in measurements(asked):
+    pairs = [(a, b) for other in others for a, b in ((target, other), (other, target))]
+    for proposal, measurement in measurements(target):
         worth = np.inf
         for truth, guess in pairs:
             # What cannot be predicted, as by a cantilever that jumps, is worth nothing.

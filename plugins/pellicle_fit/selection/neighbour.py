@@ -41,9 +41,9 @@ class Neighbour(NamedTuple):
             },
         )
 
-    def has(self, chosen: Types, is_described: bool) -> bool:
+    def has(self, selected: Types, is_described: bool) -> bool:
         """Return whether it could be explained by what was chosen on another curve."""
-        return chosen in self.tied and is_described == self.is_described
+        return selected in self.tied and is_described == self.is_described
 
     def starts(
         self, objective: Objective, types: Types, simple: Candidate, parts: Sequence[Candidate]

@@ -15,7 +15,7 @@ from pellicle_fit.contact.curve import Curve
 from pellicle_fit.effect import Effect, Records, Responds, Solid
 from pellicle_fit.estimation.candidate import NONE, Candidate, Types, best_of
 from pellicle_fit.estimation.intervals import End, Estimate, common_value, estimates, threshold_of
-from pellicle_fit.estimation.noise import CHANCE, Judged
+from pellicle_fit.estimation.noise import CHANCE, ResidualCheck
 from pellicle_fit.estimation.objective import CONTACT_POINT, MODULUS
 from pellicle_fit.strangers import refuse_broken, strangers_named
 
@@ -34,13 +34,13 @@ class Answer:
     """Best first; estimates of those in `tied`."""
     question: Question
     decision: Decision
-    chosen: Candidate
+    selected: Candidate
     """The explanation whose estimates count."""
     tied: tuple[Candidate, ...]
     """What the curves cannot tell from it, itself included."""
     excused: Mapping[Types, str]
     """Why explanations could not be compared."""
-    judgements: tuple[Judged, ...]
+    judgements: tuple[ResidualCheck, ...]
     """Noise and flaws of each curve under the best explanation."""
     threshold: float
     """Δχ² at the ends of intervals, which a disagreement of curves widens."""
@@ -59,7 +59,7 @@ class Answer:
     @property
     def tension_needed(self) -> bool:
         """Whether the curves need a tension."""
-        return self.question.word == {TENSION} and self.verdict is Verdict.NEEDED
+        return self.question.of_target == {TENSION} and self.verdict is Verdict.NEEDED
 
     @property
     def not_held(self) -> tuple[Candidate, ...]:
@@ -67,33 +67,33 @@ class Answer:
         moduli = {fit: e.value for fit in self.tied if (e := fit.estimates.get(MODULUS))}
         # Only the least may be so beside all others.
         limit = SMALL * max(sorted(moduli.values())[1:2], default=0.0)
-        return tuple(fit for fit, e in moduli.items() if fit is not self.chosen and e < limit)
+        return tuple(fit for fit, e in moduli.items() if fit is not self.selected and e < limit)
 
     @property
-    def asked(self) -> Candidate:
+    def target(self) -> Candidate:
         """The best explanation with what is asked for."""
-        return next(fit for fit in self.explanations if fit.types == self.decision.asked)
+        return next(fit for fit in self.explanations if fit.types == self.decision.target)
 
     @property
     def tied_without(self) -> list[Candidate]:
         """What explains the curves as well as the best with what is asked for, without it."""
-        word, aic = self.question.word, self.asked.aic
+        of_target, aic = self.question.of_target, self.target.aic
         return [
             fit
             for fit in self.explanations
-            if not word <= fit.types and abs(fit.aic - aic) < self.decision.margin
+            if not of_target <= fit.types and abs(fit.aic - aic) < self.decision.margin
         ]
 
     def chi_squared(self, fit: Candidate) -> float:
         """Return χ² of an explanation at the noise that is told, which is not widened."""
-        return fit.chi_squared_of([judged.widened for judged in self.judgements])
+        return fit.chi_squared_of([checked.widened for checked in self.judgements])
 
     @property
     def if_present(self) -> Mapping[str, Estimate]:
         """Modulus and quantities of what is asked for if it were there, though there is no sign."""
-        if self.verdict is not Verdict.NO_SIGN or not self.question.word:
+        if self.verdict is not Verdict.NO_SIGN or not self.question.of_target:
             return {}
-        beside = next(fit for fit in self.tied if fit.types == self.question.word)
+        beside = next(fit for fit in self.tied if fit.types == self.question.of_target)
         own = {name: beside.parameters[name] for name in self.question.wanted}
         return {MODULUS: self.over_tied(MODULUS, self.tied)} | own
 
@@ -105,14 +105,16 @@ class Answer:
         them has is held at 0 and has no ends: they do not bound it.  Where there is no sign of what
         is asked for, the modulus is that without it.
         """
-        lacking = self.question.word if name == MODULUS and self.verdict is Verdict.NO_SIGN else ()
+        lacking = (
+            self.question.of_target if name == MODULUS and self.verdict is Verdict.NO_SIGN else ()
+        )
         tied = tied or [fit for fit in self.tied if not lacking or not lacking <= fit.types]
         tied = [fit for fit in tied if fit not in self.not_held]
         if name == MODULUS:
             tied = [fit for fit in tied if fit.holds_modulus]
         found = [fit.estimates[name] for fit in tied if name in fit.estimates]
         none = Estimate(0.0, None, None, "N/m", held=True)
-        own = self.chosen.parameters.get(name, none)
+        own = self.selected.parameters.get(name, none)
         if not found:
             return own if tied or own.held else replace(own, low=None, high=None)
         lows = [e.low for e in found if e.low is not None]
@@ -186,7 +188,7 @@ def answer(
     model: Sequence[Effect],
     rivals: Iterable[Sequence[Effect]],
     *,
-    kept: Sequence[Effect] = (),
+    common: Sequence[Effect] = (),
     fix: Mapping[str, float | str] | None = None,
     uncertainty: Sequence[Effect] = (),
     like: Sequence[Neighbour] = (),
@@ -207,45 +209,48 @@ def answer(
         its contract.
     """
     sets = tuple(map(tuple, rivals))
-    for effect in (*model, *kept, *chain(*sets), *uncertainty):
+    for effect in (*model, *common, *chain(*sets), *uncertainty):
         refuse_broken(effect)
     curves = timed(curves)
-    asked = next((effect for effect in model if not isinstance(effect, Records)), None)
-    kept = (*kept, *(effect for effect in model if effect is not asked))
-    question = Question(Solid.model_validate(dict(fix or {})), asked, kept, sets)
-    candidates, word = question.candidates(), question.word
+    target = next((effect for effect in model if not isinstance(effect, Records)), None)
+    common = (*common, *(effect for effect in model if effect is not target))
+    question = Question(Solid.model_validate(dict(fix or {})), target, common, sets)
+    candidates, of_target = question.candidates(), question.of_target
     excused = {types: why for types, one in candidates.items() if (why := one.excuse(curves))}
-    if word in excused:
-        raise ConfigError(f"cannot be fitted to this curve: {excused[word]}", "model")
+    if of_target in excused:
+        raise ConfigError(f"cannot be fitted to this curve: {excused[of_target]}", "model")
     candidates = {types: one for types, one in candidates.items() if types not in excused}
     spared = frozenset[Types].intersection(*(one.ruled_out for one in like)) if like else NONE
-    not_weighed = [t for t in candidates if t in spared and t not in (NONE, word)]
+    not_weighed = [t for t in candidates if t in spared and t not in (NONE, of_target)]
     weighed = {t: one for t, one in candidates.items() if t not in not_weighed}
-    fits = dict(comparison(word, weighed, curves, like[0] if like else None))
+    fits = dict(comparison(of_target, weighed, curves, like[0] if like else None))
     best = best_of(fits.values())
-    threshold = threshold_of(min(judged.noise.freedom for judged in best.judgements))
-    margin, doubted = max(MARGIN, threshold), doubtful(best.judgements)
-    decided = decision(fits, word, doubted=doubted, margin=margin)
-    chosen = choice(fits, word, decided)
+    threshold = threshold_of(min(checked.noise.freedom for checked in best.judgements))
+    margin, inadequate = max(MARGIN, threshold), doubtful(best.judgements)
+    decided = decision(fits, of_target, inadequate=inadequate, margin=margin)
+    selected = choice(fits, of_target, decided)
     undescribed = decided.verdict is Verdict.UNDESCRIBED
-    if not_weighed and not any(one.has(chosen, not doubted) for one in like):
-        return answer(curves, model, sets, kept=kept, fix=fix, uncertainty=uncertainty)
-    agreement = agreement_of(fits[chosen])
+    if not_weighed and not any(one.has(selected, not inadequate) for one in like):
+        return answer(curves, model, sets, common=common, fix=fix, uncertainty=uncertainty)
+    agreement = agreement_of(fits[selected])
     threshold *= agreement.factor
-    alone = {types: candidates.get(types - word) for types in excused if word < types}
+    alone = {types: candidates.get(types - of_target) for types in excused if of_target < types}
     responses = {types: known.of(Responds) for types, known in alone.items() if known}
     untried = [types for types, own in responses.items() if any(e.type_name in types for e in own)]
     # Of what no model describes few ends are worth seeking; none if what may be right has no model.
     own = (MODULUS, TENSION, CONTACT_POINT, *question.wanted) if undescribed else ()
-    rise, tied = np.inf if undescribed and untried else threshold, ties(fits, word, decided, chosen)
+    rise, tied = (
+        np.inf if undescribed and untried else threshold,
+        ties(fits, of_target, decided, selected),
+    )
     for types in tied:
-        names = own if types == chosen else (MODULUS, TENSION, *question.wanted)
+        names = own if types == selected else (MODULUS, TENSION, *question.wanted)
         fits[types] = with_estimates(fits[types], rise, uncertainty, names)
     return Answer(
         tuple(sorted(fits.values(), key=lambda fit: fit.aic)),
         question,
         decided,
-        fits[chosen],
+        fits[selected],
         tuple(fits[types] for types in tied),
         excused,
         tuple(best.judgements),

@@ -41,41 +41,43 @@ class Question:
     """What is asked of curves: whether an effect is needed, beside others that are."""
 
     solid: Solid
-    asked: Effect | None
-    kept: tuple[Effect, ...]
+    target: Effect | None
+    common: tuple[Effect, ...]
     """Effects that all explanations have."""
     rivals: tuple[tuple[Effect, ...], ...]
     """Sets of effects, each compared alone and beside what is asked for."""
 
     @property
-    def word(self) -> Types:
+    def of_target(self) -> Types:
         """The set of what is asked for."""
-        return frozenset({self.asked.type_name}) if self.asked else NONE
+        return frozenset({self.target.type_name}) if self.target else NONE
 
     @property
     def wanted(self) -> list[str]:
         """Open quantities of what is asked for and of what is kept, unless it is a baseline."""
-        own = (e for e in (self.asked, *self.kept) if e and not isinstance(e, (Adds, Records)))
+        own = (e for e in (self.target, *self.common) if e and not isinstance(e, (Adds, Records)))
         return [name for effect in own for name in effect.open]
 
     def candidates(self) -> dict[Types, Explanation]:
         """Return the explanations that are compared, by their types."""
         found: dict[Types, Explanation] = {}
-        kept = {effect.type_name for effect in self.kept}
-        sides: list[tuple[Effect, ...]] = [(), (self.asked,)] if self.asked else [()]
+        common = {effect.type_name for effect in self.common}
+        sides: list[tuple[Effect, ...]] = [(), (self.target,)] if self.target else [()]
         for rival in ((), *self.rivals):
             for side in sides:
-                taken = kept | {effect.type_name for effect in side}
+                taken = common | {effect.type_name for effect in side}
                 own = side + tuple(e for e in rival if e.type_name not in taken)
                 types = frozenset(effect.type_name for effect in own)
                 # What derives from an effect that is kept is another form of it, in its place.
-                other = tuple(k for k in self.kept if not any(isinstance(e, type(k)) for e in own))
+                other = tuple(
+                    k for k in self.common if not any(isinstance(e, type(k)) for e in own)
+                )
                 found.setdefault(types, Explanation(self.solid, other + own))
         return found
 
 
 def comparison(
-    word: Types,
+    of_target: Types,
     candidates: Explanations,
     curves: tuple[Curve, ...],
     like: Neighbour | None = None,
@@ -93,25 +95,25 @@ def comparison(
     rows = _ROWS if len(candidates) > _FEW else _ROWS_OF_FEW
     means = tuple(curve.binned(rows) for curve in curves)
     simple = _sought(
-        {types: candidates[types] for types in (NONE, word)}, word, {}, of, means, None
+        {types: candidates[types] for types in (NONE, of_target)}, of_target, {}, of, means, None
     )
     simple = at_common_noise({types: fit.polished() for types, fit in simple.items()})
     best = best_of(simple.values())
-    if not memory and any(found := tuple(judged.memory for judged in best.judgements)):
-        fits = comparison(word, candidates, curves, like, found)
+    if not memory and any(found := tuple(checked.memory for checked in best.judgements)):
+        fits = comparison(of_target, candidates, curves, like, found)
         other = best_of(fits.values())
         # What a wrong explanation leaves before contact may look like noise with a memory.
-        if all(judged.describes for judged in other.judgements) and any(
-            judged.memory for judged in other.without_memory.judgements
+        if all(checked.describes for checked in other.judgements) and any(
+            checked.memory for checked in other.without_memory.judgements
         ):
             return fits
     # Another noise only scales χ²; at last it is that of the best.
-    fits = _sought(candidates, word, simple, best.of_rows, means, like)
+    fits = _sought(candidates, of_target, simple, best.of_rows, means, like)
     if like is None:
-        fits = {types: _restarted(fit, word, fits) for types, fit in fits.items()}
-    ends = {t: _end(t, word, fits, _NEAR) for t in fits}
+        fits = {types: _restarted(fit, of_target, fits) for types, fit in fits.items()}
+    ends = {t: _end(t, of_target, fits, _NEAR) for t in fits}
     fits = {t: f.polished() if f.aic < ends[t] else f for t, f in fits.items()}
-    fits = at_common_noise(_nearest_sought(fits, word))
+    fits = at_common_noise(_nearest_sought(fits, of_target))
     # The modulus of the end of the loading is that after the time since the best first touch.
     best = best_of(fits.values())
     pairs = zip(best.whole, best.contact_points, strict=True)
@@ -122,7 +124,7 @@ def comparison(
 
 def _sought(
     candidates: Explanations,
-    word: Types,
+    of_target: Types,
     simple: Fits,
     of: Objective,
     means: tuple[Curve, ...],
@@ -140,41 +142,45 @@ def _sought(
         curves = of.curves if is_whole else means
         objective = replace(of, explanation=explanation, curves=curves)
         parts = [fit for part, fit in fits.items() if part < types]
-        beside = fits.get(word if word <= types else NONE)
+        beside = fits.get(of_target if of_target <= types else NONE)
         at = near = like.starts(objective, types, beside, parts) if like and beside else []
         if not near:
             # A pair starts from its parts.
-            at = starts(objective, parts, scan=not word < types or not word)
+            at = starts(objective, parts, scan=not of_target < types or not of_target)
         goal = np.inf
         if simple:
-            goal = _end(types, word, fits, _FAR) - objective.criterion(0.0)
-        known = fits.get(word)
+            goal = _end(types, of_target, fits, _FAR) - objective.criterion(0.0)
+        known = fits.get(of_target)
         least = _least(objective, at, goal, known, steps=0 if near else _STEPS)
         fits[types] = Candidate(types, objective, least, of.curves)
     return fits
 
 
-def _nearest_sought(fits: Fits, word: Types) -> Fits:
+def _nearest_sought(fits: Fits, of_target: Types) -> Fits:
     """Return explanations of which the best without what is asked for is sought to the end."""
     found, sought = dict(fits), set[Types]()
     while True:
-        nearest = best_of(fit for fit in found.values() if not word or not word <= fit.types)
+        nearest = best_of(
+            fit for fit in found.values() if not of_target or not of_target <= fit.types
+        )
         if nearest.types in sought:
             return found
         found[nearest.types] = nearest.polished()
         sought.add(nearest.types)
 
 
-def _end(types: Types, word: Types, fits: Fits, far: float) -> float:
+def _end(types: Types, of_target: Types, fits: Fits, far: float) -> float:
     """Return the AIC above which an explanation decides nothing.
 
     It is then far behind the best, or no better than nothing at all; or, of a pair, neither the
     best nor ahead of its parts.
     """
     least = min(fit.aic for fit in fits.values())
-    if not word < types:
+    if not of_target < types:
         return min(least + far, fits[NONE].aic)
-    of_parts = min(fits[part].aic for part in (word, types - word) if part in fits) - _LEADS
+    of_parts = (
+        min(fits[part].aic for part in (of_target, types - of_target) if part in fits) - _LEADS
+    )
     return max(min(least + far, of_parts), least + _BESIDE)
 
 
@@ -212,8 +218,8 @@ def at_common_noise(fits: Fits) -> Fits:
     If none does, at that of the best, which is widened where it fails.
     """
     ranked = sorted(fits.values(), key=lambda fit: fit.aic)
-    passing = (fit for fit in ranked if all(judged.describes for judged in fit.judgements))
-    noise = [judged.noise.deviation for judged in next(passing, ranked[0]).judgements]
+    passing = (fit for fit in ranked if all(checked.describes for checked in fit.judgements))
+    noise = [checked.noise.deviation for checked in next(passing, ranked[0]).judgements]
     return {types: fit.at_noise(noise) for types, fit in fits.items()}
 
 
@@ -224,7 +230,7 @@ def _scatter(known: Candidate, curves: tuple[Curve, ...]) -> float:
     return known.chi_squared - of_means.chi_squared(known.minimum.at)
 
 
-def _restarted(fit: Candidate, word: Types, fits: Fits) -> Candidate:
+def _restarted(fit: Candidate, of_target: Types, fits: Fits) -> Candidate:
     """Return the least χ² from the minima of what it is a part of, too."""
     # What is no better than its part is no better place to start from.
     lower = fit.minimum.chi_squared - _LOWER
@@ -237,6 +243,8 @@ def _restarted(fit: Candidate, word: Types, fits: Fits) -> Candidate:
         return fit
     values = [whole.objective.values(whole.minimum.at) for whole in wholes]
     at = np.array([fit.objective.at_values(known) for known in values])
-    goal = min(_end(fit.types, word, fits, _FAR) - fit.objective.criterion(0.0), fit.chi_squared)
-    found = _least(fit.objective, [*at], goal - _LOWER, fits[word])
+    goal = min(
+        _end(fit.types, of_target, fits, _FAR) - fit.objective.criterion(0.0), fit.chi_squared
+    )
+    found = _least(fit.objective, [*at], goal - _LOWER, fits[of_target])
     return min(fit, replace(fit, minimum=found), key=lambda one: one.minimum.chi_squared)

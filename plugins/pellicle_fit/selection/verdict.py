@@ -9,7 +9,7 @@ from typing import NamedTuple
 from scipy.special import bdtrc
 
 from pellicle_fit.estimation.candidate import NONE, Candidate, Types, best_of
-from pellicle_fit.estimation.noise import Judged
+from pellicle_fit.estimation.noise import ResidualCheck
 from pellicle_fit.estimation.objective import MODULUS
 
 MARGIN = 4.0
@@ -43,59 +43,59 @@ class Decision(NamedTuple):
     """A verdict, the explanations that it rests on, and by how much."""
 
     verdict: Verdict
-    asked: Types
+    target: Types
     """The best explanation with what is asked for."""
     other: Types
     """The best without."""
-    lead: float
+    delta_aic: float
     """AIC of the latter over that of the former."""
     margin: float
     """ΔAIC below which explanations tie."""
 
 
-def decision(fits: Fits, word: Types, *, doubted: bool, margin: float) -> Decision:
-    """Return the verdict on explanations, the best of which fails its checks if ``doubted``."""
+def decision(fits: Fits, of_target: Types, *, inadequate: bool, margin: float) -> Decision:
+    """Return the verdict on explanations, the best of which fails its checks if ``inadequate``."""
     ranked = sorted(fits.values(), key=lambda fit: fit.aic)
     # Beside another effect it explains the curves only if neither does as well alone.
-    asked = next(fit for fit in ranked if fit.types == word or leads(fit, word, fits))
-    other = next(fit for fit in ranked if not word <= fit.types or not word)
-    none, lead = fits[NONE].aic, other.aic - asked.aic
-    if lead > 0 and asked.types != word:
+    target = next(fit for fit in ranked if fit.types == of_target or leads(fit, of_target, fits))
+    other = next(fit for fit in ranked if not of_target <= fit.types or not of_target)
+    none, delta_aic = fits[NONE].aic, other.aic - target.aic
+    if delta_aic > 0 and target.types != of_target:
         margin = max(margin, MANY_MARGIN)
-    if doubted:
+    if inadequate:
         verdict = Verdict.UNDESCRIBED
-    elif none - asked.aic < EFFECT_MARGIN:
+    elif none - target.aic < EFFECT_MARGIN:
         # The best of many rivals beats a clean curve by more than one of them does.
         verdict = Verdict.OTHER if none - other.aic >= MANY_MARGIN else Verdict.NO_SIGN
-    elif abs(lead) >= margin:
-        verdict = Verdict.NEEDED if lead > 0 else Verdict.OTHER
+    elif abs(delta_aic) >= margin:
+        verdict = Verdict.NEEDED if delta_aic > 0 else Verdict.OTHER
     else:
         verdict = Verdict.CANNOT_TELL
-    return Decision(verdict, asked.types, other.types, lead, margin)
+    return Decision(verdict, target.types, other.types, delta_aic, margin)
 
 
-def leads(pair: Candidate, word: Types, fits: Fits) -> bool:
+def leads(pair: Candidate, of_target: Types, fits: Fits) -> bool:
     """Return whether a pair has less AIC than each of its parts by what chance does not bring.
 
     Of a dozen pairs that all see the same noise, some gain a little in many a curve; and one that
     does without the solid, whose E* is a small part of that without the rival, is no explanation.
     """
-    if not word < pair.types:
+    if not of_target < pair.types:
         return False
-    parts = [fits[part] for part in (word, pair.types - word) if part in fits]
-    alone, beside = (fit.parameters[MODULUS].value for fit in (fits[word], pair))
+    parts = [fits[part] for part in (of_target, pair.types - of_target) if part in fits]
+    alone, beside = (fit.parameters[MODULUS].value for fit in (fits[of_target], pair))
     return beside >= SMALL * alone and min(part.aic for part in parts) - pair.aic >= EFFECT_MARGIN
 
 
-def choice(fits: Fits, word: Types, decision: Decision) -> Types:
+def choice(fits: Fits, of_target: Types, decision: Decision) -> Types:
     """Return the explanation whose estimates count."""
-    known = {Verdict.NEEDED: decision.asked, Verdict.OTHER: decision.other, Verdict.NO_SIGN: NONE}
+    known = {Verdict.NEEDED: decision.target, Verdict.OTHER: decision.other, Verdict.NO_SIGN: NONE}
     best = best_of(fits.values())
-    nearest = word if fits[word].aic - best.aic < decision.margin else best.types
+    nearest = of_target if fits[of_target].aic - best.aic < decision.margin else best.types
     return known.get(decision.verdict, nearest)
 
 
-def ties(fits: Fits, word: Types, decision: Decision, chosen: Types) -> list[Types]:
+def ties(fits: Fits, of_target: Types, decision: Decision, selected: Types) -> list[Types]:
     """Return the explanations that the curves cannot tell from the best and that lend values.
 
     The best is one of those that the verdict weighs: a pair that is little better than its parts
@@ -103,21 +103,21 @@ def ties(fits: Fits, word: Types, decision: Decision, chosen: Types) -> list[Typ
     it alone lends its bounds.
     """
     none = decision.verdict is Verdict.NO_SIGN
-    least = min(fits[decision.asked].aic, fits[decision.other].aic)
+    least = min(fits[decision.target].aic, fits[decision.other].aic)
 
     def lends(fit: Candidate) -> bool:
-        if fit.types == chosen or (none and fit.types == word):
+        if fit.types == selected or (none and fit.types == of_target):
             return True
         if fit.aic - least >= decision.margin or not fit.holds_modulus:
             return False
         if none:
             return fit.aic + EFFECT_MARGIN <= fits[NONE].aic
-        return not word < fit.types or leads(fit, word, fits)
+        return not of_target < fit.types or leads(fit, of_target, fits)
 
     return [fit.types for fit in fits.values() if lends(fit)]
 
 
-def doubtful(judgements: Sequence[Judged]) -> bool:
+def doubtful(judgements: Sequence[ResidualCheck]) -> bool:
     """Return whether more curves fail than do so by chance."""
     failing = sum(not judgement.describes for judgement in judgements)
     return failing > 0 and bool(bdtrc(failing - 1, len(judgements), _FAILING) <= _RARE)

@@ -42,7 +42,7 @@ def words_of(fit: Candidate) -> str:
 def words_of_types(question: Question, types: Types) -> str:
     """Return effects of a question in words."""
     effects = {effect.type_name: effect for rival in question.rivals for effect in rival}
-    effects |= {question.asked.type_name: question.asked} if question.asked else {}
+    effects |= {question.target.type_name: question.target} if question.target else {}
     return in_words([effect for name, effect in effects.items() if name in types])
 
 

@@ -51,11 +51,11 @@ def story(fit: Fit, *, si: bool = False) -> list[str]:
 def _if_present(fit: Fit, si: bool) -> Iterator[str]:
     """Yield what is known of what was asked for, and the modulus beside it, if it were there."""
     if found := fit.if_present:
-        asked = fit.answer.question.asked
+        target = fit.answer.question.target
         hidden = {"reduced_modulus"} if "youngs_modulus" in found else set()
         ordered = sorted(found, key=lambda name: name.endswith("_modulus"))
         parts = (f"{words(n)} {in_figures(found[n], si=si)}" for n in ordered if n not in hidden)
-        yield f"if {in_words([asked] if asked else [])} were there: {', '.join(parts)}"
+        yield f"if {in_words([target] if target else [])} were there: {', '.join(parts)}"
 
 
 def numbers(fit: Fit, *, si: bool = False) -> str:
@@ -65,7 +65,7 @@ def numbers(fit: Fit, *, si: bool = False) -> str:
     """
     answer, estimates = fit.answer, fit.estimates()
     names = ["youngs_modulus" if "youngs_modulus" in estimates else "reduced_modulus"]
-    names += [name for name in answer.question.wanted if name in answer.chosen.parameters]
+    names += [name for name in answer.question.wanted if name in answer.selected.parameters]
     parts = [f"{words(name)} {in_figures(estimates[name], si=si)}" for name in names]
     calibration = calibration_of(fit)
     if answer.verdict is Verdict.UNDESCRIBED:
@@ -95,28 +95,34 @@ def headline(answer: Answer, curves: str = "") -> str:
     """Return the verdict without its reason, in a table without its subject, the ``curves``."""
     several = len(answer.judgements) > 1
     question, fits = answer.question, {fit.types: fit for fit in answer.explanations}
-    word, asked = question.word, answer.decision.asked
-    subject = words_of(fits[word]) if word else "an elastic half-space"
-    if question.kept and not word:
-        subject += f" with {in_words(question.kept)}"
-    text = f"no sign of {subject if word else f'more than {subject}'}"
+    of_target, target = question.of_target, answer.decision.target
+    subject = words_of(fits[of_target]) if of_target else "an elastic half-space"
+    if question.common and not of_target:
+        subject += f" with {in_words(question.common)}"
+    text = f"no sign of {subject if of_target else f'more than {subject}'}"
     match answer.verdict:
         case Verdict.UNDESCRIBED:
             text = f"no model describes {curves or 'it'}"
         case Verdict.NEEDED:
-            pair = f", beside {words_of_types(question, asked - word)}" if asked != word else ""
-            alone = "; no rival was tried" if fits.keys() <= {NONE, word} else ""
+            pair = (
+                f", beside {words_of_types(question, target - of_target)}"
+                if target != of_target
+                else ""
+            )
+            alone = "; no rival was tried" if fits.keys() <= {NONE, of_target} else ""
             text = f"{subject} is needed{pair}{alone}"
         case Verdict.CANNOT_TELL:
             names = _named(answer.tied_without)
-            text = f"{curves} cannot tell {words_of(fits[asked])} from {names}".lstrip()
+            text = f"{curves} cannot tell {words_of(fits[target])} from {names}".lstrip()
         case Verdict.OTHER:
             alike = [fit for fit in answer.explanations if fit in answer.tied]
-            better = [fit for fit in alike if not (word <= fit.types if word else not fit.types)]
+            better = [
+                fit for fit in alike if not (of_target <= fit.types if of_target else not fit.types)
+            ]
             shows = f"{curves} {'show' if several else 'shows'} more than {subject}".lstrip()
-            known = f"{subject} is not needed" if word else shows
+            known = f"{subject} is not needed" if of_target else shows
             text = f"{known}; described better by {_named(better)}"
-        case _ if not word and len(fits) == 1:
+        case _ if not of_target and len(fits) == 1:
             text = f"{subject} was compared with nothing"
     return text
 
@@ -130,7 +136,7 @@ def _reason(answer: Answer) -> str:
         why = next(flaw.value for flaw in Flaw if flaw in flaws)
         return f"{why}; {untried} could not be tried" if untried else why
     fits = {fit.types: fit for fit in answer.explanations}
-    if answer.verdict is Verdict.NEEDED and not fits.keys() <= {NONE, question.word}:
+    if answer.verdict is Verdict.NEEDED and not fits.keys() <= {NONE, question.of_target}:
         other = answer.decision.other
         nearest = f"; the nearest is {words_of(fits[other])}" if other else ""
         return f"nothing else tried fits as well{nearest}"
@@ -166,7 +172,7 @@ def remarks(answer: Answer) -> Iterator[str]:
     question = answer.question
     for types, reason in answer.excused.items():
         # Nothing is said of a rival that only beside what is asked could not be compared.
-        if not (question.word and question.word <= types):
+        if not (question.of_target and question.of_target <= types):
             reasons.setdefault(reason, []).append(words_of_types(question, types))
     if reasons:
         parts = (f"{listed(names)} ({reason})" for reason, names in reasons.items())

@@ -248,7 +248,7 @@ def fit(case: Case) -> dict[str, Any]:
         "failed": sorted({f.name.lower() for judged in found.judgements for f in judged.flaws}),
         "threshold": found.threshold,
         "verdict": found.verdict.value,
-        "chosen": _key(found.chosen.types),
+        "chosen": _key(found.selected.types),
         "tied": sorted(_key(fit.types) for fit in found.tied),
         "over_tied": {
             "reduced_modulus": _estimate(found.over_tied("reduced_modulus")),

@@ -91,7 +91,7 @@ def test_fits_know_no_units() -> None:
 def test_ends_are_where_the_profile_has_risen() -> None:
     """A minimiser of another kind finds χ² up by the stated threshold at each end."""
     found = fit(*curve(TENSION))
-    explained, threshold = found.answer.chosen, found.answer.threshold
+    explained, threshold = found.answer.selected, found.answer.threshold
     objective, best = explained.objective, explained.minimum
     bounds = objective.deviations(best.at)
     for k, slot in enumerate(objective.slots):
@@ -114,14 +114,14 @@ def test_errors_reach_the_bound_and_intervals_hold() -> None:
     errors, held = [], []
     for seed in range(30):
         found = fit(*curve(TENSION, seed=seed))
-        objective, at = found.answer.chosen.objective, found.answer.chosen.minimum.at
+        objective, at = found.answer.selected.objective, found.answer.selected.minimum.at
         truth = {"reduced_modulus": MODULUS, "tension": TENSION, "contact_point": 1e-6}
         for name, value in truth.items():
             k = objective.index(name)
             assert k is not None
             error = at[k] - objective.slots[k].coordinate(value)
             errors.append(error / objective.deviations(at)[k])
-            held.append(holds(found.answer.chosen.estimates[name], value))
+            held.append(holds(found.answer.selected.estimates[name], value))
     # Three standard deviations of the rms of 30 normal numbers around 1.
     assert 0.6 < np.sqrt(np.mean(np.square(errors))) < 1.4
     assert sum(held) >= 0.88 * len(held)
@@ -155,7 +155,7 @@ def test_a_shallow_curve_leaves_the_modulus_open_and_a_deep_one_the_tension() ->
 
 def test_correlations_are_those_of_the_ellipse() -> None:
     """Along the profile of the tension the modulus moves as much as they say (Wilks 1938)."""
-    found = fit(*curve(TENSION)).answer.chosen
+    found = fit(*curve(TENSION)).answer.selected
     objective, minimum = found.objective, found.minimum
     correlation = found.correlations["tension", "reduced_modulus"]
     deviations, at = objective.deviations(minimum.at), minimum.at.copy()
@@ -198,7 +198,7 @@ def test_means_of_rows_answer_as_all_rows_do(
     long = fit(*rows)
     monkeypatch.setattr("pellicle_fit.selection.rivals._FEW", 0)
     short = fit(*rows)
-    assert short.answer.chosen.objective.curves[0].force.size <= 400
+    assert short.answer.selected.objective.curves[0].force.size <= 400
     low, high = ends_of(long.reduced_modulus)
     for end in ("value", "low", "high"):
         off = getattr(short.reduced_modulus, end) - getattr(long.reduced_modulus, end)
@@ -228,8 +228,8 @@ def test_verdicts_follow_from_criteria(aic: dict[str, float], verdict: Verdict) 
         for key, v in aic.items()
     }
     word = frozenset("a")
-    assert decision(fits, word, doubted=False, margin=4.0).verdict is verdict
-    assert decision(fits, word, doubted=True, margin=4.0).verdict is Verdict.UNDESCRIBED
+    assert decision(fits, word, inadequate=False, margin=4.0).verdict is verdict
+    assert decision(fits, word, inadequate=True, margin=4.0).verdict is Verdict.UNDESCRIBED
 
 
 @pytest.mark.slow
@@ -359,7 +359,7 @@ def test_noise_of_1_over_f_is_taken_so() -> None:
     position, clean = curve(points=600, noise=0.0)
     random = np.random.default_rng(3)
     coloured = fit(position, clean + 0.005 * clean.max() * pink(random, 600), model=())
-    assert coloured.answer.chosen.objective.memory[0] > 0.2
+    assert coloured.answer.selected.objective.memory[0] > 0.2
     assert holds(coloured.reduced_modulus, MODULUS)
     white = fit(*curve(points=600), model=())
     assert np.ptp(ends_of(coloured.reduced_modulus)) > 2 * np.ptp(ends_of(white.reduced_modulus))
@@ -371,7 +371,7 @@ def test_a_cone_s_modulus_is_not_that_of_the_solid() -> None:
     force = 1e3 * Cone(half_angle=1.0).force_curve(position, 0.0).force
     force += 0.003 * force.max() * np.random.default_rng(2).standard_normal(300)
     found = fit(position, force, rivals=["cone"])
-    assert found.answer.chosen.types == {"cone"}
+    assert found.answer.selected.types == {"cone"}
     assert found.reduced_modulus.low is found.reduced_modulus.high is None
 
 
@@ -399,7 +399,7 @@ def test_of_what_no_model_describes_some_quantities_have_ends(options: Any) -> N
     assert found.verdict is Verdict.UNDESCRIBED
     assert "not to be quoted" in repr(found)
     asked = set(found.answer.question.wanted) | {"reduced_modulus", "tension", "contact_point"}
-    assert found.to_dict()["parameters"].keys() == asked & found.answer.chosen.parameters.keys()
+    assert found.to_dict()["parameters"].keys() == asked & found.answer.selected.parameters.keys()
 
 
 @pytest.mark.slow
@@ -454,6 +454,6 @@ def test_an_offset_is_told_as_an_offset() -> None:
     position, force = curve()
     rivals = [one for one in DEFAULT_RIVALS if "offset" in one]
     found = fit(position, force + 0.2 * force.max(), rivals=rivals)
-    assert found.answer.chosen.types == {"offset"}
+    assert found.answer.selected.types == {"offset"}
     assert found.comparison.endswith("described better by an offset")
     assert found.advice.startswith("add --baseline offset")

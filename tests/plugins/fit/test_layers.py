@@ -121,7 +121,7 @@ def test_the_polynomial_in_common_use_is_no_tension(thickness: float) -> None:
     options = {**BEAD, "indenter": "paraboloid", "thickness": thickness}
     found = pl.fit(depth, force + noise, rivals=["drag"], **options)
     assert found.verdict is Verdict.OTHER
-    assert found.answer.chosen.types == {"dimitriadis"}
+    assert found.answer.selected.types == {"dimitriadis"}
     assert holds(found.reduced_modulus, TRUE_MODULUS)
     alone = pl.fit(depth, force + noise, rivals=[], **options)
     assert alone.tension_needed

@@ -77,7 +77,7 @@ def test_figure_of_both_passes() -> None:
     position, force = np.append(depth, depth[::-1]) + 1e-6, np.append(force, force[::-1]) + noise
     options = BEAD | {"segment": "both", "poissons_ratio": 0.5, "rivals": ["layer"]}
     fit = pl.fit(position, force, **options)
-    assert fit.answer.chosen.types == {"layer"}
+    assert fit.answer.selected.types == {"layer"}
     ((chart,),) = charts(fit).values()
     data, *_, contact = chart.series
     np.testing.assert_allclose(data.x, position - fit.contact_point.value)
