@@ -36,6 +36,7 @@ class Ending(Enum):
     STALLED = "its steps gained next to nothing, as in a valley without end"
     OUT_OF_STEPS = "it took as many steps as it may"
     UNBALANCED = "forces do not balance where it began"
+    LOW_ENOUGH = "its χ² was as low as it had to be"
 
 
 class Minimum(NamedTuple):
@@ -99,12 +100,14 @@ def descend(
     goal: float = np.inf,
     fall: float = _FALL,
     rivals: bool = False,
+    enough: float = 0.0,
 ) -> list[Minimum]:
     """Return the minima of χ² near k starts, where coordinates that are ``held`` stay.
 
     With a number of ``steps``, roughly.  A search ends where a step without damping, which a valley
     does not hide, would gain less than a ``fall``; one that is not going to come below a ``goal``
-    is given up, as is one of ``rivals`` not below the best.  The limits are kept by projection.
+    is given up, as is one of ``rivals`` not below the best, and one below ``enough`` is done.  The
+    limits are kept by projection.
     """
     held = np.zeros(starts.shape, dtype=bool) if held is None else held
     low, high = problem.limits
@@ -153,9 +156,9 @@ def descend(
             ratio = np.clip(gain / np.maximum(foretold, 1e-300), 0.0, 1.0)
             factor = np.where(better, np.maximum(_EASED, 1 - (2 * ratio - 1) ** 3), _STIFFENED)
             damping[rows] = np.maximum(factor * damping[rows], _LEAST)
-            enough = share * cost[rows] + fall
-            ends = (most[going] <= enough) | (damping[rows] > _LARGEST)
-            ends |= better & (gain <= enough) & (damping[rows] <= _SHORT)
+            little = share * cost[rows] + fall
+            ends = (most[going] <= little) | (damping[rows] > _LARGEST)
+            ends |= better & (gain <= little) & (damping[rows] <= _SHORT)
             endings[rows[ends]] = Ending.CONVERGED
             if number > 0 or rivals:
                 least = min(goal, float(cost.min())) if rivals else goal
@@ -166,6 +169,9 @@ def descend(
             going = going[~better & ~ends]
             if not going.size:
                 break
+        low_enough = cost[left] < enough
+        endings[left[low_enough]] = Ending.LOW_ENOUGH
+        ended |= low_enough
         past.append(cost.copy())
         if number >= _STALLED:
             stalled = ~ended & (past[number - _STALLED][left] - cost[left] < _STALLED * fall)

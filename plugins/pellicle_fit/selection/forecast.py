@@ -14,7 +14,8 @@ from pellicle.arrays import Array
 from pellicle.errors import PellicleError
 from pellicle_fit.contact.curve import Curve
 from pellicle_fit.estimation.candidate import Candidate
-from pellicle_fit.estimation.objective import CONTACT_POINT, Objective
+from pellicle_fit.estimation.objective import CONTACT_POINT
+from pellicle_fit.estimation.search import descend
 from pellicle_fit.explanation import Explanation
 
 _ROWS = 150
@@ -60,15 +61,17 @@ def telling(target: Candidate, others: Sequence[Candidate]) -> tuple[Proposal | 
     best, most = None, 0.0
     pairs = [(a, b) for other in others for a, b in ((target, other), (other, target))]
     for proposal, measurement in measurements(target):
-        worth = np.inf
+        worth, useless = np.inf, max(_USELESS, most)
+        made: dict[Candidate, tuple[Curve, ...]] = {}
         for truth, guess in pairs:
             # What cannot be predicted, as by a cantilever that jumps, is worth nothing.
             least = 0.0
             with suppress(PellicleError):
-                objective, start = _foretold(truth, guess, measurement)
-                least = objective.minimise(start, steps=_ROUGH).chi_squared
+                if truth not in made:
+                    made[truth] = _foretold(truth, measurement)
+                least = _misfit(guess, made[truth], truth.objective.noise, useless)
             worth = min(worth, least)
-            if worth < _USELESS:
+            if worth < useless:
                 break
         if worth > most:
             best, most = proposal, worth
@@ -111,10 +114,26 @@ def measurements(fit: Candidate) -> Iterator[tuple[Proposal, Curve]]:
             yield Proposal(Means.RADIUS, factor * radius), on_other
 
 
-def _foretold(truth: Candidate, guess: Candidate, other: Curve) -> tuple[Objective, Array]:
-    """Return χ² of an explanation on what another predicts, and coordinates to start from.
+def _misfit(
+    guess: Candidate, curves: tuple[Curve, ...], noise: tuple[float, ...], useless: float
+) -> float:
+    """Return the least χ² of an explanation on what another predicts.
 
-    It predicts the first curve again and another, which have no noise and touch at 0.
+    Below what is ``useless``, or above what is needed, it is a bound.
+    """
+    objective = replace(guess.objective, curves=curves, noise=noise[:1] * 2, memory=())
+    values = guess.objective.values(guess.minimum.at).items()
+    first = {name: value for (name, owner), value in values if not owner} | {CONTACT_POINT: 0.0}
+    start = [slot.coordinate(first.get(slot.name, 0.0)) for slot in objective.slots]
+    (found,) = descend(objective, np.array([start]), steps=_ROUGH, goal=_NEEDED, enough=useless)
+    # What cannot be explained at all is worth nothing, too.
+    return found.chi_squared if np.isfinite(found.chi_squared) else 0.0
+
+
+def _foretold(truth: Candidate, other: Curve) -> tuple[Curve, ...]:
+    """Return what an explanation predicts of the first curve again, and of another.
+
+    They have no noise and touch at 0.
     """
     curve, known = truth.whole[0], truth.known[0]
     means, (point, *_) = curve.binned(_ROWS), truth.contact_points
@@ -123,13 +142,7 @@ def _foretold(truth: Candidate, guess: Candidate, other: Curve) -> tuple[Objecti
     counts = np.full(other.position.size, curve.passes[0].size / _ROWS)
     known = replace(known, solid=known.solid.model_copy(update={CONTACT_POINT: 0.0}))
     pair = again, replace(other, counts=counts)
-    curves = tuple(_predicted(known, one, curve) for one in pair)
-    noise = truth.objective.noise[:1] * 2
-    objective = replace(guess.objective, curves=curves, noise=noise, memory=())
-    values = guess.objective.values(guess.minimum.at).items()
-    first = {name: value for (name, owner), value in values if not owner} | {CONTACT_POINT: 0.0}
-    start = [slot.coordinate(first.get(slot.name, 0.0)) for slot in objective.slots]
-    return objective, np.array(start)
+    return tuple(_predicted(known, one, curve) for one in pair)
 
 
 def _predicted(known: Explanation, measurement: Curve, curve: Curve) -> Curve:
