@@ -5,7 +5,7 @@
 # Behaviour: it gives a length: the contact radius of the unstable branch. Without adhesion it is
 #   the radius of Hertz, whatever the modulus of the pressure; a stiffer solid has a smaller "peak
 #   pressure". DMT.radius_and_pressure beside it is right.
-# Output seen: F = 1 uN, R = 1 um, E* = 1 MPa, almost no adhesion: JKR 9.086e-07, Hertz 578407 Pa
+# Output seen: F = 1 uN, R = 1 um, E* = 1 MPa, almost no adhesion: JKR 9.085e-07, Hertz 578407 Pa
 #   with a radius of 9.086e-07 m; E* = 8 MPa: JKR 4.543e-07, Hertz 2313630 Pa
 set -euo pipefail
 folder=$(mktemp -d)

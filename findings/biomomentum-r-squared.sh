@@ -3,10 +3,10 @@
 #   where R squared is less than Rsq_req, usually 0.95; a curve without noise is valid.
 # Version: biomomentum 0.1.10
 # Behaviour: the check squares the fitted force, not the misfit, so it depends on the size of the
-#   force in newtons: curves below about one newton are invalid, G = E = -1, noise or not; above,
+#   force in newtons: curves below about two newtons are invalid, G = E = -1, noise or not; above,
 #   all are valid, noise or not. The adjusted R squared that comes back is another one and right.
-# Output seen: 0.18 N, no noise: G = -1.00 MPa; 18 N, no noise: 1.00 times the true G; 18 N, noise
-#   of 30 % of the force: 0.91 times the true G, R squared 0.45
+# Output seen: 0.19 N, no noise: G = -1.00 MPa; 18.9 N, no noise: 9.66 MPa (true 10), R squared
+#   1.00; the same with noise of half the force: 15.94 MPa, R squared 0.58
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

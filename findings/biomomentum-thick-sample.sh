@@ -4,9 +4,8 @@
 # Version: biomomentum 0.1.10
 # Behaviour: kappa, the factor of the layer, is a parabola in radius over thickness that does not
 #   go to 1: at nu = 0.3, 0.4, 0.45 and 0.5 it ends at 0.71, 0.49, 0.14 and 3.29. On a thick
-#   sample the modulus is off by 1.4, 2.1, 7 and 0.3, and those at
-#   0.45 and 0.5 differ by 22. The spherical
-#   indenter is right within 6 %.
+#   sample the modulus is off by 1.4, 2.0, 7 and 0.3, and those at 0.45 and 0.5 differ by 22. The
+#   spherical indenter is right within 6 %.
 # Output seen: sample of 1000 radii, G over the true one: punch, nu 0.3 1.40; 0.4 2.04; 0.45 6.82;
 #   0.5 0.30; sphere 1.05, 1.06, 1.06, 0.97
 set -euo pipefail

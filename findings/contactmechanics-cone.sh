@@ -3,9 +3,8 @@
 #   indentation and the area over its square, so area = pi radius^2.
 # Version: ContactMechanics 1.8.3
 # Behaviour: the area is pi times the radius, not its square. It is right for the one cone with a
-#   radius equal to its depth; for a blunt one, 5.7 degrees from the surface, it is 6.4
-#   times too small, and so is the load that load_and_mean_pressure gives per area. The radius is
-#   right.
+#   radius equal to its depth; for a blunt one, 5.7 degrees from the surface, it is 6.4 times too
+#   small, and so is the load that load_and_mean_pressure gives per area. The radius is right.
 # Output seen: half angle 45 degrees: radius 0.637, area 2.000 (pi radius^2 1.273); 84.3 degrees:
 #   6.366, 20.00 (127.3)
 set -euo pipefail

@@ -3,8 +3,8 @@
 # Version: pyfmrheo 0.1.3
 # Behaviour: the model moves the contact point to the nearest row, so a small step of delta0
 #   changes nothing; the search sees no slope and leaves it near its start. A start that is 50 nm
-#   off in a curve of 500 nm is a modulus 15 to 20 % off, with R squared above 0.99 and no warning. Only
-#   a start in the right row gives the right modulus.
+#   off in a curve of 500 nm is a modulus 15 to 20 % off, with R squared above 0.99 and no
+#   warning. Only a start in the right row gives the right modulus.
 # Output seen: right start: contact 0.0 nm off, E = 1000 Pa; 50 nm before it: -44.0 nm, 853 Pa, R
 #   squared 0.996; 50 nm after it: 50.0 nm, 1215 Pa, R squared 0.994; true 1000 Pa
 set -euo pipefail

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Guess: filter_lowpass of pySPM lets waves pass that are longer than its limit.
-# Version: pySPM 0.6.3
+# Version: pySPM 0.6.3 (for Python 3.11 and 3.12)
 # Behaviour: with an even number of rows and columns it does. With an odd one it moves the
 #   spectrum by one step on the way back and takes the real part: the image is modulated by waves
 #   of half the scan, the error as large as the heights. No message.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Guess: spline_offset of pySPM takes a background off that is given by points of the image.
-# Version: pySPM 0.6.3
+# Version: pySPM 0.6.3 (for Python 3.11 and 3.12)
 # Behaviour: it reads the heights at the points in the image turned upside down and takes the
 #   spline off the image as it is. A slope along y is doubled instead of taken off, a bowl that is
 #   not in the middle becomes deeper; along x, and where above and below are alike, it works.

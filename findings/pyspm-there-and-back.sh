@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: px2real of pySPM is the inverse of real2px; a point that goes to pixels and back is where
 #   it was.
-# Version: pySPM 0.6.3
+# Version: pySPM 0.6.3 (for Python 3.11 and 3.12)
 # Behaviour: px2real counts pixels from the top and lengths from the bottom, real2px both from the
 #   same end. y comes back as its mirror image in the middle of the scan; x is right.
 # Output seen: (30, 20) um of 100 x 100 um comes back as 30, 80 um
