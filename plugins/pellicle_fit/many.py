@@ -25,7 +25,7 @@ from pellicle.files import atomic_write, check_writable, is_file
 
 from .alike import alike, beside
 from .config import FitConfig, described
-from .estimation.objective import MODULUS
+from .estimation.coordinates import MODULUS
 from .files.measurement import Measurement
 from .files.sources import Curves, Source
 from .population.fits import ManyFits, summary, table

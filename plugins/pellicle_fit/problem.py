@@ -21,7 +21,7 @@ from pellicle.units import readable
 from .config import FitConfig
 from .contact.curve import Curve
 from .effect import Effect, Solid, quantities
-from .estimation.objective import CONTACT_POINT
+from .estimation.coordinates import CONTACT_POINT
 from .files.cleaning import clean
 from .files.measurement import Measurement
 from .files.missing import MissingInputError

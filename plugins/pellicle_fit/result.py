@@ -12,8 +12,8 @@ from pellicle.files import json_text
 from .config import FitConfig, described
 from .contact.curve import Curve
 from .estimation.candidate import Candidate
+from .estimation.coordinates import MODULUS
 from .estimation.intervals import CONFIDENCE, Estimate
-from .estimation.objective import MODULUS
 from .files.measurement import Measurement, Note
 from .selection.advice import Advice
 from .selection.recipe import TENSION, Answer

@@ -13,9 +13,10 @@ from pellicle_fit.contact.curve import Curve
 from pellicle_fit.effect import Effect, quantities
 from pellicle_fit.explanation import Explanation
 
+from .coordinates import MODULUS
 from .intervals import Estimate
 from .noise import Flaw, ResidualCheck, check_residuals
-from .objective import MODULUS, Objective
+from .objective import Objective
 from .search import Minimum
 
 Types = frozenset[str]

@@ -13,7 +13,8 @@ from pellicle_fit.contact.curve import BEFORE
 from pellicle_fit.effect import Records, powers
 
 from .candidate import Candidate
-from .objective import CONTACT_POINT, MODULUS, Objective, Slot
+from .coordinates import CONTACT_POINT, MODULUS, Slot
+from .objective import Objective
 from .search import descend
 
 _POINTS = 25

@@ -10,7 +10,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array
-from pellicle_fit.estimation.objective import CONTACT_POINT
+from pellicle_fit.estimation.coordinates import CONTACT_POINT
 
 from .row import ENDS, Row, units
 

@@ -15,7 +15,7 @@ from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.files import read_text
 from pellicle.schema import evaluate, names_in, nearest
 from pellicle.units import one, readable, split
-from pellicle_fit.estimation.objective import MODULUS
+from pellicle_fit.estimation.coordinates import MODULUS
 from pellicle_fit.selection.verdict import Verdict
 
 from .row import Row, counted, units

@@ -15,7 +15,7 @@ from pellicle.components import Axis, Chart, Look, Series
 from pellicle.show import figure_of
 from pellicle.show import save_figure as save_drawing
 from pellicle_fit.estimation.candidate import Candidate
-from pellicle_fit.estimation.objective import MODULUS
+from pellicle_fit.estimation.coordinates import MODULUS
 from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.result import Fit
 from pellicle_fit.selection.recipe import TENSION

@@ -7,7 +7,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.components import Axis, Chart, Look, Series
 from pellicle_fit.estimation.candidate import Candidate
-from pellicle_fit.estimation.objective import MODULUS
+from pellicle_fit.estimation.coordinates import MODULUS
 from pellicle_fit.selection.recipe import TENSION
 
 _JOINT = {2.30: "68 % of the pair", 5.99: "95 % of the pair"}

@@ -14,7 +14,7 @@ from pellicle.files import atomic_write
 from pellicle.results import header
 from pellicle.show import figure_of, save_figure, save_pages
 from pellicle.units import axis_unit
-from pellicle_fit.estimation.objective import MODULUS
+from pellicle_fit.estimation.coordinates import MODULUS
 from pellicle_fit.population.fits import ManyFits, common_error, label
 from pellicle_fit.population.images import CONTACT_HEIGHT
 from pellicle_fit.population.row import SHOWN, Row, counted

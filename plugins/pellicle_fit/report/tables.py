@@ -9,8 +9,8 @@ import numpy as np
 from pellicle.components import Column, Table
 from pellicle.units import DIGITS, Scale
 from pellicle_fit.estimation.candidate import Candidate
+from pellicle_fit.estimation.coordinates import CONTACT_POINT, MODULUS
 from pellicle_fit.estimation.intervals import CONFIDENCE, End, Estimate
-from pellicle_fit.estimation.objective import CONTACT_POINT, MODULUS
 from pellicle_fit.estimation.search import Ending
 from pellicle_fit.population.fits import QUARTILES, summary
 from pellicle_fit.population.row import FITTED, OVER_TIED, SHOWN, Row

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from pellicle_fit.estimation.coordinates import CONTACT_POINT
 from pellicle_fit.estimation.noise import FEWEST, Flaw
-from pellicle_fit.estimation.objective import CONTACT_POINT
 
 from .forecast import telling
 from .recipe import Answer

@@ -14,7 +14,7 @@ from pellicle.arrays import Array
 from pellicle.errors import PellicleError
 from pellicle_fit.contact.curve import Curve
 from pellicle_fit.estimation.candidate import Candidate
-from pellicle_fit.estimation.objective import CONTACT_POINT
+from pellicle_fit.estimation.coordinates import CONTACT_POINT
 from pellicle_fit.estimation.search import descend
 from pellicle_fit.explanation import Explanation
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle_fit.estimation.candidate import Candidate, Types
-from pellicle_fit.estimation.objective import CONTACT_POINT, MODULUS, Objective
+from pellicle_fit.estimation.coordinates import CONTACT_POINT, MODULUS
+from pellicle_fit.estimation.objective import Objective
 
 RULED_OUT = 40.0
 """ΔAIC to the best beyond which an explanation is not compared on curves alike."""

@@ -14,9 +14,9 @@ from pellicle.errors import ConfigError
 from pellicle_fit.contact.curve import Curve
 from pellicle_fit.effect import Effect, Records, Responds, Solid
 from pellicle_fit.estimation.candidate import NONE, Candidate, Types, best_of
+from pellicle_fit.estimation.coordinates import CONTACT_POINT, MODULUS
 from pellicle_fit.estimation.intervals import End, Estimate, common_value, estimates, threshold_of
 from pellicle_fit.estimation.noise import CHANCE, ResidualCheck
-from pellicle_fit.estimation.objective import CONTACT_POINT, MODULUS
 from pellicle_fit.strangers import refuse_broken, strangers_named
 
 from .neighbour import Neighbour

@@ -91,7 +91,7 @@ def comparison(
     """
     noise = tuple(neighbour_noise(curve.force).deviation for curve in curves)
     sizes = Sizes.of_curve(curves[0])
-    of = Objective(candidates[NONE], curves, noise, sizes, memory, sizes.time)
+    of = Objective(candidates[NONE], curves, sizes, sizes.time, noise, memory)
     rows = _ROWS if len(candidates) > _FEW else _ROWS_OF_FEW
     means = tuple(curve.binned(rows) for curve in curves)
     simple = _sought(

@@ -9,8 +9,8 @@ from typing import NamedTuple
 from scipy.special import bdtrc
 
 from pellicle_fit.estimation.candidate import NONE, Candidate, Types, best_of
+from pellicle_fit.estimation.coordinates import MODULUS
 from pellicle_fit.estimation.noise import ResidualCheck
-from pellicle_fit.estimation.objective import MODULUS
 
 MARGIN = 4.0
 """Difference of AIC below which explanations cannot be told apart."""

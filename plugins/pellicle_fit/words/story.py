@@ -11,9 +11,9 @@ import numpy as np
 
 from pellicle.units import decimal, readable
 from pellicle_fit.estimation.candidate import NONE, Candidate
+from pellicle_fit.estimation.coordinates import MODULUS
 from pellicle_fit.estimation.intervals import CONFIDENCE
 from pellicle_fit.estimation.noise import Flaw
-from pellicle_fit.estimation.objective import MODULUS
 from pellicle_fit.files.measurement import Note
 from pellicle_fit.selection.recipe import Answer
 from pellicle_fit.selection.verdict import Verdict

@@ -179,8 +179,9 @@ def _objective(
     objective = Objective(
         _explanation(case, effects),
         curves,
-        (case.noise,) * len(curves),
         Sizes.of_curve(curves[0]),
+        1.0,
+        (case.noise,) * len(curves),
         (memory,) * len(curves),
     )
     at = np.array([s.coordinate(values.get(s.name, 0.0)) for s in objective.slots])

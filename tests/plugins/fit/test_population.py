@@ -24,8 +24,8 @@ from pellicle.batch import locked
 from pellicle.cli.app import app
 from pellicle.errors import ConfigError, StorageError
 from pellicle_fit import many
+from pellicle_fit.estimation.coordinates import MODULUS
 from pellicle_fit.estimation.intervals import Estimate
-from pellicle_fit.estimation.objective import MODULUS
 from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.files.sources import Source
 from pellicle_fit.many import fit_sources
