@@ -27,7 +27,7 @@ CEILINGS = {
     "outputs": 1200,
     "gradients": 580,
     "studies": 1200,
-    "fits": 1680,
+    "fits": 1700,
     "curves": 1665,
     "gallery": 550,
     "explore": 230,

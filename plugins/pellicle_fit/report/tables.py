@@ -20,6 +20,8 @@ from pellicle_fit.words.names import FEW, interval, quoted, unit_of, unit_of_one
 
 _OPEN = {End.LIMIT, End.RANGE, End.STEPS, End.LACKING}
 """What an end is that needs a reason."""
+_CORRELATED = 0.3
+"""Least size of a correlation that tables show."""
 _SI_DIGITS = 6
 """Significant digits of numbers in SI."""
 
@@ -45,14 +47,14 @@ def estimates(fit: Fit, *, si: bool = False) -> Table:
 
 
 def correlations(fit: Fit) -> Table:
-    """Return a row for each pair of quantities of the chosen explanation, the strongest first."""
+    """Return a row for each pair of correlated quantities of a fit, the strongest first."""
     several = len(fit.members) > 1
     slots = fit.answer.selected.objective.slots
     own = {slot.full_name for slot in slots if slot.curve is not None} if several else set()
     pairs = {
         pair: value
         for pair, value in fit.answer.selected.correlations.items()
-        if not own.intersection(pair)
+        if not own.intersection(pair) and abs(value) >= _CORRELATED
     }
     ranked = sorted(pairs, key=lambda pair: -abs(pairs[pair]))
     columns = [
@@ -61,7 +63,7 @@ def correlations(fit: Fit) -> Table:
         Column("correlation", [f"{pairs[pair]:.3f}" for pair in ranked]),
     ]
     caption = (
-        "Correlations of the quantities at the least χ²; ± 1 where one makes up for the other."
+        f"Correlations of at least {_CORRELATED:g}; ± 1 where one quantity makes up for the other."
     )
     return Table(columns, caption, folded=True)
 

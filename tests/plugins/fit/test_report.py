@@ -44,7 +44,7 @@ def test_page(single: pl.Fit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
         assert words in page
     assert page.count("data:image/svg+xml") == 2
     folded = re.findall(r'<details class="table">\s*<summary>(\w+)', page)
-    assert folded == ["What", "The"]
+    assert folded == ["What", "The", "Correlations"]
     assert 'class="notice bad"' not in page
     assert sentence in unescape(single._repr_html_())
     monkeypatch.setitem(mpl.rcParams, "backend", "agg")
