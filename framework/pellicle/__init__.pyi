@@ -30,6 +30,7 @@ from .config.loading import Loading as Loading
 from .config.run import Run as Run
 from .config.study import Study as Study
 from .contact.caveats import Status as Status
+from .contact.problem import Adhesive as Adhesive
 from .contact.problem import Problem as Problem
 from .contact.solution import Solution as Solution
 from .contact.solution import State as State

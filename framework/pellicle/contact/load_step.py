@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import nan
-from typing import Any, Final, Self
+from typing import Any, Final, Generic, Self, TypeVar
 
 import numpy as np
 
 from pellicle.arrays import Array
 
 from .caveats import Caveat, ranked
-from .equilibrium import Equilibrium
-from .problem import Depth, Problem
+from .equilibrium import Deformation
+from .problem import Adhesive, Depth, Unilateral
 from .solution import State, Stop
 
 # Longest step, over the last one, to which is extrapolated.
@@ -24,16 +24,17 @@ _GAP_POWER: Final = 1.5
 _JOINING: Final = 1e-9
 
 Value = float | bool | int
+Surface = TypeVar("Surface", bound=Deformation, covariant=True)
 
 
 @dataclass(frozen=True)
-class LoadStep:
+class LoadStep(Generic[Surface]):
     """A solved load step; after a search, the trial nearest to the goal.
 
     It holds the problem and some eight fields, so it must not outlive the copy into the result.
     """
 
-    equilibrium: Equilibrium
+    equilibrium: Surface
     iterations: int
     """Iterations of the solver, summed over all trials of a search."""
     stop: Stop
@@ -53,7 +54,7 @@ class LoadStep:
         """Whether the numbers of the step may be used, possibly with a caveat."""
         return all(caveat.status.converged for caveat in self.caveats)
 
-    def having(self, measures: Mapping[str, Value], caveats: Iterable[Caveat] = ()) -> LoadStep:
+    def having(self, measures: Mapping[str, Value], caveats: Iterable[Caveat] = ()) -> Self:
         """Return the step with more measures and caveats."""
         return replace(
             self,
@@ -74,7 +75,7 @@ class FinishedStep:
     area: float
     """Contact area [m²]."""
     energy: float
-    """`Equilibrium.energy` [J]; NaN if it is not known."""
+    """`AdhesiveEquilibrium.energy` [J]; NaN if it is not known."""
     converged: bool
     jumped: bool
     """Whether a part of the contact, or all of it, has jumped."""
@@ -109,7 +110,9 @@ def end_of(path: Sequence[FinishedStep]) -> tuple[FinishedStep, ...]:
     return tuple(points)
 
 
-def start_of(problem: Problem, state: State | None, path: Sequence[FinishedStep]) -> State | None:
+def start_of(
+    problem: Unilateral, state: State | None, path: Sequence[FinishedStep]
+) -> State | None:
     """Return the start of a load step: the last two extrapolated to its control, or the last state.
 
     ``path`` has the last two load steps, the earlier one first; fewer if there are no more.
@@ -118,7 +121,7 @@ def start_of(problem: Problem, state: State | None, path: Sequence[FinishedStep]
     Neither is it with a law, where there may be several equilibria: the descent from the last state
     ends in the one that the path leads to.
     """
-    if state is None or len(path) < 2 or problem.left is not None or problem.law:
+    if state is None or len(path) < 2 or problem.left is not None or isinstance(problem, Adhesive):
         return state
     before, last = path
     reached = [control_of(problem, point.state) for point in (before, last)]
@@ -132,8 +135,8 @@ def start_of(problem: Problem, state: State | None, path: Sequence[FinishedStep]
     return State(pressure, pressure, depth)
 
 
-def control_of(problem: Problem, state: State) -> float:
-    """Return the depth of the base [m] or the force [N] of a state, as `Problem.value` is."""
+def control_of(problem: Unilateral, state: State) -> float:
+    """Return the depth of the base [m] or the force [N] of a state, as `Unilateral.value` is."""
     total = float(state.pressure.sum())
     if isinstance(problem.control, Depth):
         return state.depth + problem.operator.deflection(total)
@@ -141,7 +144,7 @@ def control_of(problem: Problem, state: State) -> float:
 
 
 def _pressure_ahead(
-    problem: Problem, before: FinishedStep, last: FinishedStep, ratio: float
+    problem: Unilateral, before: FinishedStep, last: FinishedStep, ratio: float
 ) -> Array:
     """Return the extrapolated pressure [Pa], > 0 on the extrapolated contact.
 

@@ -10,7 +10,7 @@ import xarray as xr
 
 from pellicle.analysis import ellipse, patches, perimeter
 from pellicle.contact.caveats import sentence_of, status_of, to_text
-from pellicle.contact.equilibrium import Equilibrium
+from pellicle.contact.equilibrium import AdhesiveEquilibrium, Equilibrium
 from pellicle.contact.load_step import FinishedStep, LoadStep
 from pellicle.grid import Grid
 from pellicle.variables import CAVEATS, VARIABLES, Variable, names_of
@@ -21,7 +21,7 @@ from . import storage
 def step_dataset(
     grid: Grid,
     number: int,
-    step: LoadStep,
+    step: LoadStep[Equilibrium],
     variables: Iterable[Variable] = (),
     seconds: float = 0.0,
 ) -> xr.Dataset:
@@ -38,7 +38,7 @@ def step_dataset(
         "contact": equilibrium.counted_contact,
     }
     of_law: dict[str, object] = {}
-    if equilibrium.problem.law:
+    if isinstance(equilibrium, AdhesiveEquilibrium):
         fields["wall_pressure"] = equilibrium.wall
         of_law = {
             "zone_area": np.count_nonzero(equilibrium.zone) * grid.cell_area,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import replace
 from functools import lru_cache
 from typing import Final
 
@@ -46,15 +47,15 @@ def compose(run: Run) -> Setting:
     if run.indenter.footprint == "domain":
         warn_of_period(profile, run.grid)
     _warn_of_liquid(run)
-    law = law_of(run.interaction, run.kernel, run.grid) if run.interaction else None
-    setting = Setting(run.grid, operator, profile, run.indenter.footprint, law=law)
-    if law:
+    setting = Setting(run.grid, operator, profile, run.indenter.footprint)
+    if run.interaction:
+        setting = replace(setting, law=law_of(run.interaction, run.kernel, run.grid))
         check_solver(run.solver, setting.problem(Force(0.0)))
     prescription = run.loading.prescription
     for index, value in enumerate(run.loading.values):
         field = f"loading.{run.loading.field_of(index)}"
         check_value(prescription, setting, value, field)
-        target = target_of(prescription, setting, value) if law else None
+        target = target_of(prescription, setting, value) if run.interaction else None
         if isinstance(target, Search) and target.control is Force:
             raise ConfigError(
                 "is searched by force, along which a contact that sticks jumps; prescribe depth or "

@@ -13,12 +13,12 @@ from pellicle.components import Monitor, Search, Setting
 from pellicle.components.calls import target_of
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
-from pellicle.contact.load_step import FinishedStep, LoadStep, end_of
+from pellicle.contact.load_step import FinishedStep, end_of
 from pellicle.results.record import Steps, step_dataset
 
 from .relaxation import Relaxation
 from .target_search import search_target, solve_at
-from .terms import Surroundings, Term
+from .terms import ContactStep, Surroundings, Term
 from .terms.adhesion import adhesion
 from .terms.contact import contact
 from .terms.relaxation import relaxation
@@ -74,7 +74,7 @@ def _next_step(
     return step_dataset(run.grid, len(path) + 1, step, run.variables, seconds)
 
 
-def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> LoadStep:
+def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> ContactStep:
     """Return the load step at a prescribed ``value``, started from the state of ``setting``."""
     applied = setting.operator.applications
     target = target_of(run.loading.prescription, setting, value)

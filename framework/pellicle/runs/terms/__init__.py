@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from pellicle.components import Monitor, Setting
+from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.load_step import FinishedStep, LoadStep
 
 
@@ -20,5 +21,6 @@ class Surroundings(NamedTuple):
     """Told of the iterations of a term that solves again."""
 
 
-Term = Callable[[LoadStep, Surroundings], LoadStep]
+ContactStep = LoadStep[Equilibrium]
+Term = Callable[[ContactStep, Surroundings], ContactStep]
 """Returns the step with measures and caveats of its own added; the run is bound beforehand."""

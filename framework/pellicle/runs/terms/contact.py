@@ -10,18 +10,17 @@ from pellicle.arrays import Mask
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import Equilibrium
-from pellicle.contact.load_step import LoadStep
 from pellicle.contact.masks import labelled
 from pellicle.grid import Boundary
 
-from . import Surroundings
+from . import ContactStep, Surroundings
 
 # The force of a paraboloid is right to 8 % on nine or twelve cells, to 14 % on five, on fewer not.
 _RESOLVED = 13
 _RESOLVED_ACROSS = 4
 
 
-def contact(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
+def contact(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
     """Add why the step is not a solution, and whether its contact has too few cells."""
     if not np.isfinite(step.equilibrium.force):
         return step.having({}, [Caveat(Status.NOT_FINITE)])
@@ -29,7 +28,7 @@ def contact(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
     return step.having({}, _coarse(run, step.equilibrium)) if step.converged else step
 
 
-def _failures(run: Run, step: LoadStep, value: float) -> Iterator[Caveat]:
+def _failures(run: Run, step: ContactStep, value: float) -> Iterator[Caveat]:
     """Yield why the step is not a solution; ``value`` is the prescribed one."""
     equilibrium, tolerance = step.equilibrium, run.solver.tolerance
     if (lowest := float(equilibrium.wall.min())) < 0:

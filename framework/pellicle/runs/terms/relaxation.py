@@ -9,11 +9,11 @@ import numpy as np
 
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
-from pellicle.contact.load_step import LoadStep, Value
+from pellicle.contact.load_step import Value
 from pellicle.contact.time_step import stiffness_after
 from pellicle.runs.relaxation import CarriedShare
 
-from . import Surroundings
+from . import ContactStep, Surroundings
 
 # Domain that a solid needs, over that of the run, above which no grid spans it.
 _FARTHEST: Final = 100.0
@@ -25,7 +25,7 @@ _LONGEST: Final = 1e9
 _RADII: Final = 7.9
 
 
-def relaxation(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
+def relaxation(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
     """Add the time and cycle of the step, and whether the domain is small."""
     loading, index = run.loading, len(surroundings.path)
     measures: dict[str, Value] = {}
@@ -33,7 +33,7 @@ def relaxation(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep
         measures["time"] = loading.times[index]
     if loading.oscillates:
         measures["cycle"] = loading.samples[index].cycle
-    if surroundings.setting.law and run.branches and loading.durations[index] > 0:
+    if run.interaction and run.branches and loading.durations[index] > 0:
         # The energy of a solid that has relaxed on its way does not follow from its surface.
         measures["energy"] = np.nan
     area = np.count_nonzero(step.equilibrium.counted_contact) * run.grid.cell_area
