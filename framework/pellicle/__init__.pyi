@@ -14,6 +14,7 @@ from .components import Interaction as Interaction
 from .components import IterativeSolver as IterativeSolver
 from .components import Kernel as Kernel
 from .components import LayerForceCurve as LayerForceCurve
+from .components import Load as Load
 from .components import Output as Output
 from .components import Prescription as Prescription
 from .components import Runs as Runs

@@ -41,7 +41,7 @@ CEILINGS = {
     "paper": 650,
     "compare": 520,
     "plugin": 1400,
-    "families": 1660,
+    "families": 1720,
     "architecture": 450,
     "decisions": 1500,
     "run-file": 150,

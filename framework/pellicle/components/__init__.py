@@ -53,6 +53,7 @@ from .interaction import Interaction as Interaction
 from .kernel import Kernel as Kernel
 from .kernel import KernelOf as KernelOf
 from .lattice import Lattice as Lattice
+from .load import Load as Load
 from .output import Output as Output
 from .output import Runs as Runs
 from .prescription import Prescription as Prescription

@@ -26,6 +26,7 @@ from pellicle.units import DIGITS, readable
 from .correction import AreaCorrection
 from .indenter import Footprint, Indenter
 from .lattice import Lattice
+from .load import Load
 from .prescription import Prescription, Search, Setting
 from .solver import Monitor, Solver
 
@@ -92,6 +93,20 @@ def _hidden_height(profile: Array, footprint: Footprint) -> float:
         return np.inf
     lowest_around = np.min([profile[i + a, j + b] for a in range(3) for b in range(3)], axis=0)
     return top - float(lowest_around.max())
+
+
+def traction_of(load: Load, grid: Grid) -> Array:
+    """Return the traction [Pa] of a load of one step on a grid, read-only."""
+    x, y = (read_only(points) for points in grid.coordinates())
+    with problems_within("load"), errors_attributed_to(load), grid_of_run(grid):
+        value = load.traction(x, y)
+    traction = real_array(load, "traction(x, y)", value, grid.shape)
+    if not np.isfinite(traction).all():
+        raise PluginError(
+            f"{component_name(load)}: traction(x, y) has values that are NaN or infinite; it has "
+            "to be finite on every cell"
+        )
+    return read_only(np.ascontiguousarray(traction))
 
 
 def check_value(prescription: Prescription, setting: Setting, value: float, field: str) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import nan
+from math import inf, nan
 from typing import Any, Final, Generic, Self, TypeVar
 
 import numpy as np
@@ -65,7 +65,10 @@ class LoadStep(Generic[Surface]):
 
 @dataclass(frozen=True)
 class FinishedStep:
-    """The end of a load step, for later ones; its fields are views of those of the result."""
+    """The end of a load step, for later ones; its fields are views of those of the result.
+
+    Without an indenter the gap is infinite, and depth and area are those of no contact.
+    """
 
     state: State
     gap: Array
@@ -85,10 +88,10 @@ class FinishedStep:
         """Return a step from its variables in a result, solved just now or read from a file."""
         pressure = fields["pressure"]
         return cls(
-            State(pressure, fields.get("wall_pressure", pressure), numbers["depth"]),
-            fields["gap"],
+            State(pressure, fields.get("wall_pressure", pressure), numbers.get("depth", nan)),
+            fields["gap"] if "gap" in fields else np.broadcast_to(inf, pressure.shape),
             fields["displacement"],
-            numbers["contact_area"],
+            numbers.get("contact_area", 0.0),
             numbers.get("energy", nan),
             bool(numbers["converged"]),
             bool(numbers.get("jumped", False)),

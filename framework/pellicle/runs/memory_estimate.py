@@ -48,6 +48,6 @@ def memory_of(run: Run) -> float:
         steps = {TimeStep.of(branches, duration) for duration in run.loading.durations}
         stiffnesses = {rounded_stiffness(step) for step in steps}
         history += 1 + min(KEPT, len(stiffnesses)) * _PAIR[grid.boundary]
-    kept = (_STEP + _SERIALISED) * (len(run.loading.values) - 1)
+    kept = (_STEP + _SERIALISED) * (run.steps - 1)
     heap = _HEAP if 8 * cells < _GIVEN_BACK else 0
     return _FIXED + 8 * cells * (operator + iterating + history + kept + heap)

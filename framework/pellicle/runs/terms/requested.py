@@ -29,7 +29,7 @@ def corrections(run: Run, step: ContactStep, surroundings: Surroundings) -> Cont
 
 def prescription(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
     """Add the variables of the prescription; that of kind ``residual`` is what a search missed."""
-    prescribed = run.loading.prescription
+    prescribed = run.indentation.loading.prescription
     report = report_of(prescribed, surroundings.setting, step.equilibrium)
     report |= {v.name: step.missed for v in prescribed.variables if v.name not in report}
     return step.having(report)
