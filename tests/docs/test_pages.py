@@ -20,6 +20,7 @@ CEILINGS = {
     "grid": 760,
     "kernels": 900,
     "indenters": 1220,
+    "loads": 750,
     "loading": 1250,
     "adhesion": 1370,
     "time": 950,
