@@ -65,18 +65,10 @@ def _width(height: Array, grid: Grid) -> float:
 
 
 def _across(height: Array, top: tuple[np.intp, ...], grid: Grid) -> Array:
-    """Return the unit vector along which the surface curves most at a cell."""
-    rows, columns = (
-        np.add(index, [-1, 0, 1]) % n
-        if grid.boundary == "periodic"
-        else np.clip(np.add(index, [-1, 0, 1]), 0, n - 1)
-        for index, n in zip(top, height.shape, strict=True)
-    )
-    patch = height[np.ix_(rows, columns)]
-    dx, dy = grid.spacing
-    xx = (patch[0, 1] - 2 * patch[1, 1] + patch[2, 1]) / dx**2
-    yy = (patch[1, 0] - 2 * patch[1, 1] + patch[1, 2]) / dy**2
-    xy = (patch[2, 2] - patch[2, 0] - patch[0, 2] + patch[0, 0]) / (4 * dx * dy)
-    values, vectors = np.linalg.eigh(np.array([[xx, xy], [xy, yy]]))
-    direction: Array = vectors[:, np.argmax(np.abs(values))]
-    return direction
+    """Return the unit vector along which the surface bends most at a cell."""
+    if 1 in height.shape:
+        return np.array([float(n > 1) for n in height.shape])
+    by_axis = [np.gradient(slope, *grid.spacing) for slope in np.gradient(height, *grid.spacing)]
+    bends = np.array([[second[top] for second in seconds] for seconds in by_axis])
+    values, vectors = np.linalg.eigh(0.5 * (bends + bends.T))
+    return np.asarray(vectors[:, np.argmax(np.abs(values))])

@@ -8,15 +8,15 @@ import numpy as np
 from pydantic import Field
 
 from pellicle.arrays import Array
-from pellicle.components import Load, boundary_of_run
+from pellicle.components import boundary_of_run
 from pellicle.errors import ConfigError
 from pellicle.units import Length
 
-from .round import LineForce, Width
+from .round import Line, LineForce
 from .shares import between, edges
 
 
-class Ridge(Load):
+class Ridge(Line):
     """Straight line force along y through the centre of a period, or a stripe of liquid.
 
     A stripe has two such lines, and an even pressure between them that balances both.
@@ -25,7 +25,6 @@ class Ridge(Load):
     type: Literal["ridge"] = "ridge"
     examples = ({"line_force": "-30 mN/m", "width": "10 um"}, {"line_force": -0.03, "stripe": 2e-4})
     line_force: LineForce
-    width: Width = None
     stripe: Annotated[
         Length | None,
         Field(
@@ -33,11 +32,6 @@ class Ridge(Load):
             description="distance of the two lines of a stripe of liquid [m]; one line if absent",
         ),
     ] = None
-
-    @property
-    def has_line_without_width(self) -> bool:
-        """Whether there is no width."""
-        return self.width is None
 
     def traction(self, x: Array, y: Array) -> Array:
         """Return the traction [Pa] on each cell; that of a stripe has the sum 0."""
@@ -50,9 +44,8 @@ class Ridge(Load):
         half = 0.5 * (self.stripe or 0.0)
         if half + 0.5 * width > right[-1, 0]:
             raise ConfigError("is wider than a period; use a larger grid.size", "stripe")
-        lines = [-half, half] if half else [0.0]
         traction = np.zeros_like(x)
-        for line in lines:
+        for line in [-half, half] if half else [0.0]:
             traction += self.line_force / width * between(x, line - width / 2, line + width / 2)
         if half:
             traction -= self.line_force / half * between(x, -half, half)

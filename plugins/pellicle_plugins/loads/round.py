@@ -15,31 +15,37 @@ from pellicle.units import Length, Quantity
 
 from .shares import edges, within_circle
 
-LineForce = Annotated[
-    float,
-    Quantity("N/m"),
-    Field(title="line force", description="force per length of the line [N/m], > 0 into the solid"),
-]
-Width = Annotated[
-    Length | None,
-    Field(title="width of the line", description="width of the line [m]; that of a cell if absent"),
-]
-_Radius = Annotated[Length, Field(description="radius [m]")]
 
+class Line(Load):
+    """Base class of loads with a line force, which is as wide as the cells without a width."""
 
-class Ring(Load):
-    """Line force on a circle, spread evenly over its width."""
-
-    type: Literal["ring"] = "ring"
-    examples = ({"radius": "0.3 mm", "line_force": "-30 mN/m", "width": "10 um"},)
-    radius: _Radius
-    line_force: LineForce
-    width: Width = None
+    width: Annotated[
+        Length | None,
+        Field(
+            title="width of the line", description="width of the line [m]; without, that of a cell"
+        ),
+    ] = None
 
     @property
     def has_line_without_width(self) -> bool:
         """Whether there is no width."""
         return self.width is None
+
+
+LineForce = Annotated[
+    float,
+    Quantity("N/m"),
+    Field(title="line force", description="force per length of the line [N/m], > 0 into the solid"),
+]
+
+
+class Ring(Line):
+    """Line force on a circle, spread evenly over its width."""
+
+    type: Literal["ring"] = "ring"
+    examples = ({"radius": "0.3 mm", "line_force": "-30 mN/m", "width": "10 um"},)
+    radius: Annotated[Length, Field(description="radius [m]")]
+    line_force: LineForce
 
     def traction(self, x: Array, y: Array) -> Array:
         """Return the traction [Pa] on each cell, 2πR times the line force in sum."""
@@ -51,7 +57,7 @@ class Disc(Load):
 
     type: Literal["disc"] = "disc"
     examples = ({"radius": "0.3 mm", "pressure": "100 Pa"},)
-    radius: _Radius
+    radius: Annotated[Length, Field(description="radius [m]")]
     pressure: Annotated[
         float, Quantity("Pa"), Field(description="pressure on the disc [Pa], > 0 into the solid")
     ]
@@ -61,7 +67,7 @@ class Disc(Load):
         return self.pressure * within_circle(x, y, self.radius)
 
 
-class Droplet(Load):
+class Droplet(Line):
     """Sessile drop: its contact line pulls by γ sin θ, its Laplace pressure pushes as much.
 
     The pressure within is 2γ sin θ/R, without weight. The tension of the surface counts as equal
@@ -85,18 +91,12 @@ class Droplet(Load):
         None, description="volume [m³], in place of the angle: that of a spherical cap"
     )
     radius: Annotated[Length, Field(description="radius R of the contact line [m]")]
-    width: Width = None
 
     @model_validator(mode="after")
     def _angle_or_volume(self) -> Self:
         if (self.contact_angle is None) == (self.volume is None):
             raise ConfigError("give exactly one of contact_angle and volume", "contact_angle")
         return self
-
-    @property
-    def has_line_without_width(self) -> bool:
-        """Whether there is no width."""
-        return self.width is None
 
     @property
     def vertical_tension(self) -> float:

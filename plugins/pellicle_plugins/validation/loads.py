@@ -18,7 +18,6 @@ from . import discs
 
 _RADIUS, _WIDTH = 0.25e-3, 0.0625e-3
 _TENSION = 0.03
-_SOURCE = "Hankel integral"
 _LAYER = {
     "type": "bonded_layer",
     "youngs_modulus": 3e3,
@@ -34,12 +33,6 @@ _KERNELS: dict[str, dict[str, Any]] = {
 
 def known_loads() -> Iterator[Case]:
     """Yield the cases, those that share a run after each other."""
-    for name, kernel in _KERNELS.items():
-        yield from _droplet(name, kernel)
-    yield _line()
-
-
-def _droplet(name: str, kernel: dict[str, Any]) -> Iterator[Case]:
     load = {
         "type": "droplet",
         "radius": _RADIUS,
@@ -47,44 +40,42 @@ def _droplet(name: str, kernel: dict[str, Any]) -> Iterator[Case]:
         "contact_angle": pi / 3,
         "width": _WIDTH,
     }
-    configuration = {"grid": {"points": 256, "size": 4 * _RADIUS}, "kernel": kernel, "load": load}
-    table = {key: value for key, value in kernel.items() if key != "type"}
-    compliance = pl.kernel(kernel["type"], **table).compliance
     exact = discs.droplet(_RADIUS, _TENSION * sin(pi / 3), _WIDTH)
-    centre = 0.5 * 2**0.5 * 4 * _RADIUS / 256
-    rows: tuple[tuple[str, str, float, float, Callable[[Result], float]], ...] = (
-        ("depth of the centre", "m", discs.displacement(compliance, exact, centre), 1e-3, _centre),
-        ("volume within", "m³", discs.volume_within(compliance, exact, _RADIUS), 1e-3, _volume),
-        ("elastic energy", "J", discs.energy(compliance, exact), 2e-3, _energy),
-    )
-    for quantity, unit, expected, tolerance, computed in rows:
-        row = f"droplet on a {name}: {quantity}"
-        yield Case(row, configuration, computed, expected, unit, tolerance, _SOURCE)
+    cell = 4 * _RADIUS / 256
+    for name, kernel in _KERNELS.items():
+        solid = pl.registry().make(pl.Kernel, kernel).compliance
+        run = {"grid": {"points": 256, "size": 4 * _RADIUS}, "kernel": kernel, "load": load}
+        # The middle cells lie beside the centre.
+        depth = discs.displacement(solid, exact, cell / 2**0.5)
+        volume = discs.volume_within(solid, exact, _RADIUS)
+        for quantity, unit, expected, tolerance, computed in (
+            ("depth of the centre", "m", depth, 1e-3, _centre),
+            ("volume within", "m³", volume, 1e-3, _volume),
+            ("elastic energy", "J", discs.energy(solid, exact), 2e-3, _energy),
+        ):
+            row = f"droplet on a {name}: {quantity}"
+            yield Case(row, run, computed, expected, unit, tolerance, "Hankel integral")
+    yield _line()
 
 
 def _line() -> Case:
     """Return the height of a straight ridge over the middle between two, a sum over waves."""
-    length, points, width = 1e-3, 256, 1e-3 / 16
-    q = 2 * pi / length * np.arange(1.0, 200_000.0)
-    compliance = pl.kernel("tensed_membrane", reduced_modulus=1e4, tension=0.1).compliance(q)
-    spread = np.sinc(0.5 * q * width / pi)
-    height = (
-        2 * _TENSION / length * float((compliance * spread * (1 - np.cos(pi * q / q[0]))).sum())
-    )
-    configuration = {
-        "grid": {"points": [points, 2], "size": [length, length], "boundary": "periodic"},
-        "kernel": _KERNELS["tensed half-space"],
+    length, width, kernel = 4 * _RADIUS, _WIDTH, _KERNELS["tensed half-space"]
+    number = np.arange(1.0, 200_000.0)
+    q = 2 * pi / length * number
+    waves = pl.registry().make(pl.Kernel, kernel).compliance(q) * np.sinc(number * width / length)
+    height = 2 * _TENSION / length * float((waves * (1 - np.cos(pi * number))).sum())
+    run = {
+        "grid": {"points": [256, 2], "size": length, "boundary": "periodic"},
+        "kernel": kernel,
         "load": {"type": "ridge", "line_force": -_TENSION, "width": width},
     }
-    return Case(
-        name="straight ridge on a tensed half-space: height",
-        configuration=configuration,
-        computed=lambda result: float(np.ptp(result.dataset["displacement"][-1].values)),
-        expected=height,
-        unit="m",
-        tolerance=1e-3,
-        source="sum over waves",
-    )
+    row = "straight ridge on a tensed half-space: height"
+    return Case(row, run, _height, height, "m", 1e-3, "sum over waves")
+
+
+def _height(result: Result) -> float:
+    return float(np.ptp(result.dataset["displacement"][-1].values))
 
 
 def _centre(result: Result) -> float:
