@@ -28,6 +28,7 @@ from pellicle_fit.estimation.noise import Flaw
 _HEADINGS = {
     "kernel": "Kernels",
     "indenter": "Indenters",
+    "load": "Loads",
     "interaction": "Interactions",
     "solver": "Solvers",
     "correction": "Corrections of the area",

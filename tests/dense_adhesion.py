@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pellicle.arrays import Array, Mask
 from pellicle.contact.law import Law
-from pellicle.contact.problem import Problem
+from pellicle.contact.problem import Adhesive, Problem
 
 # Share of the old traction that a round keeps, so that a step of the descent is small.
 _KEPT = 0.5
@@ -40,7 +40,7 @@ class DenseState(NamedTuple):
 class DenseContact:
     """A problem of at most some hundred cells with its full influence matrix."""
 
-    problem: Problem
+    problem: Adhesive
     law: Law
     matrix: Array
     """Displacement of cell i per pressure on cell j [m/Pa]."""
@@ -48,7 +48,7 @@ class DenseContact:
     @classmethod
     def of(cls, problem: Problem) -> DenseContact:
         """Return the problem with the matrix of its operator, column by column."""
-        assert problem.law
+        assert isinstance(problem, Adhesive)
         assert not problem.operator.deflection(1.0)
         shape, size = problem.grid.shape, problem.profile.size
         units = np.eye(size).reshape(size, *shape)
@@ -96,7 +96,7 @@ class DenseContact:
         last row, and a cell stands for a neighbour beyond a step of four cutoffs.
         """
         size = self.problem.profile.size
-        if not (self.problem.law and self.problem.law.averaged):
+        if not self.law.averaged:
             return np.eye(size), np.arange(size)
         heights = self.problem.heights
         rows = []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -108,7 +109,8 @@ def verdicts(seed: int) -> list[Verdict]:
     wall = traction = np.zeros(contact.problem.profile.size)
     rows = []
     for index, load in enumerate(loads):
-        dense = DenseContact(setting.problem(control(float(load))), contact.law, contact.matrix)
+        problem = replace(contact.problem, control=control(float(load)))
+        dense = replace(contact, problem=problem)
         step = dataset.isel(step=index)
         reference = dense.descend(wall, traction, ROUNDS)
         wall = step["wall_pressure"].values.ravel()

@@ -15,6 +15,7 @@ from .components import Isotropic as Isotropic
 from .components import IterativeSolver as IterativeSolver
 from .components import Kernel as Kernel
 from .components import LayerForceCurve as LayerForceCurve
+from .components import Load as Load
 from .components import Output as Output
 from .components import Prescription as Prescription
 from .components import Runs as Runs
@@ -31,6 +32,7 @@ from .config.loading import Loading as Loading
 from .config.run import Run as Run
 from .config.study import Study as Study
 from .contact.caveats import Status as Status
+from .contact.problem import Adhesive as Adhesive
 from .contact.problem import Problem as Problem
 from .contact.solution import Solution as Solution
 from .contact.solution import State as State

@@ -11,6 +11,7 @@ Kind = Literal[
     "requested",
     "other",
     "interaction",
+    "load",
     "contact",
     "path",
     "oscillation",
@@ -21,7 +22,8 @@ Kind = Literal[
 """``field`` has a value for each cell; ``main`` is listed for each run of a study; ``requested``
 exists only if the loading requests it, like variables of a prescription; ``contact`` describes the
 shape of the contact; ``interaction`` exists only with an interaction; so does ``path``, which has
-one value for all steps of a run; so has ``oscillation``, which exists where a leg oscillates."""
+one value for all steps of a run; so has ``oscillation``, which exists where a leg oscillates;
+``load`` exists only with a load, which has no ``contact`` and no ``residual``."""
 Type = Literal["number", "count", "truth", "text"]
 
 
@@ -80,7 +82,18 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
         ("contact_area", "m2", "area of the cells in contact"),
         ("contact_fraction", "1", "contact area over the area of the domain"),
     ),
-    "other": (("mean_pressure", "Pa", "force over the area of the domain"),),
+    "other": (
+        ("mean_pressure", "Pa", "force over the area of the domain"),
+        ("elastic_energy", "J", "energy of the solid, ½ Σ p u Δ²; NaN on a solid that relaxes"),
+    ),
+    "load": (
+        ("ridge_height", "m", "height of the highest point of the surface"),
+        ("ridge_width", "m", "width of the ridge at half of its height, across it"),
+        ("ridge_volume", "m3", "volume of the solid that lies above the datum"),
+        ("dimple_depth", "m", "depth of the deepest point of the surface"),
+        ("dimple_volume", "m3", "volume by which the surface lies below the datum"),
+        ("surface_slope", "1", "steepest slope of the surface between cells"),
+    ),
     "requested": (
         ("stiffness", "N/m", "contact stiffness dF/dδ, if it is asked for"),
         ("time", "s", "time at the end of the step"),
@@ -215,12 +228,23 @@ VARIABLES: Mapping[str, Variable] = {
 """The variables of a result by name, besides those of corrections (`corrected_area`)."""
 
 
+OF_LOAD_ALONE: Final = (
+    Variable("force", "N", "force of the load, positive into the solid", "main"),
+    Variable("pressure", "Pa", "traction of the load, positive into the solid", "field"),
+)
+"""The variables that mean something else without an indenter."""
+
+
 def names_of(*kinds: Kind) -> tuple[str, ...]:
     """Return the names of all variables of these kinds."""
     return tuple(name for name, variable in VARIABLES.items() if variable.kind in kinds)
 
 
 FIELDS = names_of("field")
+FIELDS_OF_LOAD = ("pressure", "displacement")
+"""The fields of a result without an indenter."""
+OF_LOAD = ("force", *names_of("other", "load", "effort", "status"))
+"""The numbers and texts of each step of a result without an indenter."""
 COORDINATES = ("step", "x", "y")
 """Names of the coordinates of a result."""
 WALL_PRESSURE = "wall_pressure"
@@ -228,7 +252,9 @@ WALL_PRESSURE = "wall_pressure"
 CAVEATS: Final = "caveats"
 """Text of the caveats of a step, for programs: `pellicle.contact.caveats` reads it."""
 REQUIRED = (*names_of("field", "status"), "depth", "force", "contact_area", "iterations")
-"""Variables in every result file."""
+"""Variables in every result file of a contact."""
+REQUIRED_OF_LOAD = (*FIELDS_OF_LOAD, *names_of("status"), "force", "iterations")
+"""Variables in every result file of a load."""
 CONTACT_AREA: Final = "contact area"
 CORRECTED_AREA: Final = "contact_area_"
 """Beginning of the name of an area with a correction, which its type ends."""

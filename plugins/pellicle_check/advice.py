@@ -108,6 +108,7 @@ def advise(run: Run, allowed: float) -> Advice:
     less than 5 of 100 true errors of force and depth exceed: order 2 for smooth contacts without
     interaction and history, 1 for others.
     """
+    indenter, _ = run.indentation
     if run.grid.boundary == "free" and min(run.grid.points) == 1:
         raise ConfigError(
             f"{' × '.join(map(str, run.grid.points))} cells on a free boundary are a strip as long "
@@ -118,7 +119,7 @@ def advise(run: Run, allowed: float) -> Advice:
     # Each of the coarser grids resolves the indenter if possible.
     for shares in _LARGEST_SHARES:
         try:
-            profile_of(run.indenter, grids[0])
+            profile_of(indenter, grids[0])
             break
         except ConfigError:
             grids = _coarser(run.grid, shares, math.inf)
@@ -141,7 +142,7 @@ def advise(run: Run, allowed: float) -> Advice:
     extent = np.max([_extent(contact, grids[-1]) for contact in contacts], axis=0)
     fitting = run.grid.size if at_edge else _fitting_size(run, extent)
     points = _points(run.grid, fitting or run.grid.size, factor)
-    fields = ((value, field) for _, value, field in walk(run.indenter) if field)
+    fields = ((value, field) for _, value, field in walk(indenter) if field)
     waves = [value for value, field in fields if role_of(field) == _SHORTEST_WAVE]
     in_wave = min(waves) / run.grid.cell_size if waves else None
     return Advice(steps, points, fitting, at_edge, in_wave)
@@ -254,9 +255,10 @@ def _extent(contact: Mask, grid: Grid) -> tuple[float, float]:
 
 def _is_smooth(run: Run, grid: Grid, contact: Mask) -> bool:
     """Return whether all contacts are of a smooth body, away from its edges, and elastic."""
-    if run.interaction or run.loading.times is not None or run.indenter.footprint == "domain":
+    indenter = run.indentation.indenter
+    if run.interaction or run.loading.times is not None or indenter.footprint == "domain":
         return False
-    beside = ~np.isfinite(profile_of(run.indenter, grid))
+    beside = ~np.isfinite(profile_of(indenter, grid))
     return not (contact.any(axis=0) & binary_dilation(beside, np.ones((3, 3)))).any()
 
 
@@ -285,7 +287,7 @@ def _points(grid: Grid, size: tuple[float, float], factor: float) -> tuple[int, 
 
 def _fitting_size(run: Run, extent: Array) -> tuple[float, float] | None:
     """Return edges of a domain that fits the contact, if the present one wastes cells."""
-    is_isolated = run.grid.boundary == "free" and run.indenter.footprint != "domain"
+    is_isolated = run.grid.boundary == "free" and run.indentation.indenter.footprint != "domain"
     if not is_isolated or not extent.all() or np.max(extent / run.grid.size) > _WIDE:
         return None
     edges = [float(f"{_MARGIN * edge:.2g}") for edge in extent]

@@ -52,7 +52,8 @@ def controls(run: pl.Run) -> Iterator[Control]:
         if isinstance(value, float) and value > 0 and (has_scale or bounds):
             label = field.title or name.rpartition(".")[2].replace("_", " ")
             yield Control(path, label, quantity, value, None if has_scale else min(bounds))
-    load, largest = run.loading, max(run.loading.values, key=abs)
+    load = run.indentation.loading
+    largest = max(load.values, key=abs)
     if largest > 0 and not load.samples:
         label = f"largest {load.prescribed.replace('_', ' ')}"
         quantity = load.prescription.quantity()
@@ -62,9 +63,10 @@ def controls(run: pl.Run) -> Iterator[Control]:
 def configuration_of(run: pl.Run) -> dict[str, Any]:
     """Return the configuration of a run, in SI."""
     data: dict[str, Any] = run.model_dump(mode="json", exclude_unset=True, exclude_none=True)
-    if run.loading.samples:
+    loading = run.indentation.loading
+    if loading.samples:
         return data
-    return dict(replaced(data, f"loading.{run.loading.prescribed}", list(run.loading.values)))
+    return dict(replaced(data, f"loading.{loading.prescribed}", list(loading.values)))
 
 
 def changed(

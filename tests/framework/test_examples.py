@@ -59,6 +59,8 @@ def test_an_example_replaces_no_file() -> None:
     assert "exists already" in call("new", "--example", "fit", code=2)
     assert Path("fit-curve.csv").read_text(encoding="utf-8") == "mine"
     assert not Path("fit.toml").exists()
-    assert "give one of fit, gel, indent, layer, rough" in call("new", "--example", "soft", code=2)
+    assert "give one of fit, droplet, gel, indent, layer, rough" in call(
+        "new", "--example", "soft", code=2
+    )
     both = call("new", "--example", "gel", "--plugin", "kernel", "x", code=2)
     assert "exclude each other" in both

@@ -95,13 +95,13 @@ def test_given_paths_mean_the_same_from_anywhere(
     (project / "toml.toml").write_text(run.to_toml(), encoding="utf-8")
     copies = pickle.loads(pickle.dumps(run)), pl.Run.from_json(run.to_json())
     for copy in (run, *copies, pl.Run.from_toml(project / "toml.toml")):
-        assert copy.indenter.model_dump()["path"] == file
+        assert copy.indentation.indenter.model_dump()["path"] == file
         assert copy == run
     assert json.loads(run.to_json())["indenter"]["path"] == str(file)
     assert json.loads(run.to_json(portable=True))["indenter"]["path"] == "a.npy"
     assert InputFile(path="a/b.npy").path == Path("a/b.npy")
     study = pl.Study.from_toml(project / "runs" / "s.toml")
-    paths = [point.run.indenter.model_dump()["path"] for point in study.points]
+    paths = [point.run.indentation.indenter.model_dump()["path"] for point in study.points]
     assert [path.name for path in paths] == ["a.npy", "b.npy"]
     again = pl.Study.from_json(study.to_json())
     assert [point.run for point in again.points] == [point.run for point in study.points]

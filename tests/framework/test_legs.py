@@ -122,7 +122,7 @@ def test_legs_at_the_command_line(tmp_path: Path) -> None:
 def test_a_study_varies_legs(run: Any) -> None:
     """Whole paths are axes, and the frequency and the end of a leg are, with their units."""
     whole = pl.Study(run=run, vary={"loading.depth": [LEGS[:1], LEGS[:2]]})
-    assert [len(point.run.loading.values) for point in whole.points] == [4, 6]
+    assert [point.run.steps for point in whole.points] == [4, 6]
     again = pl.Study.from_json(whole.to_json())
     assert [point.run for point in again.points] == [point.run for point in whole.points]
     study = pl.Study(

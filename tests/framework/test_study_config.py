@@ -40,7 +40,7 @@ def test_product() -> None:
     assert [point.position for point in plan.points][:4] == [(0, 0), (0, 1), (0, 2), (1, 0)]
     for point in plan.points:
         assert point.run.kernel.model_dump()["tension"] == [0.0, 0.01][point.position[0]]
-        radius = point.run.indenter.model_dump()["radius"]
+        radius = point.run.indentation.indenter.model_dump()["radius"]
         assert radius == pytest.approx([1e-3, 2e-3, 3e-3][point.position[1]])
         assert point.run.loading == plan.points[0].run.loading
 
@@ -51,7 +51,9 @@ def test_zip() -> None:
     plan = study({TENSION: [0, 1]}, zip=zipped)
     assert plan.dimensions.keys() == {TENSION, "indenter.radius"}
     assert plan.shape == (2, 2)
-    pairs = {(p.run.indenter.model_dump()["radius"], p.run.grid.size[0]) for p in plan.points}
+    pairs = {
+        (p.run.indentation.indenter.model_dump()["radius"], p.run.grid.size[0]) for p in plan.points
+    }
     assert pairs == {(1e-3, 0.4e-3), (2e-3, 0.8e-3)}
     assert plan.coordinates()["grid.size"][0] == "indenter.radius"
 

@@ -11,9 +11,9 @@ import pytest
 import pellicle as pl
 from pellicle.components import Solver
 from pellicle.contact import Problem
-from pellicle.contact.load_step import LoadStep
 from pellicle.contact.solution import State
 from pellicle.runs.target_search import search_target
+from pellicle.runs.terms import ContactStep
 from pellicle.surface import operator_of
 
 GRID = pl.Grid(points=11, size=11.0, boundary="periodic")
@@ -46,7 +46,7 @@ def setting(start: float | None = None) -> pl.Setting:
     return pl.Setting(GRID, operator_of(kernel, GRID), profile, "unbounded", state)
 
 
-def search(cells: Callable[[float], int], area: float, start: float | None = None) -> LoadStep:
+def search(cells: Callable[[float], int], area: float, start: float | None = None) -> ContactStep:
     """Return what is reached on a staircase of areas."""
     here = setting(start)
     target = pl.registry().find("prescription", "contact_area")().target(here, area)  # type: ignore[attr-defined]

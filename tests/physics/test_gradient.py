@@ -172,7 +172,7 @@ def test_by_heights(
     data = pl.run(run, progress=False).dataset
     assume(bool(data["converged"].all()) and 4 < int(data["contact"].sum()) < 200)
     setting = compose(run)
-    target = run.loading.prescription.target(setting, run.loading.values[0])
+    target = run.indentation.loading.prescription.target(setting, run.indentation.loading.values[0])
     problem = setting.problem(target)  # type: ignore[arg-type]
     state = pl.State(
         data["pressure"].values[0],

@@ -177,7 +177,7 @@ def test_depth_of_the_mean_plane(solver: str) -> None:
     """The same contact, by the depth of the lowest point or of the mean plane of the heights."""
     for base, depth in (ROUGH, 6e-5), (PERIODIC, 1.8e-5):
         run = pl.Run(**base, loading={"depth": depth})
-        mean = float(run.indenter.profile(*run.grid.coordinates()).mean())
+        mean = float(run.indentation.indenter.profile(*run.grid.coordinates()).mean())
         data = _solved(base, solver, mean_plane_depth=depth + mean)
         assert data["mean_plane_depth"].item() == pytest.approx(depth + mean, rel=1e-9)
         assert data["depth"].item() == pytest.approx(depth, rel=1e-12)

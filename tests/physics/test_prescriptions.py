@@ -138,7 +138,7 @@ def test_cantilever_in_full_contact(solver: str) -> None:
     """Where no load moves the mean plane the spring takes all of the displacement beyond it."""
     base = _base("periodic", BARE, ROUGH)
     run = pl.Run(**base, loading={"depth": 0})
-    full = -float(run.indenter.profile(*run.grid.coordinates()).mean())
+    full = -float(run.indentation.indenter.profile(*run.grid.coordinates()).mean())
     with pytest.raises(pl.ConfigError, match="beyond full contact"):
         _solved(base, solver, depth=full + 1e-6)
     data = _solved(base, solver, base_displacement=full + 0.1, spring_constant=1.0, stiffness=True)
@@ -152,7 +152,7 @@ def test_cantilever_in_full_contact(solver: str) -> None:
 def test_coarser_problem_has_the_same_spring(boundary: str) -> None:
     """The deflection under a uniform pressure, and so the force, stay those of the fine grid."""
     run = pl.Run(**_base(boundary, SKIN, TIP), loading={"depth": 0})
-    profile = run.indenter.profile(*run.grid.coordinates())
+    profile = run.indentation.indenter.profile(*run.grid.coordinates())
     operator = operator_of(run.kernel, run.grid)
     fine = Problem(run.grid, operator, profile, pl.Depth(2e-5, compliance=0.7))
     coarse = fine.coarsened()

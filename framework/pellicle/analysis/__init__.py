@@ -21,6 +21,8 @@ from .path_summary import Leg as Leg
 from .path_summary import PathSummary as PathSummary
 from .path_summary import legs as legs
 from .path_summary import path_summary as path_summary
+from .ridge import Ridge as Ridge
+from .ridge import ridge as ridge
 from .spectrum import Spectrum as Spectrum
 from .spectrum import spectrum as spectrum
 from .steepness import steepest as steepest

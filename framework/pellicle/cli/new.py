@@ -44,7 +44,7 @@ def new(
         typer.Option(
             "--plugin",
             metavar="FAMILY",
-            help="Write the package of a kernel, indenter, interaction, solver, correction, "
+            help="Write the package of a kernel, indenter, load, interaction, solver, correction, "
             "output, executor or prescription, or of a plugin's family, such as effect.",
         ),
     ] = None,

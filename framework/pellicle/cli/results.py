@@ -19,6 +19,7 @@ from pellicle.files import for_document
 from pellicle.plugins.commands import Command, commands, errors_attributed_to, load_command
 from pellicle.plugins.origins import GROUP
 from pellicle.results import storage
+from pellicle.results.path import has_load
 from pellicle.results.result import Result
 from pellicle.results.runs import axes_of, progress_of, runs_of
 from pellicle.show import sentences, tables
@@ -60,7 +61,7 @@ def print_tables(outcome: Result | xr.Dataset, *, si: bool = False, whole: bool 
         print_table(path)
     print_table(tables.main_steps(data), si=si)
     if whole:
-        print_table(tables.contact(data), "contact", si=si)
+        print_table(tables.contact(data), "surface" if has_load(data) else "contact", si=si)
         for table in tables.oscillations(data):
             print_table(table, "oscillations", si=si)
 

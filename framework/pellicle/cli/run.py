@@ -88,7 +88,7 @@ def run(
                 configuration, folder, progress=not quiet, overwrite=overwrite, threads=threads
             )
         else:
-            steps = len(configuration.loading.values)
+            steps = configuration.steps
             whole, bar = f"{steps} steps", RunProgress(steps, not quiet)
             journal = Journal(stem, configuration.identity, overwrite)
             outputs = standard_outputs(configuration.outputs)

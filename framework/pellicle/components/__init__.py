@@ -54,6 +54,7 @@ from .kernel import Isotropic as Isotropic
 from .kernel import Kernel as Kernel
 from .kernel import KernelOf as KernelOf
 from .lattice import Lattice as Lattice
+from .load import Load as Load
 from .output import Output as Output
 from .output import Runs as Runs
 from .prescription import Prescription as Prescription

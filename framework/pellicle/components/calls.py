@@ -17,7 +17,7 @@ from pellicle.checks import (
     real_number,
 )
 from pellicle.contact.equilibrium import Equilibrium
-from pellicle.contact.problem import Depth, Force, Problem
+from pellicle.contact.problem import Adhesive, Depth, Force, Problem
 from pellicle.contact.solution import Solution, State, Stop
 from pellicle.errors import ConfigError, PluginError, problems_within, shown
 from pellicle.grid import Grid, grid_of_run
@@ -26,6 +26,7 @@ from pellicle.units import DIGITS, readable
 from .correction import AreaCorrection
 from .indenter import Footprint, Indenter
 from .lattice import Lattice
+from .load import Load
 from .prescription import Prescription, Search, Setting
 from .solver import Monitor, Solver
 
@@ -92,6 +93,20 @@ def _hidden_height(profile: Array, footprint: Footprint) -> float:
         return np.inf
     lowest_around = np.min([profile[i + a, j + b] for a in range(3) for b in range(3)], axis=0)
     return top - float(lowest_around.max())
+
+
+def traction_of(load: Load, grid: Grid) -> Array:
+    """Return the traction [Pa] of a load of one step on a grid, read-only."""
+    x, y = (read_only(points) for points in grid.coordinates())
+    with problems_within("load"), errors_attributed_to(load), grid_of_run(grid):
+        value = load.traction(x, y)
+    traction = real_array(load, "traction(x, y)", value, grid.shape)
+    if not np.isfinite(traction).all():
+        raise PluginError(
+            f"{component_name(load)}: traction(x, y) has values that are NaN or infinite; it has "
+            "to be finite on every cell"
+        )
+    return read_only(np.ascontiguousarray(traction))
 
 
 def check_value(prescription: Prescription, setting: Setting, value: float, field: str) -> None:
@@ -179,7 +194,7 @@ def solution_of(
     A negative or non-finite pressure is accepted here; the status of the step reports it.
     """
     check_solver(solver, problem)
-    adheres = problem.law is not None
+    adheres = isinstance(problem, Adhesive)
     sticks = adheres and start is not None and start.is_loaded
     if not problem.needs_solving and not sticks:
         nothing = np.zeros(problem.grid.shape)
@@ -192,7 +207,7 @@ def solution_of(
     state = _checked_state(solver, problem, value)
     jumped = bool(value.jumped)
     # Under a law with a range contact may begin and end smoothly.
-    if problem.law and (start is None or problem.law.needs_contact):
+    if isinstance(problem, Adhesive) and (start is None or problem.law.needs_contact):
         touched = start is not None and bool(start.contact.any())
         jumped = jumped or bool(state.contact.any()) != touched
     return Solution(state, int(value.iterations), value.stop, jumped)
@@ -214,7 +229,7 @@ def _checked_state(solver: Solver, problem: Problem, value: object) -> State:
             )
     # The solver may reuse the memory of the arrays that it returned.
     pressure = real_array(solver, "solve().pressure", value.pressure, problem.grid.shape).copy()
-    if problem.law is None:
+    if not isinstance(problem, Adhesive):
         return State.of_pressure(pressure)
     wall = real_array(solver, "solve().state.wall", value.state.wall, problem.grid.shape)
     depth = real_number(solver, "solve().state.depth", value.state.depth)
@@ -227,7 +242,7 @@ def response_of(solver: Solver, problem: Problem, state: State, monitor: Monitor
     with errors_attributed_to(solver):
         value = solver.response(view, _read_only_state(state), monitor)
     pressure = real_array(solver, "response()", value, problem.grid.shape)
-    if problem.law is None and pressure[~state.contact].any():
+    if not isinstance(problem, Adhesive) and pressure[~state.contact].any():
         raise PluginError(
             f"{component_name(solver)}: response() returned a pressure off the contact; it has to "
             "be 0 there"

@@ -20,11 +20,15 @@ from .executor import Executor
 from .indenter import Indenter
 from .interaction import Interaction
 from .kernel import Kernel
+from .load import Load
 from .output import Output
 from .prescription import Prescription
 from .solver import Solver
 
-_OWN = Kernel, Indenter, Interaction, Solver, AreaCorrection, Output, Executor, Prescription
+_OWN: Final = (
+    *(Kernel, Indenter, Load, Interaction, Solver),
+    *(AreaCorrection, Output, Executor, Prescription),
+)
 FAMILIES: Final[dict[str, type[Component]]] = {base.family: base for base in _OWN}
 """The base class of each of pellicle's own families, by name."""
 FAMILY: Final = "x-pellicle-family"

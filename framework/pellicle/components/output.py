@@ -68,6 +68,8 @@ class Output(Component):
     In a study, an output of scope ``"run"`` shows each run separately; any other shows the study as
     a whole. In a single run an output of scope ``"study"`` is skipped.
     """
+    of_contact: ClassVar[bool] = False
+    """Whether it shows a contact, which a run with a load does not have."""
     shares_stem: ClassVar[bool] = False
     """Whether the stem is ``NAME`` alone; the class then has to define `suffixes`."""
 

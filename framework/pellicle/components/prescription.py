@@ -14,7 +14,7 @@ from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.initial_guess import overlap_pressure
 from pellicle.contact.law import Law
 from pellicle.contact.load_step import FinishedStep
-from pellicle.contact.problem import Depth, Force, Problem
+from pellicle.contact.problem import Adhesive, Depth, Force, Problem
 from pellicle.contact.solution import State
 from pellicle.errors import PluginError, shown
 from pellicle.grid import Grid
@@ -49,6 +49,11 @@ class Setting:
     """The last two load steps, the earlier one first; fewer if there are no more."""
 
     @property
+    def sticks(self) -> bool:
+        """Whether a traction acts across the gap."""
+        return self.law is not None
+
+    @property
     def mean_height(self) -> float:
         """Height [m] of the indenter's mean plane over its lowest point, ≤ 0.
 
@@ -59,7 +64,8 @@ class Setting:
     def problem(self, control: Depth | Force) -> Problem:
         """Return the problem of a load step."""
         profile = self.profile if self.left is None else self.profile - self.left
-        return Problem(self.grid, self.operator, profile, control, law=self.law, left=self.left)
+        posed = self.grid, self.operator, profile, control, self.left
+        return Problem(*posed) if self.law is None else Adhesive(*posed, law=self.law)
 
     def force_at(self, depth: float) -> float:
         """Return an estimate of the force [N] at a depth [m], by one application of the operator.

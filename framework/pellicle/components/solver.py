@@ -12,7 +12,7 @@ from pydantic import Field
 
 from pellicle.arrays import Array
 from pellicle.contact.equilibrium import round_off
-from pellicle.contact.problem import Problem
+from pellicle.contact.problem import Adhesive, Problem
 from pellicle.contact.solution import Progress, Solution, State, Stop
 from pellicle.grid import Grid
 from pellicle.plugins.component import Component
@@ -45,7 +45,8 @@ class Solver(Component):
 
         The default refuses a law that acts across the gap.
         """
-        return "cannot solve with an interaction; use active_set" if problem.law else ""
+        sticks = isinstance(problem, Adhesive)
+        return "cannot solve with an interaction; use active_set" if sticks else ""
 
     def arrays(self, grid: Grid) -> float:
         """Return the number of arrays of the grid's shape that a solve needs at its peak.

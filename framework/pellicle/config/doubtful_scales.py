@@ -86,7 +86,8 @@ def _on_domain(size: float) -> str:
 
 def _has_spring(run: Run) -> bool:
     """Return whether a spring, however soft, takes up most of what is prescribed."""
-    quantities = map(quantity_of, type(run.loading.prescription).model_fields.values())
+    prescription = run.indentation.loading.prescription
+    quantities = map(quantity_of, type(prescription).model_fields.values())
     return any(quantity.unit == "N/m" for quantity in quantities if quantity)
 
 
@@ -101,7 +102,9 @@ def _values(run: Run) -> Iterator[tuple[str, float, str]]:
         largest = max([abs(v) for v in several if isinstance(v, float)], default=0.0)
         if field and largest > 0 and (quantity := quantity_of(field)):
             yield path, largest, quantity.unit
-    loading = run.loading
+    if run.load is not None:
+        return
+    loading = run.indentation.loading
     yield f"loading.{loading.prescribed}", max(map(abs, loading.values)), loading.prescription.unit
 
 

@@ -49,7 +49,7 @@ def refuse_undefined(run: Run, path: str, before: Iterable[str] = ()) -> None:
             'cells; give "heights" or numbers of the indenter alone, or an interaction with a '
             "range of its own"
         )
-    loading = run.loading
+    loading = run.indentation.loading
     if branches_of(run.kernel) and (len(loading.values) > 1 or loading.durations[0] > 0):
         raise ConfigError(
             f"{run.kernel.type_name!r} relaxes, so derivatives are those of a first step that is a "

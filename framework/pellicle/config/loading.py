@@ -5,10 +5,10 @@ from __future__ import annotations
 import inspect
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from itertools import filterfalse
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import (
     Field,
@@ -27,13 +27,17 @@ from pydantic_core import CoreSchema
 from pellicle.components import FromRegistry, Prescription
 from pellicle.components.installed import registry
 from pellicle.components.prescription import OPTIONS
-from pellicle.errors import ConfigError, Problem, all_problems
+from pellicle.errors import ConfigError, Problem, all_problems, shown
 from pellicle.schema.messages import nearest
 from pellicle.schema.model import Model
 from pellicle.units import Quantity
 
 from .legs import Leg, LoadSteps, Sample, sampled
 
+_TIME = (
+    "time [s] at the end of each step, for a solid that relaxes; equal times are a jump, and the "
+    "first step is one"
+)
 # Messages name these first.
 _USUAL = "depth", "force", "mean_pressure"
 
@@ -48,10 +52,30 @@ class Options(Model):
     )
 
     time: Annotated[tuple[float, ...], LoadSteps(Quantity("s"))] | None = Field(
-        None,
-        description="time [s] at the end of each step, for a solid that relaxes; equal times "
-        "are a jump, and the first step is one",
+        None, description=_TIME
     )
+
+
+class Times(Model):
+    """The keys of ``[loading]`` beside a load, whose own fields are what varies."""
+
+    samples: ClassVar[tuple[Sample, ...]] = ()
+    stiffness: ClassVar[bool] = False
+    oscillates: ClassVar[bool] = False
+    time: Annotated[tuple[float, ...], LoadSteps(Quantity("s"))] | None = Field(
+        None, description=_TIME
+    )
+
+    @property
+    def times(self) -> tuple[float, ...] | None:
+        """Time [s] at the end of each load step; None without times."""
+        return self.time
+
+    @cached_property
+    def durations(self) -> tuple[float, ...]:
+        """Duration [s] of each load step; 0 for a jump, as the first one is."""
+        times = self.time or ()
+        return durations_of((*times[:1], *times))
 
 
 class Loading(Options):
@@ -116,17 +140,7 @@ class Loading(Options):
                 "it out",
                 "time",
             )
-        if len(self.time) != len(self.values):
-            raise ConfigError(
-                f"has {len(self.time)} values for {len(self.values)} load steps; give one for each "
-                "(there and back, 2 num − 1)",
-                "time",
-            )
-        for index, (before, after) in enumerate(itertools.pairwise(self.time), start=1):
-            if after < before:
-                raise ConfigError(
-                    f"falls from {before:g} to {after:g} s; times must not fall", f"time.{index}"
-                )
+        check_times(self.time, len(self.values))
         return self
 
     @property
@@ -158,7 +172,7 @@ class Loading(Options):
         """
         times = self.times or ()
         start = (0.0,) if self.samples else times[:1]
-        return tuple(after - before for before, after in itertools.pairwise((*start, *times)))
+        return durations_of((*start, *times))
 
     @cached_property
     def oscillates(self) -> bool:
@@ -173,6 +187,42 @@ class Loading(Options):
         """Refuse values that only an interaction allows, such as a force below 0."""
         with all_problems() as within, within(self.prescribed):
             LoadSteps(self.prescription.quantity(), legs=True)(self.path)
+
+
+def durations_of(times: Sequence[float]) -> tuple[float, ...]:
+    """Return the differences of times [s]."""
+    return tuple(after - before for before, after in itertools.pairwise(times))
+
+
+def check_times(times: Sequence[float], steps: int) -> None:
+    """Refuse times [s] that fall, or are not one for each load step."""
+    if len(times) != steps:
+        raise ConfigError(
+            f"has {len(times)} values for {steps} load steps; give one for each "
+            "(there and back, 2 num − 1)",
+            "time",
+        )
+    for index, (before, after) in enumerate(itertools.pairwise(times), start=1):
+        if after < before:
+            raise ConfigError(
+                f"falls from {before:g} to {after:g} s; times must not fall", f"time.{index}"
+            )
+
+
+def times_from(table: object) -> Times:
+    """Return the times beside a load from the table of a file, which prescribes nothing else."""
+    if table is None or isinstance(table, Times):
+        return table or Times()
+    if not isinstance(table, Mapping):
+        raise ConfigError(f"{shown(table)} is not allowed; give a table with time")
+    with all_problems() as within:
+        for name in table.keys() - Times.model_fields.keys():
+            with within(name):
+                raise ConfigError(
+                    "needs an indenter, and this run has a load, whose own field is what varies "
+                    "from step to step; of [loading] a load takes time alone"
+                )
+    return Times(**table)
 
 
 def fields_from(table: Mapping[str, Any], interaction: bool = True) -> dict[str, Any]:

@@ -30,8 +30,8 @@ def facts_of(runs: Sequence[Run]) -> dict[str, Any]:
     and ``adheres`` is 1 where any run's is, and ``planned_steps`` is the largest.
     """
     return {
-        "prescribed": runs[0].loading.prescribed,
-        "planned_steps": max(len(run.loading.values) for run in runs),
+        "prescribed": runs[0].prescribed,
+        "planned_steps": max(run.steps for run in runs),
         "boundary": "periodic" if any(run.grid.boundary == "periodic" for run in runs) else "free",
         "tolerance": runs[0].solver.tolerance,
         "adheres": int(any(run.interaction for run in runs)),
@@ -40,7 +40,9 @@ def facts_of(runs: Sequence[Run]) -> dict[str, Any]:
 
 def now_with(runs: Iterable[Run]) -> dict[str, str]:
     """Return the date, and the versions of the packages that solve ``runs``, as attributes."""
-    used = components_in(part for run in runs for part in (run, run.loading.prescription))
+    used = components_in(
+        part for run in runs for part in (run, getattr(run.loading, "prescription", None))
+    )
     numbers = registry().all_versions({*map(type, used)})
     return {
         "versions": ", ".join(f"{name} {number}" for name, number in numbers.items()),

@@ -12,10 +12,11 @@ import math
 from collections.abc import Iterable, Mapping
 from functools import cache, cached_property
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, NamedTuple, Self
 
 import numpy as np
 from pydantic import (
+    ConfigDict,
     Field,
     ValidationInfo,
     ValidatorFunctionWrapHandler,
@@ -32,25 +33,34 @@ from pellicle.components import (
     Indenter,
     Interaction,
     Kernel,
+    Load,
     Output,
     Solver,
 )
 from pellicle.components.installed import registry
 from pellicle.components.kernel import branches_of
-from pellicle.errors import ConfigError, all_problems
+from pellicle.errors import ConfigError, all_problems, problems_within, shown
 from pellicle.files import is_file
 from pellicle.grid import Grid, grid_of_run
 from pellicle.plugins.component import words_of_type
 from pellicle.schema.from_file import FromFile
 from pellicle.schema.model import get, replaced, walk
 from pellicle.surface import along_axes
-from pellicle.variables import VARIABLES, Variable, corrected_area, corrected_fraction
+from pellicle.variables import (
+    OF_LOAD,
+    OF_LOAD_ALONE,
+    VARIABLES,
+    Variable,
+    corrected_area,
+    corrected_fraction,
+)
 
 from .file_names import refuse_shared_files
 from .gradient import derivatives_of, refuse_undefined
-from .loading import Loading, fields_from
+from .loading import Loading, Times, check_times, fields_from, times_from
 
 DEFAULT_SOLVER = "active_set"
+_MISSING = "is missing; give it: {}"
 # Increment if an equal configuration gives different numbers, not if the file layout changes.
 _NUMBERS_VERSION = 1
 # Length 2τ₀/E* of the instantaneous solid, in cells, from which on the pull-off force of an
@@ -58,17 +68,33 @@ _NUMBERS_VERSION = 1
 _TENSED_CELLS = 3.0
 
 
+class Indentation(NamedTuple):
+    """What is pressed in, and how."""
+
+    indenter: Indenter
+    loading: Loading
+
+
 class Run(FromFile):
-    """One contact problem with its load steps."""
+    """One contact problem, or one known load, with its load steps."""
+
+    model_config = ConfigDict(
+        json_schema_extra={"oneOf": [{"required": ["indenter", "loading"]}, {"required": ["load"]}]}
+    )
 
     title: str = Field("", max_length=1000, description="a line for figures and listings")
     grid: Grid = Field(description="the domain and its cells")
     kernel: Annotated[Kernel, FromRegistry()] = Field(description="how the surface yields")
-    indenter: Annotated[Indenter, FromRegistry()] = Field(description="what is pressed in")
+    load: Annotated[Load, FromRegistry()] | None = Field(
+        None, description="a known traction on the surface, in place of an indenter"
+    )
+    indenter: Annotated[Indenter, FromRegistry()] | None = Field(
+        None, validate_default=True, description="what is pressed in"
+    )
     interaction: Annotated[Interaction, FromRegistry()] | None = Field(
         None, description="what acts across the gap; without it contact is hard and does not stick"
     )
-    loading: Loading = Field(description="the load steps")
+    loading: Loading | Times = Field(None, validate_default=True, description="the load steps")
     solver: Annotated[Solver, FromRegistry()] = Field(
         default_factory=lambda: registry().make(Solver, {"type": DEFAULT_SOLVER}),
         description="how it is solved",
@@ -88,26 +114,62 @@ class Run(FromFile):
         "nothing if []",
     )
 
-    @field_validator("indenter", mode="wrap")
+    @field_validator("load", "indenter", mode="wrap")
     @classmethod
     def _for_the_grid(
         cls, value: object, make: ValidatorFunctionWrapHandler, info: ValidationInfo
     ) -> Any:
         with grid_of_run(info.data.get("grid")):
-            return make(value)
+            made = make(value)
+        if info.field_name == "indenter" and "load" in info.data:
+            if made is None and info.data["load"] is None:
+                raise ConfigError(_MISSING.format(cls.model_fields["indenter"].description))
+            if made is not None and info.data["load"] is not None:
+                raise ConfigError("stands beside a load; a run has one of both: leave one out")
+        return made
 
-    @field_validator("loading", mode="before")
+    @field_validator("loading", mode="wrap")
     @classmethod
-    def _pulls_by_an_interaction(cls, value: object, info: ValidationInfo) -> object:
-        if info.data.get("interaction", "not valid") is None:
-            if isinstance(value, Loading):
-                value.refuse_pulls()
-            elif isinstance(value, Mapping):
-                return fields_from(value, interaction=False)
+    def _of_what_presses(
+        cls, value: object, make: ValidatorFunctionWrapHandler, info: ValidationInfo
+    ) -> Any:
+        if info.data.get("load", "not valid") is not None:
+            return times_from(value) if "load" in info.data else Times()
+        if value is None:
+            raise ConfigError(_MISSING.format(cls.model_fields["loading"].description))
+        pulls = info.data.get("interaction", "not valid") is not None
+        if isinstance(value, Mapping):
+            return Loading(**fields_from(value, interaction=pulls))
+        if not isinstance(value, Loading):
+            raise ConfigError(f"{shown(value)} is not allowed; give a table (the load steps)")
+        if not pulls:
+            value.refuse_pulls()
         return value
 
     @model_validator(mode="after")
+    def _load_needs_no_contact(self) -> Self:
+        if self.load is None:
+            return self
+        for name in ("interaction", "corrections", "gradient"):
+            if getattr(self, name):
+                reason = "needs a contact, and this run has a load in place of an indenter"
+                raise ConfigError(f"{reason}; leave it out", name)
+        for index, output in enumerate(self.outputs or ()):
+            if output.of_contact:
+                raise ConfigError(
+                    f"{output.type_name!r} shows a contact, and this run has a load in place of an "
+                    "indenter; leave it out",
+                    f"outputs.{index}.type",
+                )
+        if self.loading.times is not None:
+            with problems_within("loading"):
+                check_times(self.loading.times, self.steps)
+        return self
+
+    @model_validator(mode="after")
     def _prescription_has_a_period(self) -> Self:
+        if isinstance(self.loading, Times):
+            return self
         if self.loading.prescription.needs_period and self.grid.boundary == "free":
             raise ConfigError(
                 'is not defined on an infinite surface (grid.boundary = "free"); prescribe force '
@@ -123,8 +185,8 @@ class Run(FromFile):
         name = self.kernel.type_name
         if self.loading.times is None:
             raise ConfigError(
-                f"is missing, and {name!r} relaxes in time; give one time for each load step, or "
-                f"legs of {self.loading.prescribed}",
+                f"is missing, and {name!r} relaxes in time; give one time for each load step"
+                + f", or legs of {self.prescribed}" * (self.load is None),
                 "loading.time",
             )
         shortest, longest = self.kernel.time_span()
@@ -135,13 +197,15 @@ class Run(FromFile):
             raise ConfigError(
                 f"{reason} s, and the relaxation of {name!r} holds from {shortest:g} to "
                 f"{longest:g} s; give it a wider span, or other times",
-                f"loading.{self.loading.prescribed if self.loading.samples else 'time'}",
+                f"loading.{self.prescribed if self.loading.samples else 'time'}",
             )
         return self
 
     @model_validator(mode="after")
     def _legs_begin_at_rest(self) -> Self:
         loading = self.loading
+        if isinstance(loading, Times):
+            return self
         begins = loading.prescription.is_zero_at_rest or not loading.samples
         if begins or not (self.interaction or self.branches):
             return self
@@ -223,8 +287,35 @@ class Run(FromFile):
         return branches_of(self.kernel)
 
     @property
+    def indentation(self) -> Indentation:
+        """Indenter and load steps; a ConfigError where there is a load instead."""
+        if self.indenter is None or isinstance(self.loading, Times):
+            raise ConfigError(
+                "stands in place of an indenter, and this is about contacts; give an indenter",
+                "load",
+            )
+        return Indentation(self.indenter, self.loading)
+
+    @property
+    def prescribed(self) -> str:
+        """The variable that names its load steps: what is prescribed, or varies of a load."""
+        if self.load is None:
+            return self.indentation.loading.prescribed
+        path = self.load.varied
+        return path.variable.name if path else "force"
+
+    @property
+    def steps(self) -> int:
+        """The number of load steps; of a load that of its path or its times, or 1."""
+        if self.load is None:
+            return len(self.indentation.loading.values)
+        return len(self.load.varied.values if self.load.varied else self.loading.times or (0.0,))
+
+    @property
     def variables(self) -> list[Variable]:
         """The variables that its steps and its path will have, without fields and texts."""
+        if self.load is not None:
+            return self._variables_of_load
         kinds = {"main", "other", "contact", "effort", "residual", "status"}
         kinds |= {"interaction", "path"} if self.interaction else set()
         kinds |= {"oscillation"} if self.loading.oscillates else set()
@@ -234,13 +325,22 @@ class Run(FromFile):
             "cycle": self.loading.oscillates,
         }
         listed = [v for v in VARIABLES.values() if v.kind in kinds or requested.get(v.name)]
-        listed += self.loading.prescription.variables
+        listed += self.indentation.loading.prescription.variables
         for correction in self.corrections:
             type_ = correction.type_name
             area = corrected_area(type_, words_of_type(type(correction), type_))
             listed += [area, corrected_fraction(area)]
         listed += [variable for variable in derivatives_of(self) if variable.kind != "field"]
         return [variable for variable in listed if variable.type != "text"]
+
+    @property
+    def _variables_of_load(self) -> list[Variable]:
+        names = *OF_LOAD, *["time"] * (self.loading.times is not None)
+        described = {variable.name: variable for variable in OF_LOAD_ALONE}
+        listed = [described.get(name, VARIABLES[name]) for name in names]
+        path = self.load.varied if self.load else None
+        known = [variable for variable in listed if variable.type != "text"]
+        return [*([path.variable] if path else []), *known]
 
     @property
     def identity(self) -> str:
@@ -252,7 +352,9 @@ class Run(FromFile):
         identifying = self.model_dump(
             mode="json", exclude_none=True, exclude={"title", "outputs"}
         ) | {"schema": _NUMBERS_VERSION}
-        used: set[type[Component]] = {type(self.loading.prescription)}
+        used: set[type[Component]] = set()
+        if self.load is None:
+            used.add(type(self.indentation.loading.prescription))
         for path, value, _ in walk(self):
             if isinstance(value, Component) and not path.startswith("outputs."):
                 used.add(type(value))

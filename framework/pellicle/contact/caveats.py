@@ -122,6 +122,17 @@ class Status(Enum):
         "{most:g}: force and area are those of the model, not of the experiment",
         "slopes in contact are beyond the theory",
     )
+    STEEP_SURFACE = (
+        "converged, but slopes of the surface reach {slope:.2f}, and the theory is for slopes up "
+        "to {most:g}: heights and widths are those of the model, not of the experiment",
+        "slopes of the surface are beyond the theory",
+    )
+    LINE_OF_CELLS = (
+        "converged, but a line force without a width, on a surface without tension, makes a ridge "
+        "of no finite height: here it is spread over a cell, {width:m} wide, and the height grows "
+        "as the cells shrink; give the load a width",
+        "a line force without width or tension depends on the cells",
+    )
     THROUGH_LAYER = (
         "converged, but the surface is pressed down by {deepest:m}, through a layer {thickness:m} "
         "thick to its rigid base: the numbers are those of the equations, not of an experiment; "

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from pellicle.arrays import Array
 from pellicle.surface.operators import Operator
 
-from .problem import Problem
+from .problem import Unilateral
 
 
-def first_guess(problem: Problem) -> Array:
+def first_guess(problem: Unilateral) -> Array:
     """Return an initial pressure [Pa], with the prescribed force under force control.
 
     It is uniform on the indenter under force control, else `overlap_pressure` of indenter and
@@ -32,7 +32,7 @@ def overlap_pressure(operator: Operator, overlap: Array) -> Array:
     return overlap * (dot(overlap, overlap) / dot(overlap, operator(overlap)))
 
 
-def with_force(problem: Problem, pressure: Array, out: Array | None = None) -> Array:
+def with_force(problem: Unilateral, pressure: Array, out: Array | None = None) -> Array:
     """Return a pressure scaled to the prescribed force; unchanged under depth control.
 
     The scaled pressure is in ``out``, which may be ``pressure``, or in a new array.

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import nan
-from typing import Any, Final, Self
+from math import inf, nan
+from typing import Any, Final, Generic, Self, TypeVar
 
 import numpy as np
 
 from pellicle.arrays import Array
 
 from .caveats import Caveat, ranked
-from .equilibrium import Equilibrium
-from .problem import Depth, Problem
+from .equilibrium import Deformation
+from .problem import Adhesive, Depth, Unilateral
 from .solution import State, Stop
 
 # Longest step, over the last one, to which is extrapolated.
@@ -24,16 +24,17 @@ _GAP_POWER: Final = 1.5
 _JOINING: Final = 1e-9
 
 Value = float | bool | int
+Surface = TypeVar("Surface", bound=Deformation, covariant=True)
 
 
 @dataclass(frozen=True)
-class LoadStep:
+class LoadStep(Generic[Surface]):
     """A solved load step; after a search, the trial nearest to the goal.
 
     It holds the problem and some eight fields, so it must not outlive the copy into the result.
     """
 
-    equilibrium: Equilibrium
+    equilibrium: Surface
     iterations: int
     """Iterations of the solver, summed over all trials of a search."""
     stop: Stop
@@ -62,7 +63,7 @@ class LoadStep:
         measures: Mapping[str, Value],
         caveats: Iterable[Caveat] = (),
         fields: Mapping[str, Array] | None = None,
-    ) -> LoadStep:
+    ) -> Self:
         """Return the step with more measures, caveats and fields."""
         return replace(
             self,
@@ -74,7 +75,10 @@ class LoadStep:
 
 @dataclass(frozen=True)
 class FinishedStep:
-    """The end of a load step, for later ones; its fields are views of those of the result."""
+    """The end of a load step, for later ones; its fields are views of those of the result.
+
+    Without an indenter the gap is infinite, and depth and area are those of no contact.
+    """
 
     state: State
     gap: Array
@@ -84,7 +88,7 @@ class FinishedStep:
     area: float
     """Contact area [m²]."""
     energy: float
-    """`Equilibrium.energy` [J]; NaN if it is not known."""
+    """`AdhesiveEquilibrium.energy` [J]; NaN if it is not known."""
     converged: bool
     jumped: bool
     """Whether a part of the contact, or all of it, has jumped."""
@@ -94,10 +98,10 @@ class FinishedStep:
         """Return a step from its variables in a result, solved just now or read from a file."""
         pressure = fields["pressure"]
         return cls(
-            State(pressure, fields.get("wall_pressure", pressure), numbers["depth"]),
-            fields["gap"],
+            State(pressure, fields.get("wall_pressure", pressure), numbers.get("depth", nan)),
+            fields["gap"] if "gap" in fields else np.broadcast_to(inf, pressure.shape),
             fields["displacement"],
-            numbers["contact_area"],
+            numbers.get("contact_area", 0.0),
             numbers.get("energy", nan),
             bool(numbers["converged"]),
             bool(numbers.get("jumped", False)),
@@ -119,7 +123,9 @@ def end_of(path: Sequence[FinishedStep]) -> tuple[FinishedStep, ...]:
     return tuple(points)
 
 
-def start_of(problem: Problem, state: State | None, path: Sequence[FinishedStep]) -> State | None:
+def start_of(
+    problem: Unilateral, state: State | None, path: Sequence[FinishedStep]
+) -> State | None:
     """Return the start of a load step: the last two extrapolated to its control, or the last state.
 
     ``path`` has the last two load steps, the earlier one first; fewer if there are no more.
@@ -128,7 +134,7 @@ def start_of(problem: Problem, state: State | None, path: Sequence[FinishedStep]
     Neither is it with a law, where there may be several equilibria: the descent from the last state
     ends in the one that the path leads to.
     """
-    if state is None or len(path) < 2 or problem.left is not None or problem.law:
+    if state is None or len(path) < 2 or problem.left is not None or isinstance(problem, Adhesive):
         return state
     before, last = path
     reached = [control_of(problem, point.state) for point in (before, last)]
@@ -142,8 +148,8 @@ def start_of(problem: Problem, state: State | None, path: Sequence[FinishedStep]
     return State(pressure, pressure, depth)
 
 
-def control_of(problem: Problem, state: State) -> float:
-    """Return the depth of the base [m] or the force [N] of a state, as `Problem.value` is."""
+def control_of(problem: Unilateral, state: State) -> float:
+    """Return the depth of the base [m] or the force [N] of a state, as `Unilateral.value` is."""
     total = float(state.pressure.sum())
     if isinstance(problem.control, Depth):
         return state.depth + problem.operator.deflection(total)
@@ -151,7 +157,7 @@ def control_of(problem: Problem, state: State) -> float:
 
 
 def _pressure_ahead(
-    problem: Problem, before: FinishedStep, last: FinishedStep, ratio: float
+    problem: Unilateral, before: FinishedStep, last: FinishedStep, ratio: float
 ) -> Array:
     """Return the extrapolated pressure [Pa], > 0 on the extrapolated contact.
 

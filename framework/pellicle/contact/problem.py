@@ -1,10 +1,10 @@
-"""The contact problem of one load step, and the residuals of a solution."""
+"""What a load step poses: contact that does not stick or does, or a known traction."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import isfinite
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 
@@ -41,11 +41,8 @@ class Force:
 
 
 @dataclass(frozen=True)
-class Problem:
+class Unilateral:
     """Find p ≥ 0 with gap = A p − z − f ≥ 0 and p·gap = 0, for a given depth z or force.
-
-    With a `law` the traction is p = w + σ(gap), and the conditions on p hold for the wall
-    pressure w.
 
     Under a `Depth` with a compliance, z is the depth of the base. The `operator` A then includes
     the deflection of the spring, so that a solver need not know of the spring.
@@ -59,8 +56,6 @@ class Problem:
     """Indenter profile f ≤ 0 [m] of the grid's shape; −inf where there is no indenter."""
     control: Depth | Force
     """The prescribed depth or force; a mean pressure is given as a force."""
-    law: Law | None = None
-    """The traction that acts across the gap; None for hard contact that does not stick."""
     left: Array | None = None
     """Displacement [m] left behind by earlier load steps, to which A p adds; None if there is none.
 
@@ -83,16 +78,8 @@ class Problem:
 
     @property
     def needs_solving(self) -> bool:
-        """Whether there is contact, so that the undeformed surface is not the solution.
-
-        With a law, whether the indenter presses or is within the cutoff, if it was out of reach
-        before.
-        """
+        """Whether there is contact, so that the undeformed surface is not the solution."""
         lowest = float(self.profile.max())
-        if self.law:
-            near = 0.0 if self.law.needs_contact else self.law.cutoff()
-            least = 0.0 if self.prescribed == "force" else -lowest - near
-            return isfinite(lowest) and self.value >= least
         # A coarse grid may not resolve any part of an indenter of single cells.
         return isfinite(lowest) and self.value > (0 if self.prescribed == "force" else -lowest)
 
@@ -123,11 +110,6 @@ class Problem:
         gap -= depth
         return gap, depth
 
-    def attraction(self, gap: Array, contact: Mask) -> Attraction:
-        """Return what the law of the problem exerts across ``gap`` [m], closed in ``contact``."""
-        assert self.law
-        return attraction(self.law, self.heights, gap, contact, self.grid.boundary)
-
     def height_scale(self, contact: Mask | Cells, depth: float, total: float) -> float:
         """Return the length [m] to which gaps are compared.
 
@@ -148,7 +130,7 @@ class Problem:
         below += self.operator.deflection(total)
         return height_scale(self.heights, contact, depth - below, wave)
 
-    def coarsened(self) -> Problem:
+    def coarsened(self) -> Self:
         """Return the same problem with half as many cells each way."""
         operator = self.operator.coarsened()
         grid = operator.grid
@@ -157,11 +139,10 @@ class Problem:
             grid=grid,
             operator=operator,
             profile=restrict(self.profile, grid.shape),
-            law=self.law.on(grid) if self.law else None,
             left=None if self.left is None else restrict(self.left, grid.shape),
         )
 
-    def scaled(self, height: float, pressure: float) -> Problem:
+    def scaled(self, height: float, pressure: float) -> Self:
         """Return the problem in units of ``height`` [m] and ``pressure`` [Pa], both powers of two.
 
         The lengths of the grid remain in m. The profile is in C order afterwards.
@@ -176,9 +157,79 @@ class Problem:
             operator=self.operator.scaled(pressure / height),
             profile=np.divide(self.profile, height, order="C"),
             control=control,
-            law=self.law.scaled(height, pressure) if self.law else None,
             left=None if self.left is None else self.left / height,
         )
+
+
+Problem = Unilateral
+"""The contact problem that a solver gets: `Unilateral`, or `Adhesive`, which is one too."""
+
+
+@dataclass(frozen=True)
+class Adhesive(Unilateral):
+    """Find p = w + σ(gap) with gap = A p − z − f ≥ 0, w ≥ 0 and w·gap = 0.
+
+    The conditions on the pressure hold for the wall pressure w.
+    """
+
+    law: Law = field(kw_only=True)
+    """The traction σ that acts across the gap."""
+
+    @property
+    def without_law(self) -> Unilateral:
+        """The problem of a contact that does not stick."""
+        return Unilateral(self.grid, self.operator, self.profile, self.control, self.left)
+
+    @property
+    def needs_solving(self) -> bool:
+        """Whether the indenter presses or is within the cutoff, if it was out of reach before."""
+        lowest = float(self.profile.max())
+        near = 0.0 if self.law.needs_contact else self.law.cutoff()
+        least = 0.0 if self.prescribed == "force" else -lowest - near
+        return isfinite(lowest) and self.value >= least
+
+    def attraction(self, gap: Array, contact: Mask) -> Attraction:
+        """Return what the law exerts across ``gap`` [m], closed in ``contact``."""
+        return attraction(self.law, self.heights, gap, contact, self.grid.boundary)
+
+    def length_scale(self, contact: Mask, displacement: Array) -> float:
+        """Return the length [m] to which gaps are compared.
+
+        It is `height_scale` with the greatest ``displacement`` [m] by the pressure as depth: a
+        surface that is pulled may be far from flat at a depth near 0. Where wall pressure and
+        attraction cancel, as on a single cell that just touches, the displacement is mere rounding.
+        """
+        rounding = _ROUNDING * self.law.strength() * self.operator.unit
+        greatest = float(np.abs(displacement).max())
+        return height_scale(self.heights, contact, greatest, rounding=rounding)
+
+    def coarsened(self) -> Self:
+        """Return the same problem with half as many cells each way, and the law resolved there."""
+        coarse = super().coarsened()
+        return replace(coarse, law=self.law.on(coarse.grid))
+
+    def scaled(self, height: float, pressure: float) -> Self:
+        """Return the problem in units of ``height`` [m] and ``pressure`` [Pa]."""
+        law = self.law.scaled(height, pressure)
+        return replace(super().scaled(height, pressure), law=law)
+
+
+@dataclass(frozen=True)
+class Traction:
+    """Find u = A p for a known traction p: one application of the operator."""
+
+    grid: Grid
+    """The cells on which traction and displacement are given."""
+    operator: Operator
+    """The map from pressure [Pa] to displacement [m], which counts its applications."""
+    pressure: Array
+    """The traction [Pa] of the grid's shape, positive into the solid."""
+    left: Array | None = None
+    """Displacement [m] left behind by earlier load steps; None if there is none."""
+
+
+Posed = Unilateral | Adhesive | Traction
+"""What a load step poses."""
 
 
 def height_scale(
@@ -200,16 +251,3 @@ def height_scale(
     if not displaced <= rounding:
         return displaced
     return float(np.ptp(profile[np.isfinite(profile)])) or 1.0
-
-
-def adhesive_scale(problem: Problem, contact: Mask, displacement: Array) -> float:
-    """Return the length [m] to which gaps are compared where a law acts.
-
-    It is `height_scale` with the greatest ``displacement`` [m] by the pressure as depth: a surface
-    that is pulled may be far from flat at a depth near 0. Where wall pressure and attraction
-    cancel, as on a single cell that just touches, the displacement is mere rounding.
-    """
-    assert problem.law
-    rounding = _ROUNDING * problem.law.strength() * problem.operator.unit
-    greatest = float(np.abs(displacement).max())
-    return height_scale(problem.heights, contact, greatest, rounding=rounding)

@@ -8,6 +8,7 @@ from .derived import header as header
 from .derived import names as names
 from .path import FEW_CELLS as FEW_CELLS
 from .path import has_interaction as has_interaction
+from .path import has_load as has_load
 from .path import has_path as has_path
 from .path import has_times as has_times
 from .path import label_of_step as label_of_step

@@ -10,7 +10,7 @@ from math import isfinite, nan, sqrt
 import numpy as np
 
 from pellicle.analysis import Oscillation, oscillations, path_summary
-from pellicle.arrays import Dataset
+from pellicle.arrays import DataArray, Dataset
 from pellicle.contact.caveats import Caveat, Status, from_text, ranked, to_text
 from pellicle.grid import Grid
 from pellicle.units import DIGITS, readable
@@ -29,24 +29,36 @@ def has_interaction(data: Dataset) -> bool:
     return "zone_area" in data
 
 
+def has_load(data: Dataset) -> bool:
+    """Return whether a result, or each run in the table of a study, has a load and no indenter."""
+    return "ridge_height" in data and "depth" not in data
+
+
+def contact_of(step: Dataset) -> DataArray:
+    """Return which cells of a load step are in contact: none under a load."""
+    return step["contact"] if "contact" in step else step["pressure"] != step["pressure"]
+
+
 def has_times(data: Dataset) -> bool:
     """Return whether the steps of a result, or of any run in the table of a study, have times."""
     return "time" in data
 
 
 def prescribed_variable(data: Dataset) -> str:
-    """Return the variable that names load steps: what is prescribed, else the depth."""
+    """Return the variable that names load steps: what is prescribed, else depth or force."""
     prescribed = str(data.attrs["prescribed"])
-    return prescribed if prescribed in data else "depth"
+    return prescribed if prescribed in data else "force" if has_load(data) else "depth"
 
 
 def label_of_step(data: Dataset, index: int) -> str:
-    """Return what a load step prescribes: "depth 3 µm", "1 s, force 5 nN"."""
+    """Return what a load step prescribes: "depth 3 µm", "1 s, force 5 nN", of a load "step 1"."""
     name = prescribed_variable(data)
+    is_bare = has_load(data) and name == "force"
     label = column_of(data[name]).text(data[name].values[index].item())
     if has_times(data):
-        label = f"{readable(data['time'].values[index].item(), 's', DIGITS)}, {label}"
-    return label
+        time = readable(data["time"].values[index].item(), "s", DIGITS)
+        return time if is_bare else f"{time}, {label}"
+    return f"step {data['step'].values[index].item()}" if is_bare else label
 
 
 def has_path(data: Dataset) -> bool:

@@ -9,8 +9,9 @@ import numpy as np
 import xarray as xr
 
 from pellicle.analysis import ellipse, patches, perimeter
+from pellicle.arrays import Array, Mask
 from pellicle.contact.caveats import sentence_of, status_of, to_text
-from pellicle.contact.equilibrium import Equilibrium
+from pellicle.contact.equilibrium import AdhesiveEquilibrium, Deformation, Equilibrium
 from pellicle.contact.load_step import FinishedStep, LoadStep
 from pellicle.grid import Grid
 from pellicle.variables import CAVEATS, VARIABLES, Variable, names_of
@@ -21,7 +22,7 @@ from . import storage
 def step_dataset(
     grid: Grid,
     number: int,
-    step: LoadStep,
+    step: LoadStep[Deformation],
     variables: Iterable[Variable] = (),
     seconds: float = 0.0,
 ) -> xr.Dataset:
@@ -31,15 +32,15 @@ def step_dataset(
     ``seconds`` to solve.
     """
     equilibrium, measures = step.equilibrium, dict(step.measures)
-    fields = {
+    fields: dict[str, Array | Mask] = {
         "pressure": equilibrium.pressure,
         "displacement": equilibrium.displacement,
-        "gap": equilibrium.gap,
-        "contact": equilibrium.counted_contact,
-        **step.fields,
     }
+    if isinstance(equilibrium, Equilibrium):
+        fields |= {"gap": equilibrium.gap, "contact": equilibrium.counted_contact}
+    fields |= step.fields
     of_law: dict[str, object] = {}
-    if equilibrium.problem.law:
+    if isinstance(equilibrium, AdhesiveEquilibrium):
         fields["wall_pressure"] = equilibrium.wall
         of_law = {
             "zone_area": np.count_nonzero(equilibrium.zone) * grid.cell_area,
@@ -130,15 +131,21 @@ class Steps:
         return xr.Dataset({**fields, **scalars.data_vars}, scalars.coords, scalars.attrs)
 
 
-def _numbers(grid: Grid, equilibrium: Equilibrium) -> dict[str, object]:
+def _numbers(grid: Grid, equilibrium: Deformation) -> dict[str, object]:
     """Return the variables of every load step: force, shape of the contact and residuals."""
+    of_all = {
+        "force": equilibrium.force,
+        "mean_pressure": equilibrium.force / grid.area,
+        "elastic_energy": equilibrium.elastic_energy,
+    }
+    if not isinstance(equilibrium, Equilibrium):
+        return dict(of_all)
     contact = equilibrium.counted_contact
     area = np.count_nonzero(contact) * grid.cell_area
     shape = ellipse(contact, grid)
     return {
         "depth": equilibrium.depth,
-        "force": equilibrium.force,
-        "mean_pressure": equilibrium.force / grid.area,
+        **of_all,
         "contact_area": area,
         "contact_fraction": area / grid.area,
         "mean_contact_pressure": equilibrium.force / area if area else np.nan,

@@ -14,11 +14,11 @@ from pellicle.errors import ConfigError, StorageError, first_of
 from pellicle.files import for_document, is_folder
 from pellicle.grid import Grid
 from pellicle.units import axis_unit
-from pellicle.variables import CAVEATS, COORDINATES, REQUIRED
+from pellicle.variables import CAVEATS, COORDINATES, REQUIRED, REQUIRED_OF_LOAD
 
 from . import storage
 from .derived import configuration_of
-from .path import label_of_step, oscillations_of, path_variables, with_events
+from .path import contact_of, has_load, label_of_step, oscillations_of, path_variables, with_events
 from .soundness import check, sound
 
 _NO_CONTACT = "0.93"
@@ -147,7 +147,7 @@ class Result:
         data = self.dataset.isel(step=index)
         field = data[variable]
         if variable == "pressure":
-            field = field.where(data["contact"] | (field != 0))
+            field = field.where(contact_of(data) | (field != 0))
         factor, unit = axis_unit([*data["x"].values, *data["y"].values], "m")
         for name in ("x", "y"):
             scaled = data[name] * factor
@@ -194,7 +194,8 @@ def load(path: str | Path) -> Result:
         The file does not exist, is damaged, has another schema version, or is not a result.
     """
     dataset = storage.read(file_of_run(Path(path)))
-    if missing := {*COORDINATES, *REQUIRED} - {*map(str, dataset.variables)}:
+    required = REQUIRED_OF_LOAD if has_load(dataset) else REQUIRED
+    if missing := {*COORDINATES, *required} - {*map(str, dataset.variables)}:
         lost = ", ".join(sorted(missing))
         raise StorageError(f"{path}: lacks {lost}, so it is damaged; run it again")
     with sound(Path(path)):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import replace
 from functools import lru_cache, partial
 from typing import Final
 
@@ -12,7 +13,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to
 from pellicle.components import Component, Force, Search, Setting
-from pellicle.components.calls import check_solver, check_value, profile_of, target_of
+from pellicle.components.calls import check_solver, check_value, profile_of, target_of, traction_of
 from pellicle.components.installed import registry
 from pellicle.components.interaction import law_of
 from pellicle.components.kernel import instantaneous
@@ -35,7 +36,8 @@ _LIQUID: Final = 1e-12
 def compose(run: Run) -> Setting:
     """Return the setting of the first load step."""
     case = Case(run.grid, run.kernel)
-    for component in components_in([run.kernel, run.indenter, run.interaction, run.corrections]):
+    parts = run.kernel, run.indenter, run.load, run.interaction, run.corrections
+    for component in components_in(parts):
         if component.family in CHEAP and not _is_own(type(component)):
             # One that has no hash breaks its contract.
             with errors_attributed_to(component):
@@ -43,19 +45,26 @@ def compose(run: Run) -> Setting:
     with errors_attributed_to(run.kernel):
         operator = operator_of(instantaneous(run.kernel), run.grid)
         warn_of_cells(partial(along_axes, operator.symbol), run.grid)
-    profile = profile_of(run.indenter, run.grid)
-    if run.indenter.footprint == "domain":
+    if run.load is not None:
+        for index in range(run.steps):
+            traction_of(run.load.at(index), run.grid)
+        _warn_of_liquid(run)
+        nowhere = np.broadcast_to(-np.inf, run.grid.shape)
+        return Setting(run.grid, operator, nowhere, "unbounded")
+    indenter, loading = run.indentation
+    profile = profile_of(indenter, run.grid)
+    if indenter.footprint == "domain":
         warn_of_period(profile, run.grid)
     _warn_of_liquid(run)
-    law = law_of(run.interaction, run.kernel, run.grid) if run.interaction else None
-    setting = Setting(run.grid, operator, profile, run.indenter.footprint, law=law)
-    if law:
+    setting = Setting(run.grid, operator, profile, indenter.footprint)
+    if run.interaction:
+        setting = replace(setting, law=law_of(run.interaction, run.kernel, run.grid))
         check_solver(run.solver, setting.problem(Force(0.0)))
-    prescription = run.loading.prescription
-    for index, value in enumerate(run.loading.values):
-        field = f"loading.{run.loading.field_of(index)}"
+    prescription = loading.prescription
+    for index, value in enumerate(loading.values):
+        field = f"loading.{loading.field_of(index)}"
         check_value(prescription, setting, value, field)
-        target = target_of(prescription, setting, value) if law else None
+        target = target_of(prescription, setting, value) if run.interaction else None
         if isinstance(target, Search) and target.control is Force:
             raise ConfigError(
                 "is searched by force, along which a contact that sticks jumps; prescribe depth or "

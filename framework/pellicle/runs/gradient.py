@@ -14,8 +14,9 @@ from pellicle.components.calls import target_of
 from pellicle.config.gradient import derivatives_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import from_text
-from pellicle.contact.equilibrium import Equilibrium
+from pellicle.contact.equilibrium import AdhesiveEquilibrium, Equilibrium
 from pellicle.contact.load_step import LoadStep
+from pellicle.contact.problem import Adhesive
 from pellicle.contact.solution import State, Stop
 from pellicle.errors import ConfigError, shown
 from pellicle.results.result import Result
@@ -52,19 +53,22 @@ def gradient(result: Result, *, by: str | Sequence[str]) -> xr.Dataset:
     configuration = json.loads(result.dataset.attrs["configuration"])
     paths = [by] if isinstance(by, str) else [*by]
     run = Run.from_json(json.dumps(configuration | {"gradient": paths}))
-    setting, data = compose(run), result.dataset
+    setting, data, loading = compose(run), result.dataset, run.indentation.loading
     differentiated = Gradient(run, setting)
     columns: dict[str, list[object]] = {}
     with scipy.fft.set_workers(default_threads(run.grid)):
-        for index, value in enumerate(run.loading.values[: data.sizes["step"]]):
+        for index, value in enumerate(loading.values[: data.sizes["step"]]):
             row = data.isel(step=index)
-            target = target_of(run.loading.prescription, setting, value)
+            target = target_of(loading.prescription, setting, value)
             depth, pressure = row["depth"].item(), row["pressure"].values
             if isinstance(target, Search):
                 is_depth = target.control is Depth
                 target = Depth(depth) if is_depth else Force(row["force"].item())
-            wall = State(pressure, row[WALL_PRESSURE].values, depth) if setting.law else None
-            equilibrium = Equilibrium(setting.problem(target), pressure, wall)
+            problem = setting.problem(target)
+            equilibrium = Equilibrium(problem, pressure)
+            if isinstance(problem, Adhesive):
+                wall = State(pressure, row[WALL_PRESSURE].values, depth)
+                equilibrium = AdhesiveEquilibrium(problem, pressure, wall)
             caveats = tuple(from_text(row[CAVEATS].item()))
             step = LoadStep(equilibrium, 0, Stop.DONE, caveats=caveats)
             step = differentiated.add(run, step, Surroundings(setting, (), lambda *_: None))

@@ -49,9 +49,9 @@ def memory_of(run: Run) -> float:
         steps = {TimeStep.of(branches, duration) for duration in run.loading.durations}
         stiffnesses = {rounded_stiffness(step) for step in steps}
         history += 1 + min(KEPT, len(stiffnesses)) * _PAIR[grid.boundary]
-    kept = (_STEP + _SERIALISED) * (len(run.loading.values) - 1)
+    kept = (_STEP + _SERIALISED) * (run.steps - 1)
     for path in run.gradient or ():
         # Two fields of each step, or the derivative of the operator.
-        kept += 4.0 * len(run.loading.values) if path == HEIGHTS else operator
+        kept += 4.0 * run.steps if path == HEIGHTS else operator
     heap = _HEAP if 8 * cells < _GIVEN_BACK else 0
     return _FIXED + 8 * cells * (operator + iterating + history + kept + heap)

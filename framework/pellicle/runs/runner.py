@@ -93,7 +93,7 @@ def run(
     outputs = standard_outputs(run.outputs) if directory is not None else run.outputs or ()
     writes = directory is not None or bool(outputs)
     journal = Journal(Path(directory or ".") / name, run.identity, overwrite) if writes else None
-    bar = RunProgress(len(run.loading.values), progress)
+    bar = RunProgress(run.steps, progress)
     result = execute(run, journal, outputs, bar, threads=threads).result
     for step, message in result.failures():
         warnings.warn(f"step {step}: {message}", ConvergenceWarning, stacklevel=2)
@@ -104,7 +104,7 @@ def run(
 
 def solve(run: Run) -> Result:
     """Return the result of ``run``; nothing is written or shown."""
-    bar = RunProgress(len(run.loading.values), False)
+    bar = RunProgress(run.steps, False)
     return execute(run, None, (), bar, inner=True).result
 
 
@@ -135,8 +135,8 @@ def execute(
     """
     if not inner:
         warn_of_scale(run)
-    memory.require(memory_of(run), run.grid, len(run.loading.values))
-    steps = Steps(len(run.loading.values))
+    memory.require(memory_of(run), run.grid, run.steps)
+    steps = Steps(run.steps)
     outputs = [output for output in outputs if journal and output.scope != "study"]
     files: tuple[Path, ...] = ()
 

@@ -9,22 +9,26 @@ from functools import partial
 
 import xarray as xr
 
-from pellicle.components import Monitor, Search, Setting
-from pellicle.components.calls import target_of
+from pellicle.components import Load, Monitor, Search, Setting
+from pellicle.components.calls import target_of, traction_of
 from pellicle.config.gradient import derivatives_of
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
+from pellicle.contact.equilibrium import Deformation
 from pellicle.contact.load_step import FinishedStep, LoadStep, end_of
+from pellicle.contact.problem import Traction
+from pellicle.contact.solution import Stop
 from pellicle.results.record import Steps, step_dataset
 
 from .relaxation import Relaxation
 from .target_search import search_target, solve_at
-from .terms import Surroundings, Term
+from .terms import AnyStep, ContactStep, Surroundings, Term
 from .terms.adhesion import adhesion
 from .terms.contact import contact
 from .terms.gradient import Gradient
 from .terms.relaxation import relaxation
 from .terms.requested import corrections, prescription, stiffness
+from .terms.surface import surface
 from .terms.theory import theory
 
 
@@ -34,7 +38,7 @@ class Physics:
     def __init__(self, run: Run, setting: Setting) -> None:
         self.history = Relaxation(run) if run.branches else None
         # Their measures are columns of a result in this order.
-        named = {
+        named: dict[Callable[[Run, ContactStep, Surroundings], ContactStep], object] = {
             contact: True,
             corrections: run.corrections,
             prescription: True,
@@ -46,13 +50,25 @@ class Physics:
         }
         self.terms: tuple[Term, ...] = tuple(partial(t, run) for t, has in named.items() if has)
 
+    def measured(self, run: Run, setting: Setting, index: int, around: Surroundings) -> AnyStep:
+        """Return a load step with the measures of all terms."""
+        if run.load is not None:
+            step = deform(run.load.at(index), setting)
+            step = surface(run, run.load, step, around)
+            return relaxation(run, step, around) if run.loading.times else step
+        value = run.indentation.loading.values[index]
+        solved = solve_step(run, setting, value, around.monitor)
+        for term in self.terms:
+            solved = term(solved, around)
+        return solved
+
 
 def solve_steps(
     run: Run, setting: Setting, steps: Steps, monitor_of: Callable[[int], Monitor]
 ) -> Generator[xr.Dataset, None, None]:
     """Solve the load steps missing from ``steps``; add and yield each as soon as it is solved."""
     origin, physics = provenance(run), Physics(run, setting)
-    for index in range(len(steps), len(run.loading.values)):
+    for index in range(len(steps), run.steps):
         # Without a name for the solved step, only its copy in ``steps`` outlives the solve.
         yield steps.append(
             _next_step(run, setting, steps.path, physics, monitor_of(index)).assign_attrs(origin)
@@ -68,20 +84,27 @@ def _next_step(
     if history := physics.history:
         setting = history.setting(setting, path)
         applications = history.applications
-    step = solve_step(run, setting, run.loading.values[len(path)], monitor)
+    step = physics.measured(run, setting, len(path), Surroundings(setting, path, monitor))
     step = replace(step, applications=step.applications + applications)
-    surroundings = Surroundings(setting, path, monitor)
-    for term in physics.terms:
-        step = term(step, surroundings)
     seconds = time.perf_counter() - started
     variables = [*run.variables, *derivatives_of(run)]
     return step_dataset(run.grid, len(path) + 1, step, variables, seconds)
 
 
-def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> LoadStep:
+def deform(load: Load, setting: Setting) -> AnyStep:
+    """Return the load step under a known ``load``, by one application of the operator."""
+    pressure, applied = traction_of(load, setting.grid), setting.operator.applications
+    posed = Traction(setting.grid, setting.operator, pressure, setting.left)
+    deformation = Deformation(posed, pressure)
+    _ = deformation.displacement
+    count = setting.operator.applications - applied
+    return LoadStep(deformation, 0, Stop.DONE, applications=count)
+
+
+def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> ContactStep:
     """Return the load step at a prescribed ``value``, started from the state of ``setting``."""
     applied = setting.operator.applications
-    target = target_of(run.loading.prescription, setting, value)
+    target = target_of(run.indentation.loading.prescription, setting, value)
     if isinstance(target, Search):
         step = search_target(setting, target, run.solver, monitor)
     else:

@@ -22,6 +22,8 @@ from pellicle.contact.equilibrium import equilibrium_of
 from pellicle.contact.load_step import LoadStep, start_of
 from pellicle.contact.problem import Depth, Force
 
+from .terms import ContactStep
+
 # Number of trials to bracket the goal, after which it counts as out of reach.
 _MOST_TRIALS: Final = 40
 # Growth of log F over which a quantity that stays the same counts as one that does not grow.
@@ -30,7 +32,9 @@ _SATURATED: Final = math.log(1e6)
 _NEAR: Final = 0.05
 
 
-def search_target(setting: Setting, search: Search, solver: Solver, monitor: Monitor) -> LoadStep:
+def search_target(
+    setting: Setting, search: Search, solver: Solver, monitor: Monitor
+) -> ContactStep:
     """Return the load step at which the quantity of ``search`` has its goal.
 
     A bracket grows from the first trial; Brent's method (1973) then finds the root, in log F if the
@@ -60,7 +64,7 @@ def search_target(setting: Setting, search: Search, solver: Solver, monitor: Mon
 
 def solve_at(
     setting: Setting, control: Depth | Force, solver: Solver, monitor: Monitor
-) -> LoadStep:
+) -> ContactStep:
     """Return the load step at a depth or a force."""
     problem = setting.problem(control)
     start = start_of(problem, setting.state, setting.path)
@@ -86,7 +90,7 @@ def _not_met(trials: _Trials, *, jumps: bool) -> Iterator[Caveat]:
     if met:
         end = "nothing nearer"
     elif jumps:
-        end = "jump with a law" if trials.setting.law else "jump"
+        end = "jump with a law" if trials.setting.sticks else "jump"
     values |= {"tolerance": _NEAR, "end": end}
     yield Caveat(Status.AREA if search.in_cells else Status.NOT_REACHED, values)
 
@@ -120,7 +124,7 @@ class _Trials:
     limit: float = math.inf
     """Depth of full contact over `scale`, which no load exceeds."""
     scale: float = field(init=False)
-    nearest: LoadStep = field(init=False)
+    nearest: ContactStep = field(init=False)
 
     def first(self) -> float:
         """Return the first control, scaled as in `excess`: the guess or that of the last step."""
@@ -133,7 +137,7 @@ class _Trials:
             touch = -float(profile.max()) / reach
             if not self.setting.operator.has_mean_compliance:
                 self.limit = -self.setting.mean_height / reach
-            if guess is None and state is not None and self.setting.law:
+            if guess is None and state is not None and self.setting.sticks:
                 guess = state.depth
             depth = touch + 1.0 if guess is None else guess / reach
             return depth if depth < self.limit else 0.5 * (touch + self.limit)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sized
 from numbers import Integral
-from typing import Any
+from typing import Any, cast
 
 from pellicle.errors import ConfigError, all_problems, shown
 from pellicle.units import Quantity, split
@@ -92,6 +92,62 @@ def ranged(
         return tuple(f"{value:.15g} {unit}" for value in values)
     whole = isinstance(table["start"], int) and isinstance(table["stop"], int)
     return tuple(map(int, values) if whole and all(v.is_integer() for v in values) else values)
+
+
+def is_path(spec: object) -> bool:
+    """Return whether a value stands for several: a list, a tuple, an array or a table."""
+    # Arrays of one number and text have a length too.
+    return isinstance(spec, Sized) and not isinstance(spec, str) and getattr(spec, "ndim", 1) > 0
+
+
+def path_of(spec: object, quantity: Quantity) -> tuple[float, ...]:
+    """Return the values, in SI, of one value, a list, or a ramp, which may return to its start."""
+    if isinstance(spec, Mapping):
+        return _there_and_back(spec, quantity)
+    if not is_path(spec):
+        return _all({"": spec}, quantity)
+    values = list(cast("Iterable[object]", spec))
+    if not values:
+        raise ValueError("is empty; give at least one load step")
+    return _all({str(index): value for index, value in enumerate(values)}, quantity)
+
+
+def _there_and_back(table: Mapping[Any, Any], quantity: Quantity) -> tuple[float, ...]:
+    back = table.get("back", False)
+    if not isinstance(back, bool):
+        raise ConfigError(f"{shown(back)} is not allowed; give true or false", "back")
+    once = {key: value for key, value in table.items() if key != "back"}
+    ends = {end: once[end] for end in ("start", "stop") if end in once}
+    once |= zip(ends, _all(ends, quantity), strict=True)
+    values = ranged(once, "ramp", 'back = true or spacing = "log"')
+    return values + values[-2::-1] if back else values
+
+
+def _all(values_by_place: Mapping[str, object], quantity: Quantity) -> tuple[float, ...]:
+    """Return all values in SI, or raise an error that names all values not allowed."""
+    values = []
+    with all_problems() as within:
+        for where, value in values_by_place.items():
+            with within(where):
+                values.append(quantity(value))
+    return tuple(values)
+
+
+def path_schemas(value: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return the JSON schemas of one value, of a ramp and of a list, given that of a value."""
+    ramp = {
+        "type": "object",
+        "properties": {
+            "start": value,
+            "stop": value,
+            "num": {"type": "integer", "minimum": 2},
+            "spacing": {"enum": list(SPACINGS)},
+            "back": {"type": "boolean"},
+        },
+        "required": sorted(RANGE),
+        "additionalProperties": False,
+    }
+    return [dict(value), ramp, {"type": "array", "items": value, "minItems": 1}]
 
 
 def _end(table: Mapping[str, Any], end: str) -> tuple[float, str]:

@@ -20,8 +20,11 @@ def without_round_off(step: Dataset) -> Dataset:
     """Return a load step for drawing, with gaps below its tolerance set to 0.
 
     The tolerance is ``solver.tolerance`` times the length that scales the residuals of the step;
-    otherwise full contact would be drawn as a landscape of femtometres.
+    otherwise full contact would be drawn as a landscape of femtometres. A step under a load has
+    no gaps.
     """
+    if "gap" not in step:
+        return step
     gap, depth = step["gap"].values, float(step["depth"])
     # A step that failed may have infinite values of both signs.
     with np.errstate(invalid="ignore"):
@@ -37,6 +40,8 @@ def without_round_off(step: Dataset) -> Dataset:
 
 def default_step(steps: Dataset) -> int:
     """Return the index of the load step of a run that is drawn: the last in contact, else -1."""
+    if "contact_area" not in steps:
+        return -1
     in_contact = np.flatnonzero(steps["contact_area"].values > 0)
     return int(in_contact[-1]) if in_contact.size else -1
 

@@ -33,7 +33,7 @@ def methods(
         size = " × ".join(readable(edge, "m", DIGITS) for edge in grid["size"])
         on_cells = f" on {points} cells of {size}"
     described = []
-    for name in ("kernel", "indenter", "interaction"):
+    for name in ("kernel", "load", "indenter", "interaction"):
         if name not in known or f"{name}.type" in varied:
             continue
         values = ", ".join(
@@ -48,9 +48,14 @@ def methods(
     changes = f"Varied: {', '.join(words)}. " if words else ""
     is_one = "solver" in known and "solver.type" not in varied
     solver = known["solver"].value if is_one else "several solvers"
-    loading = _loading(configuration["loading"], attributes, known, varied)
+    loading, of_what = "", "Deformation of a linear solid under a known traction"
+    if "load" not in configuration:
+        loading = _loading(configuration["loading"], attributes, known, varied)
+        of_what = "Normal contact of a rigid indenter with a linear solid"
+    elif times := configuration.get("loading", {}).get("time"):
+        loading = f"Times: {_values_of_steps(times, 's', f'{len(times)} steps')}. "
     return (
-        "Normal contact of a rigid indenter with a linear solid was solved by a boundary element "
+        f"{of_what} was solved by a boundary element "
         f"method with fast Fourier transforms{on_cells} with {grid['boundary']} boundaries. "
         f"{parts[:1].upper()}{parts[1:]}. {loading}{changes}"
         f"Solver: {solver}, to a relative tolerance of {attributes['tolerance']:g}. "

@@ -53,7 +53,7 @@ def of_run(run: Run) -> str:
     """Return every value of a run with its unit and meaning."""
     values = list(inputs(json.loads(run.to_json()), Run))
     types = {i.name: i.value for i in values}
-    sentence = f"{types['indenter']} on {types['kernel']}"
+    sentence = f"{types.get('indenter') or types['load']} on {types['kernel']}"
     return summary(run.title or "Run", sentence, tables.inputs(values))
 
 

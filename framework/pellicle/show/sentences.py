@@ -139,6 +139,8 @@ def caveats(table: Dataset) -> Iterator[str]:
 def caption_of_setup(configuration: Mapping[str, Any], label: str) -> str:
     """Return the caption of the indenter over the surface in a load step."""
     values = {i.name: i.value for i in inputs(configuration, Run)}
+    if "load" in values:
+        return f"A {values['load']} on the {values['kernel']}, at {label}; heights stretched."
     return f"The {values['indenter']} on the {values['kernel']}, at {label}; heights stretched."
 
 

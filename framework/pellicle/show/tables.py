@@ -19,7 +19,7 @@ from pellicle.config.describe import FieldRow
 from pellicle.config.run import Run
 from pellicle.contact.caveats import from_text, verdict_of
 from pellicle.results.derived import DERIVED
-from pellicle.results.path import oscillations_of, path_variables, prescribed_variable
+from pellicle.results.path import has_load, oscillations_of, path_variables, prescribed_variable
 from pellicle.results.runs import axes_of, progress_of, runs_of, short_files
 from pellicle.results.wording import column_of, means_something
 from pellicle.units import axis_unit, readable
@@ -38,6 +38,8 @@ _OF_PATHS = [
 """Variables of the path of each run of a study, for the terminal."""
 _OF_PATH = "pull_off", "pull_off_accuracy", "detach", "jump_in", "work", "dissipated_energy"
 """Variables of the path of a run that has just been solved, for the terminal."""
+_OF_LOAD = "force", "ridge_height", "ridge_width", "dimple_depth", "dimple_volume", "elastic_energy"
+"""Variables of each step under a load, for the terminal."""
 _COMPARED = 8
 """Digits of values that are compared."""
 _POWERS = str.maketrans("²³", "23")
@@ -107,6 +109,9 @@ def all_steps(data: Dataset) -> list[Table]:
 
 def main_steps(data: Dataset) -> Table:
     """Return the main numbers of each load step, with what was asked for."""
+    if has_load(data):
+        under_load = dict.fromkeys(["time", prescribed_variable(data), *_OF_LOAD])
+        return steps(data, [*(name for name in under_load if name in data), "status"])
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
     usual = {"time", "depth", "force", *areas, *names_of("other")}
     named = prescribed_variable(data), "stiffness"
@@ -116,10 +121,12 @@ def main_steps(data: Dataset) -> Table:
 
 
 def contact(data: Dataset) -> Table:
-    """Return the shape of the contact in each load step, and of the zone around it."""
-    names = [
-        n for n in names_of("contact", "interaction") if n in data and means_something(data, n)
-    ]
+    """Return the shape of the contact in each load step, and of the zone around it.
+
+    Under a load it is that of the surface.
+    """
+    kinds = names_of("contact", "interaction", "load")
+    names = [name for name in kinds if name in data and means_something(data, name)]
     return steps(data, [name for name in names if not name.startswith("residual_")])
 
 
@@ -198,7 +205,8 @@ def runs(table: Dataset, names: Sequence[str] | None = None, mapped: Sequence[in
 
 def main_runs(table: Dataset) -> Table:
     """Return the parameters of each run of a study, and the main numbers of its last step."""
-    main = [n for n in names_of("main") if n in table and means_something(table, n)]
+    named = dict.fromkeys([*names_of("main"), *_OF_LOAD]) if has_load(table) else names_of("main")
+    main = [n for n in named if n in table and means_something(table, n)]
     derived = [n for n in json.loads(table.attrs[DERIVED]) if "step" in table[n].dims]
     return runs(table, [*main, *derived])
 

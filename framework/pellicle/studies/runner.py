@@ -71,7 +71,7 @@ class RunTask:
     @property
     def steps(self) -> int:
         """Number of load steps of the whole run."""
-        return len(self.run.loading.values)
+        return self.run.steps
 
     def stored(self) -> tuple[xr.Dataset | None, int, str]:
         """Return the steps in its file, if any, their number, and why it cannot be used, if so."""

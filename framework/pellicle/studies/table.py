@@ -24,7 +24,7 @@ from pellicle.results.dimensions import with_python_names
 from pellicle.results.path import with_path
 from pellicle.results.runs import StoredRuns
 from pellicle.show.numbers import write_csv
-from pellicle.variables import CAVEATS, FIELDS, VARIABLES, WALL_PRESSURE
+from pellicle.variables import CAVEATS, FIELDS, FIELDS_OF_LOAD, VARIABLES, WALL_PRESSURE
 
 _SHARE_OF_WRITING = 0.05
 _TEXTS = "status_code", "status", CAVEATS
@@ -45,7 +45,7 @@ class StudyTable:
             **facts_of([point.run for point in study.points]),
             **now_with(point.run for point in study.points),
         }
-        steps = {point.position: len(point.run.loading.values) for point in study.points}
+        steps = {point.position: point.run.steps for point in study.points}
         shape = *study.shape, max(steps.values())
         self._values: dict[str, np.ndarray[Any, np.dtype[Any]]] = {
             name: np.full(shape, "", dtype=object) for name in _TEXTS
@@ -151,9 +151,10 @@ def _planned(study: Study) -> Runs:
 
     def last_step(name: str) -> xr.Dataset:
         position, run = points[name].position, points[name].run
-        where = *position, [len(run.loading.values) - 1]
+        where = *position, [run.steps - 1]
         row = table.isel(dict(zip(steps.dims, where, strict=True))).reset_coords(drop=True)
-        for field in (*FIELDS, *[WALL_PRESSURE] * bool(run.interaction)):
+        fields = FIELDS if run.load is None else FIELDS_OF_LOAD
+        for field in (*fields, *[WALL_PRESSURE] * bool(run.interaction)):
             cells = np.zeros((1, 2, 2), bool if VARIABLES[field].type == "truth" else float)
             row[field] = ("step", *CELLS), cells, VARIABLES[field].attributes
         sides = [edge / 4 * np.array([-1, 1]) for edge in run.grid.size]

@@ -19,6 +19,7 @@ from .executors import check_executor as check_executor
 from .indenters import check_indenter as check_indenter
 from .interactions import check_interaction as check_interaction
 from .kernels import check_kernel as check_kernel
+from .loads import check_load as check_load
 from .outputs import check_output as check_output
 from .prescriptions import check_prescription as check_prescription
 from .solvers import check_solver as check_solver

@@ -42,7 +42,8 @@ def _reference_steps() -> tuple[Setting, tuple[Equilibrium, ...], Solver]:
     loading: Any = {"force": ["0.1 mN", "0.2 mN"]}
     run = Run(grid=grid, kernel=HALF_SPACE, indenter=ROUGH, loading=loading)
     setting = compose(run)
-    steps = [solve_at(setting, Force(force), run.solver, ignore) for force in run.loading.values]
+    forces = run.indentation.loading.values
+    steps = [solve_at(setting, Force(force), run.solver, ignore) for force in forces]
     return setting, tuple(step.equilibrium for step in steps), run.solver
 
 

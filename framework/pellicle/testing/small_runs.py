@@ -32,7 +32,7 @@ def solved(**parts: Any) -> xr.Dataset:
     run = Run(**_PARTS | parts)
     result = solve(run)
     for step, message in result.failures():
-        what = f"{run.grid.boundary} boundary, {run.loading.prescribed} prescribed"
+        what = f"{run.grid.boundary} boundary, {run.prescribed} prescribed"
         require(False, f"step {step} of a run ({what}) did not converge: {message}")
     return result.dataset
 

@@ -64,7 +64,7 @@ def _from_scratch(solver: Solver, case: int) -> xr.Dataset:
 def _problems() -> list[Problem]:
     run = Run(**_SMOOTH, loading={"depth": 0.0})
     operator = operator_of(run.kernel, run.grid)
-    profile = run.indenter.profile(*run.grid.coordinates())
+    profile = run.indentation.indenter.profile(*run.grid.coordinates())
     return [
         Problem(run.grid, operator, profile, control) for control in (Depth(20e-6), Force(4e-5))
     ]

@@ -14,17 +14,17 @@ from pydantic import (
 )
 
 from pellicle.arrays import Array
-from pellicle.components import Footprint, Indenter
+from pellicle.components import Component, Footprint, Indenter
 from pellicle.errors import ConfigError
 from pellicle.units import Length
 
 
-def _one_of_it(value: object) -> object:
+def one_of_it(value: object) -> object:
     """Return ``"1 um"`` for ``"um"``; any other value unchanged."""
     return f"1 {value}" if isinstance(value, str) and value.strip().isalpha() else value
 
 
-HeightUnit = Annotated[Length, BeforeValidator(_one_of_it, json_schema_input_type=float | str)]
+HeightUnit = Annotated[Length, BeforeValidator(one_of_it, json_schema_input_type=float | str)]
 """A length [m] that heights without a unit count: ``"um"``, ``"1 um"``, or a number of metres."""
 
 
@@ -54,27 +54,28 @@ def marks_in(heights: Array, unit: float, *, is_steep: bool = False) -> list[str
     return words
 
 
-class FromHeights(Indenter):
-    """Rough punch given by heights, whose peaks touch first; it ends at the edge of the domain."""
+class FromArray(Component):
+    """A component whose values are those of a file or an array, for which a hash stands."""
 
-    footprint: ClassVar[Footprint] = "domain"
+    content: ClassVar[str]
+    """What the values are, in messages."""
 
     sha256: str | None = Field(
         None, title="hash", description="hash of the file or array; verified if given"
     )
-    _heights: Array = PrivateAttr()
+    _values: Array = PrivateAttr()
     _digest: str = PrivateAttr()
 
-    def _keep(self, heights: Array, digest: str, name: str) -> None:
-        """Store the heights, and the hash of the file or array ``name`` that holds them."""
+    def _keep(self, values: Array, digest: str, name: str) -> None:
+        """Store the values, and the hash of the file or array ``name`` that holds them."""
         if self.sha256 not in (None, digest):
             raise ConfigError(
-                f"{self.sha256} is not the hash {digest} of the heights of {name}: they have "
-                "changed; remove sha256 to use them as they are",
+                f"{self.sha256} is not the hash {digest} of the {self.content} of {name}: they "
+                "have changed; remove sha256 to use them as they are",
                 "sha256",
             )
-        heights.setflags(write=False)
-        self._heights, self._digest = heights, digest
+        values.setflags(write=False)
+        self._values, self._digest = values, digest
 
     @model_serializer(mode="wrap")
     def _with_hash(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
@@ -82,9 +83,16 @@ class FromHeights(Indenter):
         return {"sha256": self._digest} | fields | {"sha256": self._digest}
 
     def __eq__(self, other: object) -> bool:
-        """Compare the configurations, in which the hash stands for the heights."""
+        """Compare the configurations, in which the hash stands for the values."""
         return type(other) is type(self) and self.model_dump() == other.model_dump()
 
     def __hash__(self) -> int:
         """Return a hash that agrees with equality."""
         return hash((type(self), self._digest))
+
+
+class FromHeights(FromArray, Indenter):
+    """Rough punch given by heights, whose peaks touch first; it ends at the edge of the domain."""
+
+    footprint: ClassVar[Footprint] = "domain"
+    content: ClassVar[str] = "heights"

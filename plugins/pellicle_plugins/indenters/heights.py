@@ -50,23 +50,16 @@ class Heights(FromHeights):
     # An array is replaced by its checked copy, which the caller cannot change.
     values: Annotated[
         Any,
-        AfterValidator(lambda raw: None if raw is None else _checked(raw, "the array", "")),
+        AfterValidator(lambda raw: None if raw is None else checked_array(raw, "the array", "")),
     ] = Field(None, description="array of heights, from the library only", exclude=True, repr=False)
 
     @model_validator(mode="after")
     def _read(self) -> Self:
-        if (self.path is None) == (self.values is None):
-            hint = (
-                f" (the configuration records only the hash {self.sha256} of an array that was in "
-                "memory: give values again)"
-                if self.sha256 and self.path is None
-                else ""
-            )
-            raise ConfigError(f"give either a file or, from the library, values{hint}", "path")
+        one_source(self.path, self.values, self.sha256)
         heights, name, field = self.values, "the array", "values"
         if self.path is not None:
             name, field = str(self.path), "path"
-            heights = _checked(_load(self.path, self.dataset), name, field)
+            heights = checked_array(array_in(self.path, self.dataset), name, field)
         for words in marks_in(heights, 1.0):
             warnings.warn(f"{name} has {words}, fill or crop them", stacklevel=2)
         self._keep(heights, hashlib.sha256(heights.tobytes()).hexdigest(), name)
@@ -76,12 +69,24 @@ class Heights(FromHeights):
         """Return (heights − highest) · unit [m]; the grid is of the shape of the array."""
         shape = np.broadcast_shapes(x.shape, y.shape)
         name, field = (str(self.path), "path") if self.path else ("the array", "values")
-        _require_shape(self._heights.shape, shape, name, field)
-        below: Array = (self._heights - self._heights.max()) * self.unit
+        require_shape(self._values.shape, shape, name, field)
+        below: Array = (self._values - self._values.max()) * self.unit
         return below
 
 
-def _load(path: Path, dataset: str | None) -> Any:
+def one_source(path: Path | None, values: Any, sha256: str | None) -> None:
+    """Refuse values given twice or not at all."""
+    if (path is None) == (values is None):
+        hint = (
+            f" (the configuration records only the hash {sha256} of an array that was in "
+            "memory: give values again)"
+            if sha256 and path is None
+            else ""
+        )
+        raise ConfigError(f"give either a file or, from the library, values{hint}", "path")
+
+
+def array_in(path: Path, dataset: str | None) -> Any:
     """Return the only array of a file, or the one called ``dataset``, of usable shape and type."""
     require_file(path)
     kind = _KINDS.get(path.suffix.lower(), "text")
@@ -98,7 +103,7 @@ def _load(path: Path, dataset: str | None) -> Any:
             if kind != "text":
                 _require_kind(array, str(path), "path")
                 if (expected := shape_of_run()) is not None:
-                    _require_shape(array.shape, expected, str(path), "path")
+                    require_shape(array.shape, expected, str(path), "path")
             return array[...]
     except ConfigError:
         raise
@@ -131,9 +136,8 @@ def _arrays(path: Path, kind: str) -> Iterator[Mapping[str, Any]]:
         yield {"": np.lib.format.open_memmap(path, mode="r")}
 
 
-def _require_shape(
-    shape: tuple[int, ...], expected: tuple[int, ...], name: str, field: str
-) -> None:
+def require_shape(shape: tuple[int, ...], expected: tuple[int, ...], name: str, field: str) -> None:
+    """Refuse an array, of ``name`` in messages, whose shape is not that of the grid."""
     if shape != expected:
         remedy = f"set grid.points = {list(shape)} and grid.size to match, or resample it"
         if shape == expected[::-1]:
@@ -168,8 +172,8 @@ def _require_kind(raw: Any, name: str, field: str) -> None:
         )
 
 
-def _checked(raw: Any, name: str, field: str) -> Array:
-    """Return heights as a new float64 array; refuse those that are masked or not finite."""
+def checked_array(raw: Any, name: str, field: str, content: str = "heights") -> Array:
+    """Return values as a new float64 array; refuse those that are masked or not finite."""
     _require_kind(raw, name, field)
     array = np.asarray(raw)
     bad = ~(np.abs(array) < _BEYOND)
@@ -179,7 +183,7 @@ def _checked(raw: Any, name: str, field: str) -> Array:
         kinds = "masked, NaN" if masked else "NaN"
         finite = ", or beyond any surface" * (not masked and bool(np.isfinite(array[bad]).any()))
         raise ConfigError(
-            f"{name} holds {count} {kinds} or infinite heights{finite}; fill or crop them first",
+            f"{name} holds {count} {kinds} or infinite {content}{finite}; fill or crop them first",
             field,
         )
     return np.array(array, dtype=np.float64, order="C")

@@ -131,7 +131,7 @@ class Topography(FromHeights):
         from scipy.interpolate import make_interp_spline
 
         axes = UniformAxis.of(x.ravel()), UniformAxis.of(y.ravel())
-        pitch = [edge / n for edge, n in zip(self._size, self._heights.shape, strict=True)]
+        pitch = [edge / n for edge, n in zip(self._size, self._values.shape, strict=True)]
         if any(axis.spacing < 0.99 * step for axis, step in zip(axes, pitch, strict=True)):
             warnings.warn(
                 f"cells of {_lengths([axis.spacing for axis in axes])} are finer than the points "
@@ -179,7 +179,7 @@ class Topography(FromHeights):
                 "centre" if self.centre else "path",
             )
         first = max(0, floor(low / pitch + 0.01))
-        last = min(self._heights.shape[number], ceil(high / pitch - 0.01))
+        last = min(self._values.shape[number], ceil(high / pitch - 0.01))
         if last - first < 2:
             raise ConfigError(
                 f"the domain covers {last - first} points of the scan along {'xy'[number]}; "
@@ -191,7 +191,7 @@ class Topography(FromHeights):
 
     def _prepared(self, window: tuple[slice, ...]) -> Array:
         """Return the scan under the domain, filled, levelled and with peaks up [m]."""
-        heights = self._heights[window]
+        heights = self._values[window]
         measured = np.isfinite(heights)
         is_periodic = boundary_of_run() == "periodic"
         level = self.level or ("mean" if is_periodic else "tilt")

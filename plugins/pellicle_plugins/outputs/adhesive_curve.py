@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Iterator
 from dataclasses import replace
 from math import inf
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -67,6 +67,7 @@ class AdhesiveCurve(TableFigure):
     """
 
     type: Literal["adhesive_curve"] = "adhesive_curve"
+    of_contact: ClassVar[bool] = True
     examples = ({"work_of_adhesion": "50 mJ/m^2"},)
     work_of_adhesion: Annotated[float, Quantity("J/m2", above=0)] = Field(
         description="energy per area that separates indenter and solid [J/m2]"

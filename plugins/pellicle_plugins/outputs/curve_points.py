@@ -58,7 +58,8 @@ def points_of(
     path: list[Leg] = []
     loops = has_interaction(table) or (has_times(table) and not over_time)
     if loops and columns[0].sizes.get("step", 1) > 1 and over is None:
-        path = legs(xr.broadcast(table["depth"], x)[0].values.ravel()[finite])
+        along = table["depth" if "depth" in table else "time"]
+        path = legs(xr.broadcast(along, x)[0].values.ravel()[finite])
         # The many legs of an oscillation are not told apart by their style.
         path = path if has_interaction(table) or len(path) <= MOST_LEGS else []
     middle_x, middle_y, low, high, good, runs = values

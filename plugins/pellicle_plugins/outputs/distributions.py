@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -32,6 +32,7 @@ class Distributions(TableFigure):
     """
 
     type: Literal["distributions"] = "distributions"
+    of_contact: ClassVar[bool] = True
     examples = ({"bins": 10, "log": ["y"]},)
     bins: int = Field(50, ge=1, description="number of bins, from 0 to the highest")
     log: Log = ()

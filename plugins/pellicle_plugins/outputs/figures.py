@@ -18,24 +18,27 @@ from pellicle.results import (
     StoredRuns,
     column_of,
     has_interaction,
+    has_load,
     has_times,
     is_periodic,
     is_seed,
+    prescribed_variable,
 )
 from pellicle.show import FigureStyle, write_charts
 from pellicle.variables import CONTACT_AREA, CORRECTED_AREA
 
 from .base import MOST_LEGS, Formats, StyleField
 from .curves import MOST_PANELS, Curves
-from .step_figures import pressure_map, profile
+from .step_figures import load_profile, pressure_map, profile
 
 _MOST_NAMED = 10
 _ALIKE = 10.0
 """Ratio of the times that runs take up to which one axis shows all."""
 _OVER_TIME = "force", "depth", "contact_area"
-FIGURES = "pressure", "profile", "force_depth", "area_force", "time"
+_OF_LOAD = "ridge_height", "dimple_depth", "ridge_width"
+FIGURES = "pressure", "profile", "force_depth", "area_force", "time", "load"
 """Figures of a run, which are the suffixes of the file names too."""
-STUDY_FIGURES = "force", "contact_area", "contact_fraction"
+STUDY_FIGURES = "force", "contact_area", "contact_fraction", *_OF_LOAD
 """Variables that may be drawn for a study, which are the suffixes of the file names too."""
 
 
@@ -70,6 +73,11 @@ class Figures(Output):
 def figures_of(result: Result) -> Iterator[tuple[str, Chart | Fields]]:
     """Yield each figure of a run with its suffix; with times there is one over them."""
     yield "pressure", pressure_map(result)
+    if has_load(result.dataset):
+        yield "profile", load_profile(result)
+        if result.dataset.sizes["step"] > 1:
+            yield "time" if has_times(result.dataset) else "load", over_path(result)
+        return
     yield "profile", profile(result)
     yield "force_depth", force_depth(result)
     yield "area_force", area_force(result)
@@ -83,7 +91,8 @@ def figures_of_study(runs: Runs) -> Iterator[tuple[str, Chart]]:
     A free domain has no nominal area of which the contact is a fraction.
     """
     area = "contact_fraction" if is_periodic(runs.table) else "contact_area"
-    for name in ("force", area) if "force" in runs.table else ():
+    names = _OF_LOAD if has_load(runs.table) else ("force", area)
+    for name in names if "force" in runs.table else ():
         yield name, study_curves(runs, name)
 
 
@@ -114,6 +123,17 @@ def over_time(result: Result) -> Chart:
     return Chart(_axis(data["time"]), axes, series, data.attrs["title"], hues=len(_OVER_TIME))
 
 
+def over_path(result: Result) -> Chart:
+    """Return height, depth and width of the surface against the time or what varies of a load."""
+    data, series = result.dataset, list[Series]()
+    x = "time" if has_times(data) else prescribed_variable(data)
+    for number, name in enumerate(_OF_LOAD):
+        one = _series(data, x, name, Look(number, number))
+        series.append(replace(one, legend=column_of(data[name]).words, panel=number // 2))
+    axes = [Axis("height, depth", "m", limits=(0.0, None)), _axis(data["ridge_width"])]
+    return Chart(_axis(data[x]), axes, series, data.attrs["title"], heights=(2, 1), hues=3)
+
+
 def study_curves(runs: Runs, variable: str) -> Chart:
     """Return a variable of a study against the depth, one colour for each value of its first axis.
 
@@ -125,10 +145,10 @@ def study_curves(runs: Runs, variable: str) -> Chart:
     varied = [str(d) for d in table["status"].dims if d != "step" and table.sizes[d] > 1]
     axes = sorted(varied, key=lambda axis: is_seed(table[axis]))
     numbers = [axis for axis in axes if table[axis].dtype.kind in "if"]
-    x = "depth"
+    x = depth = prescribed_variable(table) if has_load(table) else "depth"
     if has_times(table):
         ends = table["time"].max("step")
-        x = "time" if ends.max() <= _ALIKE * ends.min() else "depth"
+        x = "time" if ends.max() <= _ALIKE * ends.min() else depth
     if table.sizes["step"] == 1 and numbers:
         x = max(numbers, key=lambda axis: (not is_seed(table[axis]), table.sizes[axis]))
     rest = [axis for axis in axes if axis != x]

@@ -23,6 +23,7 @@ from pellicle.results import (
     axes_of,
     configuration_of,
     has_interaction,
+    has_load,
     label_of_step,
     progress_of,
     runs_of,
@@ -52,6 +53,11 @@ _STICKING = {
     "gap": _FIELDS["gap"],
 }
 """The variables that are mapped where there is an interaction."""
+_UNDER_LOAD = {
+    "displacement": show.Field("displacement", "m", DIVERGING, centred=True),
+    "pressure": show.Field("traction", "Pa", DIVERGING, blank=True, centred=True),
+}
+"""The variables that are mapped under a load."""
 
 
 class Html(Output):
@@ -115,7 +121,9 @@ class Html(Output):
         aim = aim_of_path(data, result.path_summary)
         lead, rest = (aim, first) if aim else (first, range_of_path(data))
         in_short = [Text(lead, lead=True), *([Text(rest)] if rest else [])]
-        of_steps, off = show.tables.all_steps(data), data["contact_area"].values == 0
+        of_steps, off = show.tables.all_steps(data), np.zeros(1, dtype=bool)
+        if not has_load(data):
+            off = data["contact_area"].values == 0
         if off.any() and not off.all():
             apart, *_ = show.tables.all_steps(data.isel(step=off))
             apart = replace(apart, caption="Results of the steps out of contact.", folded=True)
@@ -186,6 +194,7 @@ class Html(Output):
         """
         number = min(count, self.frames)
         fields = _STICKING if has_interaction(data) else _FIELDS
+        fields = _UNDER_LOAD if has_load(data) else fields
         points = show.side(self.points, number * len(fields))
         signed = any(field.centred for field in fields.values())
         empty = [index for index, field in enumerate(fields.values()) if signed and field.blank]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from pellicle import registry
 from pellicle.components import Chart, Fields, Output, Runs, Table
-from pellicle.results import Result, column_of, label_of_step
+from pellicle.results import Result, column_of, has_load, label_of_step
 from pellicle.show import SIZE, Drawn, Picture, figure_of, marks_of, svg
 
 from .figures import figures_of, figures_of_study
@@ -25,10 +25,18 @@ _CURVES = {
     "area_force": "Contact area against force over the load steps.",
     "time": "Force, depth and contact area over time.",
 }
+_UNDER_LOAD = {
+    "profile": "The surface along x through the centre, and the traction on it.",
+    "time": "Height and width of the ridge, and depth of the dimple, over time.",
+    "load": "Height and width of the ridge, and depth of the dimple, over what varies of the load.",
+}
 
 
 def curves_of_run(result: Result, chosen: list[int], begin: int) -> list[Picture]:
     """Return the curves of a run, marked at ``chosen`` steps; the ``begin``-th is shown first."""
+    if has_load(result.dataset):
+        shown = [(name, figure) for name, figure in figures_of(result) if name in _UNDER_LOAD]
+        return [picture(figure, _UNDER_LOAD[name]) for name, figure in shown]
     pictures = [_profiles(result, chosen, begin)]
     if result.dataset.sizes["step"] > 1:
         pictures += [

@@ -13,6 +13,7 @@ from pellicle.results import (
     axes_of,
     column_of,
     has_interaction,
+    has_load,
     has_one_shape,
     has_times,
     is_periodic,
@@ -32,6 +33,8 @@ _AIMS = (
 """Variables of a whole path that a run is made for, each group in a sentence."""
 _COLUMNS = {"pull_off": "force", "pull_off_depth": "depth"}
 """The numbers of steps whose unit they share."""
+_OF_LOAD = "ridge_height", "ridge_width", "dimple_depth"
+"""The numbers of a step under a load."""
 _SAME = 1e-9
 """Relative difference up to which numbers count as equal."""
 
@@ -46,6 +49,10 @@ def sentence_of_step(data: Dataset, index: int) -> str:
     heading = f"At {label_of_step(data, index)}"
     if not np.isfinite(step["force"].item()):
         return f"{heading}: no result."
+    if has_load(data):
+        names = [name for name in _OF_LOAD if np.isfinite(step[name].item())]
+        parts = [replace(column_of(data[n]), digits=_DIGITS).text(step[n].item()) for n in names]
+        return f"{heading}: {', '.join(parts)}."
     size = "contact_fraction" if is_periodic(data) else "contact_area"
     if has_one_shape(data) and "contact_radius" in data:
         size = "contact_radius"
@@ -87,6 +94,8 @@ def range_of_path(data: Dataset) -> str:
     """Return the range of the force over the load steps; empty for one, and with adhesion."""
     steps = data.sizes["step"]
     is_one = steps == 1 or has_interaction(data)
+    if has_load(data) and steps > 1:
+        return f"Over {steps} load steps: {_range(data['ridge_height'])}."
     return "" if is_one else f"Over {steps} load steps: {_range(data['force'])}."
 
 
@@ -111,6 +120,7 @@ def sentence_of_study(table: Dataset, count: int) -> str:
     over = f" with {'; '.join(axes)}" if axes else ""
     end = table.isel(step=-1)
     names = ["depth", "force", *["contact_radius"] * has_one_shape(table)]
+    names = [*_OF_LOAD] if has_load(table) else names
     known = [name for name in names if name in end and np.isfinite(end[name].values).any()]
     shared = [name for name in known if _is_one_value(end[name].values)][:1]
     results = [_values(end[name], count) for name in known if name not in shared][:2]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -28,6 +28,7 @@ class Patches(TableFigure):
     """
 
     type: Literal["patches"] = "patches"
+    of_contact: ClassVar[bool] = True
     examples = ({"by": "step"},)
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -30,6 +30,7 @@ class Spectrum(TableFigure):
     """
 
     type: Literal["spectrum"] = "spectrum"
+    of_contact: ClassVar[bool] = True
     examples = ({"by": "step", "label": "{depth * 1e6} µm"},)
 
     def check(self, runs: Runs) -> None:

@@ -6,10 +6,12 @@ import numpy as np
 
 from pellicle.arrays import Dataset
 from pellicle.components import Axis, Chart, Fields, Look, Panel, Series
-from pellicle.results import Result, has_interaction, label_of_step
+from pellicle.results import Result, has_interaction, has_load, label_of_step
 from pellicle.show import contact_and_zone, default_step, with_rim, without_round_off
 from pellicle.units import readable
 
+_LINES = 5
+"""Largest number of load steps whose surfaces are drawn."""
 _OPEN = 4.0
 """Largest gap along a line, over the depth, up to which the whole line is drawn."""
 
@@ -22,12 +24,35 @@ def pressure_map(result: Result) -> Fields:
     """
     step = default_step(result.dataset)
     data = result.dataset.isel(step=step)
-    pressure, pulls = data["pressure"].transpose("x", "y").values, has_interaction(data)
-    outlines = contact_and_zone(data) if pulls else []
+    pressure = data["pressure"].transpose("x", "y").values
+    pulls = has_interaction(data) or has_load(data)
+    outlines = contact_and_zone(data) if pulls and not has_load(data) else []
     title = _caption(result, step)
     panel = Panel(result.grid.size, pressure, title, pressure == 0, outlines)
     words = "pressure, negative where it pulls" if pulls else "contact pressure"
     return Fields(Axis(words, "Pa", limits=(None if pulls else 0.0, None)), [panel], centred=pulls)
+
+
+def load_profile(result: Result) -> Chart:
+    """Return the surface along x, and below it the traction, in each of the steps or some of them.
+
+    The line goes through the centre of the domain. Heights are above the undeformed surface.
+    """
+    data, steps = result.dataset, result.dataset.sizes["step"]
+    chosen = sorted({round(n) for n in np.linspace(0, steps - 1, min(steps, _LINES))})
+    line = data.isel(y=data.sizes["y"] // 2)
+    x, series = line["x"].values, list[Series]()
+    for number, step in enumerate(chosen):
+        look, label = Look(number, marker=None), label_of_step(data, step) * (len(chosen) > 1)
+        surface = -line["displacement"].values[step]
+        series.append(Series(x, surface, name=f"height {step + 1}", legend=label, look=look))
+        pressure = line["pressure"].values[step]
+        series.append(
+            Series(x, pressure, name=f"traction {step + 1}", look=look, panel=1, stepped="mid")
+        )
+    axes = [Axis("height of the surface", "m", signed=True), Axis("traction", "Pa", signed=True)]
+    title, hues = str(data.attrs.get("title", "")), len(chosen)
+    return Chart(Axis("x", "m"), axes, series, title, heights=(3, 1), hues=hues, ordered=hues > 1)
 
 
 def profile(result: Result, step: int | None = None) -> Chart:
@@ -83,13 +108,16 @@ def cross_section(step: Dataset) -> Chart:
     sunk = np.nan_to_num(step["displacement"].transpose("x", "y").values, nan=-np.inf)
     line = step.isel(y=int(sunk.max(axis=0).argmax()))
     x, surface = line["x"].values, -line["displacement"].values
+    height = Axis("height", "m", signed=True)
+    if "gap" not in line:
+        return Chart(Axis("x", "m"), [height], [Series(x, surface, name="surface")])
     gap = np.where(np.isfinite(line["gap"].values), line["gap"].values, np.nan)
     # Far from the contact a round body would set the scale.
     reach = 2 * max(float(np.ptp(surface)), abs(float(step["depth"])))
     indenter = np.where(gap <= reach, surface + gap, np.nan) if reach > 0 else surface + gap
     return Chart(
         Axis("x", "m"),
-        [Axis("height", "m", signed=True)],
+        [height],
         [
             Series(x, indenter, name="indenter", legend="indenter", look=Look(None, 1)),
             Series(x, surface, name="surface", legend="surface"),

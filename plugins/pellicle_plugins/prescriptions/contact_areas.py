@@ -38,7 +38,7 @@ class ContactArea(Prescription):
 
 def _unreachable(setting: Setting, area: float) -> str:
     """Return the reason why a contact area [m²] is impossible on this grid; empty if possible."""
-    if setting.law and not area > 0:
+    if setting.sticks and not area > 0:
         return "lost at no certain depth where the contact sticks; prescribe depth"
     cell, profile = setting.grid.cell_area, setting.profile
     covered = int(np.count_nonzero(np.isfinite(profile)))
@@ -66,7 +66,7 @@ def _area_search(setting: Setting, area: float) -> Force | Search:
         return Force(0.0)
     cell, state = setting.grid.cell_area, setting.state
     guess: float | None
-    if setting.law and state is not None:
+    if setting.sticks and state is not None:
         guess = state.depth
     elif state is not None and state.contact.any():
         before = float(np.count_nonzero(state.contact)) * cell
@@ -76,7 +76,7 @@ def _area_search(setting: Setting, area: float) -> Force | Search:
         lowest = heights[min(math.ceil(area / cell + 0.5), heights.size - 1)]
         # Slightly deeper, because exactly at the height of a cell round-off decides its contact.
         depth = -1.01 * float(lowest)
-        guess = depth if setting.law else setting.force_at(depth)
+        guess = depth if setting.sticks else setting.force_at(depth)
 
     def measure(step: Equilibrium) -> float:
         return float(np.count_nonzero(step.counted_contact)) * cell
@@ -86,7 +86,7 @@ def _area_search(setting: Setting, area: float) -> Force | Search:
     return Search(
         goal=area,
         measure=measure,
-        control=Depth if setting.law else Force,
+        control=Depth if setting.sticks else Force,
         resolution=cell / 2,
         width=1e-4,
         guess=guess,

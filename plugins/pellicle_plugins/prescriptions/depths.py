@@ -66,7 +66,7 @@ class MeanPlaneDepth(Prescription):
                 "fill its domain: it has no mean plane; prescribe depth",
                 "loading.mean_plane_depth",
             )
-        if value < mean and not setting.law:
+        if value < mean and not setting.sticks:
             raise ConfigError(
                 f"{readable(value, 'm')} is before first touch: this indenter's lowest point is "
                 f"{readable(-mean, 'm')} below its mean plane; give {readable(mean, 'm')} or more"

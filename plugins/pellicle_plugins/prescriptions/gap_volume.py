@@ -43,7 +43,7 @@ class GapVolume(Prescription):
         return Search(
             value,
             _volume,
-            control=Depth if setting.law else Force,
+            control=Depth if setting.sticks else Force,
             increasing=False,
             resolution=1e-9 * (value or _at_first_touch(setting)),
             quantity="gap volume",

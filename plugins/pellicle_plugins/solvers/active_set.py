@@ -10,6 +10,7 @@ import numpy as np
 from pellicle.arrays import Array, Mask
 from pellicle.components import Monitor
 from pellicle.contact import (
+    Adhesive,
     Depth,
     Problem,
     Progress,
@@ -128,11 +129,11 @@ class ActiveSet(ScaledSolver):
 
     def refuses(self, problem: Problem) -> str:
         """Return why it cannot solve with a law; "" for one that attracts, and less the wider."""
-        return refusal_of(problem.law) if problem.law else ""
+        return refusal_of(problem.law) if isinstance(problem, Adhesive) else ""
 
     def solve(self, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
         """Return the solution of a load step; with a law by `AdhesionSolver`."""
-        if problem.law:
+        if isinstance(problem, Adhesive):
             adhesion = AdhesionSolver(tolerance=self.tolerance, max_iterations=self.max_iterations)
             return adhesion.solve(problem, start, monitor)
         return super().solve(problem, start, monitor)
@@ -226,7 +227,7 @@ class ActiveSet(ScaledSolver):
                 iteration += 1
             return pressure
 
-        if not problem.law:
+        if not isinstance(problem, Adhesive):
             return closing(np.zeros(contact.shape)) * unit
         gap = problem.operator(state.pressure) - problem.profile - state.depth
         acting = problem.attraction(gap, contact)

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from pellicle.arrays import Array, Mask
-from pellicle.contact import Law, Problem, State, Stop, first_guess
+from pellicle.contact import Adhesive, Law, Problem, State, Stop, first_guess
 
 from .adhesive_round import Round
 from .anderson import Tried, extrapolated, is_convex
@@ -80,6 +80,8 @@ class AdhesionSolver(ScaledSolver):
 
     def begin(self, problem: Problem, start: State | None) -> Round:
         """Return the round from the last state; without one, from that of a coarser grid."""
+        if not isinstance(problem, Adhesive):
+            raise TypeError(f"{type(problem).__name__} has no law")
         preconditioner = Preconditioner(problem.operator)
         if start is not None and start.is_loaded:
             traction = start.pressure - start.wall
@@ -93,7 +95,7 @@ class AdhesionSolver(ScaledSolver):
         else:
             pressure = np.zeros(problem.grid.shape)
             if closes and problem.prescribed == "depth":
-                pressure = first_guess(replace(problem, law=None))
+                pressure = first_guess(problem.without_law)
             contact = pressure > 0
         # Cells of the undeformed surface that just touch the indenter are in contact.
         touches = problem.prescribed == "force" or problem.value == -lowest
@@ -105,20 +107,19 @@ class AdhesionSolver(ScaledSolver):
 
     def step(self, problem: Problem, state: Round) -> Round:
         """Return the next round."""
-        assert problem.law
         traction, missed, wall = extrapolated([*state.on_this_contact, state.tried], state.contact)
         following, contact = traction + missed, state.contact
         on_contact, changes = state.on_contact, _CHANGES
         # On springs a front has no stiffness, and a shift would leave the minimum of each cell.
         if state.front.length and not on_contact.preconditioner.is_bed:
             following, contact = state.front.moved(following, missed, state.gain)
-        following = np.clip(following, -problem.law.strength(), 0.0)
+        following = np.clip(following, -state.problem.law.strength(), 0.0)
         if not np.array_equal(contact, state.contact):
             on_contact, changes = on_contact.preconditioner.on(contact), _CHANGES - 1
         # The contact takes up what the change of the tractions lifts.
         wall = on_contact.transferred(wall + traction - following)
         wall[~contact] = 0.0
-        after = self._closed(problem, on_contact, wall, following, state, changes)
+        after = self._closed(state.problem, on_contact, wall, following, state, changes)
         if state.gain > _LEAST_GAIN and _has_risen(state, after):
             return replace(state, gain=max(0.5 * state.gain, _LEAST_GAIN))
         return replace(after, gain=_gain(state, after))
@@ -143,7 +144,7 @@ class AdhesionSolver(ScaledSolver):
 
     def _closed(
         self,
-        problem: Problem,
+        problem: Adhesive,
         on_contact: OnContact,
         wall: Array,
         traction: Array,
@@ -151,7 +152,7 @@ class AdhesionSolver(ScaledSolver):
         changes: int = _CHANGES,
     ) -> Round:
         """Return the round that closes the contact under a traction, after ``changes`` at most."""
-        goal, hard = self._goal(problem, before), replace(problem, law=None)
+        goal, hard = self._goal(problem, before), problem.without_law
         contact = on_contact.contact
         settled = False
         for _ in range(changes):
@@ -180,10 +181,9 @@ class AdhesionSolver(ScaledSolver):
         displacement = problem.operator(wall + traction, out=displacement)
         return _finished(problem, on_contact, wall, traction, displacement, before, settled)
 
-    def _goal(self, problem: Problem, before: Round | None) -> float:
+    def _goal(self, problem: Adhesive, before: Round | None) -> float:
         """Return the gap [m] to which a round closes: the less, the less the last one missed."""
         law = problem.law
-        assert law
         goal = 0.01 * law.cutoff()
         if before is None:
             return goal
@@ -193,7 +193,7 @@ class AdhesionSolver(ScaledSolver):
 
 
 def _finished(
-    problem: Problem,
+    problem: Adhesive,
     on_contact: OnContact,
     wall: Array,
     traction: Array,

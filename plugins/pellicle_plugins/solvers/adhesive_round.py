@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from pellicle.arrays import Array, Mask
-from pellicle.contact import Attraction, Problem, Progress, adhesive_scale
+from pellicle.contact import Adhesive, Attraction, Progress
 
 from .anderson import Tried
 from .front import Front
@@ -19,7 +19,7 @@ from .preconditioner import OnContact
 class Round:
     """The state after the contact is closed under given tractions across the gap."""
 
-    problem: Problem
+    problem: Adhesive
     on_contact: OnContact
     wall: Array
     """Wall pressure w [Pa]; 0 off the contact."""
@@ -101,11 +101,9 @@ class Round:
     @property
     def _energy_of_closed_cells(self) -> float:
         """Work of adhesion of all cells, over the area of one [J/m²]."""
-        law = self.problem.law
-        assert law
-        return law.work_of_adhesion() * self.gap.size
+        return self.problem.law.work_of_adhesion() * self.gap.size
 
     @cached_property
     def scale(self) -> float:
         """Height to which errors of the gap are compared [m]."""
-        return adhesive_scale(self.problem, self.contact, self.displacement)
+        return self.problem.length_scale(self.contact, self.displacement)

@@ -23,7 +23,7 @@ import scipy.fft
 from pellicle import Grid
 from pellicle.analysis import perimeter
 from pellicle.arrays import Array, Mask
-from pellicle.contact import Problem
+from pellicle.contact import Adhesive
 
 from .preconditioner import edges
 
@@ -45,7 +45,7 @@ _MOST_SHARE: Final = 0.3
 class Front:
     """The edge of a contact, and the zone beside it."""
 
-    problem: Problem
+    problem: Adhesive
     contact: Mask
     gap: Array
     """[m]; infinite where there is no indenter."""
@@ -66,7 +66,6 @@ class Front:
     def _shift(self, zone: Mask, missed: Array, gain: float) -> Array:
         """Return how far the front recedes, at each cell [m], times a factor and limited."""
         law, grid = self.problem.law, self.problem.grid
-        assert law
         gap = np.clip(np.where(self.contact, 0.0, self.gap), 0.0, 2 * law.cutoff())
         push = np.where(zone, slope(gap, grid), 0.0) * missed
         estimate = potential(push, law.work_of_adhesion(), LONGEST * self.extent, grid)

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from pellicle.contact import Problem, State
+from pellicle.contact import Adhesive, Problem, State
 from pellicle.errors import ConfigError
 from pellicle.surface import highest, prolong
 
@@ -33,7 +33,7 @@ def prolonged(solver: ScaledSolver, problem: Problem) -> State | None:
         # A thin incompressible layer is rigid under cells much wider than its thickness.
         return None
     if not coarse.needs_solving:
-        if problem.law:
+        if isinstance(problem, Adhesive):
             return None
         # The indenter touches less than half of every coarse cell.
         coarse = replace(coarse, profile=highest(problem.profile, coarse.grid.shape))

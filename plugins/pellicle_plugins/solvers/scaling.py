@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from pellicle.components import IterativeSolver, Monitor
-from pellicle.contact import Problem, Solution, State
+from pellicle.contact import Adhesive, Problem, Solution, State
 
 # Units are 2^±900 at most, so that 2^100 times a unit is still a number.
 _MAX_EXPONENT = 900
@@ -52,7 +52,7 @@ def height_unit(problem: Problem) -> float:
     control it is the geometric mean of the indenter's height range and of the displacement of the
     most compliant wave under the mean pressure; either may be much smaller than the other.
     """
-    if problem.law:
+    if isinstance(problem, Adhesive):
         # Depth and force may be 0 or negative; what the law does at its cutoff is not.
         heights = max(
             float(problem.law.cutoff()),

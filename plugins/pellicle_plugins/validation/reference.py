@@ -30,7 +30,8 @@ def contact(run: Dataset, step: int) -> AxisymmetricContact | None:
 @cache
 def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
     run = Run.from_json(configuration)
-    kernel, indenter, prescribed = run.kernel, run.indenter, run.loading.prescribed
+    kernel, (indenter, loading) = run.kernel, run.indentation
+    prescribed = loading.prescribed
     if run.interaction is not None:
         raise ConfigError(
             "the axisymmetric solution is that of contact without adhesion, and this run has an "
@@ -55,7 +56,7 @@ def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
             f"loading.{prescribed} has no reference solution; prescribe {', '.join(_PRESCRIBED)}",
             "reference",
         )
-    value = run.loading.values[step - 1]
+    value = loading.values[step - 1]
     if value == 0:
         return None
     if prescribed == "contact_area":

@@ -28,7 +28,7 @@ def test_pulling_takes_an_interaction(prescribed: str) -> None:
         loading["spring_constant"] = "1 N/m"
     grid = PERIODIC if prescribed == "mean_pressure" else STICKY["grid"]
     configuration = STICKY | {"grid": grid, "loading": loading}
-    assert pl.Run(**configuration).loading.values == (1e-6, -1e-6)
+    assert pl.Run(**configuration).indentation.loading.values == (1e-6, -1e-6)
     del configuration["interaction"]
     for table in (loading, pl.Loading(**loading)):
         with pytest.raises(pl.ConfigError) as caught:

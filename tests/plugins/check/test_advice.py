@@ -46,7 +46,7 @@ def test_errors_are_at_most_those_expected(shape: str, tension: float) -> None:
     given = run(shape=shape, tension=tension)
     forces = pl.run(given, progress=False).dataset["force"].values
     for depth, force, step in zip(
-        given.loading.values, forces, advise(given, 0.01).steps, strict=True
+        given.indentation.loading.values, forces, advise(given, 0.01).steps, strict=True
     ):
         exact = indent(SHAPES[shape][1], MODULUS, tension, depth=depth).force
         assert abs(force / exact - 1) <= step.force_error <= 0.1

@@ -36,7 +36,9 @@ def steps(here: pl.Problem, values: list[float]) -> list[FinishedStep]:
     kind = type(here.control)
     found = (solve(replace(here, control=kind(v)), SOLVER).equilibrium for v in values)
     return [
-        FinishedStep(e.state, e.gap, e.displacement, 0.0, e.energy, converged=True, jumped=False)
+        FinishedStep(
+            e.state, e.gap, e.displacement, 0.0, e.elastic_energy, converged=True, jumped=False
+        )
         for e in found
     ]
 
@@ -92,7 +94,8 @@ def test_nothing_is_extrapolated_from_one_state_in_a_solid_that_relaxes_or_where
     assert start_of(replace(here, left=np.zeros(here.grid.shape)), state, path) is state
     linear = pl.interaction("linear", work_of_adhesion=1.0, range=0.1)
     law = law_of(linear, skin(0.02), here.grid)
-    assert start_of(replace(here, law=law), state, path) is state
+    sticky = pl.Adhesive(here.grid, here.operator, here.profile, here.control, law=law)
+    assert start_of(sticky, state, path) is state
 
 
 def test_force_and_spring_are_extrapolated_by_their_own_control() -> None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from pellicle.components import Monitor, Setting
+from pellicle.contact.equilibrium import Deformation, Equilibrium
 from pellicle.contact.load_step import FinishedStep, LoadStep
 
 
@@ -20,5 +21,8 @@ class Surroundings(NamedTuple):
     """Told of the iterations of a term that solves again."""
 
 
-Term = Callable[[LoadStep, Surroundings], LoadStep]
+AnyStep = LoadStep[Deformation]
+ContactStep = LoadStep[Equilibrium]
+Step = TypeVar("Step", AnyStep, ContactStep)
+Term = Callable[[ContactStep, Surroundings], ContactStep]
 """Returns the step with measures and caveats of its own added; the run is bound beforehand."""

@@ -7,18 +7,18 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from pellicle.components import Force, Monitor
+from pellicle.components import Force, Interaction, Monitor
 from pellicle.components.calls import solution_of
 from pellicle.components.interaction import law_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
-from pellicle.contact.equilibrium import Equilibrium, equilibrium_of
-from pellicle.contact.load_step import LoadStep, Value, control_of
+from pellicle.contact.equilibrium import AdhesiveEquilibrium, equilibrium_of
+from pellicle.contact.load_step import Value, control_of
 from pellicle.contact.masks import labelled
 from pellicle.contact.problem import Depth
 from pellicle.contact.solution import State, Stop
 
-from . import Surroundings
+from . import ContactStep, Surroundings
 
 # Widths of two zones over that of the step, for the limit of no width.
 _WIDER: Final = (1.5, 3.0)
@@ -44,9 +44,11 @@ _STAYS: Final = 0.25
 _UNCERTAIN: Final = 0.01
 
 
-def adhesion(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
-    """Add jumps, the limit of the force, and whether its zone has few cells."""
-    setting, equilibrium = surroundings.setting, step.equilibrium
+def adhesion(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
+    """Add jumps, the limit of the force, and whether its zone has few cells, where it sticks."""
+    setting, equilibrium, interaction = surroundings.setting, step.equilibrium, run.interaction
+    if not isinstance(equilibrium, AdhesiveEquilibrium) or interaction is None:
+        return step
     if step.stop is Stop.PULLED_OFF:
         step = step.having({}, [_pulled_off(run, step, surroundings)])
     touched = setting.state is not None and bool(setting.state.contact.any())
@@ -54,13 +56,12 @@ def adhesion(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
     jumped = step.jumped or _asperity_jumped(setting.state, equilibrium)
     lost = _jump_energy(run, equilibrium, surroundings, is_certain=jumped, as_whole=as_whole)
     jumped = jumped or lost > 0
-    limit = _force_limit(run, equilibrium, surroundings.monitor)
+    limit = _force_limit(run, interaction, equilibrium, surroundings.monitor)
     step = step.having({"jumped": jumped, "jump_energy": lost, **limit})
     if not step.converged:
         return step
     caveats, cells = [], equilibrium.zone_width / run.grid.cell_size
-    assert run.interaction
-    if cells < (fewest := run.interaction.least_cells):
+    if cells < (fewest := interaction.least_cells):
         caveats.append(Caveat(Status.COARSE_ZONE, {"cells": cells, "least": fewest}))
     if jumped and not as_whole and equilibrium.contact.any():
         loss = "known" if lost > 0 else "unknown"
@@ -68,7 +69,9 @@ def adhesion(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
     return step.having({}, caveats)
 
 
-def _force_limit(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> dict[str, Value]:
+def _force_limit(
+    run: Run, sticky: Interaction, equilibrium: AdhesiveEquilibrium, monitor: Monitor
+) -> dict[str, Value]:
     """Return the force [N] for no width of the zone, and the error [N] of that of the step.
 
     The step is solved again at its depth with two wider zones. The forces differ from that of no
@@ -79,8 +82,6 @@ def _force_limit(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> dict[s
     Both are NaN if the contact is lost or no solution is found with a wider zone; the result is
     empty if the interaction has no such limit.
     """
-    sticky = run.interaction
-    assert sticky
     wider_laws = [law for factor in _WIDER if (law := sticky.wider(factor))]
     if not wider_laws:
         return {}
@@ -110,7 +111,7 @@ def _force_limit(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> dict[s
     return {"force_extrapolated": float(limit), "force_error": error}
 
 
-def _pulled_off(run: Run, step: LoadStep, surroundings: Surroundings) -> Caveat:
+def _pulled_off(run: Run, step: ContactStep, surroundings: Surroundings) -> Caveat:
     """Return the caveat with two forces [N], of which the contact of the last state carries one."""
     setting, force = surroundings.setting, step.equilibrium.problem.control.value
     state = setting.state
@@ -127,7 +128,7 @@ def _pulled_off(run: Run, step: LoadStep, surroundings: Surroundings) -> Caveat:
     return Caveat(Status.PULLED_OFF, {"force": force, "carried": carried, "lost": lost})
 
 
-def _asperity_jumped(before: State | None, equilibrium: Equilibrium) -> bool:
+def _asperity_jumped(before: State | None, equilibrium: AdhesiveEquilibrium) -> bool:
     """Return whether a whole patch of contact and zone has come or gone since the state ``before``.
 
     Without a range of its own, adhesion holds a contact down to a finite radius, at which it jumps
@@ -135,7 +136,7 @@ def _asperity_jumped(before: State | None, equilibrium: Equilibrium) -> bool:
     of a real range may let go gradually, so it counts as no jump there.
     """
     problem = equilibrium.problem
-    if before is None or not problem.law or not problem.law.needs_contact:
+    if before is None or not problem.law.needs_contact:
         return False
     patches = before.pressure != 0, equilibrium.pressure != 0
     for mask, other in (patches, patches[::-1]):
@@ -168,7 +169,7 @@ class _Point(NamedTuple):
 
 def _jump_energy(
     run: Run,
-    equilibrium: Equilibrium,
+    equilibrium: AdhesiveEquilibrium,
     surroundings: Surroundings,
     *,
     is_certain: bool,
@@ -190,7 +191,6 @@ def _jump_energy(
     if not path:
         return float("nan")
     last = path[-1]
-    assert problem.law
     cell = problem.grid.cell_area
     acting = np.count_nonzero(equilibrium.pressure) * cell
     parts = max(abs(last.energy), abs(equilibrium.energy))
@@ -227,5 +227,5 @@ def _jump_energy(
     return pair[0].loss(pair[1]) if as_whole else lost
 
 
-def _point_of(equilibrium: Equilibrium) -> _Point:
+def _point_of(equilibrium: AdhesiveEquilibrium) -> _Point:
     return _Point(equilibrium.state, equilibrium.depth, equilibrium.force, equilibrium.energy)

@@ -10,26 +10,26 @@ from pellicle.arrays import Mask
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import Equilibrium
-from pellicle.contact.load_step import LoadStep
 from pellicle.contact.masks import labelled
 from pellicle.grid import Boundary
 
-from . import Surroundings
+from . import ContactStep, Surroundings
 
 # The force of a paraboloid is right to 8 % on nine or twelve cells, to 14 % on five, on fewer not.
 _RESOLVED = 13
 _RESOLVED_ACROSS = 4
 
 
-def contact(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
+def contact(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
     """Add why the step is not a solution, and whether its contact has too few cells."""
     if not np.isfinite(step.equilibrium.force):
         return step.having({}, [Caveat(Status.NOT_FINITE)])
-    step = step.having({}, _failures(run, step, run.loading.values[len(surroundings.path)]))
+    value = run.indentation.loading.values[len(surroundings.path)]
+    step = step.having({}, _failures(run, step, value))
     return step.having({}, _coarse(run, step.equilibrium)) if step.converged else step
 
 
-def _failures(run: Run, step: LoadStep, value: float) -> Iterator[Caveat]:
+def _failures(run: Run, step: ContactStep, value: float) -> Iterator[Caveat]:
     """Yield why the step is not a solution; ``value`` is the prescribed one."""
     equilibrium, tolerance = step.equilibrium, run.solver.tolerance
     if (lowest := float(equilibrium.wall.min())) < 0:
@@ -48,11 +48,11 @@ def _failures(run: Run, step: LoadStep, value: float) -> Iterator[Caveat]:
                 {"measure": residual, "tolerance": tolerance, "stop": step.stop.name},
             )
     contact, reach = equilibrium.contact, equilibrium.contact | equilibrium.zone
-    size, boundary, loading = run.grid.size, run.grid.boundary, run.loading
+    size, boundary, (indenter, loading) = run.grid.size, run.grid.boundary, run.indentation
     edges = {"size_x": size[0], "size_y": size[1]}
     if boundary == "free" and min(contact.shape) == 1 < contact.size and reach.any():
         yield Caveat(Status.STRIP, {"length": size[int(contact.shape[1] == 1)]})
-    elif run.indenter.footprint != "unbounded":
+    elif indenter.footprint != "unbounded":
         return
     elif _has_no_end(contact, boundary):
         yield Caveat(

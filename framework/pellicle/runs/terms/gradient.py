@@ -20,7 +20,6 @@ from pellicle.components.calls import profile_of, target_of
 from pellicle.components.kernel import Kernel, instantaneous
 from pellicle.config.gradient import HEIGHTS
 from pellicle.config.run import Run
-from pellicle.contact.load_step import LoadStep
 from pellicle.contact.masks import dilated
 from pellicle.errors import ConfigError
 from pellicle.runs.differences import differences
@@ -28,7 +27,7 @@ from pellicle.schema.model import get, python_names, with_value
 from pellicle.surface.from_kernel import operator_of
 from pellicle.surface.operators import Derivative
 
-from . import Surroundings
+from . import ContactStep, Surroundings
 from .requested import responding
 
 _WAVES: Final = 24
@@ -41,13 +40,17 @@ class Gradient:
     def __init__(self, run: Run, setting: Setting) -> None:
         self.names = python_names(run.gradient or ())
         self._changes: dict[str, Callable[[Array], Array]] = {}
+        self._searches = False
+        if not self.names:
+            return
+        loading = run.indentation.loading
         for path in self.names:
             if path != HEIGHTS:
                 of = _of_operator if path.startswith("kernel.") else _of_profile
                 self._changes[path] = of(run, setting, path)
         # A search for nothing, as for no area, may be no search.
-        prescription, values = run.loading.prescription, run.loading.values
-        ends = [target_of(prescription, setting, v) for v in (values[0], values[-1]) if self.names]
+        prescription, values = loading.prescription, loading.values
+        ends = [target_of(prescription, setting, v) for v in (values[0], values[-1])]
         self._searches = any(isinstance(target, Search) for target in ends)
         if all(path.startswith("kernel.") for path in self.names) or self._searches:
             return
@@ -59,7 +62,7 @@ class Gradient:
                 "gradient",
             )
 
-    def add(self, run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
+    def add(self, run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
         """Add the derivatives of a step, with what is prescribed kept; NaN if it is not solved.
 
         A search keeps the depth where it tells the force, and the force where it tells the depth.

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
-from pellicle.contact.load_step import LoadStep, Value
+from pellicle.contact.equilibrium import Deformation, Equilibrium
+from pellicle.contact.load_step import FinishedStep, Value
 from pellicle.contact.time_step import stiffness_after
 from pellicle.runs.relaxation import CarriedShare
 from pellicle.surface import along_axes
 
-from . import Surroundings
+from . import Step, Surroundings
 
 # Domain that a solid needs, over that of the run, above which no grid spans it.
 _FARTHEST: Final = 100.0
@@ -26,7 +28,7 @@ _LONGEST: Final = 1e9
 _RADII: Final = 7.9
 
 
-def relaxation(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
+def relaxation(run: Run, step: Step, surroundings: Surroundings) -> Step:
     """Add the time and cycle of the step, and whether the domain is small."""
     loading, index = run.loading, len(surroundings.path)
     measures: dict[str, Value] = {}
@@ -34,11 +36,10 @@ def relaxation(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep
         measures["time"] = loading.times[index]
     if loading.oscillates:
         measures["cycle"] = loading.samples[index].cycle
-    if surroundings.setting.law and run.branches and loading.durations[index] > 0:
+    if run.interaction and run.branches and loading.durations[index] > 0:
         # The energy of a solid that has relaxed on its way does not follow from its surface.
         measures["energy"] = np.nan
-    area = np.count_nonzero(step.equilibrium.counted_contact) * run.grid.cell_area
-    largest_area = max(area, *(finished.area for finished in surroundings.path), 0.0)
+    largest_area = _largest_area(run, step.equilibrium, surroundings.path)
     needed, smallest = _least_domain(run, index, largest_area), min(run.grid.size)
     if needed <= smallest or not step.converged:
         return step.having(measures)
@@ -50,6 +51,18 @@ def relaxation(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep
         "remedy": "larger domain" if needed <= _FARTHEST * smallest else "no domain",
     }
     return step.having(measures, [Caveat(Status.SMALL_DOMAIN, values)])
+
+
+def _largest_area(run: Run, surface: Deformation, path: Sequence[FinishedStep]) -> float:
+    """Return the largest contact area so far [m²], or that of a disc that holds all of a load."""
+    if isinstance(surface, Equilibrium):
+        area = np.count_nonzero(surface.counted_contact) * run.grid.cell_area
+        return max(area, *(finished.area for finished in path), 0.0)
+    loaded = surface.pressure != 0
+    for finished in path:
+        loaded |= finished.state.pressure != 0
+    distance = np.hypot(*run.grid.coordinates())
+    return math.pi * float(distance.max(where=loaded, initial=0.0)) ** 2
 
 
 def _least_domain(run: Run, index: int, largest_area: float) -> float:

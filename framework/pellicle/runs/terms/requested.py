@@ -10,14 +10,13 @@ from pellicle.components import Depth
 from pellicle.components.calls import corrected_area, report_of, response_of
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
-from pellicle.contact.equilibrium import Stiffness, measure_stiffness
-from pellicle.contact.load_step import LoadStep
+from pellicle.contact.equilibrium import AdhesiveEquilibrium, Stiffness, measure_stiffness
 from pellicle.variables import CORRECTED_AREA, CORRECTED_FRACTION
 
-from . import Surroundings
+from . import ContactStep, Surroundings
 
 
-def corrections(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
+def corrections(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
     """Add the contact area by each correction, and after these the shares of the domain."""
     areas = {
         correction.type_name: corrected_area(correction, step.equilibrium.counted_contact, run.grid)
@@ -28,22 +27,22 @@ def corrections(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadSte
     return step.having(measures | shares)
 
 
-def prescription(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
+def prescription(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
     """Add the variables of the prescription; that of kind ``residual`` is what a search missed."""
-    prescribed = run.loading.prescription
+    prescribed = run.indentation.loading.prescription
     report = report_of(prescribed, surroundings.setting, step.equilibrium)
     report |= {v.name: step.missed for v in prescribed.variables if v.name not in report}
     return step.having(report)
 
 
-def stiffness(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
+def stiffness(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
     """Add the contact stiffness [N/m], δ being the depth of the indenter."""
     step = responding(run, step, surroundings)
     assert step.response
     return step.having({"stiffness": step.response[1]})
 
 
-def responding(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep:
+def responding(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
     """Return the step with its response to a change of δ, and a caveat if that is not known."""
     if step.response:
         return step
@@ -58,7 +57,10 @@ def responding(run: Run, step: LoadStep, surroundings: Surroundings) -> LoadStep
         measured, response = Stiffness(0.0, 0.0), np.zeros(contact.shape)
     else:
         response = response_of(run.solver, problem, equilibrium.state, surroundings.monitor)
-        measured = measure_stiffness(problem, contact, response, equilibrium.attraction)
+        measured = measure_stiffness(problem, contact, response)
+        if isinstance(equilibrium, AdhesiveEquilibrium):
+            acting = equilibrium.attraction
+            measured = measure_stiffness(problem, contact, response, acting)
     missed = Caveat(Status.STIFFNESS, {"measure": measured.residual, "tolerance": tolerance})
     unknown = not measured.residual <= tolerance
     step = replace(step, response=(response, measured.value))

@@ -1,0 +1,1 @@
+"""Loads: known tractions on the surface."""
