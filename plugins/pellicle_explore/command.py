@@ -43,6 +43,8 @@ def explore(
     # It warns of each message to a page that has just been closed or reloaded.
     logging.getLogger("bokeh.server.views.ws").setLevel(logging.ERROR)
     run = pl.Run.from_toml(file or Path(__file__).with_name("start.toml"), set_ or [])
+    # A run with a load is refused before a page is served.
+    _ = run.indentation
 
     def tell(address: str) -> None:
         echo(f"{address}\nopen it in a browser on this machine; Ctrl-C ends it")

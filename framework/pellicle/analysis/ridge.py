@@ -39,7 +39,7 @@ def ridge(displacement: Array, grid: Grid) -> Ridge:
     depth = np.maximum(displacement, 0.0)
     return Ridge(
         float(height.max()),
-        _width(height, grid) if height.any() else np.nan,
+        _width(height, grid) if height.any() and height.size > 1 else np.nan,
         float(height.sum()) * grid.cell_area,
         float(depth.max()),
         float(depth.sum()) * grid.cell_area,
@@ -53,7 +53,7 @@ def _width(height: Array, grid: Grid) -> float:
     mode = "grid-wrap" if grid.boundary == "periodic" else "constant"
     top = np.unravel_index(np.argmax(height), height.shape)
     step = min(grid.spacing) / _FINE
-    middle = int(0.5 * min(s for s, n in zip(grid.size, grid.points, strict=True) if n > 1) / step)
+    middle = int(0.5 * max(grid.size) / step)
     along = step * np.arange(-middle, middle + 1)
     points = [
         index + along * part / edge

@@ -43,7 +43,7 @@ def memory_of(run: Run) -> float:
     grid, solver, branches = run.grid, run.solver, run.branches
     cells = grid.points[0] * grid.points[1]
     operator = _LINE if grid.points[1] == 1 else _OPERATOR[grid.boundary]
-    iterating = solver.arrays(grid) + (_STICKS if run.interaction else 0.0)
+    iterating = 0.0 if run.load else solver.arrays(grid) + (_STICKS if run.interaction else 0.0)
     history = 2 * len(branches) + 3.0 if branches else 0.0
     if branches and run.kernel.without_skin() != run.kernel:
         steps = {TimeStep.of(branches, duration) for duration in run.loading.durations}

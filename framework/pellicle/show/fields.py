@@ -59,6 +59,8 @@ def with_rim(line: Dataset) -> Dataset:
     take the place of the outermost cells, as `up_to_rim` has it.
     """
     (along,) = {"x", "y"} & set(map(str, line.dims))
+    if "contact" not in line:
+        return line
     points = line[along].values, line["pressure"].values
     x, pressure = up_to_rim(*points, line["contact"].values, _rim(line, along))
     return (

@@ -48,8 +48,10 @@ def methods(
     changes = f"Varied: {', '.join(words)}. " if words else ""
     is_one = "solver" in known and "solver.type" not in varied
     solver = known["solver"].value if is_one else "several solvers"
-    loading, of_what = "", "Deformation of a linear solid under a known traction"
+    loading, solved = "", ""
+    of_what = "Deformation of a linear solid under a known traction"
     if "load" not in configuration:
+        solved = f"Solver: {solver}, to a relative tolerance of {attributes['tolerance']:g}. "
         loading = _loading(configuration["loading"], attributes, known, varied)
         of_what = "Normal contact of a rigid indenter with a linear solid"
     elif times := configuration.get("loading", {}).get("time"):
@@ -58,8 +60,7 @@ def methods(
         f"{of_what} was solved by a boundary element "
         f"method with fast Fourier transforms{on_cells} with {grid['boundary']} boundaries. "
         f"{parts[:1].upper()}{parts[1:]}. {loading}{changes}"
-        f"Solver: {solver}, to a relative tolerance of {attributes['tolerance']:g}. "
-        f"Computed with {attributes['versions']}. To cite: {CITATION}."
+        f"{solved}Computed with {attributes['versions']}. To cite: {CITATION}."
     )
 
 

@@ -47,7 +47,7 @@ class Maps(TableFigure):
             field = run.get(text)
             if field is None or field.dtype != bool:
                 field = as_array(text, run)
-            values, _ = xr.broadcast(field, run["contact"])
+            values, _ = xr.broadcast(field, run["pressure"])
             outlines: list[Mask] = []
             if has_interaction(run) and values.dtype != bool:
                 outlines, pulls = contact_and_zone(run), True

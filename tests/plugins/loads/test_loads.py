@@ -293,11 +293,15 @@ def test_a_load_goes_through_files(tmp_path: Path) -> None:
     again = pl.Run.from_json(run.to_json())
     assert again == run
     assert again.identity == run.identity
-    outputs = [{"type": kind} for kind in ("csv", "figures", "html", "vtk")]
+    outputs: list[dict[str, str]] = [
+        *({"type": kind} for kind in ("csv", "figures", "html", "vtk", "maps", "profiles")),
+        {"type": "curves", "x": "load_radius", "y": "ridge_height"},
+    ]
     shown = pl.Run(**{**json.loads(run.to_json()), "outputs": outputs})
     pl.run(shown, directory=tmp_path, progress=False)
     names = {path.name for path in tmp_path.iterdir()}
     assert {"run.h5", "run.csv", "run-profile.png", "run-load.png", "run.html"} <= names
+    assert "Solver:" not in (tmp_path / "run.html").read_text(encoding="utf-8")
     assert pl.load(tmp_path).dataset["ridge_height"].size == 2
     study = pl.Study(
         run=run,
@@ -307,3 +311,17 @@ def test_a_load_goes_through_files(tmp_path: Path) -> None:
     table = pl.run_study(study, directory=tmp_path / "study", progress=False)
     assert table["share"].shape == (2, 2)
     assert (table["ridge_height"].values[0] > table["ridge_height"].values[1]).all()
+
+
+def test_a_narrow_period_and_a_single_cell_have_a_width_or_none() -> None:
+    """The width of a ridge does not depend on how long a period is along it."""
+    load = {"type": "ridge", "line_force": -0.03}
+    wide, narrow = (
+        solved(load, grid={"points": [128, 2], "size": [1e-3, y], "boundary": "periodic"})
+        for y in (1e-3, 1e-5)
+    )
+    assert wide["ridge_width"].item() == pytest.approx(narrow["ridge_width"].item(), rel=0.05)
+    cell = {"points": 1, "size": 1e-3, "boundary": "free"}
+    alone = solved({"type": "map", "values": [[-1.0]], "unit": "Pa"}, grid=cell)
+    assert alone["ridge_height"].item() > 0
+    assert np.isnan(alone["ridge_width"].item())
