@@ -39,7 +39,7 @@ CEILINGS = {
     "solver": 2300,
     "fit-method": 1360,
     "validation": 1050,
-    "performance": 850,
+    "performance": 870,
     "paper": 650,
     "compare": 520,
     "plugin": 1400,
