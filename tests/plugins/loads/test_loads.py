@@ -325,3 +325,19 @@ def test_a_narrow_period_and_a_single_cell_have_a_width_or_none() -> None:
     alone = solved({"type": "map", "values": [[-1.0]], "unit": "Pa"}, grid=cell)
     assert alone["ridge_height"].item() > 0
     assert np.isnan(alone["ridge_width"].item())
+
+
+def test_on_two_bodies_and_on_a_skin_stretched_more_one_way() -> None:
+    """Two equal bodies yield twice as much; the energy lies between those of both tensions."""
+    ring = {"type": "ring", "radius": RADIUS, "line_force": 1e-3, "width": 6e-5}
+    base: dict[str, Any] = {"grid": GRID | {"boundary": "periodic"}, "load": ring}
+
+    def solved(kernel: dict[str, Any]) -> Any:
+        return pl.run(pl.Run(**base, kernel=kernel), progress=False).dataset.isel(step=0)
+
+    one, two = solved(SKIN), solved({"type": "pair", "first": SKIN, "second": SKIN})
+    np.testing.assert_allclose(two["displacement"], 2 * one["displacement"], rtol=1e-12)
+    tense = solved(SKIN | {"tension": 0.4})
+    both = solved(SKIN | {"tension": [0.1, 0.4]})
+    energies = [part["elastic_energy"].item() for part in (tense, both, one)]
+    assert energies == sorted(energies)

@@ -12,6 +12,7 @@ from pellicle.components import Load
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.load_step import Value
+from pellicle.surface import along_axes
 
 from . import AnyStep, Surroundings
 
@@ -49,6 +50,6 @@ def _limits(run: Run, load: Load, slope: float, deepest: float) -> Iterator[Cave
     if slope > _SMALL:
         yield Caveat(Status.STEEP_SURFACE, {"slope": slope, "most": _SMALL})
     q = 1e3 * np.pi / min(run.grid.spacing) * np.array([1.0, 10.0])
-    a, b = run.kernel.compliance(q) * q
+    a, b = along_axes(run.kernel.symbol, q) * q
     if load.has_line_without_width and b > _FALLS * a:
         yield Caveat(Status.LINE_OF_CELLS, {"width": run.grid.cell_size})
