@@ -40,19 +40,19 @@ def alike(
 ) -> list[tuple[Near, ...]]:
     """Return for each curve those that speak for it, the nearest first; none for these."""
     kinds: list[Hashable] = []
-    for source, row in zip(sources, rows, strict=True):
+    known = np.zeros(len(rows))
+    for i, (source, row) in enumerate(zip(sources, rows, strict=True)):
         curve = source.curve
         if isinstance(curve, PellicleError) or row.failure:
             kinds.append(row)
             continue
+        known[i] = _information(curve.force)
         of_instrument = curve.stiffness, curve.speed, curve.time is None, curve.is_depth
         kinds.append(kind_of(row.group, described(config.indenter_of(source)), *of_instrument))
-    found = []
-    for source, near in zip(sources, neighbours(kinds), strict=True):
-        known = [_information(sources[j]) for j in near]
-        own = _information(source) if near else 0.0
-        found.append(tuple(Near(j, own >= _LEAST * of) for j, of in zip(near, known, strict=True)))
-    return found
+    return [
+        tuple(Near(j, bool(own >= _LEAST * known[j])) for j in near)
+        for own, near in zip(known, neighbours(kinds), strict=True)
+    ]
 
 
 def beside(rows: Sequence[Row], near: Sequence[Near]) -> list[Neighbour]:
@@ -97,10 +97,7 @@ def neighbours(kinds: Sequence[Hashable]) -> list[list[int]]:
     return found
 
 
-def _information(source: Source) -> float:
+def _information(force: Array) -> float:
     """Return Σ (F/noise)² of the rows of a curve if all had the largest force F [N]."""
-    if isinstance(source.curve, PellicleError):
-        return 0.0
-    force: Array = source.curve.force
     noise = max(neighbour_noise(force).deviation, 1e-300)
     return float(force.size * (np.ptp(force) / noise) ** 2)
