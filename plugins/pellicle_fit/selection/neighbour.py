@@ -12,6 +12,8 @@ from pellicle_fit.estimation.candidate import Candidate, Types
 from pellicle_fit.estimation.coordinates import CONTACT_POINT, MODULUS
 from pellicle_fit.estimation.objective import Objective
 
+from .verdict import Verdict
+
 RULED_OUT = 40.0
 """ΔAIC to the best beyond which an explanation is not compared on curves alike."""
 
@@ -20,7 +22,7 @@ class Neighbour(NamedTuple):
     """A curve like another, of which all explanations were compared."""
 
     is_described: bool
-    """Whether its residuals pass their checks."""
+    """Whether a model describes it."""
     tied: frozenset[Types]
     """What could not be told from the chosen explanation, itself included."""
     ruled_out: frozenset[Types]
@@ -31,9 +33,8 @@ class Neighbour(NamedTuple):
     def of_dict(cls, fit: Mapping[str, Any]) -> Neighbour:
         """Return the neighbour that the JSON data of a fit of one curve describe."""
         explanations = {frozenset(one["effects"]): one for one in fit["explanations"]}
-        (curve,) = fit["curves"]
         return cls(
-            not curve["failed_checks"],
+            fit["verdict"] != Verdict.UNDESCRIBED.value,
             frozenset(types for types, one in explanations.items() if one["tied"]),
             frozenset(t for t, one in explanations.items() if one["delta_aic"] > RULED_OUT),
             {

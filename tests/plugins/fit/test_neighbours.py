@@ -11,7 +11,7 @@ import xarray as xr
 
 import pellicle as pl
 from pellicle_fit.alike import kind_of, neighbours
-from pellicle_fit.selection.neighbour import RULED_OUT
+from pellicle_fit.selection.neighbour import RULED_OUT, Neighbour
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 
 COUNT, OTHER = 18, 6
@@ -97,3 +97,12 @@ def test_what_makes_a_kind() -> None:
     assert kind_of("", bead, 0.05) != kind_of("", bead | {"radius": 50e-6}, 0.05)
     assert kind_of("", bead, 0.05) != kind_of("", bead, None)
     assert kind_of("", bead, 0.05) != kind_of("day", bead, 0.05)
+
+
+def test_noise_alone_makes_no_curve_another() -> None:
+    """A check that fails by the noise alone contradicts no model, so that the curve speaks."""
+    plain = {"effects": [], "delta_aic": 0.0, "tied": True, "parameters": {}}
+    fit = {"verdict": "no sign", "explanations": [plain]}
+    fit["curves"] = [{"failed_checks": [{"code": "slow"}]}]
+    assert Neighbour.of_dict(fit).has(frozenset(), is_described=True)
+    assert not Neighbour.of_dict(fit | {"verdict": "no model describes"}).has(frozenset(), True)
