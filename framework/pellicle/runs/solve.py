@@ -36,7 +36,7 @@ class Physics:
     """The physics of the load steps of a run besides their equilibrium, made once."""
 
     def __init__(self, run: Run, setting: Setting) -> None:
-        self.history = Relaxation(run) if run.branches else None
+        self.history = Relaxation(run, setting.operator) if run.branches else None
         # Their measures are columns of a result in this order.
         named: dict[Callable[[Run, ContactStep, Surroundings], ContactStep], object] = {
             contact: True,
