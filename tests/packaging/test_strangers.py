@@ -48,6 +48,7 @@ from pellicle.testing import check_kernel
 gel = pl.kernel("gel", reduced_modulus="10 kPa", time="1 s")
 check_kernel(gel)
 check_kernel(pl.kernel("coated", tension="50 mN/m", substrate=gel))
+check_kernel(pl.kernel("sponge", reduced_modulus="10 kPa", diffusivity="1e-9 m^2/s"))
 """,
     "output": """
 from pellicle.testing import check_output

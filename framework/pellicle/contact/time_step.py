@@ -41,6 +41,15 @@ def depend_on_wave(branches: Iterable[Branch]) -> bool:
     return any(callable(branch.time) for branch in branches)
 
 
+def relax_alike(first: Sequence[Branch], second: Sequence[Branch]) -> bool:
+    """Return whether two solids have the same branches, as far as times at some waves tell."""
+    q = np.geomspace(1e-3, 1e12, 31)
+    return len(first) == len(second) and all(
+        b.share == o.share and np.array_equal(b.time_at(q), o.time_at(q))
+        for b, o in zip(first, second, strict=True)
+    )
+
+
 def permanent_share(branches: Iterable[Branch]) -> float:
     """Return the share of the instantaneous stiffness that never relaxes; 0 of a liquid."""
     return max(0.0, 1.0 - math.fsum(branch.share for branch in branches))

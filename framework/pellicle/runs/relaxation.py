@@ -18,7 +18,7 @@ import scipy.fft
 from pellicle.arrays import Array
 from pellicle.checks import errors_attributed_to
 from pellicle.components import Kernel, Setting
-from pellicle.components.kernel import instantaneous
+from pellicle.components.kernel import branches_of, instantaneous
 from pellicle.config.run import Run
 from pellicle.contact.load_step import FinishedStep
 from pellicle.contact.time_step import History, TimeStep, depend_on_wave
@@ -72,7 +72,8 @@ def history_arrays(run: Run) -> float:
 
     The displacement that is left and the profile that it displaces are part of it.
     """
-    return _kind_of(run).arrays(run) if run.branches else 0.0
+    with errors_attributed_to(run.kernel):
+        return _kind_of(run).arrays(run) if run.branches else 0.0
 
 
 def _kind_of(run: Run) -> type[_Cells | _Waves | _Pressures]:
@@ -190,7 +191,7 @@ def _rounded(duration: float) -> float:
 
 def stiffened(kernel: Kernel, duration: float) -> Kernel:
     """Return the elastic kernel of a step of ``duration`` [s]: γ times the solid under its skin."""
-    branches = kernel.branches()
+    branches = branches_of(kernel)
     if depend_on_wave(branches):
         return kernel.scaled(lambda q: TimeStep.of(branches, duration, q).stiffness)
     return kernel.scaled(float(TimeStep.of(branches, duration).stiffness))
@@ -204,7 +205,7 @@ def responses(
     It is of shape (sources, q): by a unit pressure at each of the steps ``sources``, and by none at
     any other.
     """
-    branches = kernel.branches()
+    branches = branches_of(kernel)
     solid, whole = kernel.without_skin().compliance(q), kernel.compliance(q)
     history = History.at_rest(branches, (len(sources), q.size))
     for index, duration in enumerate(durations):

@@ -31,6 +31,8 @@ _PER_DECADE: Final = 32
 # Waves beyond the longest and the shortest of a grid, where functions are taken to be constant.
 _LONGER: Final = 1e8
 _SHORTER: Final = 1e4
+# The span of log q over the length of it on which functions become constant.
+_SOFTNESS: Final = 128.0
 
 
 def sampled_waves(grid: Grid) -> Array:
@@ -78,8 +80,9 @@ class _Weighted:
     def symbol(self, qx: Array, qy: Array) -> Array:
         # Smoothly constant beyond the samples; a kink would be seen far around a point force.
         first, last = self.function.t[0], self.function.t[-1]
-        log_q = np.log(np.hypot(qx, qy))
-        log_q = last - np.logaddexp(0.0, last - first - np.logaddexp(0.0, log_q - first))
+        width = (last - first) / _SOFTNESS
+        above = np.logaddexp(0.0, (np.log(np.hypot(qx, qy)) - first) / width)
+        log_q = last - width * np.logaddexp(0.0, _SOFTNESS - above)
         weighted: Array = self.kernel.symbol(qx, qy) * (
             1 + self.function(log_q) / (2 * self.largest)
         )

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Annotated, Final, Literal, Self
 
 import numpy as np
@@ -29,20 +28,6 @@ _FITTED: Final = (1e-6, 40.0)
 _SAMPLES: Final = 300
 # Weight of the sum of the shares, which is exact, beside those of the samples.
 _EXACT: Final = 1e3
-
-
-@dataclass(frozen=True)
-class DrainingTime:
-    """The time 1/(D r q²) [s] of a wave q [rad/m]; a uniform pressure never drains."""
-
-    rate: float
-    """D r [m²/s]."""
-
-    def __call__(self, q: Array) -> Array:
-        """Return the time of each wave, ∞ at q = 0."""
-        with np.errstate(divide="ignore"):
-            times: Array = 1 / (self.rate * q**2)
-        return times
 
 
 class Poroelastic(Isotropic):
@@ -144,7 +129,7 @@ class Poroelastic(Isotropic):
     def branches(self) -> tuple[Branch, ...]:
         """Return shares of the stiffness 2Gq (1 − ψ(Dq²t)/η), and their times 1/(Dq²r)."""
         return tuple(
-            Branch(share / self.drainage_ratio, DrainingTime(self.diffusion * rate))
+            Branch(share / self.drainage_ratio, partial(draining_time, self.diffusion * rate))
             for share, rate in zip(*draining_series(self.surface), strict=True)
         )
 
@@ -164,6 +149,13 @@ class Poroelastic(Isotropic):
                 "diffusivity alone, or both permeability and viscosity"
             )
         return self
+
+
+def draining_time(rate: float, q: Array) -> Array:
+    """Return the time 1/(D r q²) [s] of waves, of a ``rate`` D r [m²/s]; ∞ at q = 0."""
+    with np.errstate(divide="ignore"):
+        times: Array = 1 / (rate * q**2)
+    return times
 
 
 def drained_open(theta: Array) -> Array:

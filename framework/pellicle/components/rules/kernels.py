@@ -9,6 +9,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.checks import read_only
 from pellicle.components.kernel import Kernel, branches_of
+from pellicle.contact.time_step import relax_alike
 from pellicle.errors import shown
 from pellicle.grid import Grid
 from pellicle.surface.from_kernel import (
@@ -136,7 +137,8 @@ def branches_have_shares_and_times(kernel: Kernel, case: Case) -> str:
     """
     q = _waves(case.grid)
     for branch in branches_of(kernel):
-        times = np.asarray(branch.time_at(read_only(q.copy())))
+        with np.errstate(all="ignore"):
+            times = np.asarray(branch.time_at(read_only(q.copy())))
         wrong = times.shape not in ((), q.shape) or not (np.isfinite(times) & (times > 0)).all()
         if wrong:
             return f"the time of a branch is {shown(times.tolist())} s at q = {shown(q.tolist())}"
@@ -179,7 +181,7 @@ def scaled_stiffens_the_solid_alone(kernel: Kernel, case: Case) -> str:
 def without_skin_has_no_skin(kernel: Kernel, case: Case) -> str:
     """The solid without its skin relaxes as the kernel does, and has no skin to take off."""
     solid, waves = kernel.without_skin(), _vectors(kernel, _waves(case.grid))
-    if branches_of(solid) != branches_of(kernel):
+    if not relax_alike(branches_of(solid), branches_of(kernel)):
         wrong = "relaxes as another kernel does" if branches_of(solid) else "does not relax"
         return f"without_skin() {wrong}"
     return difference(
