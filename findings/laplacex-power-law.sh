@@ -4,9 +4,8 @@
 #   depend on the other times that are asked for.
 # Version: LaplaceX 1.2.0
 # Behaviour: its 64 terms are products of exponentials and polynomials, with a scale chosen for the
-#   times of the call. A power law is 6 to 14 % low at 0.1 and 1 and twice as high as it should be at
-#   10; asked alone, the value at 1 is twice the true one, too, as is any time asked alone. No
-#   warning says so.
+#   times of the call. A power law is 14 and 6 % low at 0.1 and 1 and twice the true one at 10; any
+#   time that is asked for alone is twice the true one, too. No warning says so.
 # Output seen: found over true at 0.1, 1, 10: exponential 1.000 1.000 1.000, power law 0.856 0.935
 #   2.054; at 1 alone 2.054
 set -euo pipefail
