@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Guess: export_data of spm-tools writes heights to a .gsf (Gwyddion Simple Field) that other
 #   programs read back, with the size of the image.
-# Version: spm-tools 0.1.1, gsffile 0.5.5, gwyddionpy 0.1.0 (reads with Gwyddion)
+# Version: spm-tools 0.1.1 (for Python 3.11 and 3.12, as it needs numpy 1), gsffile 0.5.5,
+#   gwyddionpy 0.1.0 (reads with Gwyddion)
 # Behaviour: the format holds single precision; doubles, numpy's usual heights, are written as they
 #   are, and neither Gwyddion nor gsffile reads the file. Singles are read, but the size along n
 #   points is n - 1/n steps, not n.
