@@ -44,7 +44,7 @@ CEILINGS = {
     "paper": 650,
     "compare": 520,
     "plugin": 1400,
-    "families": 1725,
+    "families": 1745,
     "architecture": 820,
     "decisions": 1500,
     "run-file": 150,
