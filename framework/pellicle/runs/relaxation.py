@@ -26,10 +26,10 @@ from pellicle.grid import Grid
 from pellicle.surface import Operator, operator_of
 from pellicle.surface.few_waves import FewWaves, Span, sampled_waves
 
-# Lengths of steps whose operators are kept on a periodic boundary, and the size of one in arrays of
-# the grid's shape.
+# Lengths of steps whose operators are kept on a periodic boundary, and the size of what is kept of
+# one in arrays of the grid's shape.
 _KEPT: Final = 4
-_OF_LENGTH: Final = 0.65
+_OF_LENGTH: Final = 1.15
 # Arrays of a few waves on a free boundary: those of one on all grids, and of their sum.
 _OF_WAVE: Final = 4.3
 _OF_SUM: Final = 9.0
@@ -121,29 +121,32 @@ class _Waves:
         self._solid = operator_of(run.kernel.without_skin(), run.grid).factors
         self._q = np.hypot(*run.grid.wavenumbers())
         self._history, self._done = History.at_rest(run.branches, self._q.shape, complex), 0
-        self._stiffened = lru_cache(_KEPT)(self._make)
+        self._step = self._step_at(0)
+        self._of_length = lru_cache(_KEPT)(self._make)
 
     def step(self, path: Sequence[FinishedStep]) -> tuple[Operator, Array]:
-        for index, finished in enumerate(path[self._done :], self._done):
+        for finished in path[self._done :]:
             waves = scipy.fft.rfft2(finished.displacement)
-            self._history = self._history.after(self._step(index), waves)
-        self._done = len(path)
-        duration = _rounded(self._run.loading.durations[self._done])
-        operator = self._stiffened(duration) if duration else self._operator
-        # A mean that is not displaced has a compliance of 0.
-        carried = np.divide(
-            operator.factors, self._solid, out=np.zeros_like(self._solid), where=self._solid > 0
-        )
-        left = scipy.fft.irfft2(
-            -carried * self._history.residual(self._step(self._done)), self._run.grid.shape
-        )
-        return operator, left
+            self._history = self._history.after(self._step, waves)
+            self._done += 1
+            self._step = self._step_at(self._done)
+        operator, carried = self._of_length(_rounded(self._run.loading.durations[self._done]))
+        left = -carried * self._history.residual(self._step)
+        return operator, scipy.fft.irfft2(left, self._run.grid.shape)
 
-    def _step(self, index: int) -> TimeStep:
+    def _step_at(self, index: int) -> TimeStep:
         return TimeStep.of(self._run.branches, self._run.loading.durations[index], self._q)
 
-    def _make(self, duration: float) -> Operator:
-        return operator_of(stiffened(self._run.kernel, duration), self._run.grid)
+    def _make(self, duration: float) -> tuple[Operator, Array]:
+        """Return the operator of a step, and its factors over those of the solid at once."""
+        operator = self._operator
+        if duration:
+            operator = operator_of(stiffened(self._run.kernel, duration), self._run.grid)
+        # A mean that is not displaced has a compliance of 0.
+        nothing = np.zeros_like(self._solid)
+        return operator, np.divide(
+            operator.factors, self._solid, out=nothing, where=self._solid > 0
+        )
 
 
 class _Pressures:

@@ -8,7 +8,6 @@ QR factorisation of the span (Drmač & Gugercin 2016, SIAM J. Sci. Comput. 38, A
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final
@@ -102,14 +101,20 @@ class FewWaves:
 
     def interpolated(self, values: Array) -> Operator:
         """Return the operator of the function with these ``values`` at the waves, over G there."""
-        return weighted_sum(self._operators, [*self._weights(values[:, None])[:, 0]])
+        return weighted_sum(self._operators, [*self._weights(values)])
 
     def displacement(self, pressures: Array) -> Array:
-        """Return the displacement [m] by all waves, of shape (waves, nx, ny) as their pressures.
+        """Return the sum of the displacements [m] that the functions ℓ_b G make of ``pressures``.
 
-        The pressure [Pa] of a wave counts as much as f(q_b)/G(q_b) does.
+        These are pressures [Pa] times f(q_b)/G(q_b), of shape (waves, nx, ny).
         """
-        return sum_of_applications(self._operators, self._weights(pressures))
+        (nx, ny), padded = self._operators[0].grid.shape, self._operators[0].padded
+        total: Array | float = 0.0
+        for operator, field in zip(self._operators, self._weights(pressures), strict=True):
+            total = total + scipy.fft.rfft2(field, padded) * operator.factors
+        # One transform back for all waves.
+        displacement: Array = scipy.fft.irfft2(total, padded)[:nx, :ny]
+        return displacement
 
     @property
     def applications(self) -> int:
@@ -118,15 +123,5 @@ class FewWaves:
 
     def _weights(self, values: Array) -> Array:
         """Return what each operator counts, that of G first."""
-        weights = np.tensordot(np.diag(self._factors), values, axes=1)
+        weights = (values.T * self._factors).T
         return np.concatenate([-weights.sum(axis=0, keepdims=True), weights])
-
-
-def sum_of_applications(operators: Sequence[Operator], fields: Array) -> Array:
-    """Return the sum of what each operator makes of its field, by one transform back."""
-    (nx, ny), padded = operators[0].grid.shape, operators[0].padded
-    total: Array | float = 0.0
-    for operator, field in zip(operators, fields, strict=True):
-        total = total + scipy.fft.rfft2(field, padded) * operator.factors
-    summed: Array = scipy.fft.irfft2(total, padded)[:nx, :ny]
-    return summed

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from functools import lru_cache, partial
 from typing import Annotated, Final, Literal, Self
 
@@ -158,24 +157,12 @@ def draining_time(rate: float, q: Array) -> Array:
     return times
 
 
-def drained_open(theta: Array) -> Array:
-    """Return ψ(θ) of an open surface, which grows from 0 to ½ with θ = Dq²t."""
-    root = np.sqrt(theta)
-    psi: Array = erf(root) / 2 - theta * erfc(root) + root / math.sqrt(math.pi) * np.exp(-theta)
+def drained_part(surface: Surface, theta: Array) -> Array:
+    """Return ψ(θ), which grows from 0 to ½ with θ = Dq²t; of a sealed surface it is ∫ erfc √θ."""
+    root, sign = np.sqrt(theta), 1 if surface == "open" else -1
+    flow = root / math.sqrt(math.pi) * np.exp(-theta) - theta * erfc(root)
+    psi: Array = erf(root) / 2 + sign * flow
     return psi
-
-
-def drained_sealed(theta: Array) -> Array:
-    """Return ψ(θ) of a sealed surface, the integral of erfc √θ."""
-    root = np.sqrt(theta)
-    psi: Array = erf(root) / 2 + theta * erfc(root) - root / math.sqrt(math.pi) * np.exp(-theta)
-    return psi
-
-
-_DRAINED: Final[dict[Surface, Callable[[Array], Array]]] = {
-    "open": drained_open,
-    "sealed": drained_sealed,
-}
 
 
 @lru_cache
@@ -193,7 +180,7 @@ def draining_series(surface: Surface) -> tuple[tuple[float, ...], tuple[float, .
     rates = 1 + np.exp(2 * np.linspace(first, last, number))
     theta = np.geomspace(*_FITTED, _SAMPLES)
     terms = np.vstack([-np.expm1(-theta[:, None] * rates), np.full((1, number), _EXACT)])
-    values = np.append(_DRAINED[surface](theta), _EXACT / 2)
+    values = np.append(drained_part(surface, theta), _EXACT / 2)
     shares = lsq_linear(terms, values, (0.0, np.inf), method="bvls", tol=1e-13).x
     shares *= 0.5 / shares.sum()
     kept = shares > 0

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from functools import partial
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -11,10 +12,12 @@ from scipy.integrate import quad
 
 import pellicle as pl
 from pellicle.arrays import Array
-from pellicle.contact.time_step import permanent_share, relax_alike
-from pellicle_plugins.kernels.poroelastic import drained_open, drained_sealed, draining_series
+from pellicle.components import Branch, OfWave, relax_alike
+from pellicle.components.rules import Case
+from pellicle.components.rules.kernels import branches_have_shares_and_times
+from pellicle.contact.time_step import permanent_share
+from pellicle_plugins.kernels.poroelastic import Poroelastic, drained_part, draining_series
 
-PSI = {"open": drained_open, "sealed": drained_sealed}
 SURFACES = ["open", "sealed"]
 
 
@@ -123,9 +126,9 @@ def test_stiffness_is_that_of_biots_equations(
 
 
 @pytest.mark.parametrize("surface", SURFACES)
-def test_psi_is_the_transform_of_the_stiffness(surface: str) -> None:
+def test_psi_is_the_transform_of_the_stiffness(surface: Any) -> None:
     """σ ∫ ψ(θ) e^(−σθ) dθ is the share of the stiffness that has drained, with m/q = √(1 + σ)."""
-    psi: Any = PSI[surface]
+    psi: Any = partial(drained_part, surface)
     for sigma in (1e-3, 0.3, 2.0, 100.0):
         value, _ = quad(lambda y, s=sigma: psi(y**2 / s) * 2 * y * math.exp(-(y**2)), 0, 8)
         assert value == pytest.approx(drained_share(surface, math.sqrt(1 + sigma)), rel=1e-8)
@@ -140,7 +143,7 @@ def test_series(surface: Any, error: float) -> None:
     for span, most in (((1e-6, 1e3), error), ((1e-12, 1e-6), 3e-4)):
         theta = np.geomspace(*span, 2000)
         series = -np.expm1(-theta[:, None] * rates) @ shares
-        assert np.abs(series - PSI[surface](theta)).max() < most
+        assert np.abs(series - drained_part(surface, theta)).max() < most
 
 
 @pytest.mark.parametrize("surface", SURFACES)
@@ -205,3 +208,19 @@ def test_two_bodies_that_drain_alike() -> None:
     assert relax_alike(both.branches(), gel().branches())
     with pytest.raises(pl.ConfigError, match="relax differently"):
         pl.kernel("pair", first=one, second={**one, "diffusivity": 0.6})
+
+
+@pytest.mark.parametrize("time", [lambda q: q[:1], lambda q: -q, lambda q: q + np.inf])
+def test_the_kit_asks_for_the_times_of_waves(time: OfWave) -> None:
+    """Each has to be positive and finite, and of the shape of q."""
+
+    class Wrong(Poroelastic):
+        type: Literal["wrong"] = "wrong"  # type: ignore[assignment]
+
+        def branches(self) -> tuple[Branch, ...]:
+            return (Branch(0.3, time),)
+
+    kernel = Wrong(shear_modulus=1.0, poissons_ratio=0.0, diffusivity=1.0)
+    case = Case(pl.Grid(points=8, size=1.0), kernel)
+    assert "the time of a branch is" in branches_have_shares_and_times(kernel, case)
+    assert not branches_have_shares_and_times(gel(), case)
