@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from pellicle.analysis.steepness import steepest
+from pellicle.analysis import steepest
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import AdhesiveEquilibrium, Equilibrium
