@@ -307,9 +307,10 @@ class Run(FromFile):
     @property
     def steps(self) -> int:
         """The number of load steps; of a load that of its path or its times, or 1."""
-        if self.load is None:
-            return len(self.indentation.loading.values)
-        return len(self.load.varied.values if self.load.varied else self.loading.times or (0.0,))
+        if isinstance(self.loading, Loading):
+            return len(self.loading.values)
+        path = self.load.varied if self.load else None
+        return len(path.values if path else self.loading.times or (0.0,))
 
     @property
     def variables(self) -> list[Variable]:
@@ -330,7 +331,8 @@ class Run(FromFile):
             type_ = correction.type_name
             area = corrected_area(type_, words_of_type(type(correction), type_))
             listed += [area, corrected_fraction(area)]
-        listed += [variable for variable in derivatives_of(self) if variable.kind != "field"]
+        if self.gradient:
+            listed += [variable for variable in derivatives_of(self) if variable.kind != "field"]
         return [variable for variable in listed if variable.type != "text"]
 
     @property

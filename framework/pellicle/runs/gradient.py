@@ -71,7 +71,7 @@ def gradient(result: Result, *, by: str | Sequence[str]) -> xr.Dataset:
                 equilibrium = AdhesiveEquilibrium(problem, pressure, wall)
             caveats = tuple(from_text(row[CAVEATS].item()))
             step = LoadStep(equilibrium, 0, Stop.DONE, caveats=caveats)
-            step = differentiated.add(run, step, Surroundings(setting, (), lambda *_: None))
+            step = differentiated.add(run, step, Surroundings((), lambda *_: None))
             for name, entry in {**step.measures, **step.fields}.items():
                 columns.setdefault(name, []).append(entry)
     described = {v.name: v.attributes for v in derivatives_of(run)}

@@ -50,6 +50,9 @@ def memory_of(run: Run) -> float:
         stiffnesses = {rounded_stiffness(step) for step in steps}
         history += 1 + min(KEPT, len(stiffnesses)) * _PAIR[grid.boundary]
     kept = (_STEP + _SERIALISED) * (run.steps - 1)
+    if run.load and run.load.varied:
+        # The tractions of all steps but the first, which has the place of an indenter.
+        kept += run.steps - 1
     for path in run.gradient or ():
         # Two fields of each step, or the derivative of the operator.
         kept += 4.0 * run.steps if path == HEIGHTS else operator

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 
@@ -15,11 +15,13 @@ from pellicle.checks import errors_attributed_to
 from pellicle.components import Kernel, Setting
 from pellicle.config.run import Run
 from pellicle.contact.load_step import FinishedStep
+from pellicle.contact.problem import Traction
 from pellicle.contact.time_step import History, TimeStep
 from pellicle.grid import Grid
 from pellicle.surface import HasSymbol, mean_compliance
 from pellicle.surface.plane import PlaneOperator
 
+Composed = TypeVar("Composed", Setting, Traction)
 KEPT: Final = 4
 """Number of stiffnesses γ for which `skin_operators` are kept."""
 # Equal steps whose times differ by rounding share their operators.
@@ -50,7 +52,7 @@ class Relaxation:
         """Operator applications of the last `setting` to bring the history forward by one step."""
         return 2 if self._skin and self._done else 0
 
-    def setting(self, setting: Setting, path: Sequence[FinishedStep]) -> Setting:
+    def setting(self, setting: Composed, path: Sequence[FinishedStep]) -> Composed:
         """Return the setting of the step after those of a path; each of them is taken once.
 
         Its operator is that of a solid γ times as stiff, its surface is displaced by what the steps
