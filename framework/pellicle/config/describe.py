@@ -129,7 +129,7 @@ def _table(
 ) -> Iterator[FieldRow]:
     """Yield the row of the table of a component or of another part of the run, and those in it."""
     model = model_in(info.annotation) if info else None
-    fields = model.model_fields if model else {}
+    fields: Mapping[str, FieldInfo] = model.model_fields if model else {}
     if steps := _load_steps(info):
         kinds = legs_with(steps.quantity).items()
         fields = next((kind.model_fields for key, kind in kinds if key in table), {})
