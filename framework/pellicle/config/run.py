@@ -6,12 +6,9 @@ give the same `Run`.
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
-from collections.abc import Iterable, Mapping
-from functools import cache, cached_property
-from pathlib import Path
+from collections.abc import Mapping
+from functools import cached_property
 from typing import Annotated, Any, NamedTuple, Self
 
 import numpy as np
@@ -28,7 +25,6 @@ from pellicle.checks import errors_attributed_to
 from pellicle.components import (
     AreaCorrection,
     Branch,
-    Component,
     FromRegistry,
     Indenter,
     Interaction,
@@ -40,11 +36,9 @@ from pellicle.components import (
 from pellicle.components.installed import registry
 from pellicle.components.kernel import branches_of
 from pellicle.errors import ConfigError, all_problems, problems_within, shown
-from pellicle.files import is_file
 from pellicle.grid import Grid, grid_of_run
 from pellicle.plugins.component import words_of_type
 from pellicle.schema.from_file import FromFile
-from pellicle.schema.model import get, replaced, walk
 from pellicle.surface import along_axes
 from pellicle.variables import (
     OF_LOAD,
@@ -58,11 +52,10 @@ from pellicle.variables import (
 from .file_names import refuse_shared_files
 from .gradient import derivatives_of, refuse_undefined
 from .loading import Loading, Times, check_times, fields_from, times_from
+from .provenance import identity_of
 
 DEFAULT_SOLVER = "active_set"
 _MISSING = "is missing; give it: {}"
-# Increment if an equal configuration gives different numbers, not if the file layout changes.
-_NUMBERS_VERSION = 1
 # Length 2τ₀/E* of the instantaneous solid, in cells, from which on the pull-off force of an
 # interaction without a range changes by less than 2 % if the cells are halved.
 _TENSED_CELLS = 3.0
@@ -346,36 +339,5 @@ class Run(FromFile):
 
     @property
     def identity(self) -> str:
-        """Hash of everything on which the numbers of the result depend.
-
-        It covers the configuration with its defaults, without `title` and `outputs`; input files
-        enter by their content, components of other packages also by the version of the package.
-        """
-        identifying = self.model_dump(
-            mode="json", exclude_none=True, exclude={"title", "outputs"}
-        ) | {"schema": _NUMBERS_VERSION}
-        used: set[type[Component]] = set()
-        if self.load is None:
-            used.add(type(self.indentation.loading.prescription))
-        for path, value, _ in walk(self):
-            if isinstance(value, Component) and not path.startswith("outputs."):
-                used.add(type(value))
-            if isinstance(value, Path) and isinstance(get(identifying, path), str):
-                stat = value.stat() if is_file(value) else None
-                content = stat and _digest(value.absolute(), stat.st_mtime_ns, stat.st_size)
-                identifying = replaced(identifying, path, content or str(value))
-        versions = registry().versions(used)
-        if others := {name: number for name, number in versions.items() if name != "pellicle"}:
-            identifying["plugins"] = others
-        return hashlib.sha256(json.dumps(identifying, sort_keys=True).encode()).hexdigest()
-
-
-def components_in(parts: Iterable[object]) -> list[Component]:
-    """Return the components in parts of a configuration, those inside others too."""
-    return [value for _, value, _ in walk([*parts]) if isinstance(value, Component)]
-
-
-@cache
-def _digest(path: Path, changed: int, size: int) -> str:
-    """Return the hash of a file, cached because the runs of a study may share a large file."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+        """Hash of everything on which the numbers of the result depend; see `identity_of`."""
+        return identity_of(self)

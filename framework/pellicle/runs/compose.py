@@ -18,11 +18,12 @@ from pellicle.components.installed import registry
 from pellicle.components.interaction import law_of
 from pellicle.components.kernel import instantaneous
 from pellicle.components.rules import CHEAP, Case, first_violation
-from pellicle.config.run import Run, components_in
+from pellicle.config.run import Run
 from pellicle.contact.problem import Traction
 from pellicle.contact.time_step import stiffness_after
 from pellicle.errors import ConfigError, PluginError
 from pellicle.grid import Grid
+from pellicle.plugins.component import components_in
 from pellicle.surface.from_kernel import operator_of
 from pellicle.surface.influence import warn_of_cells
 from pellicle.surface.operators import Operator, along_axes
