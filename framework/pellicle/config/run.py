@@ -6,6 +6,7 @@ give the same `Run`.
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping
 from functools import cached_property
@@ -49,6 +50,7 @@ from pellicle.variables import (
     corrected_fraction,
 )
 
+from .describe import inputs, table_of
 from .file_names import refuse_shared_files
 from .gradient import derivatives_of, refuse_undefined
 from .loading import Loading, Times, check_times, fields_from, times_from
@@ -270,9 +272,12 @@ class Run(FromFile):
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: every value with its unit and meaning."""
-        from pellicle.show.notebook import of_run
+        from pellicle.show.notebook import summary
 
-        return of_run(self)
+        values = list(inputs(json.loads(self.to_json()), Run))
+        types = {row.name: row.value for row in values}
+        sentence = f"{types.get('indenter') or types['load']} on {types['kernel']}"
+        return summary(self.title or "Run", sentence, table_of(values))
 
     @cached_property
     def branches(self) -> tuple[Branch, ...]:

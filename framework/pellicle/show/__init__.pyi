@@ -12,6 +12,7 @@ from .fields import default_step as default_step
 from .fields import up_to_rim as up_to_rim
 from .fields import with_rim as with_rim
 from .fields import without_round_off as without_round_off
+from .figures import figures as figures
 from .html import Block as Block
 from .html import Code as Code
 from .html import Notice as Notice
@@ -28,7 +29,6 @@ from .methods import methods as methods
 from .notebook import summary as summary
 from .numbers import write_csv as write_csv
 from .saving import figure_of as figure_of
-from .saving import figures as figures
 from .saving import png as png
 from .saving import save_figure as save_figure
 from .saving import save_pages as save_pages
