@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from numbers import Integral
 from typing import get_args
@@ -109,10 +110,23 @@ def traction_of(load: Load, grid: Grid) -> Array:
     return read_only(np.ascontiguousarray(traction))
 
 
-def check_value(prescription: Prescription, setting: Setting, value: float) -> None:
-    """Let a prescription check a prescribed value."""
+def check_values(
+    prescription: Prescription,
+    setting: Setting,
+    values: Iterable[float],
+    field_of: Callable[[int], str] = "{}".format,
+) -> None:
+    """Let a prescription check the values of load steps, whose fields ``field_of`` names.
+
+    An error that names a field already keeps that one.
+    """
     with errors_attributed_to(prescription):
-        prescription.check(setting, value)
+        for index, value in enumerate(values):
+            try:
+                prescription.check(setting, value)
+            except ConfigError as error:
+                named = any(problem.field for problem in error.problems)
+                raise (error if named else error.within(field_of(index))) from None
 
 
 def target_of(prescription: Prescription, setting: Setting, value: float) -> Depth | Force | Search:

@@ -181,8 +181,8 @@ class Loading(Options):
         return not all(math.isnan(sample.cycle) for sample in self.samples)
 
     def field_of(self, index: int) -> str:
-        """Return the dotted path of load step ``index``, counted from 0, or of its leg."""
-        return f"{self.prescribed}.{self.samples[index].leg if self.samples else index}"
+        """Return the dotted path in a run of load step ``index``, from 0, or of its leg."""
+        return f"loading.{self.prescribed}.{self.samples[index].leg if self.samples else index}"
 
     def refuse_pulls(self) -> None:
         """Refuse values that only an interaction allows, such as a force below 0."""

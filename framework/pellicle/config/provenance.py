@@ -24,11 +24,7 @@ _NUMBERS_VERSION: Final = 1
 
 
 def identity_of(run: Run) -> str:
-    """Return a hash of everything on which the numbers of the result depend.
-
-    It covers the configuration with its defaults, without `title` and `outputs`; input files enter
-    by their content, components of other packages also by the version of the package.
-    """
+    """Return `Run.identity`."""
     identifying = run.model_dump(mode="json", exclude_none=True, exclude={"title", "outputs"})
     identifying["schema"] = _NUMBERS_VERSION
     used = {*map(type, components_in([getattr(run.loading, "prescription", None)]))}

@@ -41,14 +41,7 @@ from pellicle.grid import Grid, grid_of_run
 from pellicle.plugins.component import words_of_type
 from pellicle.schema.from_file import FromFile
 from pellicle.surface import along_axes
-from pellicle.variables import (
-    OF_LOAD,
-    OF_LOAD_ALONE,
-    VARIABLES,
-    Variable,
-    corrected_area,
-    corrected_fraction,
-)
+from pellicle.variables import OF_LOAD, VARIABLES, Variable, corrected_area, corrected_fraction
 
 from .describe import inputs, table_of
 from .file_names import refuse_shared_files
@@ -209,7 +202,7 @@ class Run(FromFile):
                 "begins at 0, which is not the value before the indenter presses, and the solid or "
                 "the interaction remembers the way; begin with a jump to a first value, "
                 '{ to, time = "0 s", num = 1 }',
-                f"loading.{loading.field_of(0)}",
+                loading.field_of(0),
             )
         return self
 
@@ -335,14 +328,16 @@ class Run(FromFile):
 
     @property
     def _variables_of_load(self) -> list[Variable]:
-        names = *OF_LOAD, *["time"] * (self.loading.times is not None)
-        described = {variable.name: variable for variable in OF_LOAD_ALONE}
-        listed = [described.get(name, VARIABLES[name]) for name in names]
         path = self.load.varied if self.load else None
-        known = [variable for variable in listed if variable.type != "text"]
-        return [*([path.variable] if path else []), *known]
+        listed = [path.variable] if path else []
+        listed += [*OF_LOAD, *[VARIABLES["time"]] * (self.loading.times is not None)]
+        return [variable for variable in listed if variable.type != "text"]
 
     @property
     def identity(self) -> str:
-        """Hash of everything on which the numbers of the result depend; see `identity_of`."""
+        """Hash of everything on which the numbers of the result depend.
+
+        It covers the configuration with its defaults, without `title` and `outputs`; input files
+        enter by their content, components of other packages also by the version of the package.
+        """
         return identity_of(self)

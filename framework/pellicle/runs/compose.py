@@ -13,7 +13,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to
 from pellicle.components import Component, Force, Load, Search, Setting
-from pellicle.components.calls import check_solver, check_value, profile_of, target_of, traction_of
+from pellicle.components.calls import check_solver, check_values, profile_of, target_of, traction_of
 from pellicle.components.installed import registry
 from pellicle.components.interaction import law_of
 from pellicle.components.kernel import instantaneous
@@ -47,19 +47,14 @@ def compose(run: Run) -> Setting:
     if run.interaction:
         setting = replace(setting, law=law_of(run.interaction, run.kernel, run.grid))
         check_solver(run.solver, setting.problem(Force(0.0)))
-    prescription = loading.prescription
-    for index, value in enumerate(loading.values):
-        try:
-            check_value(prescription, setting, value)
-        except ConfigError as error:
-            named = any(problem.field for problem in error.problems)
-            raise (error if named else error.within(f"loading.{loading.field_of(index)}")) from None
-        target = target_of(prescription, setting, value) if run.interaction else None
+    check_values(loading.prescription, setting, loading.values, loading.field_of)
+    for index, value in enumerate(loading.values if run.interaction else ()):
+        target = target_of(loading.prescription, setting, value)
         if isinstance(target, Search) and target.control is Force:
             raise ConfigError(
                 "is searched by force, along which a contact that sticks jumps; prescribe depth or "
                 "base_displacement where there is an interaction",
-                f"loading.{loading.field_of(index)}",
+                loading.field_of(index),
             )
     return setting
 

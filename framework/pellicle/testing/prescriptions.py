@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from pellicle.components import Force, Prescription, Search, Setting, Solver
-from pellicle.components.calls import check_value, report_of, target_of
+from pellicle.components.calls import check_values, report_of, target_of
 from pellicle.config.run import Run
 from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.load_step import LoadStep
@@ -82,7 +82,7 @@ def target_is_pure(prescription: Prescription, values: Sequence[float]) -> None:
     """target() returns a Depth, Force or Search of finite numbers, the same in a second call."""
     setting, _, _ = _reference_steps()
     for value in _values(prescription, values):
-        check_value(prescription, setting, value)
+        check_values(prescription, setting, [value])
         members = (vars(target_of(prescription, setting, value)).items() for _ in range(2))
         first, second = ({k: v for k, v in target if k != "measure"} for target in members)
         require(first == second, f"{second} after {first}")
@@ -93,7 +93,7 @@ def values_are_refused_in_words(prescription: Prescription, values: Sequence[flo
     setting, _, _ = _reference_steps()
     for value in (0.0, 1e12 * max(map(abs, _values(prescription, values)))):
         try:
-            check_value(prescription, setting, value)
+            check_values(prescription, setting, [value])
         except ConfigError:
             continue
         target_of(prescription, setting, value)
