@@ -33,7 +33,7 @@ class Coordinate(NamedTuple):
 def coordinate(key: str, given: Values, runs: Sequence[Run]) -> Coordinate:
     """Return the values that ``runs`` hold of the parameter ``key``, ``given`` by the user."""
     values = [_single(get(run, key), value) for run, value in zip(runs, given, strict=True)]
-    words = words_at(json.loads(runs[0].to_json()), Run, key)
+    words = words_at(runs[0].to_table(), Run, key)
     attributes = {"long_name": words, WORDS: words}
     roles = (role_of(field) for path, _, field in walk(runs[0]) if path == key and field)
     if role := next(roles, ""):
@@ -141,5 +141,5 @@ def short(value: object) -> str:
 
 def units_of(run: Run) -> dict[str, str]:
     """Return the SI unit of each field with one, by dotted path."""
-    rows = field_rows(Run.model_fields, json.loads(run.to_json()))
+    rows = field_rows(Run.model_fields, run.to_table())
     return {row.name: row.unit for row in rows if row.unit}

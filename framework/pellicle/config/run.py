@@ -6,7 +6,6 @@ give the same `Run`.
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
 from functools import cached_property
@@ -267,7 +266,7 @@ class Run(FromFile):
         """Return HTML for a notebook: every value with its unit and meaning."""
         from pellicle.show.notebook import summary
 
-        values = list(inputs(json.loads(self.to_json()), Run))
+        values = list(inputs(self.to_table(), Run))
         types = {row.name: row.value for row in values}
         sentence = f"{types.get('indenter') or types['load']} on {types['kernel']}"
         return summary(self.title or "Run", sentence, table_of(values))

@@ -103,7 +103,7 @@ class Study(FromFile):
         from pellicle.show.notebook import summary
 
         run = self.points[0].run
-        configuration = json.loads(run.to_json())
+        configuration = run.to_table()
         rows = [
             (words_at(configuration, Run, name), ", ".join(map(str, values)), name)
             for axes in self.dimensions.values()
@@ -194,7 +194,11 @@ class Study(FromFile):
             ) from None
 
     def to_json(self, *, portable: bool = False) -> str:
-        """Return the study as JSON in the form of a study file, with ranges written out as lists.
+        """Return the study as JSON; see `to_table`."""
+        return json.dumps(self.to_table(portable=portable), ensure_ascii=False)
+
+    def to_table(self, *, portable: bool = False) -> dict[str, Any]:
+        """Return the table of a study file, with ranges written out as lists.
 
         Values are kept as the user gave them; paths of input files are absolute unless
         ``portable``.
@@ -222,7 +226,7 @@ class Study(FromFile):
             for key, value in self.run.items()
         }
         given = {name: value for name, value in study.items() if value}
-        return json.dumps({**run, "study": given}, ensure_ascii=False)
+        return {**run, "study": given}
 
     def _check_axes(self) -> None:
         if not self._parameters:
