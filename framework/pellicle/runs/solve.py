@@ -49,7 +49,11 @@ def solve_steps(
     if run.gradient:
         # Those by heights are fields.
         variables += derivatives_of(run)
-    solve = _contacts(run, composed) if isinstance(composed, Setting) else _loads(run, composed)
+    history = Relaxation(run) if run.branches else None
+    if isinstance(composed, Setting):
+        solve = _contacts(run, composed, history)
+    else:
+        solve = _loads(run, composed, history)
     for index in range(len(steps), run.steps):
         around = Surroundings(steps.path, monitor_of(index))
         # Without a name for the solved step, only its copy in ``steps`` outlives the solve.
@@ -68,10 +72,11 @@ def _record(
     return step_dataset(grid, len(around.path) + 1, step, variables, seconds)
 
 
-def _contacts(run: Run, setting: Setting) -> Callable[[Surroundings], AnyStep]:
+def _contacts(
+    run: Run, setting: Setting, history: Relaxation | None
+) -> Callable[[Surroundings], AnyStep]:
     """Return a function that solves the step of a contact after those of a path."""
     loading, terms = run.indentation.loading, terms_of(run, setting)
-    history = Relaxation(run) if run.branches else None
 
     def solve(around: Surroundings) -> AnyStep:
         path = around.path
@@ -86,9 +91,10 @@ def _contacts(run: Run, setting: Setting) -> Callable[[Surroundings], AnyStep]:
     return solve
 
 
-def _loads(run: Run, posed: Sequence[Traction]) -> Callable[[Surroundings], AnyStep]:
+def _loads(
+    run: Run, posed: Sequence[Traction], history: Relaxation | None
+) -> Callable[[Surroundings], AnyStep]:
     """Return a function that deforms the surface in the step of a load after those of a path."""
-    history = Relaxation(run) if run.branches else None
 
     def solve(around: Surroundings) -> AnyStep:
         here = posed[len(around.path)]

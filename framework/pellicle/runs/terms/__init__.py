@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Final, TypeVar
 
 from pellicle.components import Monitor, Setting
 from pellicle.config.run import Run
 from pellicle.contact.equilibrium import Deformation, Equilibrium
 from pellicle.contact.load_step import FinishedStep, LoadStep
+
+SMALL_SLOPE: Final = 0.3
+"""Slope up to which the theory holds."""
 
 
 @dataclass(frozen=True)

@@ -15,13 +15,12 @@ from pellicle.contact.equilibrium import AdhesiveEquilibrium, Equilibrium
 from pellicle.contact.masks import labelled
 from pellicle.grid import Boundary
 
-from . import AroundContact, ContactStep
+from . import SMALL_SLOPE, AroundContact, ContactStep
 
 # The force of a paraboloid is right to 8 % on nine or twelve cells, to 14 % on five, on fewer not.
 _RESOLVED: Final = 13
 _RESOLVED_ACROSS: Final = 4
-# Slope up to which the theory holds, and beyond which a contact that does not stick is told.
-_SMALL: Final = 0.3
+# Slope beyond which a contact that does not stick is told.
 _STEEPEST: Final = 1.0
 # Relative change of G(q) q² over a decade below which it is the limit of short waves.
 _CONSTANT: Final = 0.05
@@ -124,5 +123,5 @@ def _steep(run: Run, equilibrium: Equilibrium) -> Iterator[Caveat]:
         if abs(b / a - 1) < _CONSTANT:
             slope = max(slope, float(np.sqrt(2 * equilibrium.problem.law.work_of_adhesion() * b)))
     # As it is told: an indenter of that very slope is not beyond it by rounding.
-    if slope > _SMALL if sticks else round(slope, 1) > _STEEPEST:
-        yield Caveat(Status.STEEP, {"slope": slope, "most": _SMALL})
+    if slope > SMALL_SLOPE if sticks else round(slope, 1) > _STEEPEST:
+        yield Caveat(Status.STEEP, {"slope": slope, "most": SMALL_SLOPE})

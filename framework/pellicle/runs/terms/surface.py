@@ -13,10 +13,8 @@ from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.load_step import Value
 from pellicle.surface import along_axes
 
-from . import AnyStep, Surroundings
+from . import SMALL_SLOPE, AnyStep, Surroundings
 
-# Slope up to which the theory holds.
-_SMALL: Final = 0.3
 # Rounding error of a sum of tractions that balance, over that of their sizes.
 _ROUNDING: Final = 1e-12
 # Fall of G(q) q over a decade of short waves from which a line force has a finite height.
@@ -43,8 +41,8 @@ def _limits(run: Run, slope: float) -> Iterator[Caveat]:
 
     Under a line force the surface has a finite height if G(q) falls faster than 1/q.
     """
-    if slope > _SMALL:
-        yield Caveat(Status.STEEP_SURFACE, {"slope": slope, "most": _SMALL})
+    if slope > SMALL_SLOPE:
+        yield Caveat(Status.STEEP_SURFACE, {"slope": slope, "most": SMALL_SLOPE})
     q = 1e3 * np.pi / min(run.grid.spacing) * np.array([1.0, 10.0])
     a, b = along_axes(run.kernel.symbol, q) * q
     if run.load and run.load.has_line_without_width and b > _FALLS * a:
