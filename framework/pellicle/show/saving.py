@@ -16,8 +16,8 @@ from pellicle.errors import PluginError
 from pellicle.files import atomic_write, for_document, storage_errors
 
 from .drawing import SIZE, Drawn, draw, size_of
+from .figure_style import FigureStyle, label_log_axes, lay_out
 from .numbers import table_of, write_csv
-from .style import FigureStyle, label_log_axes, lay_out
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
