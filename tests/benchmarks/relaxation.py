@@ -112,22 +112,9 @@ def print_punch() -> None:
         print_row(name, *(f"{error:+.2%}" for error in force / expected - 1))
 
 
-def print_domains() -> None:
-    """Print how far the force at the last times depends on the domain, in cells of a/5."""
-    print()
-    print_head("τ₀/(E∞ a)", "domain over a", "over 2τ₀/E∞", "t = 1", "t = 3", "t = 10")
-    late = np.searchsorted(TIMES, [1.0, 3.0, 10.0])
-    for tension in (0.125, 0.5, 4 / 3):
-        far = punch(160, 32.0, tension)[late]
-        for size in (16, 8, 4):
-            errors = punch(5 * size, float(size), tension)[late] / far - 1
-            shown = (f"{error:+.2%}" for error in errors)
-            print_row(f"{tension:.3g}", size, f"{size / 2 / tension:.3g}", *shown)
-
-
 def print_cost(points: int, steps: int) -> None:
     """Print applications and processor time per equal step, over those of an elastic solid."""
-    print_head("skin", "solid", "applications per step", "of these for the memory", "seconds")
+    print_head("skin", "solid", "applications per step", "seconds")
     depths, times = np.linspace(0, 2e-5, steps + 1)[1:], np.linspace(0, 10, steps)
     relaxing = {"type": "viscoelastic", "solid": half_space(), "relaxation": DECADES}
     for tension in (0.0, 0.02):
@@ -143,8 +130,7 @@ def print_cost(points: int, steps: int) -> None:
             )
             seconds = time.process_time() - started
             used = data["operator_applications"].values.mean()
-            memory = 2 * (steps - 1) / steps if tension and name != "elastic" else 0
-            shown = (f"{value:.1f}" for value in (used, memory, seconds))
+            shown = (f"{value:.1f}" for value in (used, seconds))
             print_row(f"{tension:g} N/m", name, *shown)
 
 
@@ -160,7 +146,6 @@ def main() -> None:
         return
     print_triangles([(32, 25), (64, 50), (128, 100)], [1.0, 2.0])
     print_punch()
-    print_domains()
 
 
 if __name__ == "__main__":

@@ -261,7 +261,6 @@ def test_loops_lose_most_at_the_time_of_the_relaxation(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:kernel. the shares of 'coated' that relax sum to 1")
-@pytest.mark.filterwarnings("ignore:of 1 runs, in 1 the domain is small")
 @pytest.mark.filterwarnings("ignore:of 1 runs, in 1 the contact jumps across")
 def test_plateau_is_that_of_the_tension(tmp_path: Path) -> None:
     """The force of a bead at a contact radius ends at 2πτ₀a²/R, to 10 % on coarse cells."""
@@ -279,7 +278,25 @@ def test_plateau_is_that_of_the_tension(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.filterwarnings("ignore:of 2 runs, in . the (cells are too coarse|domain is small)")
+def test_only_what_drains_relaxes_later_under_a_larger_bead(tmp_path: Path) -> None:
+    """Four times the contact radius is 16 times later; of a network that flows it is the same."""
+    run("flow_or_drain.toml", tmp_path, "grid.points=24")
+    rows = drawn(tmp_path / "study-curves.csv")
+    (drains, later), (flows, alike) = (
+        [
+            column([row for row in rows if row["curve"] == f"kernel = {kernel}, {radius}"], "y")
+            for radius in ("indenter.radius = 250 µm", "indenter.radius = 1 mm")
+        ]
+        for kernel in ("poroelastic", "viscoelastic")
+    )
+    np.testing.assert_allclose(flows, alike, rtol=1e-6)
+    # The times 0.2 and 3 s of the small bead are 3.2 and 48 s of the large one.
+    assert later[5] == pytest.approx(drains[3], abs=0.03)
+    assert drains[5] < later[5] - 0.1
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:of 2 runs, in . the cells are too coarse")
 def test_oscillation_a_skin_lowers_the_phase(tmp_path: Path) -> None:
     """A skin adds more to the storage than to the loss."""
     run(

@@ -50,10 +50,10 @@ def test_a_caveat_in_a_file_says_the_same(status: Status) -> None:
 
 def test_numbers_that_are_not_finite_are_read_again() -> None:
     """An infinite length is one in a file too, and JSON stays JSON."""
-    text = to_text([Caveat(Status.SMALL_DOMAIN, {"least_size": math.inf, "lost": math.nan})])
+    text = to_text([Caveat(Status.JUMPED, {"lost": math.nan, "until": math.inf})])
     ((_, values),) = from_text(text)
     assert "Infinity" not in text
-    assert values["least_size"] == math.inf
+    assert values["until"] == math.inf
     assert math.isnan(float(values["lost"]))
 
 
@@ -78,9 +78,8 @@ def test_a_message_of_two_caveats_says_once_that_the_step_converged() -> None:
     assert message.endswith(jumped.sentence.partition("; ")[2])
 
 
-def test_the_step_that_needs_the_largest_domain_comes_first() -> None:
-    """Of others it is the first step."""
-    domains = [Caveat(Status.SMALL_DOMAIN, {"least_size": size}) for size in (1.0, 3.0, 2.0)]
-    coarse = [_filled(Status.COARSE), _filled(Status.COARSE_ZONE)]
-    groups = by_phrase(enumerate([*domains, *coarse]))
-    assert [[place for place, _ in group] for group in groups.values()] == [[3, 4], [1, 2, 0]]
+def test_caveats_are_grouped_by_phrase() -> None:
+    """The gravest first, within a phrase in the order of the steps."""
+    several = [_filled(s) for s in (Status.JUMPED, Status.COARSE, Status.JUMPED)]
+    groups = by_phrase(enumerate([*several, _filled(Status.COARSE_ZONE)]))
+    assert [[place for place, _ in group] for group in groups.values()] == [[1, 3], [0, 2]]

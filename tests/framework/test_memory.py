@@ -32,6 +32,12 @@ def _relaxing(branches: int) -> dict[str, Any]:
     return {"type": "viscoelastic", "solid": HALF_SPACE, "relaxation": relaxation}
 
 
+DRAINING = {
+    "type": "poroelastic",
+    "shear_modulus": 1e3,
+    "poissons_ratio": 0.2,
+    "diffusivity": 1e-9,
+}
 SKIN_ON_GEL = {"type": "coated", "tension": 0.01, "substrate": _relaxing(2)}
 
 
@@ -80,6 +86,12 @@ KINDS = {
         "periodic",
         kernel=SKIN_ON_GEL,
         loading={"force": [1e-6] * 4, "time": [0, 1, 3, 6]},
+    ),
+    "free, a skin on a solid that relaxes": _kind(
+        384, kernel=SKIN_ON_GEL, loading={"force": [1e-6] * 4, "time": [0, 1, 3, 6]}
+    ),
+    "free, a solid that drains": _kind(
+        384, kernel=DRAINING, loading={"depth": [1e-5] * 4, "time": [0, 1, 3, 6]}
     ),
     LINE: _kind(
         384,

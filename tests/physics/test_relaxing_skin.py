@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,6 @@ import pytest
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.runs.relaxation import Relaxation
-from pellicle.surface.plane import PlaneOperator
 from tests.physics.tables import coated, half_space, paraboloid, reference_rows, relaxing, tensed
 
 MODULUS, TENSION = 5.0, 0.5
@@ -70,18 +68,21 @@ def test_flat_punch_with_tension_after_a_step_of_the_depth() -> None:
     assert (errors[0] < 0.65 * errors[1]).all()
 
 
-def test_force_hardly_depends_on_the_domain() -> None:
-    """From 8 to 16 radii by less than 0.05 %; without what is carried outside it were 0.8 %."""
+def test_force_does_not_depend_on_the_domain() -> None:
+    """From 2.4 to 16 radii by less than 1e-7, although the solid is displaced far outside."""
     times = np.array([0.0, 0.1, 0.5, 1.0, 2.0, 4.0, 10.0])
     near, far = (
-        solved(points, times, size=size)["force"].values for points, size in ((40, 8.0), (80, 16.0))
+        solved(points, times, size=size)["force"].values for points, size in ((12, 2.4), (80, 16.0))
     )
-    np.testing.assert_allclose(near, far, rtol=5e-4)
+    np.testing.assert_allclose(near, far, rtol=1e-7)
     assert (near[-1] / near[0]) < 0.35
 
 
 def test_legs_are_the_same_path() -> None:
-    """A first leg rises from the undeformed surface, as times do from a depth of 0 at 0 s."""
+    """A first leg rises from the undeformed surface, as times do from a depth of 0 at 0 s.
+
+    Equal to what a span of a few waves leaves out.
+    """
     times = np.array([0.0, 0.25, 0.5, 0.75, 1.0, 2.0, 3.0])
     listed = run_of(30, times, np.minimum(times, 1.0))
     legs = [{"to": 1.0, "time": 1.0, "num": 4}, {"hold": 2.0, "num": 2}]
@@ -89,29 +90,22 @@ def test_legs_are_the_same_path() -> None:
     expected, force = (
         pl.run(run, progress=False).dataset["force"].values for run in (listed, in_legs)
     )
-    np.testing.assert_allclose(force, expected[1:], rtol=1e-9)
+    np.testing.assert_allclose(force, expected[1:], rtol=1e-6)
     assert force[-1] < 0.6 * force[3]
 
 
-def test_applications_count_those_that_bring_the_memory_forward(
+def test_applications_count_those_that_bring_the_history_forward(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Two for each step but the first, as many as are applied."""
+    """From the second step on, as many as the few waves take."""
     run = run_of(30, np.array([0.0, 0.5, 1.0, 1.5, 1.5]))
-    calls = 0
-    apply = PlaneOperator.__call__
-
-    def counted(self: PlaneOperator, field: Array, integral: float) -> Array:
-        nonlocal calls
-        calls += 1
-        return apply(self, field, integral)
-
-    monkeypatch.setattr(PlaneOperator, "__call__", counted)
     used = pl.run(run, progress=False).dataset["operator_applications"].values
-    assert calls == 2 * 4
     monkeypatch.setattr(Relaxation, "applications", 0)
     solves = pl.run(run, progress=False).dataset["operator_applications"].values
-    np.testing.assert_array_equal(used - solves, [0, 2, 2, 2, 2])
+    more = used - solves
+    assert more[0] == 0
+    assert 0 < more[1] < 10
+    np.testing.assert_array_equal(more[1:], more[1])
 
 
 DEPTHS = np.array([0.1, 0.14, 0.18, 0.08])
@@ -145,65 +139,3 @@ def test_limits_are_elastic(fraction: float, time: float, times: list[float], sh
     after = slice(1, None) if share < 1 else slice(None)
     for name in ("force", "contact_area"):
         np.testing.assert_allclose(relaxing[name][after], elastic[name][after], rtol=1e-8)
-
-
-@pytest.mark.parametrize(
-    ("size", "tension", "steps"),
-    [(6.0, 0.1, [2, 3]), (8.0, 2.0, [3]), (8.0, 0.5, [])],
-    ids=["8 contact radii", "3 elastocapillary lengths", "enough"],
-)
-def test_small_domain_is_reported(size: float, tension: float, steps: list[int]) -> None:
-    """From the second step on, and for the skin only as far as the solid has relaxed."""
-    times = np.array([0.0, 1e-3, 20.0])
-    run = _warned if steps else pl.run
-    result = run(run_of(30, times, size=size, substrate=kernel(tension)), progress=False)
-    codes = result.dataset["status_code"].values
-    assert [int(n) for n in np.flatnonzero(codes == "SMALL_DOMAIN") + 1] == steps
-    assert [number for number, _ in result.cramped()] == steps
-    assert result.converged
-
-
-def test_a_contact_that_has_shrunk_left_its_memory_outside() -> None:
-    """The domain has to hold 8 radii of the largest contact so far, as the solid remembers it."""
-    times, depth = np.array([0.0, 0.5, 0.6]), np.array([0.3, 0.4, 0.2])
-    skin = kernel(0.25, 0.6, 0.3)
-    problem = run_of(24, times, depth, size=8.0, substrate=skin, indenter=paraboloid(10.0))
-    steps = _warned(problem, progress=False).dataset
-    assert 8 * float(steps["contact_radius"][-1]) < 7
-    assert steps["status_code"].values.tolist() == ["CONVERGED", "SMALL_DOMAIN", "SMALL_DOMAIN"]
-
-
-def test_several_caveats_are_all_told() -> None:
-    """A contact on too few cells of a domain too small for the solid is told to be both."""
-    times = np.array([0.0, 20.0])
-    with pytest.warns(pl.ConvergenceWarning) as warned:
-        result = pl.run(run_of(12, times, size=6.0, substrate=kernel(0.1)), progress=False)
-    assert result.dataset["status_code"].values.tolist() == ["COARSE"] * times.size
-    for caveat in ("cells are too coarse", "domain of .* is small for a skin"):
-        assert any(re.search(f"converged, but the {caveat}", str(w.message)) for w in warned)
-        assert re.search(caveat, str(result.dataset["status"].values[1]))
-    assert [number for number, _ in result.coarse()] == [1, 2]
-    assert [number for number, _ in result.cramped()] == [2]
-
-
-def test_the_largest_domain_that_a_run_needs_is_quoted() -> None:
-    """Whoever enlarges the domain as the message says has one for all steps, not for one more."""
-    times, depth = np.array([0.0, 1.0, 2.0, 3.0]), np.array([0.1, 0.2, 0.3, 0.4])
-    plan: Any = {"times": times, "depth": depth, "substrate": kernel(0.05)}
-    plan["indenter"] = paraboloid(10.0)
-    with pytest.warns(pl.ConvergenceWarning, match="is small for a skin") as warned:
-        result = pl.run(run_of(24, size=8.0, **plan), progress=False)
-    steps = dict(result.cramped())
-    assert len(steps) > 1
-    (message,) = (str(w.message) for w in warned if "small for a skin" in str(w.message))
-    asked = re.search(r"grid.size ≥ ([\d.]+) m", message)
-    assert asked
-    assert steps[4] in message
-    larger = float(asked[1])
-    enough = pl.run(run_of(round(3 * larger), size=larger, **plan), progress=False)
-    assert enough.cramped() == []
-
-
-def _warned(*arguments: Any, **options: Any) -> Any:
-    with pytest.warns(pl.ConvergenceWarning, match="domain of .* is small for a skin"):
-        return pl.run(*arguments, **options)

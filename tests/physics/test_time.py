@@ -62,16 +62,14 @@ def test_triangle_is_a_loop() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.filterwarnings("ignore:step . and 2 more. converged, but the domain of 800 µm")
 @pytest.mark.filterwarnings("ignore:step 1 and 3 more. converged; the contact area misses")
-@pytest.mark.parametrize(("boundary", "size"), [("periodic", 4e-4), ("free", 8e-4)])
+@pytest.mark.parametrize(("boundary", "size"), [("periodic", 4e-4), ("free", 4e-4)])
 def test_plateau_is_tension_alone(boundary: str, size: float) -> None:
     """A liquid at a prescribed contact radius keeps F = 2πτ₀a²/R, at first order in the cell size.
 
     Only the curved surface in contact carries a pressure, 2τ₀/R, met to 1 % at the centre. On a
     periodic grid the mean pressure carries the period in addition: both are larger by
-    1/(1 − πa²/L²). Area is counted in cells, so F misses by up to 0.8 Δ/a. Any free domain is too
-    small for the depth on a liquid, and is said to be.
+    1/(1 − πa²/L²). Area is counted in cells, so F misses by up to 0.8 Δ/a.
     """
     tension, radius, contact, points = 0.05, 1e-3, 8e-5, 64
     jump = {"to": contact, "time": 0, "num": 1}
@@ -84,8 +82,6 @@ def test_plateau_is_tension_alone(boundary: str, size: float) -> None:
     with pytest.warns(UserWarning, match="makes the solid a liquid"):
         result = pl.run(run, progress=False)
     assert result.converged
-    cramped = [number for number, message in result.cramped() if "no grid spans" in message]
-    assert cramped == ([2, 3, 4] if boundary == "free" else [])
     last = result.dataset.isel(step=-1)
     area = last["contact_area"].item()
     period = 1 - area / size**2 if boundary == "periodic" else 1.0

@@ -9,6 +9,7 @@ its objects can be pickled to workers. A concrete component declares
 from pellicle.contact.problem import Depth as Depth
 from pellicle.contact.problem import Force as Force
 from pellicle.contact.time_step import Branch as Branch
+from pellicle.contact.time_step import OfWave as OfWave
 from pellicle.grid import Boundary as Boundary
 from pellicle.grid import boundary_of_run as boundary_of_run
 from pellicle.grid import pair as pair

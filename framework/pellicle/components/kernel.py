@@ -10,7 +10,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to, read_only, real_number
-from pellicle.contact.time_step import Branch
+from pellicle.contact.time_step import Branch, OfWave
 from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.plugins.component import Component
 from pellicle.surface.from_kernel import HasClosedForm, closed_form_of, mean_compliance
@@ -28,7 +28,8 @@ class Kernel(Component):
     If the solid relaxes in time, ``symbol(qx, qy)`` is its instantaneous response. A skin on the
     solid does not relax: at a time t after a jump the stiffness is
     1/G(q) − Σ gⱼ (1 − e^(−t/τⱼ))/G₀(q), with G₀ the compliance of `without_skin`, and shares gⱼ and
-    times τⱼ of `branches`. An elastic kernel may count a skin of its own as part of the solid.
+    times τⱼ of `branches`, numbers or functions of q. An elastic kernel may count a skin of its own
+    as part of the solid.
     """
 
     family: ClassVar[str] = "kernel"
@@ -91,12 +92,13 @@ class Kernel(Component):
         """Return the kernel of the solid alone: this kernel itself if it has no skin."""
         return self
 
-    def scaled(self, share: float) -> Kernel:
+    def scaled(self, share: float | OfWave) -> Kernel:
         """Return the elastic kernel of a solid ``share`` > 0 times as stiff under the same skin.
 
-        Its symbol is 1/(1/G + (share − 1)/G₀). It has a closed form if this kernel has one.
+        Its symbol is 1/(1/G + (share − 1)/G₀). The share is a number, with which it has a closed
+        form if this kernel has one; or a function of q if times of `branches` are.
         """
-        kind = _StiffenedClosedForm if closed_form_of(self) else _Stiffened
+        kind = _StiffenedClosedForm if closed_form_of(self) and not callable(share) else _Stiffened
         return kind.model_construct(substrate=self, factor=share)
 
     def depth_to_base(self) -> float:
@@ -157,7 +159,7 @@ class KernelOf(Kernel):
         """Return the substrate, without any skin of its own."""
         return self._substrate.without_skin()
 
-    def scaled(self, share: float) -> Kernel:
+    def scaled(self, share: float | OfWave) -> Kernel:
         """Return the same kernel of an elastic substrate ``share`` times as stiff."""
         return self.model_copy(update={self.substrate_field: self._substrate.scaled(share)})
 
@@ -174,13 +176,15 @@ class _Stiffened(KernelOf):
     """An elastic solid whose stiffness is a multiple of another's; not registered."""
 
     substrate: Kernel
-    factor: float
+    factor: float | OfWave
 
     def symbol(self, qx: Array, qy: Array) -> Array:
-        return self.substrate.symbol(qx, qy) / self.factor
+        symbol, factor = self.substrate.symbol(qx, qy), self.factor
+        return symbol / (factor(read_only(np.hypot(qx, qy))) if callable(factor) else factor)
 
     def mean_compliance(self) -> float:
-        return mean_compliance(self.substrate) / self.factor
+        factor = float(self.factor(np.zeros(1))[0]) if callable(self.factor) else self.factor
+        return mean_compliance(self.substrate) / factor
 
     def branches(self) -> tuple[Branch, ...]:
         return ()
@@ -191,6 +195,8 @@ class _Stiffened(KernelOf):
 
 class _StiffenedClosedForm(_Stiffened):
     """The same of a solid whose Green's function is known in closed form."""
+
+    factor: float
 
     def greens_function(self, r: Array) -> Array:
         return cast(HasClosedForm, self.substrate).greens_function(r) / self.factor
@@ -207,11 +213,15 @@ def branches_of(kernel: Kernel) -> tuple[Branch, ...]:
             return ()
         value = tuple(Branch(*branch) for branch in value)
     branches = tuple(
-        Branch(*(real_number(kernel, f"branches() {name}", v) for name, v in b._asdict().items()))
+        Branch(
+            real_number(kernel, "branches() share", b.share),
+            b.time if callable(b.time) else real_number(kernel, "branches() time", b.time),
+        )
         for b in value
     )
     total = math.fsum(branch.share for branch in branches)
-    if not all(b.share > 0 and 0 < b.time < math.inf for b in branches) or total > 1 + _ROUNDING:
+    right = (b.share > 0 and (callable(b.time) or 0 < b.time < math.inf) for b in branches)
+    if not all(right) or total > 1 + _ROUNDING:
         raise PluginError(
             f"{component_name(kernel)}: branches() returned {shown(branches)}; shares and times "
             "have to be positive and finite, and the shares sum to at most 1"

@@ -139,12 +139,6 @@ class Status(Enum):
         "press in less far",
         "the surface is pressed through a layer to its rigid base",
     )
-    SMALL_DOMAIN = (
-        "converged, but the domain of {size_x:m} × {size_y:m} is small for a skin on a solid that "
-        "relaxes: what the solid carries beyond it is known in sum only, and force and depth may "
-        "be off by per cent; {remedy:variant}",
-        "the domain is small for a skin on a solid that relaxes",
-    )
     JUMPED = (
         "converged; a part of the contact jumped after the last step{loss:variant}: in between it "
         "is not in equilibrium; smaller steps show where it jumps",
@@ -188,14 +182,6 @@ _VARIANTS: Final = {
         "cells are too large to show it"
     ),
     "not found": "no load that attains it was found",
-    "larger domain": (
-        "use grid.size ≥ {least_size:m}: 8 contact radii, and 3 times the length 2τ₀/E* below "
-        "which the skin is stiffer than the relaxed solid"
-    ),
-    "no domain": (
-        "no grid spans the {least_size:m} that a solid so soft would need: its depth depends on "
-        "where the domain ends, its force at a given contact hardly"
-    ),
     "known": " and lost {lost:J}",
     "unknown": "",
     "known error": "may be off by {error:.0%}",
@@ -279,14 +265,12 @@ def by_phrase(caveats: Iterable[tuple[Place, Caveat]]) -> dict[str, list[tuple[P
     """Return the caveats of steps that converged by the phrase of their status, gravest first.
 
     Each comes with a place, such as the number of its step. Within a phrase they are in the order
-    given; of small domains the one that needs the largest comes first.
+    given.
     """
     groups: dict[str, list[tuple[Place, Caveat]]] = {s.phrase: [] for s in Status if s.phrase}
     for place, caveat in caveats:
         if caveat.status.phrase:
             groups[caveat.status.phrase].append((place, caveat))
-    for group in groups.values():
-        group.sort(key=lambda item: -float(item[1].values.get("least_size", 0.0)))
     return {phrase: group for phrase, group in groups.items() if group}
 
 

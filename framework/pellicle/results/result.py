@@ -95,10 +95,6 @@ class Result:
         """Return number and status of each step with slopes beyond those of the theory."""
         return self._of(Status.STEEP)
 
-    def cramped(self) -> list[tuple[int, str]]:
-        """Return number and status of each step whose domain is small for a relaxing solid."""
-        return self._of(Status.SMALL_DOMAIN)
-
     def warnings(self) -> list[str]:
         """Return a message for each kind of caveat, with the first step that has it."""
         return [*map(first_message, by_phrase(self.caveats()).values())]

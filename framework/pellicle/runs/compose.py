@@ -20,7 +20,7 @@ from pellicle.components.kernel import instantaneous
 from pellicle.components.rules import CHEAP, Case, first_violation
 from pellicle.config.run import Run
 from pellicle.contact.problem import Traction
-from pellicle.contact.time_step import stiffness_after
+from pellicle.contact.time_step import permanent_share
 from pellicle.errors import ConfigError, PluginError
 from pellicle.grid import Grid
 from pellicle.plugins.component import components_in
@@ -129,7 +129,7 @@ def _warn_of_liquid(run: Run) -> None:
     """
     if not run.branches or run.kernel.time_span()[1] < math.inf:
         return
-    if stiffness_after(run.branches, math.inf) < _LIQUID:
+    if permanent_share(run.branches) < _LIQUID:
         warnings.warn(
             f"kernel: the shares of {run.kernel.type_name!r} that relax sum to 1, which makes the "
             "solid a liquid: in the end only a skin carries; let them sum to less for a solid",

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from pellicle.config.gradient import HEIGHTS
 from pellicle.config.run import Run
-from pellicle.contact.time_step import TimeStep
 
-from .relaxation import KEPT, rounded_stiffness
+from .relaxation import history_arrays
 
 # Peak memory in arrays of the grid's shape, eight bytes per cell, measured on Linux with glibc.
 # The indenter, and the operator with its transforms, which are padded on a free boundary.
@@ -27,8 +26,6 @@ _GIVEN_BACK = 2**25
 _HEAP = 3
 # Buffers and Python's own objects [bytes].
 _FIXED = 1e6
-# Both operators of a skin for one stiffness γ of a solid that relaxes.
-_PAIR = {"free": 13.5, "periodic": 1.3}
 
 
 def memory_of(run: Run) -> float:
@@ -36,19 +33,13 @@ def memory_of(run: Run) -> float:
 
     The peak occurs in the last solve, when earlier steps and their file are in memory too. The size
     of the contact is unknown, so full contact is assumed, which takes up to a third more memory
-    than a small contact. The history of a
-    solid that relaxes is its branches, twice as they are brought forward, what they leave behind
-    and the profile that it displaces; under a skin also the strain and the operators that are kept.
+    than a small contact.
     """
-    grid, solver, branches = run.grid, run.solver, run.branches
+    grid, solver = run.grid, run.solver
     cells = grid.points[0] * grid.points[1]
     operator = _LINE if grid.points[1] == 1 else _OPERATOR[grid.boundary]
     iterating = 0.0 if run.load else solver.arrays(grid) + (_STICKS if run.interaction else 0.0)
-    history = 2 * len(branches) + 3.0 if branches else 0.0
-    if branches and run.kernel.without_skin() != run.kernel:
-        steps = {TimeStep.of(branches, duration) for duration in run.loading.durations}
-        stiffnesses = {rounded_stiffness(step) for step in steps}
-        history += 1 + min(KEPT, len(stiffnesses)) * _PAIR[grid.boundary]
+    history = history_arrays(run)
     kept = (_STEP + _SERIALISED) * (run.steps - 1)
     if run.load and run.load.varied:
         # The tractions of all steps but the first, which has the place of an indenter.

@@ -49,7 +49,8 @@ def solve_steps(
     if run.gradient:
         # Those by heights are fields.
         variables += derivatives_of(run)
-    history = Relaxation(run) if run.branches else None
+    operator = (composed if isinstance(composed, Setting) else composed[0]).operator
+    history = Relaxation(run, operator) if run.branches else None
     if isinstance(composed, Setting):
         solve = _contacts(run, composed, history)
     else:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any, Self
 
@@ -70,6 +70,12 @@ class Operator:
         """Whether a cell displaces those at x and −x alike, and at y and −y."""
         values = self._values.double
         return self.grid.boundary == "free" or bool((values[1:] == values[:0:-1]).all())
+
+    @property
+    def factors(self) -> Array:
+        """The factors [m/Pa] by which transforms of the shape `padded` are multiplied."""
+        factors: Array = self._values.double * (self._values.unit * self._factor)
+        return factors
 
     @property
     def applications(self) -> int:
@@ -191,25 +197,25 @@ def along_axes(symbol: Symbol, q: Array) -> Array:
     return mean
 
 
-class Derivative:
-    """The derivative of an operator by a number: a sum of operators on one grid with weights.
+def weighted_sum(operators: Sequence[Operator], weights: Sequence[float]) -> Operator:
+    """Return the sum of ``operators`` on one grid, each times its weight.
 
-    For each of the ``operators`` there is one of the ``weights`` per unit of the number.
+    The weights may make it the derivative of an operator, which need not be positive.
     """
 
-    def __init__(self, operators: Iterable[Operator], weights: Iterable[float]) -> None:
+    def symbol(qx: Array, qy: Array) -> Array:
+        terms = [w * o.symbol(qx, qy) for o, w in zip(operators, weights, strict=True)]
+        summed: Array = np.sum(terms, axis=0)
+        return summed
+
+    def on(grid: Grid) -> Operator:
         total: Array | float = 0.0
         for operator, weight in zip(operators, weights, strict=True):
-            values = operator._values
-            total = total + values.double * (values.unit * operator._factor * weight)
-            self.padded = operator.padded
-        self._values = _Values(np.asarray(total))
+            same = operator if grid == operator.grid else operator.on(grid)
+            total = total + weight * same.factors
+        return Operator(grid, np.asarray(total), same.padded, symbol, on)
 
-    def __call__(self, pressure: Array) -> Array:
-        """Return the change of the displacement [m] per unit of the number."""
-        change = convolve(pressure, self._values.double, self.padded, Workspace())
-        change *= self._values.unit
-        return change
+    return on(operators[0].grid)
 
 
 class _Values:

@@ -45,6 +45,7 @@ _EXAMPLES = {
     "m/N": "1 um/nN",
     "Pa*s": "1 Pa*s",
     "m2": "0.01 mm2",
+    "m2/s": "200 um2/s",
     "m3": "0.001 mm3",
     "rad": "70 degree",
     "s": "1 s",

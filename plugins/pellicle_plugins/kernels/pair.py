@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from pellicle.arrays import Array
-from pellicle.components import Branch, FromRegistry, Kernel
+from pellicle.components import Branch, FromRegistry, Kernel, OfWave
 from pellicle.surface import mean_compliance
 
 
@@ -69,7 +69,7 @@ class Pair(Kernel):
         starts, ends = zip(self.first.time_span(), self.second.time_span(), strict=True)
         return max(starts), min(ends)
 
-    def scaled(self, share: float) -> Kernel:
+    def scaled(self, share: float | OfWave) -> Kernel:
         """Return the elastic kernel of both bodies ``share`` times as stiff."""
         if not self.branches():
             return super().scaled(share)

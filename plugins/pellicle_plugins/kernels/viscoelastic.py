@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar, Final, Literal, Self
 from pydantic import ConfigDict, Field, field_validator, model_validator
 
 from pellicle.arrays import Array
-from pellicle.components import Branch, FromRegistry, Kernel, KernelOf
+from pellicle.components import Branch, FromRegistry, Kernel, KernelOf, OfWave
 from pellicle.schema import Model
 from pellicle.surface import mean_compliance
 from pellicle.units import Quantity, Time
@@ -128,9 +128,9 @@ class Viscoelastic(KernelOf):
             for weight, time in zip(series.weights, series.times, strict=True)
         )
 
-    def scaled(self, share: float) -> Kernel:
+    def scaled(self, share: float | OfWave) -> Kernel:
         """Return the elastic kernel of ``share`` times the instantaneous stiffness."""
-        return self.solid.scaled(share * self._instantaneous)
+        return self.solid.scaled(self._instantaneous).scaled(share)
 
     def time_span(self) -> tuple[float, float]:
         """Return the span of the power law; all times if there is none."""

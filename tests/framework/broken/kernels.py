@@ -140,6 +140,8 @@ BROKEN: dict[str, Any] = {
     "branches_have_shares_and_times": [
         relaxing("overdrawn", BRANCHES, branches=lambda f: ((0.5, 1.0), (0.6, 2.0))),
         relaxing("relaxes in no time", BRANCHES, branches=lambda f: ((0.5, 0.0),)),
+        relaxing("one time for all waves", branches=lambda f: ((0.5, lambda q: q[:1]),)),
+        relaxing("waves that never relax", branches=lambda f: ((0.5, lambda q: q / 0),)),
     ],
     "scaled_by_one_is_the_kernel": [
         relaxing("relaxes on", scaled=lambda f, share: Relaxing(reduced_modulus=1e4)),

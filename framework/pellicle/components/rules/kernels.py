@@ -7,7 +7,9 @@ import math
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle.checks import read_only
 from pellicle.components.kernel import Kernel, branches_of
+from pellicle.errors import shown
 from pellicle.grid import Grid
 from pellicle.surface.from_kernel import (
     checked_call,
@@ -128,8 +130,16 @@ def compliance_does_not_grow_for_short_waves(kernel: Kernel, case: Case) -> str:
 
 
 def branches_have_shares_and_times(kernel: Kernel, case: Case) -> str:
-    """branches() returns pairs of a share > 0 and a time > 0, whose shares sum to at most 1."""
-    branches_of(kernel)
+    """branches() returns pairs of a share > 0 and a time > 0, whose shares sum to at most 1.
+
+    A time that depends on the wave is a function of q, positive and finite for q > 0.
+    """
+    q = _waves(case.grid)
+    for branch in branches_of(kernel):
+        times = np.asarray(branch.time_at(read_only(q.copy())))
+        wrong = times.shape not in ((), q.shape) or not (np.isfinite(times) & (times > 0)).all()
+        if wrong:
+            return f"the time of a branch is {shown(times.tolist())} s at q = {shown(q.tolist())}"
     return ""
 
 

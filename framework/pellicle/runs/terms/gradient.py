@@ -25,7 +25,7 @@ from pellicle.errors import ConfigError
 from pellicle.runs.differences import differences
 from pellicle.schema.model import get, python_names, with_value
 from pellicle.surface.from_kernel import operator_of
-from pellicle.surface.operators import Derivative
+from pellicle.surface.operators import weighted_sum
 
 from . import ContactStep, Surroundings
 from .requested import responding
@@ -111,7 +111,7 @@ def _of_operator(run: Run, setting: Setting, path: str) -> Callable[[Array], Arr
         return logarithms
 
     nodes, weights = _differences(run, path, waves, 1.0)
-    return Derivative((operator_of(solid(value), run.grid) for value in nodes), -weights)
+    return weighted_sum([operator_of(solid(value), run.grid) for value in nodes], [*-weights])
 
 
 def _of_profile(run: Run, setting: Setting, path: str) -> Callable[[Array], Array]:
