@@ -7,11 +7,7 @@ import typer
 from .printing import NOT_CONVERGED, AsJSON, InSI, Stored, echo
 
 
-def show(
-    results: Stored,
-    si: InSI = False,
-    json: AsJSON = False,
-) -> None:
+def show(results: Stored, si: InSI = False, json: AsJSON = False) -> None:
     """Print steps of a result or runs of a study, and its origin; or what a command wrote."""
     from pellicle.results.result import Result, file_of_run, load
     from pellicle.results.status import unfinished

@@ -10,13 +10,7 @@ from typing import get_args
 import numpy as np
 
 from pellicle.arrays import Array, Mask
-from pellicle.checks import (
-    component_name,
-    errors_attributed_to,
-    read_only,
-    real_array,
-    real_number,
-)
+from pellicle.checks import component_name, errors_attributed_to, read_only, real_array, real_number
 from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.problem import Adhesive, Depth, Force, Problem
 from pellicle.contact.solution import Solution, State, Stop

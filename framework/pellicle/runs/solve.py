@@ -100,8 +100,12 @@ def _loads(
     def solve(around: Surroundings) -> AnyStep:
         here = posed[len(around.path)]
         here = history.setting(here, around.path) if history else here
-        step = layer(run, surface(run, deform(here), around), around)
-        return _with_effort(relaxation(run, step, around), history)
+        applied, deformation = here.operator.applications, Deformation(here, here.pressure)
+        step: AnyStep = LoadStep(deformation, 0, Stop.DONE)
+        for term in (surface, layer, relaxation):
+            step = term(run, step, around)
+        step = replace(step, applications=here.operator.applications - applied)
+        return _with_effort(step, history)
 
     return solve
 
@@ -126,14 +130,6 @@ def terms_of(run: Run, setting: Setting) -> list[Term]:
     terms += [adhesion] * bool(run.interaction)
     terms += [layer] * isfinite(run.kernel.depth_to_base())
     return terms
-
-
-def deform(posed: Traction) -> AnyStep:
-    """Return the load step under a known traction, by one application of the operator."""
-    applied = posed.operator.applications
-    deformation = Deformation(posed, posed.pressure)
-    _ = deformation.displacement
-    return LoadStep(deformation, 0, Stop.DONE, applications=posed.operator.applications - applied)
 
 
 def solve_step(

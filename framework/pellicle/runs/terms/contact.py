@@ -51,8 +51,7 @@ def _failures(run: Run, step: ContactStep, around: AroundContact) -> Iterator[Ca
     ):
         if not residual <= tolerance:
             yield Caveat(
-                status,
-                {"measure": residual, "tolerance": tolerance, "stop": step.stop.name},
+                status, {"measure": residual, "tolerance": tolerance, "stop": step.stop.name}
             )
     contact, reach = equilibrium.contact, equilibrium.contact | equilibrium.zone
     size, boundary = run.grid.size, run.grid.boundary
