@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 import pellicle as pl
 from pellicle.contact import Problem
 from pellicle.show import save_figure
-from pellicle.show.style import MARKERS
+from pellicle.show.figure_style import MARKERS
 from pellicle.surface import operator_of
 
 POINTS = {"conjugate_gradient": (64, 128, 256, 512), "active_set": (64, 128, 256, 512, 1024)}

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.show import save_figure
-from pellicle.show.style import MARKERS
+from pellicle.show.figure_style import MARKERS
 
 MODULUS = 10e3
 TENSIONS = 0.0, 0.1, 1.0

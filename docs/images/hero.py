@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 import pellicle as pl
 from pellicle.show import save_figure
-from pellicle.show.style import NO_CONTACT, OKABE_ITO, add_colour_bar
+from pellicle.show.figure_style import NO_CONTACT, OKABE_ITO, add_colour_bar
 
 POINTS, SIZE = 512, 200e-6
 RUN = {

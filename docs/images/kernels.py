@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 import pellicle as pl
 from pellicle.show import save_figure
-from pellicle.show.style import LINES
+from pellicle.show.figure_style import LINES
 
 MODULUS, LENGTH = 10e3, 100e-6  # E*, and the one length that all kernels are given
 TENSION = MODULUS * LENGTH / 2  # so that s = 2τ₀/E* is LENGTH

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 import pellicle as pl
 from pellicle.show import save_figure
-from pellicle.show.style import OKABE_ITO
+from pellicle.show.figure_style import OKABE_ITO
 
 MODULUS, LIQUID = 4e3, 0.02
 """Reduced modulus of an incompressible gel of 3 kPa [Pa], and γ sin θ of the liquid [N/m]."""

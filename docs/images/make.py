@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 import pellicle as pl
 from pellicle.show import save_figure
-from pellicle.show.style import OKABE_ITO
+from pellicle.show.figure_style import OKABE_ITO
 from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 

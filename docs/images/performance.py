@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from pellicle.show import save_figure
-from pellicle.show.style import MARKERS, OKABE_ITO
+from pellicle.show.figure_style import MARKERS, OKABE_ITO
 
 IMAGES = Path(__file__).parent
 MEASUREMENTS = IMAGES.parent / "measurements"

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.show import save_figure
-from pellicle.show.style import OKABE_ITO
+from pellicle.show.figure_style import OKABE_ITO
 
 BLUE, ORANGE, GREEN = OKABE_ITO[:3]
 SOLID, BODY = "#e8eef4", "#d9d9d9"

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from pellicle.show import save_figure
-from pellicle.show.style import OKABE_ITO
+from pellicle.show.figure_style import OKABE_ITO
 
 SOLID, FILM, SKIN = "0.87", "0.6", OKABE_ITO[1]
 TENSED, BENT = "tension τ₀", "bending B"

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 import pellicle as pl
 from pellicle.arrays import Dataset
 from pellicle.show import save_figure
-from pellicle.show.style import OKABE_ITO
+from pellicle.show.figure_style import OKABE_ITO
 
 RADIUS, SIZE, POINTS = 50e-6, 0.8e-3, 256
 MEAN = 0.05  # √(T₁T₂) [N/m]

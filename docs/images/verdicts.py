@@ -17,7 +17,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from pellicle.show import save_figure
-from pellicle.show.style import OKABE_ITO
+from pellicle.show.figure_style import OKABE_ITO
 from pellicle_fit.selection.verdict import Verdict
 
 TABLE = Path(__file__).parents[1] / "measurements" / "fit_verdicts.csv"

@@ -228,13 +228,6 @@ VARIABLES: Mapping[str, Variable] = {
 """The variables of a result by name, besides those of corrections (`corrected_area`)."""
 
 
-OF_LOAD_ALONE: Final = (
-    Variable("force", "N", "force of the load, positive into the solid", "main"),
-    Variable("pressure", "Pa", "traction of the load, positive into the solid", "field"),
-)
-"""The variables that mean something else without an indenter."""
-
-
 def names_of(*kinds: Kind) -> tuple[str, ...]:
     """Return the names of all variables of these kinds."""
     return tuple(name for name, variable in VARIABLES.items() if variable.kind in kinds)
@@ -243,7 +236,10 @@ def names_of(*kinds: Kind) -> tuple[str, ...]:
 FIELDS = names_of("field")
 FIELDS_OF_LOAD = ("pressure", "displacement")
 """The fields of a result without an indenter."""
-OF_LOAD = ("force", *names_of("other", "load", "effort", "status"))
+OF_LOAD: Final = (
+    Variable("force", "N", "force of the load, positive into the solid", "main"),
+    *(v for v in VARIABLES.values() if v.kind in ("other", "load", "effort", "status")),
+)
 """The numbers and texts of each step of a result without an indenter."""
 COORDINATES = ("step", "x", "y")
 """Names of the coordinates of a result."""

@@ -399,7 +399,7 @@ def test_another_version_of_a_plugin_makes_another_run(
     for dist in (entry.dist, Installed("stranger", "1.2"), Installed("stranger", "1.3")):
         vars(entry).update(dist=dist)
         plugins = load([entry, *entry_points(group=GROUP)])
-        monkeypatch.setattr("pellicle.config.run.registry", lambda loaded=plugins: loaded)
+        monkeypatch.setattr("pellicle.config.provenance.registry", lambda loaded=plugins: loaded)
         configuration = tomllib.loads(SOFT_RUN)
         configuration["kernel"] = plugins.make(Kernel, configuration["kernel"])
         identities.append(Run(**configuration).identity)

@@ -5,7 +5,7 @@ import pytest
 
 import pellicle as pl
 from pellicle import Grid
-from pellicle.analysis.steepness import steepest
+from pellicle.analysis import steepest
 from pellicle.arrays import Array
 
 GRID = Grid(points=(40, 60), size=(2.0, 2.4))

@@ -13,6 +13,8 @@ import pytest
 from rich.console import Console
 
 import pellicle as pl
+from pellicle.config.describe import table_of
+from pellicle.results import step_tables
 from pellicle.results.dimensions import with_paths
 from pellicle.show import tables
 from pellicle.show.numbers import text_of
@@ -70,7 +72,8 @@ def of_run(run: dict[str, Any], console: Console) -> Iterator[str]:
     # It differs between machines.
     data["iterations"][:] = 7
     for si in (False, True):
-        shown = [tables.main_steps(data), tables.contact(data), *tables.path(data, si=si)]
+        steps = step_tables.main_steps(data), step_tables.contact(data)
+        shown = [*steps, *tables.path(data, si=si)]
         for table in (*shown, *tables.oscillations(data), *tables.all_steps(data)[: 2 * (not si)]):
             yield f"{table.caption}\n{text_of(table, console, si=si)}"
 
@@ -78,7 +81,7 @@ def of_run(run: dict[str, Any], console: Console) -> Iterator[str]:
 def of_study(study: dict[str, Any], console: Console) -> Iterator[str]:
     """Yield the tables of a study."""
     table = with_paths(pl.run_study(study, progress=False, threads=1))
-    axes = tables.inputs(tables.inputs_of_study(table, ()))
+    axes = table_of(tables.inputs_of_study(table, ()))
     main = tables.main_runs(table), *tables.main_paths(table)
     for shown in (*main, tables.runs(table), *tables.paths_of_runs(table), axes):
         yield f"{shown.caption}\n{text_of(shown, console)}"

@@ -12,7 +12,7 @@ import pellicle as pl
 from pellicle.components import Solver
 from pellicle.contact import Problem
 from pellicle.contact.solution import State
-from pellicle.runs.target_search import search_target
+from pellicle.runs.solve import solve_at
 from pellicle.runs.terms import ContactStep
 from pellicle.surface import operator_of
 
@@ -51,7 +51,7 @@ def search(cells: Callable[[float], int], area: float, start: float | None = Non
     here = setting(start)
     target = pl.registry().find("prescription", "contact_area")().target(here, area)  # type: ignore[attr-defined]
     Staircase.starts.clear()
-    return search_target(here, target, Staircase(cells=cells), lambda *_: None)
+    return solve_at(here, target, Staircase(cells=cells), lambda *_: None)
 
 
 @pytest.mark.parametrize("start", [None, 1e-6, 1.0, 1e6])
@@ -118,7 +118,7 @@ def test_any_quantity_by_depth(
         resolution=resolution,
         guess=guess,
     )
-    reached = search_target(setting(), target, Staircase(cells=lambda depth: 5), lambda *_: None)
+    reached = solve_at(setting(), target, Staircase(cells=lambda depth: 5), lambda *_: None)
     assert not reached.caveats
     assert reached.equilibrium.problem.control.value == pytest.approx((goal + 2) / slope, abs=1e-6)
 

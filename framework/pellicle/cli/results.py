@@ -18,10 +18,11 @@ import xarray as xr
 from pellicle.files import for_document
 from pellicle.plugins.commands import Command, commands, errors_attributed_to, load_command
 from pellicle.plugins.origins import GROUP
-from pellicle.results import storage
+from pellicle.results import step_tables, storage
 from pellicle.results.path import has_load
 from pellicle.results.result import Result
 from pellicle.results.runs import axes_of, progress_of, runs_of
+from pellicle.results.status import failed_steps
 from pellicle.show import sentences, tables
 from pellicle.variables import CAVEATS
 
@@ -57,12 +58,12 @@ def print_tables(outcome: Result | xr.Dataset, *, si: bool = False, whole: bool 
             print_table(path, "path", si=si)
         return
     data = outcome.dataset
-    for path in tables.path(data, si=si, whole=whole):
+    for path in step_tables.path(data, si=si, whole=whole):
         print_table(path)
-    print_table(tables.main_steps(data), si=si)
+    print_table(step_tables.main_steps(data), si=si)
     if whole:
-        print_table(tables.contact(data), "surface" if has_load(data) else "contact", si=si)
-        for table in tables.oscillations(data):
+        print_table(step_tables.contact(data), "surface" if has_load(data) else "contact", si=si)
+        for table in step_tables.oscillations(data):
             print_table(table, "oscillations", si=si)
 
 
@@ -105,14 +106,14 @@ def _run(run: xr.Dataset) -> dict[str, Any]:
 
 
 def _steps(data: xr.Dataset) -> list[dict[str, Any]]:
-    rows = tables.numbers(data).records
+    rows = step_tables.numbers(data).records
     return [row | {CAVEATS: json.loads(str(row[CAVEATS]) or "[]")} for row in rows]
 
 
 def exit_by_outcome(outcome: Result | xr.Dataset) -> None:
     """Print what did not converge, and the caveats of a run; exit unless all converged."""
     if isinstance(outcome, Result):
-        reasons, messages = [*sentences.failed_steps(outcome)], outcome.warnings()
+        reasons, messages = [*failed_steps(outcome)], outcome.warnings()
     else:
         message = sentences.failures(outcome)
         reasons, messages = [*sentences.reasons(outcome), message] if message else [], []

@@ -7,13 +7,10 @@ import typer
 from .printing import NOT_CONVERGED, AsJSON, InSI, Stored, echo
 
 
-def show(
-    results: Stored,
-    si: InSI = False,
-    json: AsJSON = False,
-) -> None:
+def show(results: Stored, si: InSI = False, json: AsJSON = False) -> None:
     """Print steps of a result or runs of a study, and its origin; or what a command wrote."""
     from pellicle.results.result import Result, file_of_run, load
+    from pellicle.results.status import unfinished
     from pellicle.show import sentences
     from pellicle.studies.runner import is_table, read
 
@@ -34,6 +31,6 @@ def show(
         for message in sentences.caveats(outcome):
             echo(message, err=True)
     exit_by_outcome(outcome)
-    if isinstance(outcome, Result) and (message := sentences.unfinished(outcome)):
+    if isinstance(outcome, Result) and (message := unfinished(outcome)):
         echo(message, err=True)
         raise typer.Exit(NOT_CONVERGED)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from numbers import Integral
 from typing import get_args
@@ -9,13 +10,7 @@ from typing import get_args
 import numpy as np
 
 from pellicle.arrays import Array, Mask
-from pellicle.checks import (
-    component_name,
-    errors_attributed_to,
-    read_only,
-    real_array,
-    real_number,
-)
+from pellicle.checks import component_name, errors_attributed_to, read_only, real_array, real_number
 from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.problem import Adhesive, Depth, Force, Problem
 from pellicle.contact.solution import Solution, State, Stop
@@ -36,15 +31,15 @@ _ROUNDING = 1e-12
 
 def profile_of(indenter: Indenter, grid: Grid) -> Array:
     """Return the profile f ≤ 0 [m] of an indenter on a grid, read-only."""
-    x, y = (read_only(points) for points in grid.coordinates())
+    x, y = map(read_only, grid.coordinates())
     lattice = Lattice(grid) if grid.boundary == "periodic" else None
     with problems_within("indenter"), errors_attributed_to(indenter), grid_of_run(grid):
         value, footprint = indenter.repeated(x, y, lattice), indenter.footprint
     profile = real_array(indenter, "profile(x, y)", value, grid.shape)
-    name = component_name(indenter)
     if footprint not in get_args(Footprint):
         raise PluginError(
-            f"{name}: footprint is {shown(footprint)}; it has to be 'unbounded' or 'domain'"
+            f"{component_name(indenter)}: footprint is {shown(footprint)}; it has to be "
+            "'unbounded' or 'domain'"
         )
     if np.isneginf(profile).all():
         cells, domain = (
@@ -52,23 +47,23 @@ def profile_of(indenter: Indenter, grid: Grid) -> Array:
             for edges in (grid.spacing, grid.size)
         )
         raise ConfigError(
-            f"cells of {cells} are wider than {name}, which lies over no cell centre; use a "
-            f"smaller grid.size, which is {domain}, or more points",
+            f"cells of {cells} are wider than {component_name(indenter)}, which lies over no cell "
+            f"centre; use a smaller grid.size, which is {domain}, or more points",
             "indenter",
         )
     if not (profile <= 0).all():
         raise ConfigError(
-            f"the profile of {name} has values that are positive or NaN; it must be ≤ 0 "
-            "everywhere and 0 at the lowest point",
+            f"the profile of {component_name(indenter)} has values that are positive or NaN; it "
+            "must be ≤ 0 everywhere and 0 at the lowest point",
             "indenter",
         )
     highest = float(profile.max())
     rounding = _ROUNDING * max(grid.size)
     if highest < -rounding and highest < -(hidden := _hidden_height(profile, footprint)):
         raise PluginError(
-            f"{name}: the highest value of profile(x, y) is {highest:.3g} m, further below 0 than "
-            f"the {hidden:.3g} m by which neighbouring cells differ; it has to be 0 at the lowest "
-            "point"
+            f"{component_name(indenter)}: the highest value of profile(x, y) is {highest:.3g} m, "
+            f"further below 0 than the {hidden:.3g} m by which neighbouring cells differ; it has "
+            "to be 0 at the lowest point"
         )
     return read_only(np.ascontiguousarray(profile))
 
@@ -97,7 +92,7 @@ def _hidden_height(profile: Array, footprint: Footprint) -> float:
 
 def traction_of(load: Load, grid: Grid) -> Array:
     """Return the traction [Pa] of a load of one step on a grid, read-only."""
-    x, y = (read_only(points) for points in grid.coordinates())
+    x, y = map(read_only, grid.coordinates())
     with problems_within("load"), errors_attributed_to(load), grid_of_run(grid):
         value = load.traction(x, y)
     traction = real_array(load, "traction(x, y)", value, grid.shape)
@@ -109,17 +104,23 @@ def traction_of(load: Load, grid: Grid) -> Array:
     return read_only(np.ascontiguousarray(traction))
 
 
-def check_value(prescription: Prescription, setting: Setting, value: float, field: str) -> None:
-    """Let a prescription check a prescribed value; its errors name ``field``.
+def check_values(
+    prescription: Prescription,
+    setting: Setting,
+    values: Iterable[float],
+    field_of: Callable[[int], str] = "{}".format,
+) -> None:
+    """Let a prescription check the values of load steps, whose fields ``field_of`` names.
 
-    If an error names a field already, it keeps that one.
+    An error that names a field already keeps that one.
     """
-    try:
-        with errors_attributed_to(prescription):
-            prescription.check(setting, value)
-    except ConfigError as error:
-        named = any(problem.field for problem in error.problems)
-        raise (error if named else error.within(field)) from None
+    with errors_attributed_to(prescription):
+        for index, value in enumerate(values):
+            try:
+                prescription.check(setting, value)
+            except ConfigError as error:
+                named = any(problem.field for problem in error.problems)
+                raise (error if named else error.within(field_of(index))) from None
 
 
 def target_of(prescription: Prescription, setting: Setting, value: float) -> Depth | Force | Search:

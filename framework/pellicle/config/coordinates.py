@@ -15,9 +15,9 @@ from pellicle.schema.from_file import PORTABLE
 from pellicle.schema.model import Model, get, walk
 from pellicle.schema.ranges import Values
 from pellicle.units import DIGITS, quantity_of, readable, split
-from pellicle.variables import ROLE, WORDS, WORDS_OF_VALUES
+from pellicle.variables import ROLE, WORDS, WORDS_OF_VALUES, words_of_name
 
-from .describe import field_rows, field_words, words_at
+from .describe import field_rows, field_words
 from .run import Run
 
 
@@ -33,14 +33,16 @@ class Coordinate(NamedTuple):
 def coordinate(key: str, given: Values, runs: Sequence[Run]) -> Coordinate:
     """Return the values that ``runs`` hold of the parameter ``key``, ``given`` by the user."""
     values = [_single(get(run, key), value) for run, value in zip(runs, given, strict=True)]
-    words = words_at(json.loads(runs[0].to_json()), Run, key)
+    rows = {row.name: row for row in field_rows(Run.model_fields, runs[0].to_table())}
+    row = rows.get(key.removesuffix(".type"))
+    words = (row and row.words) or words_of_name(key)
     attributes = {"long_name": words, WORDS: words}
     roles = (role_of(field) for path, _, field in walk(runs[0]) if path == key and field)
     if role := next(roles, ""):
         attributes[ROLE] = role
     if all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values):
-        if unit := units_of(runs[0]).get(key):
-            attributes["units"] = unit
+        if row and row.unit:
+            attributes["units"] = row.unit
         return Coordinate(np.array(values), attributes)
     texts = [
         value if isinstance(value, str) else short(original)
@@ -141,5 +143,5 @@ def short(value: object) -> str:
 
 def units_of(run: Run) -> dict[str, str]:
     """Return the SI unit of each field with one, by dotted path."""
-    rows = field_rows(Run.model_fields, json.loads(run.to_json()))
+    rows = field_rows(Run.model_fields, run.to_table())
     return {row.name: row.unit for row in rows if row.unit}

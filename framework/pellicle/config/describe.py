@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
 from types import NoneType
@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal, NamedTuple, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from pellicle.components import Component, HasForceCurve
+from pellicle.components import Component, HasForceCurve, Table
 from pellicle.components.installed import registry
 from pellicle.errors import ConfigError, PluginError
 from pellicle.grid import Grid
@@ -57,6 +57,16 @@ def inputs(configuration: Mapping[str, Any], model: type[BaseModel]) -> Iterator
     Fields of components that are not installed have no unit.
     """
     return (row for row in field_rows(model.model_fields, configuration) if row.value)
+
+
+def table_of(rows: Iterable[FieldRow], caption: str = "") -> Table:
+    """Return each value of a configuration with its meaning, without the title."""
+    cells = [
+        (i.part, "type" if i.words == i.part else i.words, i.value, i.meaning)
+        for i in rows
+        if i.name != "title"
+    ]
+    return Table.of_rows(("of", "input", "value", "meaning"), cells, caption)
 
 
 def words_at(configuration: Mapping[str, Any], model: type[BaseModel], key: str) -> str:
@@ -129,7 +139,7 @@ def _table(
 ) -> Iterator[FieldRow]:
     """Yield the row of the table of a component or of another part of the run, and those in it."""
     model = model_in(info.annotation) if info else None
-    fields = model.model_fields if model else {}
+    fields: Mapping[str, FieldInfo] = model.model_fields if model else {}
     if steps := _load_steps(info):
         kinds = legs_with(steps.quantity).items()
         fields = next((kind.model_fields for key, kind in kinds if key in table), {})

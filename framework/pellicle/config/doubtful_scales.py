@@ -9,6 +9,7 @@ from contextlib import suppress
 
 import numpy as np
 
+from pellicle.config.loading import Loading
 from pellicle.config.run import Run
 from pellicle.config.study import Study
 from pellicle.schema.model import walk
@@ -51,7 +52,7 @@ def warn_of_scale(configuration: Run | Study) -> None:
 
 def _doubts(run: Run) -> Iterator[tuple[str, str]]:
     size = max(run.grid.size)
-    values = list(_values(run))
+    values = _values(run)
     moduli = [value for path, value, unit in values if path[:7] == "kernel." and unit == "Pa"]
     # Displacement by a pressure, both over the whole domain, over its size [1/Pa].
     softness = 0.0
@@ -74,9 +75,9 @@ def _doubts(run: Run) -> Iterator[tuple[str, str]]:
                 yield _doubt(path, value, unit, f"{over}, {_on_domain(size)}")
         if part == "interaction" and unit == "J/m2" and value * softness > _STICKY * size:
             yield _doubt(path, value, unit, "which displaces this solid by more than the domain")
-        if part == "loading" and not (unit == "m" and _has_spring(run)):
+        if part == "loading":
             reached = {"m": value / size, "N": value / size**2 * softness, "Pa": value * softness}
-            if reached.get(unit, 0.0) > 1.0:
+            if reached.get(unit, 0.0) > 1.0 and not (unit == "m" and _has_spring(run)):
                 yield _doubt(path, value, unit, _on_domain(size))
 
 
@@ -91,21 +92,21 @@ def _has_spring(run: Run) -> bool:
     return any(quantity.unit == "N/m" for quantity in quantities if quantity)
 
 
-def _values(run: Run) -> Iterator[tuple[str, float, str]]:
-    """Yield path, largest size and unit of the numbers of a run that are not 0."""
+def _values(run: Run) -> list[tuple[str, float, str]]:
+    """Return path, largest size and unit of the numbers of a run that are not 0."""
+    values = []
     for path, value, field in walk(run):
-        if path.startswith("loading.") or path[-1].isdecimal():
+        if field is None or path[-1].isdecimal() or path.startswith("loading."):
             continue
-        if not isinstance(value, (float, tuple, list)):
+        if not isinstance(value, (float, tuple, list)) or not (quantity := quantity_of(field)):
             continue
         several = [value] if isinstance(value, float) else value
-        largest = max([abs(v) for v in several if isinstance(v, float)], default=0.0)
-        if field and largest > 0 and (quantity := quantity_of(field)):
-            yield path, largest, quantity.unit
-    if run.load is not None:
-        return
-    loading = run.indentation.loading
-    yield f"loading.{loading.prescribed}", max(map(abs, loading.values)), loading.prescription.unit
+        if numbers := [abs(v) for v in several if isinstance(v, float) and v]:
+            values.append((path, max(numbers), quantity.unit))
+    if isinstance(loading := run.loading, Loading):
+        largest, unit = max(map(abs, loading.values)), loading.prescription.unit
+        values.append((f"loading.{loading.prescribed}", largest, unit))
+    return values
 
 
 def _doubt(path: str, value: float, unit: str, reason: str = "") -> tuple[str, str]:

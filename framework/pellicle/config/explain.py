@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from pydantic import BaseModel
+from pydantic.fields import FieldInfo
 
 from pellicle.components import Prescription
 from pellicle.components.installed import registry
@@ -111,7 +112,7 @@ def _of_table(name: str, model: type[BaseModel]) -> Explanation:
 
 def _of_component(entry: Registered) -> Explanation:
     component, example = entry.component, ""
-    fields = component.model_fields
+    fields: Mapping[str, FieldInfo] = component.model_fields
     table: dict[str, Any] = {"type": entry.type}
     if issubclass(component, Prescription):
         fields, table = keys_of(component), {entry.type: [component.quantity().example]}

@@ -6,9 +6,9 @@ import inspect
 import itertools
 import math
 from collections.abc import Mapping, Sequence
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import filterfalse
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Self, cast
 
 from pydantic import (
     Field,
@@ -143,7 +143,7 @@ class Loading(Options):
         check_times(self.time, len(self.values))
         return self
 
-    @property
+    @cached_property
     def prescribed(self) -> str:
         """The type of the prescription."""
         return self.prescription.type_name
@@ -156,8 +156,9 @@ class Loading(Options):
     @cached_property
     def values(self) -> tuple[float, ...]:
         """The load steps in order, SI."""
-        samples = tuple(sample.value for sample in self.samples)
-        return samples or tuple(value for value in self.path if not isinstance(value, Leg))
+        if self.samples:
+            return tuple(sample.value for sample in self.samples)
+        return cast("tuple[float, ...]", self.path)
 
     @cached_property
     def times(self) -> tuple[float, ...] | None:
@@ -180,8 +181,8 @@ class Loading(Options):
         return not all(math.isnan(sample.cycle) for sample in self.samples)
 
     def field_of(self, index: int) -> str:
-        """Return the dotted path of load step ``index``, counted from 0, or of its leg."""
-        return f"{self.prescribed}.{self.samples[index].leg if self.samples else index}"
+        """Return the dotted path in a run of load step ``index``, from 0, or of its leg."""
+        return f"loading.{self.prescribed}.{self.samples[index].leg if self.samples else index}"
 
     def refuse_pulls(self) -> None:
         """Refuse values that only an interaction allows, such as a force below 0."""
@@ -248,7 +249,8 @@ def fields_from(table: Mapping[str, Any], interaction: bool = True) -> dict[str,
     return {"prescription": prescription, "path": path, **options}
 
 
-def keys_of(component: type[Prescription]) -> dict[str, FieldInfo]:
+@cache
+def keys_of(component: type[Prescription]) -> Mapping[str, FieldInfo]:
     """Return the keys of ``[loading]`` with a prescription: its type, its fields, the options."""
     meaning = (inspect.getdoc(component) or "").partition("\n")[0]
     steps = FieldInfo(annotation=tuple[float, ...], description=meaning)
@@ -266,10 +268,11 @@ def prescriptions() -> dict[str, type[Prescription]]:
 def prescription_in(data: Mapping[str, Any]) -> type[Prescription]:
     """Return the prescription that a key of a table names."""
     installed = prescriptions()
-    types = sorted(installed, key=lambda name: (name not in _USUAL, name))
-    keys = [name for name in types if name in data]
+    keys = sorted(installed.keys() & data.keys())
     if len(keys) == 1:
         return installed[keys[0]]
+    types = sorted(installed, key=lambda name: (name not in _USUAL, name))
+    keys.sort(key=types.index)
     remedy = f"give exactly one of {', '.join(types)}"
     if keys:
         # One that an override adds stands last.

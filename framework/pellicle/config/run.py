@@ -6,12 +6,9 @@ give the same `Run`.
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
-from collections.abc import Iterable, Mapping
-from functools import cache, cached_property
-from pathlib import Path
+from collections.abc import Mapping
+from functools import cached_property
 from typing import Annotated, Any, NamedTuple, Self
 
 import numpy as np
@@ -28,7 +25,6 @@ from pellicle.checks import errors_attributed_to
 from pellicle.components import (
     AreaCorrection,
     Branch,
-    Component,
     FromRegistry,
     Indenter,
     Interaction,
@@ -40,29 +36,20 @@ from pellicle.components import (
 from pellicle.components.installed import registry
 from pellicle.components.kernel import branches_of
 from pellicle.errors import ConfigError, all_problems, problems_within, shown
-from pellicle.files import is_file
 from pellicle.grid import Grid, grid_of_run
 from pellicle.plugins.component import words_of_type
 from pellicle.schema.from_file import FromFile
-from pellicle.schema.model import get, replaced, walk
 from pellicle.surface import along_axes
-from pellicle.variables import (
-    OF_LOAD,
-    OF_LOAD_ALONE,
-    VARIABLES,
-    Variable,
-    corrected_area,
-    corrected_fraction,
-)
+from pellicle.variables import OF_LOAD, VARIABLES, Variable, corrected_area, corrected_fraction
 
+from .describe import inputs, table_of
 from .file_names import refuse_shared_files
 from .gradient import derivatives_of, refuse_undefined
 from .loading import Loading, Times, check_times, fields_from, times_from
+from .provenance import identity_of
 
 DEFAULT_SOLVER = "active_set"
 _MISSING = "is missing; give it: {}"
-# Increment if an equal configuration gives different numbers, not if the file layout changes.
-_NUMBERS_VERSION = 1
 # Length 2τ₀/E* of the instantaneous solid, in cells, from which on the pull-off force of an
 # interaction without a range changes by less than 2 % if the cells are halved.
 _TENSED_CELLS = 3.0
@@ -214,7 +201,7 @@ class Run(FromFile):
                 "begins at 0, which is not the value before the indenter presses, and the solid or "
                 "the interaction remembers the way; begin with a jump to a first value, "
                 '{ to, time = "0 s", num = 1 }',
-                f"loading.{loading.field_of(0)}",
+                loading.field_of(0),
             )
         return self
 
@@ -277,9 +264,12 @@ class Run(FromFile):
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: every value with its unit and meaning."""
-        from pellicle.show.notebook import of_run
+        from pellicle.show.notebook import summary
 
-        return of_run(self)
+        values = list(inputs(self.to_table(), Run))
+        types = {row.name: row.value for row in values}
+        sentence = f"{types.get('indenter') or types['load']} on {types['kernel']}"
+        return summary(self.title or "Run", sentence, table_of(values))
 
     @cached_property
     def branches(self) -> tuple[Branch, ...]:
@@ -307,9 +297,10 @@ class Run(FromFile):
     @property
     def steps(self) -> int:
         """The number of load steps; of a load that of its path or its times, or 1."""
-        if self.load is None:
-            return len(self.indentation.loading.values)
-        return len(self.load.varied.values if self.load.varied else self.loading.times or (0.0,))
+        if isinstance(self.loading, Loading):
+            return len(self.loading.values)
+        path = self.load.varied if self.load else None
+        return len(path.values if path else self.loading.times or (0.0,))
 
     @property
     def variables(self) -> list[Variable]:
@@ -330,17 +321,16 @@ class Run(FromFile):
             type_ = correction.type_name
             area = corrected_area(type_, words_of_type(type(correction), type_))
             listed += [area, corrected_fraction(area)]
-        listed += [variable for variable in derivatives_of(self) if variable.kind != "field"]
+        if self.gradient:
+            listed += [variable for variable in derivatives_of(self) if variable.kind != "field"]
         return [variable for variable in listed if variable.type != "text"]
 
     @property
     def _variables_of_load(self) -> list[Variable]:
-        names = *OF_LOAD, *["time"] * (self.loading.times is not None)
-        described = {variable.name: variable for variable in OF_LOAD_ALONE}
-        listed = [described.get(name, VARIABLES[name]) for name in names]
         path = self.load.varied if self.load else None
-        known = [variable for variable in listed if variable.type != "text"]
-        return [*([path.variable] if path else []), *known]
+        listed = [path.variable] if path else []
+        listed += [*OF_LOAD, *[VARIABLES["time"]] * (self.loading.times is not None)]
+        return [variable for variable in listed if variable.type != "text"]
 
     @property
     def identity(self) -> str:
@@ -349,31 +339,4 @@ class Run(FromFile):
         It covers the configuration with its defaults, without `title` and `outputs`; input files
         enter by their content, components of other packages also by the version of the package.
         """
-        identifying = self.model_dump(
-            mode="json", exclude_none=True, exclude={"title", "outputs"}
-        ) | {"schema": _NUMBERS_VERSION}
-        used: set[type[Component]] = set()
-        if self.load is None:
-            used.add(type(self.indentation.loading.prescription))
-        for path, value, _ in walk(self):
-            if isinstance(value, Component) and not path.startswith("outputs."):
-                used.add(type(value))
-            if isinstance(value, Path) and isinstance(get(identifying, path), str):
-                stat = value.stat() if is_file(value) else None
-                content = stat and _digest(value.absolute(), stat.st_mtime_ns, stat.st_size)
-                identifying = replaced(identifying, path, content or str(value))
-        versions = registry().versions(used)
-        if others := {name: number for name, number in versions.items() if name != "pellicle"}:
-            identifying["plugins"] = others
-        return hashlib.sha256(json.dumps(identifying, sort_keys=True).encode()).hexdigest()
-
-
-def components_in(parts: Iterable[object]) -> list[Component]:
-    """Return the components in parts of a configuration, those inside others too."""
-    return [value for _, value, _ in walk([*parts]) if isinstance(value, Component)]
-
-
-@cache
-def _digest(path: Path, changed: int, size: int) -> str:
-    """Return the hash of a file, cached because the runs of a study may share a large file."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+        return identity_of(self)

@@ -13,7 +13,7 @@ from typing import Annotated, Any, NamedTuple, Self
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from pellicle.components import Executor, FromRegistry
+from pellicle.components import Executor, FromRegistry, Table
 from pellicle.errors import ConfigError, Problem, all_problems, first_of, problems_within, shown
 from pellicle.results.derived import constants
 from pellicle.schema.expression import CONSTANTS, FUNCTIONS, evaluate, names_in
@@ -23,6 +23,7 @@ from pellicle.schema.ranges import Axes, expand
 from pellicle.variables import FIELDS, VARIABLES
 
 from .coordinates import Coordinate, as_json, coordinate, short, tell_apart
+from .describe import words_at
 from .file_names import refuse_shared_files
 from .run import Run
 
@@ -99,9 +100,17 @@ class Study(FromFile):
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: the varied parameters and the number of runs."""
-        from pellicle.show.notebook import of_study
+        from pellicle.show.notebook import summary
 
-        return of_study(self)
+        run = self.points[0].run
+        configuration = run.to_table()
+        rows = [
+            (words_at(configuration, Run, name), ", ".join(map(str, values)), name)
+            for axes in self.dimensions.values()
+            for name, values in axes.items()
+        ]
+        table = Table.of_rows(("varied", "values", "field"), rows)
+        return summary(run.title or "Study", f"{len(self.points)} runs", table)
 
     @model_validator(mode="after")
     def _create_runs(self) -> Self:
@@ -185,7 +194,11 @@ class Study(FromFile):
             ) from None
 
     def to_json(self, *, portable: bool = False) -> str:
-        """Return the study as JSON in the form of a study file, with ranges written out as lists.
+        """Return the study as JSON; see `to_table`."""
+        return json.dumps(self.to_table(portable=portable), ensure_ascii=False)
+
+    def to_table(self, *, portable: bool = False) -> dict[str, Any]:
+        """Return the table of a study file, with ranges written out as lists.
 
         Values are kept as the user gave them; paths of input files are absolute unless
         ``portable``.
@@ -213,7 +226,7 @@ class Study(FromFile):
             for key, value in self.run.items()
         }
         given = {name: value for name, value in study.items() if value}
-        return json.dumps({**run, "study": given}, ensure_ascii=False)
+        return {**run, "study": given}
 
     def _check_axes(self) -> None:
         if not self._parameters:

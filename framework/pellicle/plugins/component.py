@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import ClassVar
 
 from pydantic.fields import FieldInfo
 
-from pellicle.schema.model import Model
+from pellicle.schema.model import Model, walk
 from pellicle.variables import ROLE, words_of_name
 
 
@@ -35,6 +36,11 @@ class Component(Model):
 
         A family's base class overrides this; it is called when a plugin is loaded.
         """
+
+
+def components_in(parts: Iterable[object]) -> list[Component]:
+    """Return the components in parts of a configuration, those inside others too."""
+    return [value for _, value, _ in walk([*parts]) if isinstance(value, Component)]
 
 
 def words_of_type(component: type[Component], type_: str) -> str:

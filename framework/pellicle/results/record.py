@@ -131,6 +131,9 @@ class Steps:
         return xr.Dataset({**fields, **scalars.data_vars}, scalars.coords, scalars.attrs)
 
 
+_RESIDUALS = names_of("residual")
+
+
 def _numbers(grid: Grid, equilibrium: Deformation) -> dict[str, object]:
     """Return the variables of every load step: force, shape of the contact and residuals."""
     of_all = {
@@ -155,5 +158,5 @@ def _numbers(grid: Grid, equilibrium: Deformation) -> dict[str, object]:
         "major_axis_angle": shape.angle,
         "patches": patches(contact, grid).count,
         "perimeter": perimeter(contact, grid),
-        **{name: getattr(equilibrium, name) for name in names_of("residual")},
+        **{name: getattr(equilibrium, name) for name in _RESIDUALS},
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,7 @@ from typing import Any
 from pellicle.analysis import Oscillation
 from pellicle.arrays import Dataset
 from pellicle.contact.caveats import Caveat, Status, by_phrase, from_text
-from pellicle.errors import ConfigError, StorageError, first_of
+from pellicle.errors import ConfigError, StorageError
 from pellicle.files import for_document, is_folder
 from pellicle.grid import Grid
 from pellicle.units import axis_unit
@@ -20,8 +20,12 @@ from . import storage
 from .derived import configuration_of
 from .path import contact_of, has_load, label_of_step, oscillations_of, path_variables, with_events
 from .soundness import check, sound
+from .status import first_message, status_of_run
+from .step_tables import main_steps
 
 _NO_CONTACT = "0.93"
+_MOST_ROWS = 12
+"""Rows of the steps in a notebook."""
 
 
 @dataclass(frozen=True)
@@ -100,9 +104,13 @@ class Result:
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: status, numbers of the steps, all variables folded away."""
-        from pellicle.show.notebook import of_result
+        from pellicle.show.notebook import summary
 
-        return of_result(self)
+        data, (sentence, _, details) = self.dataset, status_of_run(self)
+        many = data.sizes["step"] > _MOST_ROWS
+        shortened = data.isel(step=[*range(_MOST_ROWS - 1), -1]) if many else data
+        title, text = str(data.attrs["title"] or "Result"), "\n".join((sentence, *details))
+        return summary(title, text, main_steps(shortened), details=data._repr_html_())
 
     def plot(self, variable: str = "pressure", *, step: int | None = None, **options: Any) -> Any:
         """Draw a field of a load step as a map, x to the right and y up; grey without pressure.
@@ -165,11 +173,6 @@ class Result:
             The file cannot be written.
         """
         storage.write(self.dataset, Path(path))
-
-
-def first_message(steps: Sequence[tuple[int, Caveat]]) -> str:
-    """Return number and message of the first step with a caveat, and the number of further ones."""
-    return f"{first_of([f'step {number}' for number, _ in steps])}: {steps[0][1].sentence}"
 
 
 def file_of_run(path: Path) -> Path:

@@ -12,19 +12,21 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to
-from pellicle.components import Component, Force, Search, Setting
-from pellicle.components.calls import check_solver, check_value, profile_of, target_of, traction_of
+from pellicle.components import Component, Force, Load, Search, Setting
+from pellicle.components.calls import check_solver, check_values, profile_of, target_of, traction_of
 from pellicle.components.installed import registry
 from pellicle.components.interaction import law_of
 from pellicle.components.kernel import instantaneous
 from pellicle.components.rules import CHEAP, Case, first_violation
-from pellicle.config.run import Run, components_in
+from pellicle.config.run import Run
+from pellicle.contact.problem import Traction
 from pellicle.contact.time_step import permanent_share
 from pellicle.errors import ConfigError, PluginError
 from pellicle.grid import Grid
+from pellicle.plugins.component import components_in
 from pellicle.surface.from_kernel import operator_of
 from pellicle.surface.influence import warn_of_cells
-from pellicle.surface.operators import along_axes
+from pellicle.surface.operators import Operator, along_axes
 from pellicle.units import readable
 
 # A step between opposite edges above this multiple of steps inside means a non-periodic surface.
@@ -34,7 +36,40 @@ _LIQUID: Final = 1e-12
 
 
 def compose(run: Run) -> Setting:
-    """Return the setting of the first load step."""
+    """Return the setting of the first load step of a contact."""
+    operator, (indenter, loading) = _operator(run), run.indentation
+    profile = profile_of(indenter, run.grid)
+    footprint = indenter.footprint
+    if footprint == "domain":
+        warn_of_period(profile, run.grid)
+    _warn_of_liquid(run)
+    setting = Setting(run.grid, operator, profile, footprint)
+    if run.interaction:
+        setting = replace(setting, law=law_of(run.interaction, run.kernel, run.grid))
+        check_solver(run.solver, setting.problem(Force(0.0)))
+    check_values(loading.prescription, setting, loading.values, loading.field_of)
+    for index, value in enumerate(loading.values if run.interaction else ()):
+        target = target_of(loading.prescription, setting, value)
+        if isinstance(target, Search) and target.control is Force:
+            raise ConfigError(
+                "is searched by force, along which a contact that sticks jumps; prescribe depth or "
+                "base_displacement where there is an interaction",
+                loading.field_of(index),
+            )
+    return setting
+
+
+def compose_load(run: Run, load: Load) -> list[Traction]:
+    """Return what each step of a run with a load poses."""
+    operator, distinct = _operator(run), run.steps if load.varied else 1
+    tractions = [traction_of(load.at(index), run.grid) for index in range(distinct)]
+    _warn_of_liquid(run)
+    steps = [Traction(run.grid, operator, traction) for traction in tractions]
+    return steps * (run.steps // distinct)
+
+
+def _operator(run: Run) -> Operator:
+    """Return the operator of the instantaneous solid; refuse components that break their rules."""
     case = Case(run.grid, run.kernel)
     parts = run.kernel, run.indenter, run.load, run.interaction, run.corrections
     for component in components_in(parts):
@@ -45,33 +80,7 @@ def compose(run: Run) -> Setting:
     with errors_attributed_to(run.kernel):
         operator = operator_of(instantaneous(run.kernel), run.grid)
         warn_of_cells(partial(along_axes, operator.symbol), run.grid)
-    if run.load is not None:
-        for index in range(run.steps):
-            traction_of(run.load.at(index), run.grid)
-        _warn_of_liquid(run)
-        nowhere = np.broadcast_to(-np.inf, run.grid.shape)
-        return Setting(run.grid, operator, nowhere, "unbounded")
-    indenter, loading = run.indentation
-    profile = profile_of(indenter, run.grid)
-    if indenter.footprint == "domain":
-        warn_of_period(profile, run.grid)
-    _warn_of_liquid(run)
-    setting = Setting(run.grid, operator, profile, indenter.footprint)
-    if run.interaction:
-        setting = replace(setting, law=law_of(run.interaction, run.kernel, run.grid))
-        check_solver(run.solver, setting.problem(Force(0.0)))
-    prescription = loading.prescription
-    for index, value in enumerate(loading.values):
-        field = f"loading.{loading.field_of(index)}"
-        check_value(prescription, setting, value, field)
-        target = target_of(prescription, setting, value) if run.interaction else None
-        if isinstance(target, Search) and target.control is Force:
-            raise ConfigError(
-                "is searched by force, along which a contact that sticks jumps; prescribe depth or "
-                "base_displacement where there is an interaction",
-                field,
-            )
-    return setting
+    return operator
 
 
 @lru_cache

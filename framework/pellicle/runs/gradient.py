@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 
 import numpy as np
@@ -50,9 +49,8 @@ def gradient(result: Result, *, by: str | Sequence[str]) -> xr.Dataset:
     """
     if not isinstance(result, Result):
         raise ConfigError(f"{shown(result)} is not a result; give that of pellicle.run", "result")
-    configuration = json.loads(result.dataset.attrs["configuration"])
     paths = [by] if isinstance(by, str) else [*by]
-    run = Run.from_json(json.dumps(configuration | {"gradient": paths}))
+    run = Run.from_mapping(result.configuration | {"gradient": paths})
     setting, data, loading = compose(run), result.dataset, run.indentation.loading
     differentiated = Gradient(run, setting)
     columns: dict[str, list[object]] = {}
@@ -71,7 +69,7 @@ def gradient(result: Result, *, by: str | Sequence[str]) -> xr.Dataset:
                 equilibrium = AdhesiveEquilibrium(problem, pressure, wall)
             caveats = tuple(from_text(row[CAVEATS].item()))
             step = LoadStep(equilibrium, 0, Stop.DONE, caveats=caveats)
-            step = differentiated.add(run, step, Surroundings(setting, (), lambda *_: None))
+            step = differentiated.add(run, step, Surroundings((), lambda *_: None))
             for name, entry in {**step.measures, **step.fields}.items():
                 columns.setdefault(name, []).append(entry)
     described = {v.name: v.attributes for v in derivatives_of(run)}

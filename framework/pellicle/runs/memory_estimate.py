@@ -41,6 +41,9 @@ def memory_of(run: Run) -> float:
     iterating = 0.0 if run.load else solver.arrays(grid) + (_STICKS if run.interaction else 0.0)
     history = history_arrays(run)
     kept = (_STEP + _SERIALISED) * (run.steps - 1)
+    if run.load and run.load.varied:
+        # The tractions of all steps but the first, which has the place of an indenter.
+        kept += run.steps - 1
     for path in run.gradient or ():
         # Two fields of each step, or the derivative of the operator.
         kept += 4.0 * run.steps if path == HEIGHTS else operator

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 import scipy.fft
@@ -21,11 +21,13 @@ from pellicle.components import Kernel, Setting
 from pellicle.components.kernel import branches_of, instantaneous
 from pellicle.config.run import Run
 from pellicle.contact.load_step import FinishedStep
+from pellicle.contact.problem import Traction
 from pellicle.contact.time_step import History, TimeStep, depend_on_wave
 from pellicle.grid import Grid
 from pellicle.surface import Operator, operator_of
 from pellicle.surface.few_waves import FewWaves, Span, sampled_waves
 
+Composed = TypeVar("Composed", Setting, Traction)
 # Lengths of steps whose operators are kept on a periodic boundary, and the size of what is kept of
 # one in arrays of the grid's shape.
 _KEPT: Final = 4
@@ -56,7 +58,7 @@ class Relaxation:
         """Operator applications of the last `setting` to bring the history forward by one step."""
         return self._history.applications
 
-    def setting(self, setting: Setting, path: Sequence[FinishedStep]) -> Setting:
+    def setting(self, setting: Composed, path: Sequence[FinishedStep]) -> Composed:
         """Return the setting of the step after those of a path; each of them is taken once.
 
         Its operator is that of a solid γ times as stiff, its surface is displaced by what the steps

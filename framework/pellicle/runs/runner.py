@@ -26,7 +26,7 @@ from pellicle.results.record import Steps
 from pellicle.results.result import Result
 from pellicle.results.runs import StoredRuns
 
-from .compose import compose
+from .compose import compose, compose_load
 from .journal import Journal
 from .lock import locked
 from .memory_estimate import memory_of
@@ -146,7 +146,8 @@ def execute(
     workers = scipy.fft.set_workers(threads or default_threads(run.grid))
     with workers, bar as monitor_of, ExitStack() as stack:
         try:
-            solved = solve_steps(run, compose(run), steps, monitor_of)
+            composed = compose_load(run, run.load) if run.load else compose(run)
+            solved = solve_steps(run, composed, steps, monitor_of)
             if journal:
                 if not inner:
                     stack.enter_context(locked(journal.stem.parent, journal.stem.name))

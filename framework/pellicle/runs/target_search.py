@@ -8,22 +8,19 @@ located to a relative width, on the side nearer to the goal.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
 
-from pellicle.components import Monitor, Solver
-from pellicle.components.calls import solution_of
-from pellicle.components.prescription import Search, Setting
+from pellicle.components import Depth, Force, Search, Setting
 from pellicle.contact.caveats import Caveat, Status
-from pellicle.contact.equilibrium import equilibrium_of
-from pellicle.contact.load_step import LoadStep, start_of
-from pellicle.contact.problem import Depth, Force
 
 from .terms import ContactStep
 
+Solve = Callable[[Depth | Force], ContactStep]
+"""Returns the load step at a depth or a force."""
 # Number of trials to bracket the goal, after which it counts as out of reach.
 _MOST_TRIALS: Final = 40
 # Growth of log F over which a quantity that stays the same counts as one that does not grow.
@@ -32,17 +29,16 @@ _SATURATED: Final = math.log(1e6)
 _NEAR: Final = 0.05
 
 
-def search_target(
-    setting: Setting, search: Search, solver: Solver, monitor: Monitor
-) -> ContactStep:
+def search_target(setting: Setting, search: Search, solve: Solve, tolerance: float) -> ContactStep:
     """Return the load step at which the quantity of ``search`` has its goal.
 
     A bracket grows from the first trial; Brent's method (1973) then finds the root, in log F if the
-    control is a force. Every trial starts from the state of the step before.
+    control is a force. ``solve`` starts every trial from the state of the step before; a
+    relative error up to the ``tolerance`` is none.
     """
     from scipy.optimize import brentq
 
-    trials = _Trials(setting, search, solver, monitor)
+    trials = _Trials(setting, search, solve)
     low = high = trials.first()
     below = above = trials(low)
     while below > 0 and len(trials.excess) < _MOST_TRIALS:
@@ -59,25 +55,14 @@ def search_target(
     if jumps := below < 0 < above:
         brentq(trials, low, high, xtol=search.width, rtol=1e-15)
     step = replace(trials.nearest, iterations=trials.iterations, missed=trials.missed)
-    return step.having({}, _not_met(trials, jumps=jumps))
+    return step.having({}, _not_met(trials, tolerance, jumps=jumps))
 
 
-def solve_at(
-    setting: Setting, control: Depth | Force, solver: Solver, monitor: Monitor
-) -> ContactStep:
-    """Return the load step at a depth or a force."""
-    problem = setting.problem(control)
-    start = start_of(problem, setting.state, setting.path)
-    solution = solution_of(solver, problem, start, monitor)
-    equilibrium = equilibrium_of(problem, solution)
-    return LoadStep(equilibrium, solution.iterations, solution.stop, solution.jumped)
-
-
-def _not_met(trials: _Trials, *, jumps: bool) -> Iterator[Caveat]:
+def _not_met(trials: _Trials, tolerance: float, *, jumps: bool) -> Iterator[Caveat]:
     """Yield the caveat of a search that ended away from its goal, across which it may jump."""
     search, is_near = trials.search, trials.missed <= _NEAR
     # Of a quantity that does not jump a search without a resolution finds values on either side.
-    met = 0.0 in trials.excess.values() or trials.missed <= trials.solver.tolerance
+    met = 0.0 in trials.excess.values() or trials.missed <= tolerance
     if met and is_near:
         return
     values: dict[str, float | str] = {"quantity": search.quantity, "measure": trials.missed}
@@ -110,8 +95,7 @@ class _Trials:
 
     setting: Setting
     search: Search
-    solver: Solver
-    monitor: Monitor
+    solve: Solve
     excess: dict[float, float] = field(default_factory=dict)
     """Excess of the value over the goal by log F or by depth over `scale`, 0 if met.
 
@@ -164,7 +148,7 @@ class _Trials:
 
     def _try(self, control: float) -> float:
         goal = self.search.goal
-        step = solve_at(self.setting, self.search.control(control), self.solver, self.monitor)
+        step = self.solve(self.search.control(control))
         self.iterations += step.iterations
         value = self.search.measure(step.equilibrium)
         missed = abs(value - goal) / (abs(goal) or 1.0)

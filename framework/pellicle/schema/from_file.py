@@ -135,9 +135,14 @@ class FromFile(Model):
         """
         return self.model_dump_json(exclude_none=True, context=PORTABLE if portable else None)
 
+    def to_table(self, *, portable: bool = False) -> dict[str, Any]:
+        """Return the whole configuration as the table of its file; see `to_json`."""
+        context = PORTABLE if portable else None
+        return self.model_dump(mode="json", exclude_none=True, context=context)
+
     def to_toml(self) -> str:
         """Return the whole configuration as TOML; see `to_json`."""
-        return tomli_w.dumps(json.loads(self.to_json()))
+        return tomli_w.dumps(self.to_table())
 
 
 def read_toml(path: Path) -> dict[str, Any]:

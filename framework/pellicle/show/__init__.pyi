@@ -12,6 +12,9 @@ from .fields import default_step as default_step
 from .fields import up_to_rim as up_to_rim
 from .fields import with_rim as with_rim
 from .fields import without_round_off as without_round_off
+from .figure_style import LINES as LINES
+from .figure_style import FigureStyle as FigureStyle
+from .figures import figures as figures
 from .html import Block as Block
 from .html import Code as Code
 from .html import Notice as Notice
@@ -28,13 +31,10 @@ from .methods import methods as methods
 from .notebook import summary as summary
 from .numbers import write_csv as write_csv
 from .saving import figure_of as figure_of
-from .saving import figures as figures
 from .saving import png as png
 from .saving import save_figure as save_figure
 from .saving import save_pages as save_pages
 from .saving import svg as svg
 from .saving import write_charts as write_charts
 from .sentences import in_words as in_words
-from .style import LINES as LINES
-from .style import FigureStyle as FigureStyle
 from .tables import input_table as input_table

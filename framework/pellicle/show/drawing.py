@@ -13,7 +13,7 @@ from pellicle.arrays import Array
 from pellicle.components.charts import Axis, Chart, Fields, Panel, Series, extent
 from pellicle.units import Scale, axis_unit
 
-from .style import LINES, MARKERS, NO_CONTACT, colour
+from .figure_style import LINES, MARKERS, NO_CONTACT, colour
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

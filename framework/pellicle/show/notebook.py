@@ -1,24 +1,14 @@
-"""Short HTML of runs, studies and results, for notebooks."""
+"""What a notebook shows: a table with a sentence as short HTML, and drawings."""
 
 from __future__ import annotations
 
-import json
 from base64 import b64encode
 from collections.abc import Sequence
 from html import escape
 
 from pellicle.components.charts import Table
-from pellicle.config.describe import inputs, words_at
-from pellicle.config.run import Run
-from pellicle.config.study import Study
-from pellicle.results.result import Result
 
-from . import tables
 from .saving import png as png
-from .sentences import status_of_run
-
-_MOST = 12
-"""Rows of the steps of a result."""
 
 
 def summary(
@@ -47,34 +37,3 @@ def summary(
 def _row(tag: str, cells: Sequence[str]) -> str:
     inner = "".join(f"<{tag} style='text-align:left'>{escape(cell)}</{tag}>" for cell in cells)
     return f"<tr>{inner}</tr>"
-
-
-def of_run(run: Run) -> str:
-    """Return every value of a run with its unit and meaning."""
-    values = list(inputs(json.loads(run.to_json()), Run))
-    types = {i.name: i.value for i in values}
-    sentence = f"{types.get('indenter') or types['load']} on {types['kernel']}"
-    return summary(run.title or "Run", sentence, tables.inputs(values))
-
-
-def of_study(study: Study) -> str:
-    """Return the varied parameters of a study and the number of its runs."""
-    run = study.points[0].run
-    configuration = json.loads(run.to_json())
-    rows = [
-        (words_at(configuration, Run, name), ", ".join(map(str, values)), name)
-        for axes in study.dimensions.values()
-        for name, values in axes.items()
-    ]
-    table = Table.of_rows(("varied", "values", "field"), rows)
-    return summary(run.title or "Study", f"{len(study.points)} runs", table)
-
-
-def of_result(result: Result) -> str:
-    """Return how a run ended, the main numbers of its steps, and all variables, folded away."""
-    data, (sentence, _, details) = result.dataset, status_of_run(result)
-    many = data.sizes["step"] > _MOST
-    shortened = data.isel(step=[*range(_MOST - 1), -1]) if many else data
-    text = "\n".join((sentence, *details))
-    title = str(data.attrs["title"] or "Result")
-    return summary(title, text, tables.main_steps(shortened), details=data._repr_html_())

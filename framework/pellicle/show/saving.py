@@ -11,18 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellicle.arrays import Dataset
-from pellicle.components import Output
 from pellicle.components.charts import Chart, Fields, Shown, Table
-from pellicle.components.installed import registry
 from pellicle.errors import PluginError
 from pellicle.files import atomic_write, for_document, storage_errors
-from pellicle.results.result import Result
-from pellicle.results.runs import StoredRuns
 
 from .drawing import SIZE, Drawn, draw, size_of
+from .figure_style import FigureStyle, label_log_axes, lay_out
 from .numbers import table_of, write_csv
-from .style import FigureStyle, label_log_axes, lay_out
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -77,19 +72,6 @@ def figure_of(
 
     sizes = [size_of(part) for part in beside]
     return fill, (sum(width for width, _ in sizes), max(height for _, height in sizes))
-
-
-def figures(shown: Result | Dataset) -> dict[str, Shown]:
-    """Return what the standard output ``figures`` shows of a result or of the table of a study.
-
-    The keys are the suffixes of its files, such as ``force_depth``.
-    """
-    if isinstance(shown, Result):
-        runs = StoredRuns.of_run(shown.dataset)
-    else:
-        runs = StoredRuns.of_study(shown, Path())
-    output = registry().make(Output, {"type": "figures"})
-    return {suffix.removeprefix("-"): part for suffix, part in output.charts(runs)}
 
 
 def save_figure(

@@ -14,8 +14,8 @@ from pellicle.config.run import Run
 from pellicle.contact.caveats import Status, by_phrase, from_text
 from pellicle.errors import first_of
 from pellicle.results.derived import configuration_of
-from pellicle.results.result import Result, first_message
 from pellicle.results.runs import axes_of, by_run, runs_of, short_files, statuses_of
+from pellicle.results.status import status_of_run as status_of_run
 from pellicle.results.wording import column_of
 from pellicle.schema.expression import formula
 from pellicle.units import decimal
@@ -32,41 +32,6 @@ _FAILURES = {
 """Phrases for messages such as "3 did not converge", by verdict."""
 
 
-def failed_steps(result: Result) -> Iterator[str]:
-    """Yield for each way to fail which steps of a run did not converge, and why the first."""
-    failed: dict[Status, list[tuple[int, str]]] = {}
-    for number, caveat in result.caveats():
-        if not caveat.status.converged:
-            failed.setdefault(caveat.status, []).append((number, caveat.sentence))
-    for group in failed.values():
-        numbers = dict.fromkeys(number for number, _ in group)
-        ends = ([n for n in numbers if n + by not in numbers] for by in (-1, 1))
-        spans = [str(a) if a == b else f"{a} to {b}" for a, b in zip(*ends, strict=True)]
-        listed = " and ".join(map(str, numbers)) if len(group) == 2 else ", ".join(spans)
-        several = len({message for _, message in group}) > 1
-        first = f"step {group[0][0]}: " if several else ""
-        steps = f"step{'s' * (len(group) > 1)} {listed}"
-        yield f"{steps} did not converge: {first}{group[0][1]}"
-
-
-def status_of_run(result: Result) -> tuple[str, bool | None, list[str]]:
-    """Return what became of a run, whether all is well, None with reservations, and details."""
-    total = result.planned_steps
-    done, failed = result.dataset.sizes["step"], result.failures()
-    sentences = []
-    if done < total:
-        sentences.append(f"The run ended early: {done} of {total} load steps are finished.")
-    count = "The load step" if done == 1 else f"All {done} load steps"
-    bad = f"{len(failed)} of {done} load steps did not converge: do not rely on them."
-    sentences.append(bad if failed else f"{count} converged.")
-    groups = by_phrase(result.caveats())
-    sentences += [f"In {len(steps)} of {done} {phrase}." for phrase, steps in groups.items()]
-    lines = *failed_steps(result), *map(first_message, groups.values())
-    details = [f"{line[0].upper()}{line[1:]}" for line in lines]
-    is_good = None if details else True
-    return " ".join(sentences), is_good if done == total and not failed else False, details
-
-
 def status_of_study(table: Dataset) -> tuple[str, bool | None, list[str]]:
     """Return what became of a study, whether all is well, None with reservations, and details."""
     failed, warnings = failures(table), [*caveats(table)]
@@ -74,12 +39,6 @@ def status_of_study(table: Dataset) -> tuple[str, bool | None, list[str]]:
         return f"{failed[0].upper()}{failed[1:]}.", False, [*reasons(table), *warnings]
     converged = f"Every step of all {table['run'].size} runs converged."
     return converged, None if warnings else True, warnings
-
-
-def unfinished(result: Result) -> str:
-    """Return how far an interrupted run came; empty if it is whole."""
-    done, planned = result.dataset.sizes["step"], result.planned_steps
-    return f"interrupted: {done} of {planned} steps are finished; run it again" * (done < planned)
 
 
 def run_names(table: Dataset) -> list[str]:

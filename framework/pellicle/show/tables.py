@@ -1,7 +1,4 @@
-"""The tables of runs and studies: for the terminal, pages, notebooks and files alike.
-
-A table for people holds a list of the variables by name, and ``status``, how each step ended.
-"""
+"""The tables of studies and of inputs: for the terminal, pages, notebooks and files alike."""
 
 from __future__ import annotations
 
@@ -10,20 +7,29 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from pellicle.arrays import Dataset
 from pellicle.components.charts import Column, Table
 from pellicle.config import describe
 from pellicle.config.describe import FieldRow
 from pellicle.config.run import Run
-from pellicle.contact.caveats import from_text, verdict_of
 from pellicle.results.derived import DERIVED
-from pellicle.results.path import has_load, oscillations_of, path_variables, prescribed_variable
+from pellicle.results.path import has_load
 from pellicle.results.runs import axes_of, progress_of, runs_of, short_files
+from pellicle.results.step_tables import (
+    OF_LOAD,
+    is_effort,
+    is_shown,
+    names_of_numbers,
+    verdicts_column,
+)
+from pellicle.results.step_tables import all_steps as all_steps
+from pellicle.results.step_tables import main_steps as main_steps
+from pellicle.results.step_tables import numbers as numbers
+from pellicle.results.step_tables import oscillations as oscillations
+from pellicle.results.step_tables import path as path
 from pellicle.results.wording import column_of, means_something
 from pellicle.units import axis_unit, readable
-from pellicle.variables import CAVEATS, VARIABLES, names_of
+from pellicle.variables import names_of
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -36,134 +42,9 @@ _OF_PATHS = [
     *("storage_stiffness", "loss_stiffness", "phase", "cycle_dissipation"),
 ]
 """Variables of the path of each run of a study, for the terminal."""
-_OF_PATH = "pull_off", "pull_off_accuracy", "detach", "jump_in", "work", "dissipated_energy"
-"""Variables of the path of a run that has just been solved, for the terminal."""
-_OF_LOAD = "force", "ridge_height", "ridge_width", "dimple_depth", "dimple_volume", "elastic_energy"
-"""Variables of each step under a load, for the terminal."""
 _COMPARED = 8
 """Digits of values that are compared."""
 _POWERS = str.maketrans("²³", "23")
-
-
-def numbers(data: Dataset) -> Table:
-    """Return all numbers and texts of each step, as files have them."""
-    names = [str(n) for n, variable in data.data_vars.items() if variable.dims == ("step",)]
-    columns = [(name, data[name]) for name in ("step", *names)]
-    return Table([Column(n, v.values.tolist(), v.attrs.get("units", "")) for n, v in columns])
-
-
-def steps(data: Dataset, names: Iterable[str], caption: str = "") -> Table:
-    """Return variables of each step; a residual has two digits."""
-    columns = []
-    for name in ("step", *names):
-        if name == "status":
-            columns.append(_verdicts([verdict_of(from_text(t)) for t in data[CAVEATS].values]))
-        else:
-            column = column_of(data[name])
-            digits = 2 if name.startswith("residual_") else column.digits
-            columns.append(replace(column, digits=digits))
-    return Table(columns, caption)
-
-
-def _verdicts(words: Sequence[str]) -> Column:
-    return Column("status", words, bad=[word != "converged" for word in words])
-
-
-def _is_effort(name: str) -> bool:
-    # Prescriptions add residuals of their own.
-    return name in names_of("effort") or name.startswith("residual_")
-
-
-def _is_shown(data: Dataset, name: str) -> bool:
-    """Return whether a variable describes the contact, and has finite values.
-
-    Without a finite force the variables of a step stay in the table.
-    """
-    if not means_something(data, name):
-        return False
-    missing = not np.isfinite(data[name].values.astype(float)).any()
-    return not missing or not np.isfinite(data["force"].values).any()
-
-
-def _names_of_numbers(data: Dataset) -> list[str]:
-    return [
-        str(name)
-        for name, variable in data.data_vars.items()
-        if "step" in variable.dims and variable.dtype.kind in "if" and "x" not in variable.dims
-    ]
-
-
-def all_steps(data: Dataset) -> list[Table]:
-    """Return the numbers of each load step: the result, the shape of the contact, the effort."""
-    names, of_contact = _names_of_numbers(data), names_of("contact")
-    effort = [n for n in names if _is_effort(n)]
-    shape = [n for n in names if n in of_contact and _is_shown(data, n)]
-    measures = [n for n in names if n not in (*effort, *of_contact) and _is_shown(data, n)]
-    tables = {
-        "Results of each load step.": measures,
-        "Shape of the contact in each load step.": shape,
-        "Residuals and effort of each load step.": effort,
-    }
-    return [steps(data, [*names, "status"], caption) for caption, names in tables.items() if names]
-
-
-def main_steps(data: Dataset) -> Table:
-    """Return the main numbers of each load step, with what was asked for."""
-    if has_load(data):
-        under_load = dict.fromkeys(["time", prescribed_variable(data), *_OF_LOAD])
-        return steps(data, [*(name for name in under_load if name in data), "status"])
-    areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
-    usual = {"time", "depth", "force", *areas, *names_of("other")}
-    named = prescribed_variable(data), "stiffness"
-    requested = [name for name in named if name in {*data} - usual]
-    time = ["time"] if "time" in data else []
-    return steps(data, [*time, "depth", "force", *areas, *requested, "iterations", "status"])
-
-
-def contact(data: Dataset) -> Table:
-    """Return the shape of the contact in each load step, and of the zone around it.
-
-    Under a load it is that of the surface.
-    """
-    kinds = names_of("contact", "interaction", "load")
-    names = [name for name in kinds if name in data and means_something(data, name)]
-    return steps(data, [name for name in names if not name.startswith("residual_")])
-
-
-def path(data: Dataset, *, si: bool = False, whole: bool = True) -> list[Table]:
-    """Return the events on the path and its work, where there is an interaction.
-
-    Without the ``whole`` these are pull-off, loss and gain of contact, and the work. Depths,
-    forces and stiffnesses have the prefix of those of the load steps.
-    """
-    of_steps = [data[name] for name in ("depth", "force", "stiffness") if name in data]
-    beside = {variable.attrs.get("units"): variable.values.tolist() for variable in of_steps}
-    rows = []
-    for name, number in path_variables(data).items():
-        variable = VARIABLES[name]
-        if variable.kind == "path" and (whole or name in _OF_PATH):
-            values = [number, *beside.get(variable.unit, ())]
-            scale, digits = Column("", values, variable.unit).unit_and_digits(si=si)
-            text = "none" if number != number else scale.text(number, digits)
-            rows.append((variable.words, text, variable.meaning))
-    caption = "Events on the path, to a step, and its work."
-    return [Table.of_rows(("path", "value", "meaning"), rows, caption)] if rows else []
-
-
-def oscillations(data: Dataset) -> list[Table]:
-    """Return the numbers of each oscillation on the path, where a leg oscillates."""
-    found = oscillations_of(data)
-    columns = [
-        Column(
-            variable.words,
-            [getattr(oscillation, variable.name) for oscillation in found],
-            variable.unit,
-            variable.meaning,
-        )
-        for variable in map(VARIABLES.__getitem__, names_of("oscillation"))
-    ]
-    caption = "Response over the last whole cycle of each oscillation."
-    return [Table(columns, caption)] if found else []
 
 
 def runs(table: Dataset, names: Sequence[str] | None = None, mapped: Sequence[int] = ()) -> Table:
@@ -173,7 +54,7 @@ def runs(table: Dataset, names: Sequence[str] | None = None, mapped: Sequence[in
     that a page maps, in the order of their maps.
     """
     if names is None:
-        names = [n for n in _names_of_numbers(table) if not _is_effort(n) and _is_shown(table, n)]
+        names = [n for n in names_of_numbers(table) if not is_effort(n) and is_shown(table, n)]
     rows = list(runs_of(table))
     progress = [progress_of(row) for row in rows]
 
@@ -197,7 +78,7 @@ def runs(table: Dataset, names: Sequence[str] | None = None, mapped: Sequence[in
         *_of_runs(table, axes_of(table)),
         Column("steps", steps, meaning="finished load steps, of those planned"),
         *map(last, names),
-        _verdicts([verdict for *_, verdict in progress]),
+        verdicts_column([verdict for *_, verdict in progress]),
         Column("file", short_files(table), meaning=beginning),
     ]
     return Table(columns, "The last load step of each run; a click on a run shows its map.")
@@ -205,7 +86,7 @@ def runs(table: Dataset, names: Sequence[str] | None = None, mapped: Sequence[in
 
 def main_runs(table: Dataset) -> Table:
     """Return the parameters of each run of a study, and the main numbers of its last step."""
-    named = dict.fromkeys([*names_of("main"), *_OF_LOAD]) if has_load(table) else names_of("main")
+    named = dict.fromkeys([*names_of("main"), *OF_LOAD]) if has_load(table) else names_of("main")
     main = [n for n in named if n in table and means_something(table, n)]
     derived = [n for n in json.loads(table.attrs[DERIVED]) if "step" in table[n].dims]
     return runs(table, [*main, *derived])
@@ -237,16 +118,6 @@ def _of_runs(table: Dataset, names: Iterable[str]) -> Iterator[Column]:
         yield replace(column_of(table[name]), values=column_of(values).values)
 
 
-def inputs(fields: Iterable[FieldRow], caption: str = "") -> Table:
-    """Return each value of a configuration with its meaning, without the title."""
-    rows = [
-        (i.part, "type" if i.words == i.part else i.words, i.value, i.meaning)
-        for i in fields
-        if i.name != "title"
-    ]
-    return Table.of_rows(("of", "input", "value", "meaning"), rows, caption)
-
-
 def input_table(
     configuration: Mapping[str, Any], model: type[BaseModel], caption: str = ""
 ) -> Table:
@@ -254,7 +125,7 @@ def input_table(
 
     ``configuration`` has the form of its JSON.
     """
-    return inputs(describe.inputs(configuration, model), caption)
+    return describe.table_of(describe.inputs(configuration, model), caption)
 
 
 def inputs_of_run(configuration: Mapping[str, Any], study: Dataset | None = None) -> Table:
@@ -267,7 +138,7 @@ def inputs_of_run(configuration: Mapping[str, Any], study: Dataset | None = None
     if study is not None:
         rows = inputs_of_study(study, rows)
     caption = "All inputs that determine the result, defaults included."
-    return inputs((row for row in rows if not row.name.startswith("outputs.")), caption)
+    return describe.table_of((row for row in rows if not row.name.startswith("outputs.")), caption)
 
 
 def inputs_of_study(table: Dataset, fields: Iterable[FieldRow]) -> list[FieldRow]:

@@ -177,7 +177,7 @@ def warn_of_cells(compliance: Callable[[Array], Array], grid: Grid) -> None:
     """Warn if cells on a free boundary are too wide for an accuracy of a few per cent."""
     if grid.boundary != "free":
         return
-    errors = [error_of_cells(compliance, spacing) for spacing in grid.spacing]
+    errors = [error_of_cells(compliance, spacing) for spacing in dict.fromkeys(grid.spacing)]
     error = max(errors, key=lambda value: abs(value) if math.isfinite(value) else 0.0)
     if not abs(error) > _ALLOWED:
         return

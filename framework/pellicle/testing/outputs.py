@@ -143,7 +143,7 @@ def works_in_a_run(output: Output) -> None:
 def works_in_a_study(output: Output) -> None:
     """A study of two runs with this output has its files."""
     with TemporaryDirectory() as folder:
-        run = json.loads(_run().to_json()) | {"outputs": [output]}
+        run = _run().to_table() | {"outputs": [output]}
         study = Study.from_mapping(run | {"study": {"vary": {_VARIED: [0.1, 0.2]}}})
         result = studies.execute(study, Path(folder))
         statuses = {*result.result["status"].values.ravel()}

@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from pellicle.components import Force, Prescription, Search, Setting, Solver
-from pellicle.components.calls import check_value, report_of, target_of
+from pellicle.components.calls import check_values, report_of, target_of
 from pellicle.config.run import Run
 from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.load_step import LoadStep
@@ -15,7 +15,7 @@ from pellicle.contact.solution import Stop
 from pellicle.errors import ConfigError
 from pellicle.results.record import step_dataset
 from pellicle.runs.compose import compose
-from pellicle.runs.target_search import search_target, solve_at
+from pellicle.runs.solve import solve_at
 
 from .component import check, require, require_close, rules_of
 from .small_runs import HALF_SPACE, ROUGH, ignore
@@ -82,7 +82,7 @@ def target_is_pure(prescription: Prescription, values: Sequence[float]) -> None:
     """target() returns a Depth, Force or Search of finite numbers, the same in a second call."""
     setting, _, _ = _reference_steps()
     for value in _values(prescription, values):
-        check_value(prescription, setting, value, "")
+        check_values(prescription, setting, [value])
         members = (vars(target_of(prescription, setting, value)).items() for _ in range(2))
         first, second = ({k: v for k, v in target if k != "measure"} for target in members)
         require(first == second, f"{second} after {first}")
@@ -93,7 +93,7 @@ def values_are_refused_in_words(prescription: Prescription, values: Sequence[flo
     setting, _, _ = _reference_steps()
     for value in (0.0, 1e12 * max(map(abs, _values(prescription, values)))):
         try:
-            check_value(prescription, setting, value, "")
+            check_values(prescription, setting, [value])
         except ConfigError:
             continue
         target_of(prescription, setting, value)
@@ -116,10 +116,7 @@ def step_has_what_is_prescribed(prescription: Prescription, values: Sequence[flo
     setting, steps, solver = _reference_steps()
     for value, reference in zip(_values(prescription, values), steps, strict=True):
         target = target_of(prescription, setting, value)
-        if isinstance(target, Search):
-            step = search_target(setting, target, solver, ignore).equilibrium
-        else:
-            step = solve_at(setting, target, solver, ignore).equilibrium
+        step = solve_at(setting, target, solver, ignore).equilibrium
         what = f"the force [N] at {value:g} {prescription.unit}"
         require_close(step.force, reference.force, what, relative=_NEAR)
         again = _value(prescription, step)

@@ -92,7 +92,7 @@ class Quantity:
         One that is no number, lacks a unit, has another dimension, is not finite, is beyond
         `LARGEST` or out of bounds is a ValueError.
         """
-        number = self._in_si(value)
+        number = value if type(value) is float else self._in_si(value)
         if not math.isfinite(number):
             raise ValueError(f"{shown(value)} is not finite; give {self._wanted()}")
         for _, _, holds, bound in self._limits:

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 import pellicle as pl
 from pellicle.results import StoredRuns, is_log_spaced
 from pellicle.show import draw, save_figure
-from pellicle.show.style import FigureStyle
+from pellicle.show.figure_style import FigureStyle
 from pellicle_plugins.outputs.figures import study_curves
 from pellicle_plugins.outputs.step_figures import pressure_map
 from tests.pictures import pixels

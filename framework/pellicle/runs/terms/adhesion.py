@@ -18,7 +18,7 @@ from pellicle.contact.masks import labelled
 from pellicle.contact.problem import Depth
 from pellicle.contact.solution import State, Stop
 
-from . import ContactStep, Surroundings
+from . import AroundContact, ContactStep
 
 # Widths of two zones over that of the step, for the limit of no width.
 _WIDER: Final = (1.5, 3.0)
@@ -44,7 +44,7 @@ _STAYS: Final = 0.25
 _UNCERTAIN: Final = 0.01
 
 
-def adhesion(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
+def adhesion(run: Run, step: ContactStep, surroundings: AroundContact) -> ContactStep:
     """Add jumps, the limit of the force, and whether its zone has few cells, where it sticks."""
     setting, equilibrium, interaction = surroundings.setting, step.equilibrium, run.interaction
     if not isinstance(equilibrium, AdhesiveEquilibrium) or interaction is None:
@@ -111,7 +111,7 @@ def _force_limit(
     return {"force_extrapolated": float(limit), "force_error": error}
 
 
-def _pulled_off(run: Run, step: ContactStep, surroundings: Surroundings) -> Caveat:
+def _pulled_off(run: Run, step: ContactStep, surroundings: AroundContact) -> Caveat:
     """Return the caveat with two forces [N], of which the contact of the last state carries one."""
     setting, force = surroundings.setting, step.equilibrium.problem.control.value
     state = setting.state
@@ -170,7 +170,7 @@ class _Point(NamedTuple):
 def _jump_energy(
     run: Run,
     equilibrium: AdhesiveEquilibrium,
-    surroundings: Surroundings,
+    surroundings: AroundContact,
     *,
     is_certain: bool,
     as_whole: bool,

@@ -1,36 +1,43 @@
-"""Judge the equilibrium of a load step, and whether the cells resolve its contact."""
+"""Judge the equilibrium of a step in contact, and whether cells and theory hold it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Final
 
 import numpy as np
 
+from pellicle.analysis import steepest
 from pellicle.arrays import Mask
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
-from pellicle.contact.equilibrium import Equilibrium
+from pellicle.contact.equilibrium import AdhesiveEquilibrium, Equilibrium
 from pellicle.contact.masks import labelled
 from pellicle.grid import Boundary
 
-from . import ContactStep, Surroundings
+from . import SMALL_SLOPE, AroundContact, ContactStep
 
 # The force of a paraboloid is right to 8 % on nine or twelve cells, to 14 % on five, on fewer not.
-_RESOLVED = 13
-_RESOLVED_ACROSS = 4
+_RESOLVED: Final = 13
+_RESOLVED_ACROSS: Final = 4
+# Slope beyond which a contact that does not stick is told.
+_STEEPEST: Final = 1.0
+# Relative change of G(q) q² over a decade below which it is the limit of short waves.
+_CONSTANT: Final = 0.05
 
 
-def contact(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
-    """Add why the step is not a solution, and whether its contact has too few cells."""
+def contact(run: Run, step: ContactStep, around: AroundContact) -> ContactStep:
+    """Add why the step is not a solution, or else what its cells and the theory do not hold."""
     if not np.isfinite(step.equilibrium.force):
         return step.having({}, [Caveat(Status.NOT_FINITE)])
-    value = run.indentation.loading.values[len(surroundings.path)]
-    step = step.having({}, _failures(run, step, value))
-    return step.having({}, _coarse(run, step.equilibrium)) if step.converged else step
+    step = step.having({}, _failures(run, step, around))
+    if not step.converged:
+        return step
+    return step.having({}, [*_coarse(run, step.equilibrium), *_steep(run, step.equilibrium)])
 
 
-def _failures(run: Run, step: ContactStep, value: float) -> Iterator[Caveat]:
-    """Yield why the step is not a solution; ``value`` is the prescribed one."""
+def _failures(run: Run, step: ContactStep, around: AroundContact) -> Iterator[Caveat]:
+    """Yield why the step is not a solution."""
     equilibrium, tolerance = step.equilibrium, run.solver.tolerance
     if (lowest := float(equilibrium.wall.min())) < 0:
         share = -lowest / float(np.abs(equilibrium.wall).max())
@@ -44,26 +51,23 @@ def _failures(run: Run, step: ContactStep, value: float) -> Iterator[Caveat]:
     ):
         if not residual <= tolerance:
             yield Caveat(
-                status,
-                {"measure": residual, "tolerance": tolerance, "stop": step.stop.name},
+                status, {"measure": residual, "tolerance": tolerance, "stop": step.stop.name}
             )
     contact, reach = equilibrium.contact, equilibrium.contact | equilibrium.zone
-    size, boundary, (indenter, loading) = run.grid.size, run.grid.boundary, run.indentation
+    size, boundary = run.grid.size, run.grid.boundary
     edges = {"size_x": size[0], "size_y": size[1]}
     if boundary == "free" and min(contact.shape) == 1 < contact.size and reach.any():
         yield Caveat(Status.STRIP, {"length": size[int(contact.shape[1] == 1)]})
-    elif indenter.footprint != "unbounded":
+    elif around.setting.footprint != "unbounded":
         return
     elif _has_no_end(contact, boundary):
-        yield Caveat(
-            Status.CONTACT_AT_EDGE,
-            {
-                **edges,
-                "prescribed": loading.prescribed,
-                "value": value,
-                "unit": loading.prescription.unit,
-            },
-        )
+        loading = run.indentation.loading
+        prescribed: dict[str, float | str] = {
+            "prescribed": loading.prescribed,
+            "value": loading.values[len(around.path)],
+            "unit": loading.prescription.unit,
+        }
+        yield Caveat(Status.CONTACT_AT_EDGE, edges | prescribed)
     elif _has_no_end(reach, boundary):
         yield Caveat(Status.ZONE_AT_EDGE, edges)
 
@@ -97,3 +101,26 @@ def _coarse(run: Run, equilibrium: Equilibrium) -> Iterator[Caveat]:
     sticks = run.interaction is not None and bool(contact.any())
     if (problem.control.value > least or sticks) and cells < min(enough, contact.size):
         yield Caveat(Status.COARSE, {"cells": cells, "width": run.grid.cell_size})
+
+
+def _steep(run: Run, equilibrium: Equilibrium) -> Iterator[Caveat]:
+    """Yield whether slopes are beyond the theory.
+
+    With a surface tension τ₀, the limit of 1/(G q²) for short waves, the energy per area w that a
+    law releases bends the surface at the rim by an angle √(2w/τ₀) (Young–Dupré at small slopes).
+    Without one the slope of the theory has no bound, and depends on the range of the interaction.
+    """
+    contact, sticks = equilibrium.counted_contact, isinstance(equilibrium, AdhesiveEquilibrium)
+    if not contact.any():
+        return
+    slope = steepest(equilibrium.problem.heights, contact, run.grid)
+    if isinstance(equilibrium, AdhesiveEquilibrium):
+        q = 1e3 * np.pi / min(run.grid.spacing) * np.array([1.0, 10.0])
+        nothing = np.zeros_like(q)
+        axes = [run.kernel.symbol(q, nothing), run.kernel.symbol(nothing, q)]
+        a, b = np.maximum(*axes) * q**2
+        if abs(b / a - 1) < _CONSTANT:
+            slope = max(slope, float(np.sqrt(2 * equilibrium.problem.law.work_of_adhesion() * b)))
+    # As it is told: an indenter of that very slope is not beyond it by rounding.
+    if slope > SMALL_SLOPE if sticks else round(slope, 1) > _STEEPEST:
+        yield Caveat(Status.STEEP, {"slope": slope, "most": SMALL_SLOPE})

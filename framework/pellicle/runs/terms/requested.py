@@ -13,7 +13,7 @@ from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import AdhesiveEquilibrium, Stiffness, measure_stiffness
 from pellicle.variables import CORRECTED_AREA, CORRECTED_FRACTION
 
-from . import ContactStep, Surroundings
+from . import AroundContact, ContactStep, Surroundings
 
 
 def corrections(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
@@ -27,7 +27,7 @@ def corrections(run: Run, step: ContactStep, surroundings: Surroundings) -> Cont
     return step.having(measures | shares)
 
 
-def prescription(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
+def prescription(run: Run, step: ContactStep, surroundings: AroundContact) -> ContactStep:
     """Add the variables of the prescription; that of kind ``residual`` is what a search missed."""
     prescribed = run.indentation.loading.prescription
     report = report_of(prescribed, surroundings.setting, step.equilibrium)

@@ -8,24 +8,21 @@ from typing import Final
 import numpy as np
 
 from pellicle.analysis import ridge, steepest
-from pellicle.components import Load
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.load_step import Value
 from pellicle.surface import along_axes
 
-from . import AnyStep, Surroundings
+from . import SMALL_SLOPE, AnyStep, Surroundings
 
-# Slope up to which the theory holds.
-_SMALL: Final = 0.3
 # Rounding error of a sum of tractions that balance, over that of their sizes.
 _ROUNDING: Final = 1e-12
 # Fall of G(q) q over a decade of short waves from which a line force has a finite height.
 _FALLS: Final = 0.9
 
 
-def surface(run: Run, load: Load, step: AnyStep, surroundings: Surroundings) -> AnyStep:
-    """Add the numbers of the surface under a ``load``, and what is beyond theory or cells."""
+def surface(run: Run, step: AnyStep, around: Surroundings) -> AnyStep:
+    """Add the numbers of the surface under a load, and what is beyond theory or cells."""
     displacement = step.equilibrium.displacement
     if not np.isfinite(displacement).all():
         return step.having({}, [Caveat(Status.NOT_FINITE)])
@@ -34,22 +31,19 @@ def surface(run: Run, load: Load, step: AnyStep, surroundings: Surroundings) -> 
     pressure = step.equilibrium.pressure
     if abs(float(pressure.sum())) <= _ROUNDING * float(np.abs(pressure).sum()):
         measures |= {"force": 0.0, "mean_pressure": 0.0}
-    if path := load.varied:
-        measures[path.variable.name] = path.values[len(surroundings.path)]
-    limits = _limits(run, load, slope, float(displacement.max()))
-    return step.having(measures | {"surface_slope": slope}, limits)
+    if run.load and (path := run.load.varied):
+        measures[path.variable.name] = path.values[len(around.path)]
+    return step.having(measures | {"surface_slope": slope}, _limits(run, slope))
 
 
-def _limits(run: Run, load: Load, slope: float, deepest: float) -> Iterator[Caveat]:
+def _limits(run: Run, slope: float) -> Iterator[Caveat]:
     """Yield what is beyond the theory, or depends on the cells.
 
     Under a line force the surface has a finite height if G(q) falls faster than 1/q.
     """
-    if deepest > (thickness := run.kernel.depth_to_base()):
-        yield Caveat(Status.THROUGH_LAYER, {"deepest": deepest, "thickness": thickness})
-    if slope > _SMALL:
-        yield Caveat(Status.STEEP_SURFACE, {"slope": slope, "most": _SMALL})
+    if slope > SMALL_SLOPE:
+        yield Caveat(Status.STEEP_SURFACE, {"slope": slope, "most": SMALL_SLOPE})
     q = 1e3 * np.pi / min(run.grid.spacing) * np.array([1.0, 10.0])
     a, b = along_axes(run.kernel.symbol, q) * q
-    if load.has_line_without_width and b > _FALLS * a:
+    if run.load and run.load.has_line_without_width and b > _FALLS * a:
         yield Caveat(Status.LINE_OF_CELLS, {"width": run.grid.cell_size})
