@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import chain, islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from typer import Option
@@ -23,7 +23,15 @@ if TYPE_CHECKING:
     from .result import Fit
 
 
+_OF_THE_COMMAND = {
+    *("files", "fix", "uncertainty", "set_", "directory", "formats"),
+    *("report", "details", "si", "json", "quiet"),
+}
+"""Options that are no fields of a configuration or of its indenter, or not by that name."""
+
+
 def fit(
+    context: typer.Context,
     files: Annotated[
         list[Path] | None,
         typer.Argument(
@@ -101,24 +109,7 @@ def fit(
     pairs = {"fix": fix, "uncertainty": uncertainty}
     sets = [f"{name}.{text}" for name, texts in pairs.items() for text in texts or ()]
     config = FitConfig.merged(
-        first,
-        [*sets, *(set_ or ())],
-        curves=curves or None,
-        indenter=indenter,
-        radius=radius[0] if radius and len(radius) == 1 else radius or None,
-        diameter=diameter[0] if diameter and len(diameter) == 1 else diameter or None,
-        half_angle=half_angle,
-        poissons_ratio=poissons_ratio,
-        thickness=thickness,
-        model=model and [name for name in model if name != "none"],
-        rivals=rivals and [text.split(",") for text in rivals if text != "none"],
-        baseline=baseline,
-        segment=segment,
-        spring_constant=spring_constant,
-        sensitivity=sensitivity,
-        columns=columns,
-        pool=pool or None,
-        every_rival=every_rival or None,
+        first, [*sets, *(set_ or ())], curves=curves or None, **_given(context.params)
     )
     kinds = [str(kind) for kind in formats or [Format.PNG]]
     result, name, title = _fit(config, directory, kinds, quiet=quiet)
@@ -149,6 +140,23 @@ def register_commands(register: pl.RegisterCommand) -> None:
     """Register the command."""
     written = "pellicle_fit.stored:stored"
     register(fit, file="pellicle_fit.config:FitConfig", written=written)
+
+
+def _given(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the fields that options give."""
+    given = {
+        name: value
+        for name, value in options.items()
+        if name not in _OF_THE_COMMAND and value is not None and value is not False and value != ()
+    }
+    for name in given.keys() & {"radius", "diameter"}:
+        first, *others = given[name]
+        given[name] = [first, *others] if others else first
+    if "model" in given:
+        given["model"] = [name for name in given["model"] if name != "none"]
+    if "rivals" in given:
+        given["rivals"] = [text.split(",") for text in given["rivals"] if text != "none"]
+    return given
 
 
 def _fit(
