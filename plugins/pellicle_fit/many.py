@@ -32,13 +32,14 @@ from .population.fits import ManyFits, summary, table
 from .population.images import force_maps
 from .population.judgement import Names, group_of, judge
 from .population.row import Row, as_json, sketch
-from .problem import Problem, components_of, data_of, problem, record_of
+from .problem import Problem, components_of, problem, record_of
 from .report.paper_table import save_tables
 from .report.population import save_population
+from .result import data_of
 from .sealed import read_sealed, write_sealed
 from .selection.calibration import common_errors
 from .selection.neighbour import Neighbour
-from .words.story import calibration_of, shares
+from .words.story import shares
 
 _JOURNAL = "curves"
 _WITHOUT_EFFECT = {
@@ -237,7 +238,7 @@ def _task(
     # An executor need not pickle.
     serial = registry().make(Executor, {"type": "serial"})
     ready = replace(ready, config=config.model_copy(update={"executor": serial}))
-    memory = _BYTES_PER_POINT * ready.members[0].curve.force.size
+    memory = _BYTES_PER_POINT * ready.curves[0].force.size
     return FitTask(row.name, memory, row, ready, path, common)
 
 
@@ -265,18 +266,19 @@ def _keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool
 def work(task: FitTask, say: Say) -> dict[str, Any]:
     """Fit a curve in a worker, and return JSON data of the fit, with what a population adds."""
     fit = task.problem.fit(like=task.like)
-    selected, (member,), (force,) = fit.answer.selected, fit.members, fit.forces()
-    load = force - selected.known[0].free_force(member.curve)
-    measured, position = member.curve.force, member.curve.position
+    selected, (force,) = fit.answer.selected, fit.forces()
+    (curve,) = selected.whole
+    load = force - selected.known[0].free_force(curve)
+    measured, position = curve.force, curve.position
     scatter = measured - np.mean(measured)
     drawn = sketch(position=position, force=measured, fit=force)
-    kept = {name: value for name, value in fit.to_dict().items() if name not in _OF_ALL}
+    kept = {name: value for name, value in fit.data.items() if name not in _OF_ALL}
     if task.common:
-        own = [calibration_of(fit)] if fit.config.uncertainty else []
+        own = [kept["calibration"]] if fit.config.uncertainty else []
         beside = f"common error, beside the medians alone: {shares(task.common)}"
         kept["calibration"] = "; ".join([*own, beside])
         moved = kept["common_errors"] = common_errors(selected, task.common)
-        if MODULUS in moved and (ratio := fit.poissons_ratio) is not None:
+        if MODULUS in moved and (ratio := kept["poissons_ratio"]) is not None:
             of_youngs = {name: (1 - ratio**2) * error for name, error in moved[MODULUS].items()}
             moved["youngs_modulus"] = of_youngs
     return kept | {
@@ -314,7 +316,7 @@ def _failure(error: Exception, name: str) -> str:
 
 def _write(fits: ManyFits, config: FitConfig, began: float, directory: Path) -> tuple[Path, ...]:
     """Write the tables of the curves and of the groups, and return their paths."""
-    record = record_of(config, [row.curve["data"] for row in fits.rows if row.is_fitted], began)
+    record = record_of(config, [row.fit.curve["data"] for row in fits.rows if row.is_fitted], began)
     attributes = {
         "configuration": config.to_json(),
         "versions": ", ".join(f"{name} {number}" for name, number in record["versions"].items()),

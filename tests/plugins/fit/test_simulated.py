@@ -169,7 +169,7 @@ def test_a_sharp_pyramid_is_known_and_a_rounded_one_simulated(
             indenter="pyramid", half_angle="70 degree", tip_radius=tip_radius
         )
         asked = problem(config, [*config.sources({"a": (depth, np.maximum(depth, 0) ** 2)})])
-        assert isinstance(asked.members[0].curve.indenter, str) is not is_known
+        assert isinstance(asked.curves[0].indenter, str) is not is_known
 
 
 def test_what_counts_against_the_modulus_is_refused() -> None:
