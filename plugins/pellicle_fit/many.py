@@ -32,7 +32,7 @@ from .population.fits import ManyFits, summary, table
 from .population.images import force_maps
 from .population.judgement import Names, group_of, judge
 from .population.row import Row, as_json, sketch
-from .problem import Problem, components_of, problem, record_of
+from .problem import FitProblem, components_of, problem, record_of
 from .report.paper_table import save_tables
 from .report.population import save_population
 from .result import data_of
@@ -64,7 +64,7 @@ class FitTask:
     memory: int
     """Estimated peak memory of the fit [bytes]."""
     row: Row
-    problem: Problem
+    problem: FitProblem
     path: Path | None
     """File that keeps the fit."""
     common: Mapping[Any, float]

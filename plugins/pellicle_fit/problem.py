@@ -41,7 +41,7 @@ _RATIO = "poissons_ratio"
 
 
 @dataclass(frozen=True)
-class Problem:
+class FitProblem:
     """Curves of one solid that are ready to fit; it pickles to workers."""
 
     config: FitConfig
@@ -70,7 +70,7 @@ class Problem:
         return Fit(data | record, found, config)
 
 
-def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = False) -> Problem:
+def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = False) -> FitProblem:
     """Return cleaned curves with their indenters, whose forces are simulated if need be."""
     if config.pool and len(sources) < 2:
         raise ConfigError("holds one curve, and a pool needs two; use fit", "curves")
@@ -119,7 +119,7 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
         "uncertainty": errors(config.uncertainty),
     }
     names = tuple(source.name for source in sources)
-    return Problem(config, names, tuple(measured), curves, question, ratio, began)
+    return FitProblem(config, names, tuple(measured), curves, question, ratio, began)
 
 
 def _on_solid(
