@@ -11,7 +11,8 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.errors import PellicleError
 
-from .config import FitConfig, described
+from .config import FitConfig
+from .config_input import described
 from .estimation.noise import neighbour_noise
 from .files.sources import Source
 from .population.row import Row

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from pellicle.arrays import Array
 
-from .config import FitConfig, described
+from .config import FitConfig
+from .config_input import described
 from .estimation.candidate import Candidate
 from .estimation.coordinates import MODULUS
 from .estimation.intervals import CONFIDENCE, Estimate
