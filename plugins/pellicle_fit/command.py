@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from itertools import chain, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -23,11 +23,8 @@ if TYPE_CHECKING:
     from .result import Fit
 
 
-_OF_THE_COMMAND = {
-    *("files", "fix", "uncertainty", "set_", "directory", "formats"),
-    *("report", "details", "si", "json", "quiet"),
-}
-"""Options that are no fields of a configuration or of its indenter, or not by that name."""
+_OF_INDENTER = {"radius", "diameter", "half_angle"}
+"""Options that are fields of the indenter."""
 
 
 def fit(
@@ -108,8 +105,9 @@ def fit(
     first = curves.pop(0) if is_first else None
     pairs = {"fix": fix, "uncertainty": uncertainty}
     sets = [f"{name}.{text}" for name, texts in pairs.items() for text in texts or ()]
+    fields = (FitConfig.model_fields.keys() | _OF_INDENTER) - pairs.keys()
     config = FitConfig.merged(
-        first, [*sets, *(set_ or ())], curves=curves or None, **_given(context.params)
+        first, [*sets, *(set_ or ())], curves=curves or None, **_given(fields, context.params)
     )
     kinds = [str(kind) for kind in formats or [Format.PNG]]
     result, name, title = _fit(config, directory, kinds, quiet=quiet)
@@ -142,13 +140,11 @@ def register_commands(register: pl.RegisterCommand) -> None:
     register(fit, file="pellicle_fit.config:FitConfig", written=written)
 
 
-def _given(options: Mapping[str, Any]) -> dict[str, Any]:
+def _given(fields: Set[str], options: Mapping[str, Any]) -> dict[str, Any]:
     """Return the fields that options give."""
-    given = {
-        name: value
-        for name, value in options.items()
-        if name not in _OF_THE_COMMAND and value is not None and value is not False and value != ()
-    }
+    given = {name: value for name, value in options.items() if name in fields}
+    # An option that is left out is None, a list without entries, or a flag that is off.
+    given = {name: v for name, v in given.items() if v not in (None, ()) and v is not False}
     for name in given.keys() & {"radius", "diameter"}:
         first, *others = given[name]
         given[name] = [first, *others] if others else first

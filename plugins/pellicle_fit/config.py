@@ -265,8 +265,7 @@ class FitConfig(FromFile, Calibration):
 
     def sources(self, curves: Curves | None = None) -> Iterator[Source]:
         """Return ``curves``, or those of the configuration if None, each read as it is taken."""
-        chosen = self.curves if curves is None else curves
-        return gather(chosen, self, self.per_file)
+        return gather(self.curves if curves is None else curves, self, self.per_file)
 
     def indenter_of(self, source: Source) -> Indenter | HasForceCurve:
         """Return the indenter of one curve, with its own fields; an error names all it lacks."""

@@ -188,16 +188,16 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
     measured, position = curve.force, curve.position
     scatter = measured - np.mean(measured)
     drawn = sketch(position=position, force=measured, fit=force)
-    kept = {name: value for name, value in fit.data.items() if name not in _OF_ALL}
+    data = {name: value for name, value in fit.data.items() if name not in _OF_ALL}
     if task.common:
-        own = [kept["calibration"]] if fit.config.uncertainty else []
+        own = [data["calibration"]] if fit.config.uncertainty else []
         beside = f"common error, beside the medians alone: {shares(task.common)}"
-        kept["calibration"] = "; ".join([*own, beside])
-        moved = kept["common_errors"] = common_errors(selected, task.common)
-        if MODULUS in moved and (ratio := kept["poissons_ratio"]) is not None:
+        data["calibration"] = "; ".join([*own, beside])
+        moved = data["common_errors"] = common_errors(selected, task.common)
+        if MODULUS in moved and (ratio := data["poissons_ratio"]) is not None:
             of_youngs = {name: (1 - ratio**2) * error for name, error in moved[MODULUS].items()}
             moved["youngs_modulus"] = of_youngs
-    return kept | {
+    return data | {
         "r_squared": 1 - float(np.sum((force - measured) ** 2) / np.sum(scatter**2)),
         "indentation": float(np.max(selected.depths[0])),
         "largest_force": float(np.max(load)),
