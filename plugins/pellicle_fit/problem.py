@@ -101,7 +101,15 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
             raise ConfigError(f"{reason}; give the position of first touch", CONTACT_POINT)
     bodies, layers, ratio = _on_solid(config, indenters, measured, point, progress)
     curves = tuple(
-        Curve(one.position, one.force, body, one.time, one.unloading, one.stiffness, point)
+        Curve(
+            one.position,
+            one.force,
+            body,
+            time=one.time,
+            unloading=one.unloading,
+            stiffness=one.stiffness,
+            touch=point,
+        )
         for one, body in zip(measured, bodies, strict=True)
     )
     model = _known(config.model, fix, ratio)

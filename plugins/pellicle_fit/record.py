@@ -95,7 +95,7 @@ class Record:
 
     @property
     def curve(self) -> dict[str, Any]:
-        """Those of the only curve; empty without a fit."""
+        """JSON data of the only curve; empty without a fit."""
         return self.curves[0] if self else {}
 
     @property
@@ -115,7 +115,7 @@ class Record:
 
     @property
     def warnings_beside_checks(self) -> list[str]:
-        """Those of one curve but for the checks that residuals fail."""
+        """Warnings of one curve but for the checks that its residuals fail."""
         beside = [*self.curve["messages"], *self.data["remarks"]]
         return [text for text in beside if text not in self.notes]
 
