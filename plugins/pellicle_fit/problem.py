@@ -49,8 +49,8 @@ class FitProblem:
     measured: tuple[Measurement, ...]
     """What was read of each curve, and cleaned, with messages of both."""
     curves: tuple[Curve, ...]
-    question: Mapping[str, Any]
-    """What `answer` is asked of them."""
+    arguments: Mapping[str, Any]
+    """Arguments of `answer`: the model, its rivals and what is known."""
     poissons_ratio: float | None
     began: float
     """Value of ``perf_counter`` at the start."""
@@ -62,7 +62,7 @@ class FitProblem:
         """
         config, named = self.config, [*zip(self.names, self.measured, strict=True)]
         with status_line("fitting", progress):
-            found = answer(list(self.curves), **self.question, like=like)
+            found = answer(list(self.curves), **self.arguments, like=like)
             left_out = next((rows for one in self.measured if (rows := one.left_out)), None)
             advice = advise(found, left_out, config)
         data = data_of_fit(found, named, advice, self.poissons_ratio, config)
@@ -119,7 +119,7 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
     # A curve that was made by the polynomial in common use is no sign of a tension.
     of_layers = [layer.model_dump(exclude={"type"}, exclude_none=True) for layer in layers]
     forms = [[_effect("dimitriadis", **fields)] for fields in of_layers if config.rivals]
-    question = {
+    arguments = {
         "model": [effect for effect in model if effect not in given],
         "rivals": [r for rival in (*config.rivals, *forms) if (r := _known(rival, fix, ratio))],
         "common": [*given, *baseline, *layers],
@@ -127,7 +127,7 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
         "uncertainty": errors(config.uncertainty),
     }
     names = tuple(source.name for source in sources)
-    return FitProblem(config, names, tuple(measured), curves, question, ratio, began)
+    return FitProblem(config, names, tuple(measured), curves, arguments, ratio, began)
 
 
 def _on_solid(

@@ -147,7 +147,7 @@ def test_a_bonded_layer_is_an_effect(monkeypatch: pytest.MonkeyPatch) -> None:
             indenter=indenter, **fields, thickness=thick, poissons_ratio=ratio
         )
         curves = config.sources({"a": (depth, np.maximum(depth, 0) ** 1.5)})
-        return problem(config, [*curves]).question["common"]  # type: ignore[no-any-return]
+        return problem(config, [*curves]).arguments["common"]  # type: ignore[no-any-return]
 
     assert kept(0.3, "sphere", radius=RADIUS) == [Layer(thickness=thick, poissons_ratio=0.3)]
     assert kept(0.3, "flat_punch", radius=9 * thick)
