@@ -11,7 +11,8 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.errors import PellicleError
 
-from .config import FitConfig, described
+from .config import FitConfig
+from .config_input import described
 from .estimation.noise import neighbour_noise
 from .files.sources import Source
 from .population.row import Row
@@ -60,8 +61,8 @@ def beside(rows: Sequence[Row], near: Sequence[Near]) -> list[Neighbour]:
     found = []
     for other in near:
         row = rows[other.row]
-        if row.is_fitted and not row.fit.get("not_weighed"):
-            one = Neighbour.of_dict(row.fit)
+        if row.is_fitted and not row.fit.data.get("not_weighed"):
+            one = Neighbour.of_dict(row.fit.data)
             found.append(one if other.rules_out else one._replace(ruled_out=frozenset()))
     return found
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence, Set
 from itertools import chain, islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from typer import Option
@@ -23,7 +23,12 @@ if TYPE_CHECKING:
     from .result import Fit
 
 
+_OF_INDENTER = {"radius", "diameter", "half_angle"}
+"""Options that are fields of the indenter."""
+
+
 def fit(
+    context: typer.Context,
     files: Annotated[
         list[Path] | None,
         typer.Argument(
@@ -100,25 +105,9 @@ def fit(
     first = curves.pop(0) if is_first else None
     pairs = {"fix": fix, "uncertainty": uncertainty}
     sets = [f"{name}.{text}" for name, texts in pairs.items() for text in texts or ()]
+    fields = (FitConfig.model_fields.keys() | _OF_INDENTER) - pairs.keys()
     config = FitConfig.merged(
-        first,
-        [*sets, *(set_ or ())],
-        curves=curves or None,
-        indenter=indenter,
-        radius=radius[0] if radius and len(radius) == 1 else radius or None,
-        diameter=diameter[0] if diameter and len(diameter) == 1 else diameter or None,
-        half_angle=half_angle,
-        poissons_ratio=poissons_ratio,
-        thickness=thickness,
-        model=model and [name for name in model if name != "none"],
-        rivals=rivals and [text.split(",") for text in rivals if text != "none"],
-        baseline=baseline,
-        segment=segment,
-        spring_constant=spring_constant,
-        sensitivity=sensitivity,
-        columns=columns,
-        pool=pool or None,
-        every_rival=every_rival or None,
+        first, [*sets, *(set_ or ())], curves=curves or None, **_given(fields, context.params)
     )
     kinds = [str(kind) for kind in formats or [Format.PNG]]
     result, name, title = _fit(config, directory, kinds, quiet=quiet)
@@ -132,7 +121,7 @@ def fit(
         print_fit(result, quiet=quiet, details=details, si=si)
     if directory is not None and not isinstance(result, ManyFits):
         written.append(write_json(result.to_dict(), directory / f"{name}.json"))
-        if len(result.members) == 1:
+        if len(result.curves) == 1:
             written.append(StoredFit.write(result, directory / f"{name}.h5"))
         written += save_figure(result, directory / name, kinds)
     if report:
@@ -149,6 +138,21 @@ def register_commands(register: pl.RegisterCommand) -> None:
     """Register the command."""
     written = "pellicle_fit.stored:stored"
     register(fit, file="pellicle_fit.config:FitConfig", written=written)
+
+
+def _given(fields: Set[str], options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the fields that options give."""
+    given = {name: value for name, value in options.items() if name in fields}
+    # An option that is left out is None, a list without entries, or a flag that is off.
+    given = {name: v for name, v in given.items() if v not in (None, ()) and v is not False}
+    for name in given.keys() & {"radius", "diameter"}:
+        first, *others = given[name]
+        given[name] = [first, *others] if others else first
+    if "model" in given:
+        given["model"] = [name for name in given["model"] if name != "none"]
+    if "rivals" in given:
+        given["rivals"] = [text.split(",") for text in given["rivals"] if text != "none"]
+    return given
 
 
 def _fit(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 from pathlib import Path
@@ -18,11 +17,10 @@ from pydantic import (
     field_validator,
     model_validator,
 )
-from pydantic.fields import FieldInfo
 
 from pellicle import registry
-from pellicle.components import Component, Executor, FromRegistry, HasForceCurve, Indenter
-from pellicle.errors import ConfigError, PellicleError, all_problems, problems_within, shown
+from pellicle.components import Executor, FromRegistry, HasForceCurve, Indenter
+from pellicle.errors import ConfigError, PellicleError, all_problems, problems_within
 from pellicle.schema import (
     FromFile,
     InputPath,
@@ -34,6 +32,17 @@ from pellicle.schema import (
 )
 from pellicle.units import PoissonsRatio, Quantity
 
+from .config_input import (
+    as_list,
+    component_table,
+    described,
+    fields_of,
+    indenter_or_table,
+    list_or_entry,
+    recorded,
+    share_of,
+    with_radius,
+)
 from .effect import Effect, Fitted, Solid, quantities
 from .files.columns import Calibration
 from .files.measurement import Segment
@@ -52,90 +61,8 @@ DEFAULT_RIVALS: tuple[str | list[str], ...] = (
 """What bends a curve as a tension does, and is compared unless a configuration says otherwise."""
 
 
-def _component(value: object) -> object:
-    """Return the type of a component as its table; any other value unchanged."""
-    return {"type": value} if isinstance(value, str) else value
-
-
-def _as_list(value: object) -> Any:
-    """Return a value that may stand for a list of one as that list."""
-    return value if isinstance(value, (list, tuple)) else [value]
-
-
-def _list(entries: Any) -> BeforeValidator:
-    """Return the annotation of a list, in whose place one of its entries may stand."""
-    return BeforeValidator(_as_list, json_schema_input_type=entries)
-
-
 _Effects = list[str | dict[str, Any]]
-_OneEffect = Annotated[Effect, FromRegistry(), BeforeValidator(_component)]
-
-
-def _with_radius(fields: Mapping[str, Any]) -> dict[str, Any]:
-    """Return fields of an indenter with half of a diameter as the radius."""
-    found = dict(fields)
-    # A diameter beside a radius is no field.
-    if "radius" not in found and not isinstance(found.get("diameter", []), (list, tuple)):
-        with all_problems() as within, within("diameter"):
-            found["radius"] = Quantity("m", above=0)(found.pop("diameter")) / 2
-    return found
-
-
-def _indenter(value: object) -> Any:
-    """Return an indenter, or its table if it lacks fields that each file may provide."""
-    table = _component(value)
-    if isinstance(table, HasForceCurve):
-        return table
-    try:
-        return registry().make(Indenter, table)
-    except ConfigError as error:
-        given = dict(table) if isinstance(table, Mapping) else {"": None}
-        if problems := [one for one in error.problems if one.field.partition(".")[0] in given]:
-            raise ConfigError(problems) from None
-        return given
-
-
-def _fields(indenter: object) -> Mapping[str, FieldInfo]:
-    """Return the fields of the kind of an indenter or of its table."""
-    kind = type(indenter)
-    if isinstance(indenter, Mapping):
-        kind = registry().find(Indenter.family, indenter.get("type", "sphere"))
-    return getattr(kind, "model_fields", {})
-
-
-def described(indenter: object) -> dict[str, Any]:
-    """Return an indenter, or the fields of one, as JSON data."""
-    if isinstance(indenter, Component):
-        return indenter.model_dump(mode="json", exclude_none=True)
-    return dict(indenter) if isinstance(indenter, Mapping) else {"type": type(indenter).__name__}
-
-
-def _share(value: object) -> float:
-    """Return a share; "5 %" is one of 0.05."""
-    percent = isinstance(value, str) and value.endswith("%")
-    number = Quantity("1", above=0)(str(value)[:-1] if percent else value)
-    if (share := number / 100 if percent else number) > 1:
-        text = f"{shown(value)} is a share of {100 * share:.6g} %, beyond 100 %"
-        raise ConfigError(f'{text}; 10 % is 0.1 or "10 %"')
-    return share
-
-
-def _recorded(path: Path) -> Any:
-    """Return the configuration in the JSON of a fit, of a pool or of many fits of files."""
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-        data, rows = content["configuration"], content["curves"]
-        origins = [one["data"] for row in rows for one in row.get("curves", [row]) if "data" in one]
-        if data["curves"] and all(origin["file"] for origin in origins):
-            return data
-    except OSError as error:
-        raise ConfigError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except (ValueError, LookupError, TypeError, AttributeError):
-        pass
-    raise ConfigError(
-        f"{path}: is not the JSON of a fit of files; give one that pellicle fit -o leaves, such as "
-        "bead-fit.json or fits.json"
-    )
+_OneEffect = Annotated[Effect, FromRegistry(), BeforeValidator(component_table)]
 
 
 class FitConfig(FromFile, Calibration):
@@ -153,12 +80,12 @@ class FitConfig(FromFile, Calibration):
         },
     )
 
-    curves: Annotated[tuple[Path, ...], _list(tuple[Path, ...] | Path)] = Field(
+    curves: Annotated[tuple[Path, ...], list_or_entry(tuple[Path, ...] | Path)] = Field(
         (), description="files, folders, patterns such as beads/*.csv, or tables of files"
     )
     indenter: Annotated[
         Indenter | HasForceCurve | dict[str, Any],
-        PlainValidator(_indenter, json_schema_input_type=dict[str, Any] | str),
+        PlainValidator(indenter_or_table, json_schema_input_type=dict[str, Any] | str),
         PlainSerializer(described),
     ] = Field(description="the indenter: its type and fields")
     poissons_ratio: PoissonsRatio | None = Field(
@@ -166,7 +93,7 @@ class FitConfig(FromFile, Calibration):
     )
     kernel: Annotated[
         dict[str, Any] | None,
-        BeforeValidator(_component, json_schema_input_type=dict[str, Any] | str | None),
+        BeforeValidator(component_table, json_schema_input_type=dict[str, Any] | str | None),
     ] = Field(
         None, description="the solid without its modulus and tension; a half-space if not given"
     )
@@ -175,15 +102,15 @@ class FitConfig(FromFile, Calibration):
         description="of a layer bonded to a rigid base, in place of a half-space; "
         '"free" fits it. It needs poissons_ratio',
     )
-    model: Annotated[tuple[_OneEffect, ...], _list(_Effects)] = Field(
+    model: Annotated[tuple[_OneEffect, ...], list_or_entry(_Effects)] = Field(
         ("tension",),
         description="effects that the force has; whether the first is needed is the question. "
         "Without any, whether a curve shows more than an elastic half-space",
         validate_default=True,
     )
     rivals: Annotated[
-        tuple[Annotated[tuple[_OneEffect, ...], BeforeValidator(_as_list)], ...],
-        _list(list[str | dict[str, Any] | _Effects]),
+        tuple[Annotated[tuple[_OneEffect, ...], BeforeValidator(as_list)], ...],
+        list_or_entry(list[str | dict[str, Any] | _Effects]),
     ] = Field(
         DEFAULT_RIVALS,
         description="effects, or lists of effects that act together, that are compared with "
@@ -197,7 +124,7 @@ class FitConfig(FromFile, Calibration):
     )
     uncertainty: dict[
         Literal["spring_constant", "sensitivity", "radius"],
-        Annotated[float, BeforeValidator(_share, json_schema_input_type=float | str)],
+        Annotated[float, BeforeValidator(share_of, json_schema_input_type=float | str)],
     ] = Field(
         default_factory=dict,
         description="standard deviations of spring_constant, sensitivity and radius, each a share "
@@ -220,7 +147,7 @@ class FitConfig(FromFile, Calibration):
     )
     accept: Annotated[
         tuple[str, ...],
-        _list(tuple[str, ...] | str),
+        list_or_entry(tuple[str, ...] | str),
         AfterValidator(lambda texts: tuple(Rule(text).text for text in texts)),
     ] = Field((), description="rules for the curves of a population, such as r_squared > 0.95")
     rejected: InputPath | None = Field(
@@ -230,7 +157,7 @@ class FitConfig(FromFile, Calibration):
         "",
         description="column of a table of files, or a pattern of file names such as {group}_*.csv",
     )
-    executor: Annotated[Executor, FromRegistry(), BeforeValidator(_component)] = Field(
+    executor: Annotated[Executor, FromRegistry(), BeforeValidator(component_table)] = Field(
         default_factory=lambda: registry().make(Executor, {"type": "serial"}),
         description="executor of many fits and of simulations",
     )
@@ -304,11 +231,11 @@ class FitConfig(FromFile, Calibration):
         """
         options = {name: value for name, value in options.items() if value is not None}
         if isinstance(base, (str, Path)) and Path(base).suffix.lower() == ".json":
-            base = _recorded(Path(base))
+            base = recorded(Path(base))
         if isinstance(base, (str, Path)):
             folder, data = Path(base).parent, read_toml(Path(base))
             if "curves" in data.keys() - options.keys():
-                paths = map(str, _as_list(data["curves"]))
+                paths = map(str, as_list(data["curves"]))
                 data["curves"] = [one for path in paths for one in expanded(path, folder)]
             with paths_relative_to(folder):
                 return cls.merged(data, overrides, **options)
@@ -319,10 +246,10 @@ class FitConfig(FromFile, Calibration):
         data = {"indenter": {}, **(base or {})}
         data |= {name: options.pop(name) for name in own & options.keys()}
         for name in data.keys() & {"indenter", "kernel", "executor"}:
-            data[name] = _component(data[name])
+            data[name] = component_table(data[name])
         if isinstance(data["indenter"], Mapping):
-            data["indenter"] = _with_radius(data["indenter"])
-        for name, value in _with_radius(options).items():
+            data["indenter"] = with_radius(data["indenter"])
+        for name, value in with_radius(options).items():
             if isinstance(value, (list, tuple)):
                 data = replaced(data, f"per_file.{name}", value)
                 continue
@@ -338,22 +265,21 @@ class FitConfig(FromFile, Calibration):
 
     def sources(self, curves: Curves | None = None) -> Iterator[Source]:
         """Return ``curves``, or those of the configuration if None, each read as it is taken."""
-        chosen = self.curves if curves is None else curves
-        return gather(chosen, self, self.per_file)
+        return gather(self.curves if curves is None else curves, self, self.per_file)
 
     def indenter_of(self, source: Source) -> Indenter | HasForceCurve:
         """Return the indenter of one curve, with its own fields; an error names all it lacks."""
         indenter: Indenter | HasForceCurve | Mapping[str, Any] = self.indenter
         others = {*PLACE, *Calibration.model_fields}
-        if self.group_by.lower() not in {"diameter", *_fields(indenter)}:
+        if self.group_by.lower() not in {"diameter", *fields_of(indenter)}:
             others.add(self.group_by.lower())
-        for name, value in _with_radius(source.fields).items():
+        for name, value in with_radius(source.fields).items():
             if name not in others:
                 indenter = replaced(indenter, name, value)
         if not isinstance(indenter, Mapping):
             return indenter
         lacks = {} if "type" in indenter else {"indenter": "-i sphere"}
-        for name, field in _fields(indenter).items():
+        for name, field in fields_of(indenter).items():
             if field.is_required() and name not in indenter:
                 lacks[f"indenter.{name}"] = OPTIONS.get(name, f'--set indenter.{name}="…"')
         if not lacks:

@@ -1,16 +1,19 @@
-"""Fits of one measured curve, and of several of one solid."""
+"""Fits of one measured curve, of several of one solid, of many, and of a force map."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
 
+import xarray as xr
 from numpy.typing import ArrayLike
 
 from pellicle.errors import ConfigError
 
 from .config import FitConfig
 from .files.sources import Curves
+from .many import fit_sources
+from .population.fits import table
 from .problem import problem
 from .result import Fit
 
@@ -103,3 +106,87 @@ def fit_pooled(
     config = FitConfig.merged(config, pool=True, **options)
     sources = [*config.sources(curves)]
     return problem(config, sources, progress=progress).fit(progress=progress)
+
+
+def fit_many(
+    curves: Curves | None = None,
+    *,
+    config: FitConfig | str | Path | None = None,
+    directory: str | Path | None = None,
+    progress: bool = True,
+    **options: Any,
+) -> xr.Dataset:
+    """Fit each of many curves on its own and return a table with a row for each.
+
+    Parameters
+    ----------
+    curves
+        A folder; a file, which may hold several curves; a pattern such as ``"beads/*.csv"``; a
+        table that lists files, with a header such as ``file,radius [um]``; several of these; or
+        position [m] and force [N] of each curve by its name, ``{"first": (position, force)}``.
+        Those of the configuration if not given.
+    directory
+        Folder for the table, as ``fits.h5``, ``fits.csv`` and ``fits.json``, and a file for each
+        curve in ``curves``. A fit that it contains already is not repeated.
+    progress
+        Show a bar on a terminal or in a notebook; elsewhere, a line for each curve.
+    config, **options
+        As for `fit`.  A list for a field of the indenter, for spring_constant or for sensitivity
+        has a value for each file: ``radius=["5 um", "20 um"]``.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``curve``: each quantity as value, ``_low`` and ``_high`` (NaN: open), with noise, χ²,
+        the verdict and the messages. ``status`` is ``fitted``, or why there is no fit.
+
+    Raises
+    ------
+    ConfigError, PluginError
+        An argument is not allowed, or there is no curve; nothing was fitted.
+    StorageError
+        The folder cannot be used.
+    """
+    config = FitConfig.merged(config, **options)
+    return table(fit_sources(config, config.sources(curves), directory, progress=progress).rows)
+
+
+def fit_map(
+    curves: Curves | None = None,
+    *,
+    config: FitConfig | str | Path | None = None,
+    directory: str | Path | None = None,
+    progress: bool = True,
+    **options: Any,
+) -> xr.Dataset:
+    """Fit each curve of a force map on its own and return an image of each parameter.
+
+    Parameters
+    ----------
+    curves
+        The file of a force map; or a table that lists files and where they were measured, with a
+        header such as ``file,x [um],y [um]``.
+    directory, progress, config, **options
+        As for `fit_many`, whose files are written too, and the images as well in ``maps``.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``y`` and ``x`` [m]: each parameter as value, ``_low`` and ``_high``, with the contact
+        point as ``contact_height``, and the quality of each fit.  NaN where a curve is missing,
+        could not be fitted or was rejected, and at open ends of intervals.
+
+    Raises
+    ------
+    ConfigError, PluginError, StorageError
+        As in `fit_many`, or the curves are not those of one map.
+    """
+    config = FitConfig.merged(config, **options)
+    fits = fit_sources(config, config.sources(curves), directory, progress=progress)
+    if len(fits.maps) != 1:
+        reason = "; ".join(fits.notes) or "their files do not say where curves were measured"
+        raise ConfigError(
+            f"hold {len(fits.maps)} force maps ({reason}); give one, or use fit_many", "curves"
+        )
+    (images,) = fits.maps.values()
+    return images

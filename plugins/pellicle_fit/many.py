@@ -1,4 +1,4 @@
-"""Fits of many curves by an executor: a table with a row for each, or images of a force map."""
+"""Fits of many curves by an executor, and the files that they leave."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 
 from pellicle import registry, results
 from pellicle.batch import BatchProgress, locked, mapped
@@ -24,21 +23,23 @@ from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.files import atomic_write, check_writable, is_file
 
 from .alike import alike, beside
-from .config import FitConfig, described
+from .config import FitConfig
+from .config_input import described
 from .estimation.coordinates import MODULUS
 from .files.measurement import Measurement
-from .files.sources import Curves, Source
+from .files.sources import Source
 from .population.fits import ManyFits, summary, table
 from .population.images import force_maps
 from .population.judgement import Names, group_of, judge
 from .population.row import Row, as_json, sketch
-from .problem import Problem, components_of, data_of, problem, record_of
+from .problem import FitProblem, components_of, problem, record_of
 from .report.paper_table import save_tables
 from .report.population import save_population
+from .result import data_of
 from .sealed import read_sealed, write_sealed
 from .selection.calibration import common_errors
 from .selection.neighbour import Neighbour
-from .words.story import calibration_of, shares
+from .words.story import shares
 
 _JOURNAL = "curves"
 _WITHOUT_EFFECT = {
@@ -63,97 +64,13 @@ class FitTask:
     memory: int
     """Estimated peak memory of the fit [bytes]."""
     row: Row
-    problem: Problem
+    problem: FitProblem
     path: Path | None
     """File that keeps the fit."""
     common: Mapping[Any, float]
     """Uncertainty that all curves share, which stands beside medians and in no interval."""
     like: Sequence[Neighbour] = ()
     """Curves alike, of which all explanations were compared, the nearest first."""
-
-
-def fit_many(
-    curves: Curves | None = None,
-    *,
-    config: FitConfig | str | Path | None = None,
-    directory: str | Path | None = None,
-    progress: bool = True,
-    **options: Any,
-) -> xr.Dataset:
-    """Fit each of many curves on its own and return a table with a row for each.
-
-    Parameters
-    ----------
-    curves
-        A folder; a file, which may hold several curves; a pattern such as ``"beads/*.csv"``; a
-        table that lists files, with a header such as ``file,radius [um]``; several of these; or
-        position [m] and force [N] of each curve by its name, ``{"first": (position, force)}``.
-        Those of the configuration if not given.
-    directory
-        Folder for the table, as ``fits.h5``, ``fits.csv`` and ``fits.json``, and a file for each
-        curve in ``curves``. A fit that it contains already is not repeated.
-    progress
-        Show a bar on a terminal or in a notebook; elsewhere, a line for each curve.
-    config, **options
-        As for `fit`.  A list for a field of the indenter, for spring_constant or for sensitivity
-        has a value for each file: ``radius=["5 um", "20 um"]``.
-
-    Returns
-    -------
-    xarray.Dataset
-        Over ``curve``: each quantity as value, ``_low`` and ``_high`` (NaN: open), with noise, χ²,
-        the verdict and the messages. ``status`` is ``fitted``, or why there is no fit.
-
-    Raises
-    ------
-    ConfigError, PluginError
-        An argument is not allowed, or there is no curve; nothing was fitted.
-    StorageError
-        The folder cannot be used.
-    """
-    config = FitConfig.merged(config, **options)
-    return table(fit_sources(config, config.sources(curves), directory, progress=progress).rows)
-
-
-def fit_map(
-    curves: Curves | None = None,
-    *,
-    config: FitConfig | str | Path | None = None,
-    directory: str | Path | None = None,
-    progress: bool = True,
-    **options: Any,
-) -> xr.Dataset:
-    """Fit each curve of a force map on its own and return an image of each parameter.
-
-    Parameters
-    ----------
-    curves
-        The file of a force map; or a table that lists files and where they were measured, with a
-        header such as ``file,x [um],y [um]``.
-    directory, progress, config, **options
-        As for `fit_many`, whose files are written too, and the images as well in ``maps``.
-
-    Returns
-    -------
-    xarray.Dataset
-        Over ``y`` and ``x`` [m]: each parameter as value, ``_low`` and ``_high``, with the contact
-        point as ``contact_height``, and the quality of each fit.  NaN where a curve is missing,
-        could not be fitted or was rejected, and at open ends of intervals.
-
-    Raises
-    ------
-    ConfigError, PluginError, StorageError
-        As in `fit_many`, or the curves are not those of one map.
-    """
-    config = FitConfig.merged(config, **options)
-    fits = fit_sources(config, config.sources(curves), directory, progress=progress)
-    if len(fits.maps) != 1:
-        reason = "; ".join(fits.notes) or "their files do not say where curves were measured"
-        raise ConfigError(
-            f"hold {len(fits.maps)} force maps ({reason}); give one, or use fit_many", "curves"
-        )
-    (images,) = fits.maps.values()
-    return images
 
 
 def fit_sources(
@@ -237,7 +154,7 @@ def _task(
     # An executor need not pickle.
     serial = registry().make(Executor, {"type": "serial"})
     ready = replace(ready, config=config.model_copy(update={"executor": serial}))
-    memory = _BYTES_PER_POINT * ready.members[0].curve.force.size
+    memory = _BYTES_PER_POINT * ready.curves[0].force.size
     return FitTask(row.name, memory, row, ready, path, common)
 
 
@@ -265,21 +182,22 @@ def _keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool
 def work(task: FitTask, say: Say) -> dict[str, Any]:
     """Fit a curve in a worker, and return JSON data of the fit, with what a population adds."""
     fit = task.problem.fit(like=task.like)
-    selected, (member,), (force,) = fit.answer.selected, fit.members, fit.forces()
-    load = force - selected.known[0].free_force(member.curve)
-    measured, position = member.curve.force, member.curve.position
+    selected, (force,) = fit.answer.selected, fit.forces()
+    (curve,) = selected.whole
+    load = force - selected.known[0].free_force(curve)
+    measured, position = curve.force, curve.position
     scatter = measured - np.mean(measured)
     drawn = sketch(position=position, force=measured, fit=force)
-    kept = {name: value for name, value in fit.to_dict().items() if name not in _OF_ALL}
+    data = {name: value for name, value in fit.data.items() if name not in _OF_ALL}
     if task.common:
-        own = [calibration_of(fit)] if fit.config.uncertainty else []
+        own = [data["calibration"]] if fit.config.uncertainty else []
         beside = f"common error, beside the medians alone: {shares(task.common)}"
-        kept["calibration"] = "; ".join([*own, beside])
-        moved = kept["common_errors"] = common_errors(selected, task.common)
-        if MODULUS in moved and (ratio := fit.poissons_ratio) is not None:
+        data["calibration"] = "; ".join([*own, beside])
+        moved = data["common_errors"] = common_errors(selected, task.common)
+        if MODULUS in moved and (ratio := data["poissons_ratio"]) is not None:
             of_youngs = {name: (1 - ratio**2) * error for name, error in moved[MODULUS].items()}
             moved["youngs_modulus"] = of_youngs
-    return kept | {
+    return data | {
         "r_squared": 1 - float(np.sum((force - measured) ** 2) / np.sum(scatter**2)),
         "indentation": float(np.max(selected.depths[0])),
         "largest_force": float(np.max(load)),
@@ -314,7 +232,7 @@ def _failure(error: Exception, name: str) -> str:
 
 def _write(fits: ManyFits, config: FitConfig, began: float, directory: Path) -> tuple[Path, ...]:
     """Write the tables of the curves and of the groups, and return their paths."""
-    record = record_of(config, [row.curve["data"] for row in fits.rows if row.is_fitted], began)
+    record = record_of(config, [row.fit.curve["data"] for row in fits.rows if row.is_fitted], began)
     attributes = {
         "configuration": config.to_json(),
         "versions": ", ".join(f"{name} {number}" for name, number in record["versions"].items()),

@@ -7,8 +7,8 @@ from pathlib import Path
 from pellicle.cli import echo, print_table
 
 from .population.fits import ManyFits, summary
+from .record import Record
 from .report import tables
-from .result import Fit
 from .words.population import advice_of_population, by_text, sentences_of_population
 from .words.story import told
 
@@ -16,7 +16,7 @@ _LINES = 50
 """Largest number of curves that are listed although a table is written."""
 
 
-def print_fit(fit: Fit, *, quiet: bool, details: bool, si: bool) -> None:
+def print_fit(fit: Record, *, quiet: bool, details: bool, si: bool) -> None:
     """Print numbers, verdict and next step, then warnings; in detail what they rest on."""
     for line in () if quiet else told(fit, si=si):
         echo(line)
@@ -24,9 +24,9 @@ def print_fit(fit: Fit, *, quiet: bool, details: bool, si: bool) -> None:
         for table in (tables.estimates, tables.explanations, tables.curves):
             print_table(table(fit, si=si), si=si)
         print_table(tables.correlations(fit), si=si)
-    if fit.answer.agreement.factor > 1:
+    if fit.data["widening"] > 1:
         echo(f"warning: {fit.agreement}", err=True)
-    all_checks = details or quiet or len(fit.members) > 1
+    all_checks = details or quiet or len(fit.curves) > 1
     # The verdict tells the check that fails, and the next step what to do.
     for text in fit.warnings if all_checks else fit.warnings_beside_checks:
         echo(f"warning: {text}", err=True)

@@ -1,4 +1,4 @@
-"""What a fit asks: curves on their solid, the model, its rivals, and the record of both."""
+"""What a fit asks: curves on their solid, the model and its rivals."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from .files.cleaning import clean
 from .files.measurement import Measurement
 from .files.missing import MissingInputError
 from .files.sources import Source
-from .result import Fit, Member
+from .result import Fit, data_of_fit
 from .selection.advice import advise
 from .selection.calibration import errors
 from .selection.neighbour import Neighbour
@@ -41,13 +41,16 @@ _RATIO = "poissons_ratio"
 
 
 @dataclass(frozen=True)
-class Problem:
+class FitProblem:
     """Curves of one solid that are ready to fit; it pickles to workers."""
 
     config: FitConfig
-    members: tuple[Member, ...]
-    question: Mapping[str, Any]
-    """What `answer` is asked of them."""
+    names: tuple[str, ...]
+    measured: tuple[Measurement, ...]
+    """What was read of each curve, and cleaned, with messages of both."""
+    curves: tuple[Curve, ...]
+    arguments: Mapping[str, Any]
+    """Arguments of `answer`: the model, its rivals and what is known."""
     poissons_ratio: float | None
     began: float
     """Value of ``perf_counter`` at the start."""
@@ -57,16 +60,17 @@ class Problem:
 
         Of a curve, beside others that are ``like`` it.
         """
+        config, named = self.config, [*zip(self.names, self.measured, strict=True)]
         with status_line("fitting", progress):
-            curves = [member.curve for member in self.members]
-            found = answer(curves, **self.question, like=like)
-            advice = advise(found, self.members, self.config)
-        data = [member.data for member in self.members]
-        record = record_of(self.config, data, self.began)
-        return Fit(found, self.members, advice, self.poissons_ratio, self.config, record)
+            found = answer(list(self.curves), **self.arguments, like=like)
+            left_out = next((rows for one in self.measured if (rows := one.left_out)), None)
+            advice = advise(found, left_out, config)
+        data = data_of_fit(found, named, advice, self.poissons_ratio, config)
+        record = record_of(config, [curve["data"] for curve in data["curves"]], self.began)
+        return Fit(data | record, found, config)
 
 
-def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = False) -> Problem:
+def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = False) -> FitProblem:
     """Return cleaned curves with their indenters, whose forces are simulated if need be."""
     if config.pool and len(sources) < 2:
         raise ConfigError("holds one curve, and a pool needs two; use fit", "curves")
@@ -96,10 +100,18 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
             reason = f"no position reaches it, the deepest is {readable(deepest, 'm', 4)}"
             raise ConfigError(f"{reason}; give the position of first touch", CONTACT_POINT)
     bodies, layers, ratio = _on_solid(config, indenters, measured, point, progress)
-    members = []
-    for source, one, body in zip(sources, measured, bodies, strict=True):
-        curve = Curve(one.position, one.force, body, one.time, one.unloading, one.stiffness, point)
-        members.append(Member(source.name, curve, one, data_of(one, config)))
+    curves = tuple(
+        Curve(
+            one.position,
+            one.force,
+            body,
+            time=one.time,
+            unloading=one.unloading,
+            stiffness=one.stiffness,
+            touch=point,
+        )
+        for one, body in zip(measured, bodies, strict=True)
+    )
     model = _known(config.model, fix, ratio)
     # What is given leaves nothing to ask.
     given = [effect for effect in model if quantities(type(effect)) and not effect.open]
@@ -107,14 +119,15 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
     # A curve that was made by the polynomial in common use is no sign of a tension.
     of_layers = [layer.model_dump(exclude={"type"}, exclude_none=True) for layer in layers]
     forms = [[_effect("dimitriadis", **fields)] for fields in of_layers if config.rivals]
-    question = {
+    arguments = {
         "model": [effect for effect in model if effect not in given],
         "rivals": [r for rival in (*config.rivals, *forms) if (r := _known(rival, fix, ratio))],
         "common": [*given, *baseline, *layers],
         "fix": {name: fix[name] for name in quantities(Solid).keys() & fix.keys()},
         "uncertainty": errors(config.uncertainty),
     }
-    return Problem(config, tuple(members), question, ratio, began)
+    names = tuple(source.name for source in sources)
+    return FitProblem(config, names, tuple(measured), curves, arguments, ratio, began)
 
 
 def _on_solid(
@@ -183,17 +196,6 @@ def record_of(config: FitConfig, data: Iterable[dict[str, Any]], began: float) -
         "versions": registry().all_versions(components_of(config), libraries),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
         "wall_time": round(perf_counter() - began, 3),
-    }
-
-
-def data_of(curve: Measurement, config: FitConfig) -> dict[str, Any]:
-    """Return the origin of a curve, and which part of it is fitted, as JSON data."""
-    return {
-        **curve.origin._asdict(),
-        "spring_constant": curve.stiffness,
-        "segment": config.segment,
-        "baseline": config.baseline,
-        "poissons_ratio": config.poissons_ratio,
     }
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from json import loads
 from pathlib import Path
 
@@ -18,53 +18,47 @@ from .config import FitConfig
 from .population.fits import ManyFits
 from .population.images import force_maps
 from .population.row import Row
-from .print_fits import print_fits
+from .print_fits import print_fit, print_fits
 from .problem import problem
+from .record import Record
 from .report.figures import save_figure
 from .report.population import save_population
 from .result import Fit
 from .sealed import read_sealed
-from .words.story import told
 
 
 def stored(file: Path) -> StoredFit | StoredFits:
     """Return what shows a file that ``pellicle fit`` wrote of one curve or of many."""
     with h5py.File(file) as content:
         attributes = dict(content.attrs)
-    return StoredFit(file.stem, attributes) if "fit" in attributes else StoredFits(file)
+    return StoredFit(file.stem, attributes["fit"]) if "fit" in attributes else StoredFits(file)
 
 
 class StoredFit:
-    """The fit of one curve: a file with its JSON, and what was printed of it."""
+    """The fit of one curve: a file with its JSON."""
 
     @staticmethod
     def write(fit: Fit, path: Path) -> Path:
         """Write the file of a fit, and return its path."""
-        texts = {f"told{'_si' * si}": "\n".join(told(fit, si=si)) for si in (False, True)}
-        record = {"configuration": fit.config.to_json(), "versions": str(fit.record["versions"])}
-        results.write(
-            xr.Dataset(attrs={**record, **texts, "command": "fit", "fit": fit.to_json()}), path
-        )
+        record = {"configuration": fit.config.to_json(), "versions": str(fit.data["versions"])}
+        results.write(xr.Dataset(attrs={**record, "command": "fit", "fit": fit.to_json()}), path)
         return path
 
-    def __init__(self, name: str, attributes: Mapping[str, str]) -> None:
-        self.name, self.attributes, self.fit = name, attributes, loads(attributes["fit"])
+    def __init__(self, name: str, fit: str) -> None:
+        self.name, self.fit = name, Record(loads(fit))
 
     def show(self, *, si: bool, json: bool) -> None:
-        """Print numbers, verdict and next step, then warnings."""
+        """Print what ``pellicle fit`` printed."""
         if json:
-            print_json(self.fit)
-            return
-        echo(self.attributes["told_si" if si else "told"])
-        for text in self.fit["messages"]:
-            if text not in self.fit["notes"]:
-                echo(f"warning: {text}", err=True)
+            print_json(self.fit.data)
+        else:
+            print_fit(self.fit, quiet=False, details=False, si=si)
 
     def plot(self, directory: Path, formats: Sequence[str]) -> Iterable[Path]:
         """Fit the curve again, whose file must not have changed, and write the figure."""
-        config = FitConfig(**self.fit["configuration"])
-        again, was = problem(config, [*config.sources()]).fit(), self.fit["curves"][0]
-        if again.members[0].data["sha256"] != was["data"]["sha256"]:
+        config = FitConfig(**self.fit.data["configuration"])
+        again, was = problem(config, [*config.sources()]).fit(), self.fit.curve
+        if again.curve["data"]["sha256"] != was["data"]["sha256"]:
             raise StorageError(f"{was['name']}: has changed since it was fitted; fit it again")
         return save_figure(again, directory / self.name, formats)
 

@@ -6,105 +6,28 @@ passes, with its quantities where searches start; on a curve for which it has an
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from functools import wraps
-from itertools import chain, islice, product
-from typing import Any, NamedTuple, cast
+from itertools import chain, islice
 
 import numpy as np
 
-import pellicle as pl
-from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
 from pellicle.testing import check, rules_of
-from pellicle.units import quantity_of
 
-from .contact.contact import Contact
 from .contact.curve import Curve
-from .effect import Adds, Bends, Effect, Records, Responds, Sizes, Solid, Yields, quantities
-from .explanation import Explanation
+from .effect import Adds, Bends, Effect, Records, Responds, Sizes, Yields, quantities
+from .kit_cases import DEPTHS, STIFFNESS, Case, curves
 
 _PLACES = Bends, Responds, Adds, Yields, Records
-_MODULUS, _STIFFNESS, _SPEED = 2e3, 0.05, 1e-6
-_DEPTHS = np.linspace(-0.5e-6, 1e-6, 61)
 _VALUES = 2
 """Starts of each curve at which an effect is asked."""
-_ROUNDING, _LIMIT = 2e-5, 1e-3
-"""Differences over the largest force: of tables, and what is left at the limit of a quantity."""
+_LIMIT = 1e-3
+"""Difference of forces that is left at the limit of a quantity, over the largest."""
 _SCALES = {"lengths": (2.0, 1.0, 1.0), "forces": (1.0, 3.0, 1.0), "times": (1.0, 1.0, 5.0)}
 _HALVINGS = 12
-
-
-class Case(NamedTuple):
-    """An effect of known quantities on a curve."""
-
-    effect: Effect
-    curve: Curve
-    modulus: float = _MODULUS
-    """That at the end of the loading [Pa], as fits count it."""
-
-    @property
-    def contact(self) -> Contact:
-        """The contact of the indenter on a half-space."""
-        return replace(self.curve.contact, modulus=self.modulus)
-
-    def force(self, *effects: Effect, contact_point: float = 0.0) -> Array:
-        """Return the force [N] that is recorded with some effects."""
-        time = self.curve.time_in_contact(contact_point)
-        relaxed = Explanation(Solid(), effects).relaxed(time)
-        solid = Solid(reduced_modulus=self.modulus / relaxed, contact_point=contact_point)
-        return Explanation(solid, effects).force(self.curve)
-
-    def scaled(self, length: float, force: float, time: float) -> Case:
-        """Return the case with lengths, forces and times times factors, and so all quantities."""
-        factor, update = Sizes(length, force, time, 0).of, {}
-        curve, body = self.curve, cast("Any", self.curve.indenter)
-        for name, info in type(self.effect).model_fields.items():
-            quantity, value = quantity_of(info), getattr(self.effect, name)
-            if quantity is not None and value is not None:
-                update[name] = value * factor(quantity.unit)
-        if radius := getattr(body, "radius", None):
-            body = pl.indenter("paraboloid", radius=length * radius)
-        curve = replace(
-            curve,
-            position=length * curve.position,
-            force=force * curve.force,
-            indenter=body,
-            time=time * curve.clock,
-            stiffness=_STIFFNESS * factor("N/m"),
-        )
-        effect = self.effect.model_copy(update=update)
-        return Case(effect, curve, self.modulus * factor("Pa"))
-
-    def given(self, rows: Array) -> Array:
-        """Return what the effect itself makes of depths [m] or, of an instrument, forces [N]."""
-        rows, effect, curve = rows.view(), self.effect, self.curve
-        rows.flags.writeable = False
-        match effect:
-            case Bends():
-                return effect.contact(self.contact).force(rows)
-            case Responds():
-                return effect.response(self.contact, curve, curve.position, 1 / _STIFFNESS)(rows)
-            case Adds():
-                return effect.force(self.contact, curve, rows)
-            case Yields():
-                return effect.give(rows)
-        assert isinstance(effect, Records)
-        return effect.recorded(rows, curve)
-
-    @property
-    def rows(self) -> Array:
-        """Depths [m] of the rows; forces [N] of what yields or is the instrument's."""
-        is_force = isinstance(self.effect, (Yields, Records))
-        return self.curve.force if is_force else self.curve.position
-
-    @property
-    def allowed(self) -> float:
-        """Difference of forces that is none [N]."""
-        known = Explanation(Solid(reduced_modulus=self.modulus, contact_point=0.0), (self.effect,))
-        return max(_ROUNDING, 3 * known.accuracy(self.curve)) * self.curve.largest
 
 
 def _in_each_case(rule: Callable[[Case], str]) -> Callable[[Effect], str]:
@@ -113,7 +36,7 @@ def _in_each_case(rule: Callable[[Case], str]) -> Callable[[Effect], str]:
     @wraps(rule)
     def broken(effect: Effect) -> str:
         free = _free(effect)
-        for words, curve in _curves():
+        for words, curve in curves():
             sizes, excused = Sizes.of_curve(curve), _excuse(effect, curve)
             for start in () if excused else islice(free.starts(sizes), _VALUES):
                 known = free.known(sizes).model_copy(update=dict(start))
@@ -144,7 +67,7 @@ def stands_in_one_place(effect: Effect) -> str:
 def starts_lie_within_limits(effect: Effect) -> str:
     """starts() and limits() name quantities, and starts lie between the limits."""
     known, free = quantities(type(effect)), _free(effect)
-    for words, curve in _curves():
+    for words, curve in curves():
         sizes = Sizes.of_curve(curve)
         limits, starts = free.limits(sizes), list(free.starts(sizes))
         if not starts:
@@ -160,7 +83,7 @@ def starts_lie_within_limits(effect: Effect) -> str:
 
 def acts_on_a_curve(effect: Effect) -> str:
     """excuse() returns an empty text for one of the curves of the kit, else why not."""
-    reasons = dict.fromkeys(_excuse(effect, curve) for _, curve in _curves())
+    reasons = dict.fromkeys(_excuse(effect, curve) for _, curve in curves())
     return f"on all of them it is excused: {'; '.join(reasons)}" if all(reasons) else ""
 
 
@@ -208,7 +131,7 @@ def depths_grow(case: Case) -> str:
 
     The depth of the base, δ + u(F), grows with that of the solid.
     """
-    contact, deepest = case.contact, 2 * float(_DEPTHS[-1])
+    contact, deepest = case.contact, 2 * float(DEPTHS[-1])
     if isinstance(case.effect, Bends):
         contact = case.effect.contact(contact)
         deepest = min(deepest, contact.depth_limit)
@@ -218,7 +141,7 @@ def depths_grow(case: Case) -> str:
         return f"the forces at {depth[95]:g}, …, {depth[-1]:g} m are {force[95:]}"
     give = case.effect.give(force) if isinstance(case.effect, Yields) else 0.0
     sinks = np.diff(depth + give) > 0
-    if sinks[100 : 100 + _DEPTHS.size].all():
+    if sinks[100 : 100 + DEPTHS.size].all():
         return ""
     return f"the base does not from a depth of {depth[:-1][~sinks][0]:g} m on"
 
@@ -265,7 +188,7 @@ def jumps_are_told(case: Case) -> str:
         return ""
     # A soft cantilever may jump by itself.
     case = case._replace(curve=replace(case.curve, stiffness=None))
-    shifts = [*(float(np.ptp(_DEPTHS)) / _DEPTHS.size / 8 * np.arange(-8.0, 9.0))]
+    shifts = [*(float(np.ptp(DEPTHS)) / DEPTHS.size / 8 * np.arange(-8.0, 9.0))]
     for halving in range(_HALVINGS + 1):
         forces = [case.force(case.effect, contact_point=shift) for shift in shifts]
         if halving < _HALVINGS:
@@ -284,7 +207,7 @@ def what_it_says_is_valid(case: Case) -> str:
         "accuracy()": 0 <= known.accuracy(case.contact, case.curve, frozenset()) < 1,
         "searched()": known.searched(case.curve) in range(100),
         "relaxed()": not isinstance(known, Responds) or 0 < known.relaxed(1.0) < np.inf,
-        "stiffness()": not isinstance(known, Records) or 0 < known.stiffness(_STIFFNESS) < np.inf,
+        "stiffness()": not isinstance(known, Records) or 0 < known.stiffness(STIFFNESS) < np.inf,
     }
     wrong = [name for name, is_valid in says.items() if not is_valid]
     return f"{' and '.join(wrong)} is not" if wrong else ""
@@ -297,20 +220,6 @@ def _excuse(effect: Effect, curve: Curve) -> str:
 def _free(effect: Effect) -> Effect:
     """Return the effect with all of its quantities open."""
     return effect.model_copy(update=dict.fromkeys(quantities(type(effect))))
-
-
-def _curves() -> Iterator[tuple[str, Curve]]:
-    """Yield clean curves, whose base moves at a constant speed."""
-    bead, cone = pl.indenter("paraboloid", radius=5e-6), pl.indenter("cone", half_angle=1.2)
-    bodies: dict[str, Any] = {"a round tip": bead, "a cone": cone}
-    passes = {"the approach": _DEPTHS, "both passes": np.append(_DEPTHS, _DEPTHS[-2::-1])}
-    for (tip, body), (words, depth) in product(bodies.items(), passes.items()):
-        force = Contact.on_half_space(body, _MODULUS, 2 * float(np.ptp(depth))).force(depth)
-        way = np.abs(np.diff(depth + force / _STIFFNESS, prepend=depth[0]))
-        curve = Curve(depth, force, body, np.cumsum(way) / _SPEED, stiffness=_STIFFNESS)
-        for array in (depth, force, curve.clock, curve.base, curve.smoothed, curve.velocity):
-            array.flags.writeable = False
-        yield f"{words} of {tip}", curve
 
 
 QUICK = [

@@ -221,8 +221,10 @@ def pink(random: np.random.Generator, size: int) -> Array:
     return np.asarray((values - values.mean()) / values.std())
 
 
-def fitted(truth: Truth, protocol: str, share: float, random: np.random.Generator) -> pl.Fit:
-    """Return the fit of curves with noise of a share of the largest force."""
+def fitted(
+    truth: Truth, protocol: str, share: float, random: np.random.Generator, **more: Any
+) -> pl.Fit:
+    """Return the fit of curves with noise of a share of the largest force, with more options."""
     curves: dict[str, tuple[Array, Array, Array]] = {}
     for number, rows in enumerate(rows_of(protocol, TOP)):
         force = truth.force(rows)
@@ -236,6 +238,7 @@ def fitted(truth: Truth, protocol: str, share: float, random: np.random.Generato
         options["spring_constant"] = truth.spring
     if "weighed" in truth.kind:
         options |= {"uncertainty": {"sensitivity": "6 %"}}
+    options |= more
     if len(curves) > 1:
         return pl.fit_pooled(curves, **options)
     ((position, force, time),) = curves.values()

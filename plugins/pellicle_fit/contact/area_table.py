@@ -29,7 +29,7 @@ _THINNEST = 1e-3
 _LIMITS = np.arange(0.0, _FINE * _ROWS, 0.5)
 """Logarithms of thickness over the least one at which depth limits are tabulated."""
 _Value = TypeVar("_Value")
-Row = Callable[[float, Array], tuple[Array, Array]]
+AreasOfDepth = Callable[[float, Array], tuple[Array, Array]]
 """Areas [m²] at one σ and depths [m], and their derivatives by σ."""
 
 
@@ -74,7 +74,7 @@ class Table:
     """
 
     def __init__(
-        self, row: Row, deepest: float, nodes: int = _NODES, spacing: float = _STEP
+        self, row: AreasOfDepth, deepest: float, nodes: int = _NODES, spacing: float = _STEP
     ) -> None:
         self.row, self.spacing = row, spacing
         self.log = np.log(deepest) - _DEPTHS * np.arange(nodes)[::-1]

@@ -143,13 +143,13 @@ class Adhesion(Responds):
         return depth - retraction + softness * force, force
 
 
-def _splines(root: Array, force: Array, kept: Mask) -> Callable[[Array], Array]:
+def _splines(root: Array, force: Array, rising: Mask) -> Callable[[Array], Array]:
     """Return the forces over the root of the way from the end, at some nodes of each row."""
     from scipy.interpolate import CubicSpline
 
-    if kept.all():
+    if rising.all():
         return RowSplines(root, force)
-    rows = zip(root, force, kept, strict=True)
+    rows = zip(root, force, rising, strict=True)
     each = [CubicSpline(way[some], of_way[some]) for way, of_way, some in rows]
 
     def splines(at: Array) -> Array:

@@ -13,6 +13,11 @@ class RoughToe(Yields, title="a rough surface"):
     Asperities with heights that fall off exponentially over λ carry a mean pressure that grows as
     exp(u/λ), whatever each of them does (Greenwood & Tripp 1967); that of a round tip, F/πa², grows
     as F^⅓ (Hertz).
+
+    One below the noise leaves no sign, and E* low: of 80 approaches by 1, 2, 4 and 5 % for λ of
+    1, 2, 3 and 5 % of the depth.  From 2 % on it was seen in all 30 with 0.3 % noise, in 4 of 30
+    with 1 %.  Where it was seen the interval held E* in all 35, else in 16 of 45; none seemed to
+    need a tension.
     """
 
     type: Literal["rough_toe"] = "rough_toe"

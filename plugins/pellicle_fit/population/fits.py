@@ -13,8 +13,9 @@ import pandas as pd
 import xarray as xr
 
 from pellicle_fit.estimation.intervals import threshold_of
+from pellicle_fit.record import ENDS, OVER_TIED
 
-from .row import ENDS, OVER_TIED, SHOWN, Row, counted, units
+from .row import SHOWN, Row, counted, units
 
 QUARTILES = "minimum", "lower_quartile", "median", "upper_quartile", "maximum"
 _MEASURED = {"spring_constant": "N/m", "sensitivity": "m/V", "poissons_ratio": "1"}
@@ -62,30 +63,30 @@ def table(rows: Sequence[Row]) -> xr.Dataset:
 
 def _cells(row: Row) -> dict[str, Any]:
     """Return the cells of a curve by the names of their columns, in SI."""
-    data, texts = row.curve.get("data", {}), ("verdict", "comparison")
+    fit, data, texts = row.fit, row.fit.curve.get("data", {}), ("verdict", "comparison")
     place = {} if row.site is None else {"map": row.map, "x": row.site.x, "y": row.site.y}
     roles = data.get("columns", {}).items()
     # What an explanation has none of, and what has no bound, would pass for a measured value.
     unknown = [
         name
-        for name, e in row.estimates.items()
+        for name, e in fit.estimates().items()
         if (e.held and not e.value) or (not e.held and e.low is None is e.high)
     ]
     hidden = [*_COUNTS, *(f"{name}{end}" for name in unknown for end in ENDS)]
     return {
         "status": row.status,
-        **{name: value for name, value in row.values().items() if name not in hidden},
-        "model": row.fit["model"]["words"] if row.fit else "",
-        **{name: row.fit.get(name, "") for name in texts},
-        "next": "; ".join(f"{step['do']}: {step['why']}" for step in row.fit.get("next", ())),
+        **{name: value for name, value in fit.values().items() if name not in hidden},
+        "model": fit.data["model"]["words"] if fit else "",
+        **{name: fit.data.get(name, "") for name in texts},
+        "next": "; ".join("{do}: {why}".format(**step) for step in fit.steps),
         **{name: getattr(row, name) for name in ("group", "accepted", "outlier", "reason")},
         **place,
-        "not_weighed": "; ".join(map(" + ".join, row.fit.get("not_weighed", ()))),
-        "failed_checks": "; ".join(row.failed_checks),
+        "not_weighed": "; ".join(map(" + ".join, fit.data.get("not_weighed", ()))),
+        "failed_checks": "; ".join(fit.failed_checks),
         **{name: data.get(name) for name in _MEASURED},
         **{name: data.get(name) or "" for name in ("segment", "baseline", "file", "sha256")},
         "columns": "; ".join(f"{role} = {column}" for role, column in roles),
-        "messages": "; ".join(row.fit.get("messages", ())),
+        "messages": "; ".join(fit.messages),
     }
 
 
@@ -98,7 +99,16 @@ def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
     line.  Where curves share an error of the calibration, there is a ``common_error``.
     """
     fitted = [
-        (name, row.group, e.unit, e.value, not e.is_narrow, row.has_no_sign(name), row.outlier, row)
+        (
+            name,
+            row.group,
+            e.unit,
+            e.value,
+            not e.is_narrow,
+            row.fit.has_no_sign(name),
+            row.outlier,
+            row,
+        )
         for name in dict.fromkeys((*OVER_TIED, *SHOWN))
         for row, e in counted(rows, name).items()
     ]
@@ -130,7 +140,7 @@ def common_error(rows: Iterable[Row], name: str) -> dict[str, float]:
 
     It is half of a 95 % interval [SI]: by so much the calibration that curves share may move all.
     """
-    moved = pd.DataFrame([row.fit.get("common_errors", {}).get(name, {}) for row in rows])
+    moved = pd.DataFrame([row.fit.data.get("common_errors", {}).get(name, {}) for row in rows])
     deviation = float(np.sqrt((moved.fillna(0.0).median() ** 2).sum()))
     return {"common_error": threshold_of(np.inf) ** 0.5 * deviation} if moved.size else {}
 

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from pellicle.arrays import Array
 from pellicle_fit.estimation.coordinates import CONTACT_POINT
+from pellicle_fit.record import ENDS
 
-from .row import ENDS, Row, units
+from .row import Row, units
 
 CONTACT_HEIGHT = "contact_height"
 """Minus the contact point: the height of the surface over the zero of the instrument [m]."""
@@ -57,8 +58,8 @@ def _images(rows: Sequence[Row], places: Array, x: Array, y: Array) -> xr.Datase
 
 def _numbers(row: Row) -> dict[str, float]:
     """Return the numbers of a fit that have an image, by name."""
-    known, numbers = row.values(), dict[str, float]()
-    for name, estimate in row.estimates.items():
+    known, numbers = row.fit.values(), dict[str, float]()
+    for name, estimate in row.fit.estimates().items():
         if estimate.held or name in _OF_BASELINE:
             continue
         value, low, high = (known[f"{name}{end}"] for end in ENDS)

@@ -69,8 +69,8 @@ class Rule:
 
     def objection(self, row: Row) -> str:
         """Return why a fit breaks the rule; empty if it does not."""
-        known = row.values()
-        known |= {name: e.value for name in row.estimates if (e := row.best(name))}
+        known = row.fit.values()
+        known |= {name: e.value for name in row.fit.estimates() if (e := row.fit.best(name))}
         numbers = {name: known.get(name, np.nan) for name in sorted(self._units)}
         sides = [float(evaluate(s, numbers) if isinstance(s, str) else s) for s in self._sides]
         pairs = zip(sides[:-1], self._signs, sides[1:], strict=True)
@@ -132,9 +132,9 @@ def judge(rows: Sequence[Row], rules: Sequence[str], rejected: Names | None) -> 
         elif rejected and (entry := rejected.entry(row)):
             why = rejected.reasons[entry]
             row.reason = f"in {rejected.path.name}{f': {why}' if why else ''}"
-        elif not checks and row.fit["verdict"] == Verdict.UNDESCRIBED.value:
+        elif not checks and row.fit.verdict is Verdict.UNDESCRIBED:
             # The plainest is the first.
-            row.reason = row.curve["failed_checks"][0]["message"]
+            row.reason = row.fit.curve["failed_checks"][0]["message"]
         else:
             row.reason = "; ".join(filter(None, (rule.objection(row) for rule in checks)))
         row.accepted = not row.reason

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -14,23 +14,11 @@ from pellicle.arrays import Array
 from pellicle_fit.effect import Effect, Solid, quantities
 from pellicle_fit.estimation.intervals import Estimate
 from pellicle_fit.files.measurement import Site
+from pellicle_fit.record import ENDS, NUMBERS, Record
 
 FITTED = "fitted"
-NUMBERS = {
-    **dict.fromkeys(("r_squared", "chi_squared", "points"), "1"),
-    "noise": "N",
-    "indentation": "m",
-    "largest_force": "N",
-    **dict.fromkeys(("lead", "tension_needed", "failed_checks", "messages"), "1"),
-}
-"""Unit of each number of a fit that is not a quantity of it; checks and messages are counted."""
 SHOWN = {"reduced_modulus": "E*", "tension": "τ₀", "work_of_adhesion": "W", "thickness": "h"}
 """Symbols of the quantities that tables and figures of curves show, if a curve has them."""
-MODULI = "reduced_modulus", "youngs_modulus"
-OVER_TIED = *MODULI, "tension"
-"""Quantities whose intervals are over all explanations that the curve cannot tell apart."""
-ENDS = "", "_low", "_high"
-"""What the names of value and ends of an interval end with."""
 _POINTS = 80
 
 
@@ -61,27 +49,18 @@ class Row:
     site: Site | None = None
     failure: str = ""
     """Why there is no fit."""
-    fit: dict[str, Any] = field(default_factory=dict)
-    """JSON data of the fit, with r_squared, indentation [m] and largest_force [N]."""
+    fit: Record = field(default_factory=lambda: Record({}))
+    """The fit, with r_squared, indentation [m] and largest_force [N], or an empty record."""
     sketch: dict[str, Array] = field(default_factory=dict)
     """Some of its rows, as `sketch` returns them."""
     accepted: bool = False
     reason: str = ""
     outlier: bool = False
-    curve: dict[str, Any] = field(default_factory=dict, init=False)
-    """What the fit says of the curve alone."""
-    estimates: dict[str, Estimate] = field(default_factory=dict, init=False)
-    """Modulus and tension over all that is tied, and the quantities of the chosen explanation."""
 
     def keep(self, fit: dict[str, Any]) -> None:
         """Take the JSON data of a fit, which may hold a sketch, as workers return them."""
-        self.fit = {k: value for k, value in fit.items() if k != "sketch"}
+        self.fit = Record({k: value for k, value in fit.items() if k != "sketch"})
         self.sketch = sketch(**fit["sketch"]) if "sketch" in fit else {}
-        (self.curve,) = fit["curves"]
-        headline = {name: fit[name] for name in OVER_TIED if name in fit}
-        # Modulus and tension come first.
-        parameters = {**headline, **fit["parameters"], **headline}
-        self.estimates = {name: Estimate.of_dict(entry) for name, entry in parameters.items()}
 
     @property
     def is_fitted(self) -> bool:
@@ -92,45 +71,6 @@ class Row:
     def status(self) -> str:
         """`FITTED`, or why there is no fit."""
         return FITTED if self.is_fitted else f"failed: {self.failure}"
-
-    def values(self) -> dict[str, float]:
-        """Return all numbers in SI by name, ends of intervals too; NaN is an open end, or none."""
-        if not self.fit:
-            return {}
-        counts = {"failed_checks": len(self.failed_checks), "messages": len(self.fit["messages"])}
-        noise = {"points": self.curve["points"], "noise": self.curve["noise"]["value"]}
-        known = self.fit | noise | counts
-        found = {
-            f"{name}{end}": number
-            for name, e in self.estimates.items()
-            for end, number in zip(ENDS, (e.value, e.low, e.high), strict=True)
-        } | {name: known.get(name) for name in NUMBERS}
-        return {name: np.nan if value is None else float(value) for name, value in found.items()}
-
-    def best(self, name: str) -> Estimate | None:
-        """Return an estimate; of explanations that share no value, with that of the chosen one."""
-        found = self.estimates.get(name)
-        if found is None or not np.isnan(found.value):
-            return found
-        of = "reduced_modulus" if name == "youngs_modulus" else name
-        ratio = self.curve["data"]["poissons_ratio"] if of != name else 0.0
-        # An explanation without the quantity has none of it.
-        selected = self.fit["parameters"].get(of, {"value": 0.0})
-        return replace(found, value=(1 - ratio**2) * selected["value"])
-
-    def has_no_sign(self, name: str) -> bool:
-        """Return whether there is no sign of what was asked for, which has the quantity."""
-        return name in self.fit.get("if_present", ()) and name not in MODULI
-
-    @property
-    def verdict(self) -> str:
-        """What is said of the curve, as far as it fits a table; empty without a fit."""
-        return str(self.fit.get("headline", ""))
-
-    @property
-    def failed_checks(self) -> list[str]:
-        """Codes of the checks that its residuals fail."""
-        return [check["code"] for check in self.curve.get("failed_checks", ())]
 
     @classmethod
     def of_dict(cls, data: dict[str, Any]) -> Row:
@@ -151,7 +91,7 @@ class Row:
         if self.site is not None:
             row["site"] = {"map": self.map, **self.site._asdict()}
         judgement = {"accepted": self.accepted, "reason": self.reason, "outlier": self.outlier}
-        return row | judgement | self.fit
+        return row | judgement | self.fit.data
 
 
 def counted(rows: Iterable[Row], name: str) -> dict[Row, Estimate]:
@@ -160,7 +100,7 @@ def counted(rows: Iterable[Row], name: str) -> dict[Row, Estimate]:
     Intervals of any width count: without the open ones, the stiffest curves would be chosen.  A
     quantity that was given for all curves has none.
     """
-    found = {row: e for row in rows if row.accepted and (e := row.best(name)) is not None}
+    found = {row: e for row in rows if row.accepted and (e := row.fit.best(name)) is not None}
     return {} if all(e.held for e in found.values()) else found
 
 

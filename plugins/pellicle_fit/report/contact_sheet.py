@@ -71,12 +71,12 @@ def _curve(row: Row, axes: Axes, width: float) -> None:
     axes.set(xticks=[], yticks=[])
     texts = [row.name[-letters:], row.reason[:letters]]
     if row.is_fitted:
-        shown = ((row.estimates.get(name), symbol) for name, symbol in SHOWN.items())
+        shown = ((row.fit.estimates().get(name), symbol) for name, symbol in SHOWN.items())
         named = [
             f"{symbol} {in_figures(e)}" for e, symbol in shown if e and (e.value or not e.held)
         ]
-        ratio = decimal(row.fit["chi_squared"] / row.curve["points"], 3)
-        texts[1:1] = [", ".join(named), f"R² {row.fit['r_squared']:.4f}, χ²/n {ratio}"]
+        ratio = decimal(row.fit.data["chi_squared"] / row.fit.curve["points"], 3)
+        texts[1:1] = [", ".join(named), f"R² {row.fit.data['r_squared']:.4f}, χ²/n {ratio}"]
     # A name may hold dollars, which are formulas to matplotlib.
     words = for_document("\n".join(filter(None, texts))).replace("$", r"\$")
     axes.set_title(words, loc="left", fontsize=size, in_layout=False)

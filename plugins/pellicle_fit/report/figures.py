@@ -44,7 +44,7 @@ def panels(fit: Fit | ManyFits) -> dict[str, Drawing]:
     """Return what fills the figures of a fit or of many fits, and their sizes, by caption."""
     if isinstance(fit, Fit):
         return {caption: figure_of(beside) for caption, beside in charts(fit).items()}
-    is_held = any("common_errors" in row.fit for row in fit.rows)
+    is_held = any("common_errors" in row.fit.data for row in fit.rows)
     held = " Bars hold the calibration." if is_held else ""
     of_bars = f"Filled, accepted curves; hollow, rejected; bars to 0 or a triangle are open.{held}"
     accepted = "Best values of all accepted curves, by group; dotted, the median"
@@ -69,7 +69,7 @@ def charts(fit: Fit) -> dict[str, list[Chart]]:
     answer, selected = fit.answer, fit.answer.selected
     types, rival = {answer.decision.target, answer.decision.other} - {selected.types}, None
     caption = "Data and fit of each curve, each over its maxima; below, residuals."
-    if len(fit.members) == 1:
+    if len(fit.curves) == 1:
         rival = next((one for one in answer.explanations if one.types in types), None)
         beside = f", and {words_of(rival)}" if rival else ""
         caption = f"Data, the fit, by {words_of(selected)}{beside}; below, residuals."
@@ -112,10 +112,10 @@ def plot(fit: Fit) -> Figure:
 
 def _curves(fit: Fit, rival: Candidate | None = None) -> Chart:
     """Return data and fits over the indentation, of several curves over its largest; residuals."""
-    selected, forces, count, series = fit.answer.selected, fit.forces(), len(fit.members), []
+    selected, forces, count, series = fit.answer.selected, fit.forces(), len(fit.curves), []
     subtracted, depths = False, selected.depths
-    for number, (member, force) in enumerate(zip(fit.members, forces, strict=True)):
-        curve, known = member.curve, selected.known[number]
+    for number, (curve, force) in enumerate(zip(selected.whole, forces, strict=True)):
+        known = selected.known[number]
         baseline, turn = known.free_force(curve), int(curve.moves_out.argmax())
         subtracted, data = subtracted or bool(baseline.any()), curve.force - baseline
         measured = depths[number]
@@ -125,7 +125,11 @@ def _curves(fit: Fit, rival: Candidate | None = None) -> Chart:
         x, legend = measured / deepest, "data" if number == 0 else ""
         dots = Look(None, None, 0, filled=False if legs else None)
         series.append(Series(x, data / largest, legend=legend, look=dots, legs=legs))
-        own = member.name * (count <= _LEGEND_CURVES) if count > 1 else f"fit: {words_of(selected)}"
+        own = (
+            fit.curves[number]["name"] * (count <= _LEGEND_CURVES)
+            if count > 1
+            else f"fit: {words_of(selected)}"
+        )
         models = [(words_of(rival), 1, rival.forces()[0])] if rival else []
         for name, hue, modelled in [*models, (own, number, force)]:
             # The noise of the force is in the position of the tip, too, not in that of the base.

@@ -13,6 +13,7 @@ from pellicle.files import atomic_write
 from pellicle.show import Block, Code, Notice, Picture, Section, Text
 from pellicle_fit.config import FitConfig
 from pellicle_fit.population.fits import ManyFits, summary
+from pellicle_fit.record import Record
 from pellicle_fit.result import Fit
 from pellicle_fit.selection.verdict import Verdict
 from pellicle_fit.words.population import advice_of_population, by_text, sentences_of_population
@@ -33,7 +34,7 @@ _GOOD = {Verdict.CANNOT_TELL: None, Verdict.UNDESCRIBED: False}
 
 def html_of_fit(fit: Fit) -> str:
     """Return a sentence, the estimates with their intervals, and the curve with its fit."""
-    title = "Fit of a curve" if len(fit.members) == 1 else f"Fit of {len(fit.members)} curves"
+    title = "Fit of a curve" if len(fit.curves) == 1 else f"Fit of {len(fit.curves)} curves"
     text = " ".join(map(_sentence, story(fit)))
     (chart, *_), *_ = charts(fit).values()
     return show.summary(title, text, tables.estimates(fit), picture=show.png(chart))
@@ -73,7 +74,7 @@ def save_report(fit: Fit | ManyFits, path: Path, title: str) -> Path:
     return path
 
 
-def _one(fit: Fit) -> list[Block]:
+def _one(fit: Record) -> list[Block]:
     """Return the story of the fit of one curve or of several, and what it rests on."""
     numbers, verdict, *step = story(fit)
     blocks: list[Block] = [
@@ -82,7 +83,7 @@ def _one(fit: Fit) -> list[Block]:
         *map(Text, map(_sentence, step)),
     ]
     if fit.agreement:
-        agree = fit.answer.agreement.factor == 1
+        agree = fit.data["widening"] == 1
         blocks.append(Notice(_sentence(fit.agreement), good=agree))
     blocks += [tables.estimates(fit), *_told(fit.warnings, fit.notes)]
     return [*blocks, tables.explanations(fit), tables.curves(fit), tables.correlations(fit)]
@@ -91,9 +92,8 @@ def _one(fit: Fit) -> list[Block]:
 def _many(fits: ManyFits) -> list[Block]:
     rows = fits.rows
     failed = [(row.status, row.name) for row in rows if not row.is_fitted]
-    read = [(text, row) for row in rows for text in row.fit.get("messages", ())]
-    notes = [(text, row.name) for text, row in read if text in row.fit["notes"]]
-    warnings = [(text, row.name) for text, row in read if text not in row.fit["notes"]]
+    notes = [(text, row.name) for row in rows for text in row.fit.notes]
+    warnings = [(text, row.name) for row in rows for text in row.fit.warnings]
     blocks: list[Block] = [Text(line, lead=True) for line in sentences_of_population(rows)]
     if failed:
         lost = f"{len(failed)} of {len(rows)} curves could not be fitted:"

@@ -21,19 +21,19 @@ def save_tables(rows: Sequence[Row], stem: Path) -> list[Path]:
     The modulus is Young's where it is known; ``n`` is the number of points.  A value whose interval
     is open or wide is left out.
     """
-    has_youngs = any("youngs_modulus" in row.estimates for row in rows)
+    has_youngs = any("youngs_modulus" in row.fit.estimates() for row in rows)
     modulus = ("E", "youngs_modulus") if has_youngs else ("E*", "reduced_modulus")
     lines = []
     for row in rows:
-        verdict = row.verdict if row.accepted else f"not accepted: {row.reason}"
+        verdict = row.fit.headline if row.accepted else f"not accepted: {row.reason}"
         line = {"curve": for_document(row.name), "verdict": verdict}
         for unit, head, name in ((_KILOPASCAL, *modulus), (_MILLINEWTON, "tension", "tension")):
-            e = row.estimates.get(name)
+            e = row.fit.estimates().get(name)
             is_known = e is not None and (e.value or not e.held)
             value, ends = value_and_ends(e, unit, FEW) if e and is_known else ("", "")
             line[f"{head} [{unit.unit}]"] = value
             line[f"95 % interval [{unit.unit}]"] = ends
-        lines.append(line | {"n": str(row.curve.get("points", ""))})
+        lines.append(line | {"n": str(row.fit.curve.get("points", ""))})
     frame = pd.DataFrame(lines)
     cells = [[*frame], ["---"] * frame.shape[1], *frame.to_numpy().tolist()]
     marked = (" | ".join(cell.replace("|", "\\|") for cell in line) for line in cells)

@@ -56,7 +56,7 @@ def bars(rows: Sequence[Row]) -> list[Chart]:
         fitted = [
             (number, row.accepted, e.value, e.low, e.high)
             for number, row in enumerate(rows, 1)
-            if (e := row.estimates.get(name)) is not None and not e.held
+            if (e := row.fit.estimates().get(name)) is not None and not e.held
         ]
         if not fitted:
             continue
@@ -81,7 +81,7 @@ def distributions(rows: Sequence[Row]) -> list[Chart]:
     groups = list(dict.fromkeys(label(row.group) for row in rows if row.accepted))
     for name, unit in _DRAWN.items():
         found = counted(rows, name)
-        if not all(row.has_no_sign(name) for row in found):
+        if not all(row.fit.has_no_sign(name) for row in found):
             values = np.array([e.value for e in found.values()])
             is_wide = name == MODULUS and bool(values.max() > _DECADE * values.min())
             kinds = np.array([groups.index(label(row.group)) for row in found])

@@ -8,15 +8,13 @@ import numpy as np
 
 from pellicle.components import Column, Table
 from pellicle.units import DIGITS, Scale
-from pellicle_fit.estimation.candidate import Candidate
 from pellicle_fit.estimation.coordinates import CONTACT_POINT, MODULUS
 from pellicle_fit.estimation.intervals import CONFIDENCE, End, Estimate
-from pellicle_fit.estimation.search import Ending
 from pellicle_fit.population.fits import QUARTILES, summary
-from pellicle_fit.population.row import FITTED, OVER_TIED, SHOWN, Row
-from pellicle_fit.result import Fit
-from pellicle_fit.selection.recipe import TENSION, Answer
-from pellicle_fit.words.names import FEW, interval, quoted, unit_of, unit_of_one, words, words_of
+from pellicle_fit.population.row import FITTED, SHOWN, Row
+from pellicle_fit.record import OVER_TIED, Record
+from pellicle_fit.selection.recipe import TENSION
+from pellicle_fit.words.names import FEW, interval, quoted, unit_of, unit_of_one, words
 
 _OPEN = {End.LIMIT, End.RANGE, End.STEPS, End.LACKING}
 """What an end is that needs a reason."""
@@ -24,21 +22,22 @@ _CORRELATED = 0.3
 """Least size of a correlation that tables show."""
 _SI_DIGITS = 6
 """Significant digits of numbers in SI."""
+_SEARCHES = {"converged": "", "given_up": "given up"}
+"""What is said of a search, by how it ended; of all others that they did not converge."""
 
 
-def estimates(fit: Fit, *, si: bool = False) -> Table:
+def estimates(fit: Record, *, si: bool = False) -> Table:
     """Return a row for each quantity of a fit, of several curves those that they share."""
-    several, rows = len(fit.members) > 1, []
-    slots = fit.answer.selected.objective.slots
-    of_one = {slot.full_name for slot in slots if slot.curve is not None}
-    for name, estimate in fit.estimates().items():
-        if not (several and name in of_one) and (estimate.value or not estimate.held):
+    known, of_one, rows = fit.estimates(), _of_one_curve(fit), []
+    for name in dict.fromkeys((MODULUS, TENSION, *known)):
+        estimate = known[name]
+        if name not in of_one and (estimate.value or not estimate.held):
             unit = _unit(fit, name, si)
             value = "" if np.isnan(estimate.value) else unit.number(estimate.value)
             why = " and ".join(dict.fromkeys(e.value for e in estimate.ends if e in _OPEN))
             rows.append((words(name), value, interval(estimate, unit), unit.unit, why))
     caption = (
-        f"The quantities of the model that was chosen, {words_of(fit.answer.selected)}; intervals "
+        f"The quantities of the model that was chosen, {fit.data['model']['words']}; intervals "
         "of modulus and tension are over all models that describe the data as well."
     )
     heads = "parameter", "value", f"{100 * CONFIDENCE:.0f} % interval", "unit", "open end"
@@ -46,68 +45,69 @@ def estimates(fit: Fit, *, si: bool = False) -> Table:
     return Table.of_rows(heads[:count], [row[:count] for row in rows], caption)
 
 
-def correlations(fit: Fit) -> Table:
+def _of_one_curve(fit: Record) -> set[str]:
+    """Return the quantities of which each of several curves has its own."""
+    curves = fit.curves if len(fit.curves) > 1 else []
+    return {name for curve in curves for name in curve["quantities"]}
+
+
+def correlations(fit: Record) -> Table:
     """Return a row for each pair of correlated quantities of a fit, the strongest first."""
-    several = len(fit.members) > 1
-    slots = fit.answer.selected.objective.slots
-    own = {slot.full_name for slot in slots if slot.curve is not None} if several else set()
-    pairs = {
-        pair: value
-        for pair, value in fit.answer.selected.correlations.items()
-        if not own.intersection(pair) and abs(value) >= _CORRELATED
-    }
-    ranked = sorted(pairs, key=lambda pair: -abs(pairs[pair]))
-    columns = [
-        Column("parameter", [words(one) for one, _ in ranked]),
-        Column("and", [words(other) for _, other in ranked]),
-        Column("correlation", [f"{pairs[pair]:.3f}" for pair in ranked]),
+    own = _of_one_curve(fit)
+    pairs = [
+        (*map(words, of), value)
+        for of, value in ((pair["of"], pair["value"]) for pair in fit.data["correlations"])
+        if not own.intersection(of) and abs(value) >= _CORRELATED
     ]
+    pairs.sort(key=lambda pair: -abs(pair[2]))
     caption = (
         f"Correlations of at least {_CORRELATED:g}; ± 1 where one quantity makes up for the other."
     )
+    columns = [
+        Column("parameter", [one for one, _, _ in pairs]),
+        Column("and", [other for _, other, _ in pairs]),
+        Column("correlation", [f"{value:.3f}" for *_, value in pairs]),
+    ]
     return Table(columns, caption, folded=True)
 
 
-def explanations(fit: Fit, *, si: bool = False) -> Table:
+def explanations(fit: Record, *, si: bool = False) -> Table:
     """Return a row for each explanation of the data that was compared, best first."""
-    answer, compared = fit.answer, fit.answer.explanations
+    compared = fit.data["explanations"]
+    searches = [_SEARCHES.get(one["search"], "not converged") for one in compared]
     columns = [
-        Column("explanation", [words_of(one) for one in compared]),
-        Column("χ²", [answer.chi_squared(one) for one in compared], digits=5),
-        Column("ΔAIC", [one.aic - compared[0].aic for one in compared], digits=3),
-        Column("tied", [_standing(answer, one) for one in compared]),
+        Column("explanation", [one["words"] for one in compared]),
+        Column("χ²", [one["chi_squared"] for one in compared], digits=5),
+        Column("ΔAIC", [one["delta_aic"] for one in compared], digits=3),
+        Column(
+            "tied", ["yes" if o["tied"] else s for o, s in zip(compared, searches, strict=True)]
+        ),
     ]
     for name in (MODULUS, TENSION):
-        values = [one.parameters.get(name) for one in compared]
+        entries = [one["parameters"].get(name) for one in compared]
+        values = [e and Estimate.of_dict({"low": None, "high": None} | e) for e in entries]
         # Not of all explanations intervals are sought.
-        sought = [name in one.estimates for one in compared]
+        sought = [bool(e) and "low" in e and not e["held"] for e in entries]
         columns += _quantity(name, _unit(fit, name, si), values, sought=sought)
-    tie = f"below ΔAIC = {answer.decision.margin:.3g} it is a tie"
+    tie = f"below ΔAIC = {fit.data['margin']:.3g} it is a tie"
     return Table(columns, f"What describes the data, best first; {tie}.", folded=True)
 
 
-def _standing(answer: Answer, one: Candidate) -> str:
-    ending = one.minimum.ending
-    if one in answer.tied or ending is Ending.CONVERGED:
-        return "yes" if one in answer.tied else ""
-    return "given up" if ending is Ending.GIVEN_UP else "not converged"
-
-
-def curves(fit: Fit, *, si: bool = False) -> Table:
+def curves(fit: Record, *, si: bool = False) -> Table:
     """Return a row for each curve of a fit."""
-    members, judgements, own = fit.members, fit.answer.judgements, fit.estimates()
-    radii = [getattr(member.curve.indenter, "radius", "") for member in members]
+    of, own = fit.curves, fit.estimates()
+    radii = [curve["indenter"].get("radius", "") for curve in of]
     # That of the first has no number, one that is fixed has none at all.
-    found = (own.get(f"{CONTACT_POINT}_{i}", own[CONTACT_POINT]) for i in range(len(members)))
+    found = (own.get(f"{CONTACT_POINT}_{i}", own[CONTACT_POINT]) for i in range(len(of)))
     unit = _unit(fit, CONTACT_POINT, si)
     points = [f"{unit.number(e.value)} ({interval(e, unit)})" for e in found]
-    checks = [", ".join(checked.failed_checks) for checked in judgements]
+    checks = [", ".join(check["code"] for check in curve["failed_checks"]) for curve in of]
     columns = [
-        Column("curve", [member.name for member in members]),
+        Column("curve", [curve["name"] for curve in of]),
         *([Column("radius", radii, "m")] if any(radii) else []),
         Column(f"contact point [{unit.unit}]", points),
-        Column("points", [member.curve.position.size for member in members]),
-        Column("noise", [checked.deviation for checked in judgements], "N", digits=3),
+        Column("points", [curve["points"] for curve in of]),
+        Column("noise", [curve["noise"]["value"] for curve in of], "N", digits=3),
         Column("failed checks", checks),
     ]
     caption = "The curves, each with its own contact point and noise."
@@ -122,11 +122,11 @@ def rows(of: Sequence[Row], *, si: bool = False) -> Table:
         else "modulus stands out" * row.outlier or (FITTED if row.is_fitted else "failed")
         for row in of
     ]
-    radii = [row.curve.get("indenter", {}).get("radius", "") for row in of]
-    has_youngs = any("youngs_modulus" in row.estimates for row in of)
+    radii = [row.fit.curve.get("indenter", {}).get("radius", "") for row in of]
+    has_youngs = any("youngs_modulus" in row.fit.estimates() for row in of)
     columns = list[Column]()
     for name in ("youngs_modulus", *[*SHOWN][1:]) if has_youngs else SHOWN:
-        all_of = [row.estimates.get(name) for row in of]
+        all_of = [row.fit.estimates().get(name) for row in of]
         if name in OVER_TIED or 2 * sum(map(bool, all_of)) >= len(of):
             columns += _quantity(name, _usual(of, name, si), all_of, _SI_DIGITS if si else FEW)
     others = [
@@ -136,7 +136,10 @@ def rows(of: Sequence[Row], *, si: bool = False) -> Table:
     ]
     fitted = [n for n, row in enumerate(of) if row.is_fitted]
     columns += [c for c in others if any(c.bad) or len({str(c.values[n]) for n in fitted}) > 1]
-    first = [Column("curve", [row.name for row in of]), Column("verdict", [r.verdict for r in of])]
+    first = [
+        Column("curve", [row.name for row in of]),
+        Column("verdict", [r.fit.headline for r in of]),
+    ]
     return Table([*first, *columns], "Each curve on its own, with its 95 % intervals.")
 
 
@@ -161,18 +164,18 @@ def groups(of: Sequence[Row], *, si: bool = False) -> Table:
     )
 
 
-def _unit(fit: Fit, name: str, si: bool) -> Scale:
+def _unit(fit: Record, name: str, si: bool) -> Scale:
     """Return the unit of a quantity in all tables of a fit: its own or, if it is 0, of rivals."""
     own = fit.estimates()[name]
     if own.value or own.high:
         return unit_of_one(own, si=si)
-    others = (one.parameters.get(name) for one in fit.answer.explanations)
-    return unit_of([e.value for e in others if e is not None], own.unit, si=si)
+    others = (one["parameters"].get(name) for one in fit.data["explanations"])
+    return unit_of([e["value"] for e in others if e is not None], own.unit, si=si)
 
 
 def _usual(of: Sequence[Row], name: str, si: bool) -> Scale:
     """Return the unit of a quantity in all tables of curves: that of the median upper end."""
-    found = [e for row in of if (e := row.estimates.get(name)) is not None]
+    found = [e for row in of if (e := row.fit.estimates().get(name)) is not None]
     values = [size for e in found if (size := e.high or np.nan_to_num(e.value))] or [0.0]
     return unit_of([float(np.median(values))], found[0].unit if found else "", si=si)
 

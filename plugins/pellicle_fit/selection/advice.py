@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from enum import Enum
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -17,7 +17,6 @@ from .verdict import Verdict
 
 if TYPE_CHECKING:
     from pellicle_fit.config import FitConfig
-    from pellicle_fit.result import Member
 
 PLAUSIBLE = {"reduced_modulus": (1.0, 1e12), "tension": (0.0, 1.0), "thickness": (1e-9, 1.0)}
 """Values [SI] beyond which a unit is probably wrong."""
@@ -56,9 +55,14 @@ class Advice(NamedTuple):
     """Numbers in SI and names that it rests on."""
 
 
-def advise(answer: Answer, members: Sequence[Member], config: FitConfig) -> tuple[Advice, ...]:
-    """Return what to do next, the most urgent first: mend the fit, else measure; or nothing."""
-    first = *_of_input(answer), *_of_options(answer, members, config)
+def advise(
+    answer: Answer, left_out: tuple[int, int] | None, config: FitConfig
+) -> tuple[Advice, ...]:
+    """Return what to do next, the most urgent first: mend the fit, else measure; or nothing.
+
+    First and last row are those of a retraction that was ``left_out``.
+    """
+    first = *_of_input(answer), *_of_options(answer, left_out, config)
     is_open = answer.verdict is Verdict.CANNOT_TELL
     return (_measurement(answer),) if is_open and not first else first
 
@@ -85,7 +89,9 @@ def _of_input(answer: Answer) -> Iterator[Advice]:
             yield Advice(Remedy.CHECK_UNITS, known)
 
 
-def _of_options(answer: Answer, members: Sequence[Member], config: FitConfig) -> Iterator[Advice]:
+def _of_options(
+    answer: Answer, left_out: tuple[int, int] | None, config: FitConfig
+) -> Iterator[Advice]:
     """Yield what another option of the fit would mend."""
     flaws = {flaw for one in answer.judgements for flaw in one.flaws}
     types = answer.selected.objective.explanation.types
@@ -97,9 +103,8 @@ def _of_options(answer: Answer, members: Sequence[Member], config: FitConfig) ->
         yield Advice(Remedy.ASK_ADHESION)
     if Flaw.SPIKES in flaws:
         yield Advice(Remedy.DELETE_SPIKES)
-    rows = next((one for member in members if (one := member.measured.left_out)), None)
-    if answer.verdict is Verdict.CANNOT_TELL and rows:
-        yield Advice(Remedy.FIT_BOTH, {"first": rows[0], "last": rows[1]})
+    if answer.verdict is Verdict.CANNOT_TELL and left_out:
+        yield Advice(Remedy.FIT_BOTH, {"first": left_out[0], "last": left_out[1]})
     if config.thickness is None and any("layer" in fit.types for fit in answer.tied):
         yield Advice(Remedy.GIVE_THICKNESS, {"needs_ratio": config.poissons_ratio is None})
     if answer.untried and answer.verdict is Verdict.UNDESCRIBED:

@@ -196,7 +196,7 @@ def answer(
     """Fit modulus, contact point and a model to curves of one solid, and weigh its rivals.
 
     The question is whether the first effect of the model that is none of the instrument is needed;
-    its others, and those ``kept``, are in all explanations.  Each set of rivals is compared alone
+    its others, and ``common`` ones, are in all explanations.  Each set of rivals is compared alone
     and beside what is asked for.  ``fix`` has values of quantities of the solid, in SI or with
     units.  Effects of ``uncertainty``, whose quantities are weighed, widen intervals and are in no
     comparison.  What all curves that are ``like`` this one rule out is not compared, unless the

@@ -18,7 +18,7 @@ from pellicle.errors import ConfigError, ConvergenceError, ConvergenceWarning
 from pellicle.units import readable
 
 from .interpolated import SCALE, SimulatedCurve, stretched
-from .solid import Solid, quantities_of
+from .solid import UnitKernel, quantities_of
 
 GRID_POINTS = 64
 _OCTAVES = 6
@@ -38,7 +38,7 @@ _WIDEST = 1e9
 
 def simulated_curve(
     indenter: Indenter,
-    solid: Solid,
+    solid: UnitKernel,
     deepest: float,
     *,
     cache: str | Path | None = None,
@@ -87,7 +87,7 @@ def simulated_curve(
 
 
 def plan(
-    indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GRID_POINTS
+    indenter: Indenter, solid: UnitKernel, deepest: float, grid_points: int = GRID_POINTS
 ) -> tuple[Array, tuple[float, float], dict[str, Any]]:
     """Return depths of nodes down to one [m], the width of contacts there, and their study."""
     if indenter.footprint != "unbounded":

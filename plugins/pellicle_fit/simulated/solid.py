@@ -17,7 +17,7 @@ from pellicle.units import Quantity, quantity_of
 
 
 @dataclass(frozen=True)
-class Solid:
+class UnitKernel:
     """A kernel with E* = 1 Pa and no tension."""
 
     kernel: Kernel
@@ -32,7 +32,7 @@ class Solid:
         return bool(np.allclose(q * self.kernel.compliance(q), 2.0, rtol=1e-9, atol=0))
 
 
-def solid(spec: str | Mapping[str, Any], poissons_ratio: float | None = None) -> Solid:
+def solid(spec: str | Mapping[str, Any], poissons_ratio: float | None = None) -> UnitKernel:
     """Return the solid that the type or the table of a kernel describes.
 
     ``poissons_ratio`` is used if the kernel needs one and its table has none.
@@ -70,7 +70,7 @@ def solid(spec: str | Mapping[str, Any], poissons_ratio: float | None = None) ->
                 f"is {own:g}, and poissons_ratio of the fit is {poissons_ratio:g}; give it once",
                 path,
             )
-    return Solid(kernel, tension, poissons_ratio if ratio is None else ratio)
+    return UnitKernel(kernel, tension, poissons_ratio if ratio is None else ratio)
 
 
 def quantities_of(kernel: Kernel) -> Iterator[tuple[str, Quantity, float]]:

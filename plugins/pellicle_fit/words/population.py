@@ -25,20 +25,20 @@ def sentences_of_population(rows: Sequence[Row]) -> list[str]:
     counts = f"{fitted} of {len(rows)} curves were fitted"
     if accepted != fitted:
         counts += f", {accepted} of them accepted"
-    verdicts = Counter(row.fit["verdict"] for row in rows if row.is_fitted).most_common()
+    verdicts = Counter(row.fit.verdict.value for row in rows if row.is_fitted).most_common()
     if verdicts:
         counts += f"; verdicts: {', '.join(f'{verdict} in {count}' for verdict, count in verdicts)}"
     sentences = [counts]
     if far := [row.name for row in rows if row.outlier]:
         sentences.append(f"far from the median modulus, and counted: {listed(far, most=_NAMES)}")
-    if spared := sum(bool(row.fit.get("not_weighed")) for row in rows):
+    if spared := sum(bool(row.fit.data.get("not_weighed")) for row in rows):
         sentences.append(
             f"in {spared} of them what curves beside them rule out by {RULED_OUT:.0f} in AIC was "
             "not compared; --every-rival compares it"
         )
-    if any(row.fit.get("tension_needed") for row in rows):
+    if any(row.fit.data.get("tension_needed") for row in rows):
         sentences.append(NOT_WEIGHED)
-    calibrations = {row.fit["calibration"] for row in rows if row.is_fitted}
+    calibrations = {row.fit.data["calibration"] for row in rows if row.is_fitted}
     level = f"intervals of {100 * CONFIDENCE:.0f} %"
     return [*sentences, *(f"{level}; {text}" for text in calibrations)]
 
@@ -47,7 +47,7 @@ def advice_of_population(rows: Sequence[Row]) -> list[str]:
     """Return what to do next, a line for each kind of step with the curves that it would help."""
     kinds: dict[str, dict[str, dict[str, str]]] = {}
     for row in rows:
-        for step in row.fit.get("next", ()):
+        for step in row.fit.steps:
             kinds.setdefault(step["kind"], {})[row.name] = step
     lines, fitted = [], sum(row.is_fitted for row in rows)
     for steps in sorted(kinds.values(), key=len, reverse=True)[:_STEPS]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,13 +15,11 @@ from pellicle_fit.estimation.coordinates import MODULUS
 from pellicle_fit.estimation.intervals import CONFIDENCE
 from pellicle_fit.estimation.noise import Flaw
 from pellicle_fit.files.measurement import Note
+from pellicle_fit.record import Record
 from pellicle_fit.selection.recipe import Answer
 from pellicle_fit.selection.verdict import Verdict
 
 from .names import in_figures, in_words, listed, words, words_of, words_of_types
-
-if TYPE_CHECKING:
-    from pellicle_fit.result import Fit
 
 _WIDTH = 100
 _WRAPPED: dict[str, Any] = {"subsequent_indent": "    ", "break_on_hyphens": False}
@@ -32,7 +30,7 @@ NOT_WEIGHED = (
 )
 
 
-def told(fit: Fit, *, si: bool = False) -> list[str]:
+def told(fit: Record, *, si: bool = False) -> list[str]:
     """Return the lines of its story for a terminal; a long one goes on, indented, after a ";"."""
     lines = list[str]()
     for line in story(fit, si=si):
@@ -41,41 +39,39 @@ def told(fit: Fit, *, si: bool = False) -> list[str]:
     return lines
 
 
-def story(fit: Fit, *, si: bool = False) -> list[str]:
+def story(fit: Record, *, si: bool = False) -> list[str]:
     """Return numbers, verdict, what it leaves out and what to do next; a line each."""
+    caveat = [NOT_WEIGHED] if fit.data["tension_needed"] else []
     step = [f"next: {fit.advice}"] if fit.advice else []
-    caveat = [NOT_WEIGHED] if fit.answer.tension_needed else []
-    return [numbers(fit, si=si), verdict(fit.answer), *_if_present(fit, si), *caveat, *step]
+    return [numbers(fit, si=si), fit.comparison, *_if_present(fit, si), *caveat, *step]
 
 
-def _if_present(fit: Fit, si: bool) -> Iterator[str]:
+def _if_present(fit: Record, si: bool) -> Iterator[str]:
     """Yield what is known of what was asked for, and the modulus beside it, if it were there."""
     if found := fit.if_present:
-        target = fit.answer.question.target
         hidden = {"reduced_modulus"} if "youngs_modulus" in found else set()
         ordered = sorted(found, key=lambda name: name.endswith("_modulus"))
         parts = (f"{words(n)} {in_figures(found[n], si=si)}" for n in ordered if n not in hidden)
-        yield f"if {in_words([target] if target else [])} were there: {', '.join(parts)}"
+        yield f"if {fit.data['target']['words']} were there: {', '.join(parts)}"
 
 
-def numbers(fit: Fit, *, si: bool = False) -> str:
+def numbers(fit: Record, *, si: bool = False) -> str:
     """Return the quantities that were asked for, with intervals over all that fit as well.
 
     The modulus is Young's where Poisson's ratio is known.
     """
-    answer, estimates = fit.answer, fit.estimates()
-    names = ["youngs_modulus" if "youngs_modulus" in estimates else "reduced_modulus"]
-    names += [name for name in answer.question.wanted if name in answer.selected.parameters]
+    estimates, known = fit.estimates(), fit.data["calibration"]
+    modulus = "youngs_modulus" if "youngs_modulus" in estimates else "reduced_modulus"
+    names = [modulus, *fit.data["target"]["quantities"]]
     parts = [f"{words(name)} {in_figures(estimates[name], si=si)}" for name in names]
-    calibration = calibration_of(fit)
-    if answer.verdict is Verdict.UNDESCRIBED:
-        return f"not to be quoted: {', '.join(parts)}; {calibration}"
-    return f"{', '.join(parts)}, {100 * CONFIDENCE:.0f} %; {calibration}"
+    if fit.verdict is Verdict.UNDESCRIBED:
+        return f"not to be quoted: {', '.join(parts)}; {known}"
+    return f"{', '.join(parts)}, {100 * CONFIDENCE:.0f} %; {known}"
 
 
-def calibration_of(fit: Fit) -> str:
+def calibration(uncertainty: Mapping[Any, float]) -> str:
     """Return to which uncertainties the calibration is known: exactly, if there are none."""
-    known = shares(fit.config.uncertainty)
+    known = shares(uncertainty)
     return f"calibration weighed: {known}" if known else "calibration taken as exact"
 
 

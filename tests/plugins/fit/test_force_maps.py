@@ -162,7 +162,7 @@ def test_two_at_one_place() -> None:
 def test_open_intervals_have_no_pixel() -> None:
     """The value of an open interval is one of many."""
     rows = placed([(0, 0), (1, 0)])
-    rows[0].keep(row("m:0", is_open=True).fit)
+    rows[0].keep(row("m:0", is_open=True).fit.data)
     assert only_image(rows)[0] == [[-1, 1]]
 
 

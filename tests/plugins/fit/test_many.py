@@ -131,7 +131,7 @@ def test_a_kept_fit_that_was_changed(
     first = fits()
     (path,) = (tmp_path / "curves").glob("*.json")
     kept = path.read_bytes()
-    assert json.loads(kept)["reduced_modulus"] == first.rows[0].fit["reduced_modulus"]
+    assert json.loads(kept)["reduced_modulus"] == first.rows[0].fit.data["reduced_modulus"]
     path.write_bytes(damage if isinstance(damage, bytes) else kept.replace(*damage))
     assert path.read_bytes() != kept
     again = fits()
@@ -171,7 +171,7 @@ def test_an_error_that_curves_share_stands_beside_the_median(
 
     exact, weighed = fits(), fits(uncertainty=uncertainty, **options)
     for one, other in zip(exact, weighed, strict=True):
-        known, found = (row.estimates["reduced_modulus"] for row in (one, other))
+        known, found = (row.fit.estimates()["reduced_modulus"] for row in (one, other))
         assert found.value == pytest.approx(known.value, rel=1e-6)
         assert ends_of(found)[1] > 1.05 * ends_of(known)[1] if options else found == known
     (line,) = summary(weighed)

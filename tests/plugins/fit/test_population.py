@@ -156,7 +156,7 @@ def test_outliers_are_kept() -> None:
     assert sentences_of_population(rows)[-2].endswith("counted: 3")
     parts = {part["group"]: part for part in summary(rows)}
     assert (parts["soft/1"]["n"], parts["soft/1"]["outliers"], parts["all"]["n"]) == (20, 1, 40)
-    soft = [r.estimates["reduced_modulus"].value for r in rows[:20]]
+    soft = [r.fit.estimates()["reduced_modulus"].value for r in rows[:20]]
     assert parts["soft/1"]["median"] == np.median(soft)
     assert parts["soft/1"]["upper_quartile"] == np.quantile(soft, 0.75)
     # Equal moduli have no deviation to compare with, and four have no majority.
@@ -191,8 +191,8 @@ def test_statistics_are_of_all_accepted_curves(curves: list[tuple[Any, ...]]) ->
         skin |= {"value": 0.0, "low": None, "high": None, "held": True} if bare else {}
         rows.append(row(f"{k}", None if state == "failed" else modulus, group=group, tension=skin))
         if state != "failed":
-            rows[-1].fit["r_squared"] = 0.9 if state == "rejected" else 0.99
-            rows[-1].estimates[MODULUS] = Estimate(**estimate(modulus, ends=ends))
+            rows[-1].fit.data["r_squared"] = 0.9 if state == "rejected" else 0.99
+            rows[-1].fit.estimates()[MODULUS] = Estimate(**estimate(modulus, ends=ends))
         if state == "accepted":
             known = {MODULUS: modulus, "tension": skin["value"], "bare": bare}
             is_open = {MODULUS: ends != CLOSED, "tension": of_tension != CLOSED}
@@ -220,9 +220,9 @@ def test_of_explanations_that_share_no_value_the_chosen_one_counts() -> None:
     """It is not quoted, but obeys rules and is in the median; no sign of a tension is said once."""
     rows = [row(f"{k}", 1e3 + k, tension=estimate(1e-3, "N/m", (None, 2.0))) for k in range(3)]
     for one in rows:
-        told = one.fit["parameters"][MODULUS] | {"value": None}
-        one.keep(one.fit | {MODULUS: told, "if_present": {"tension": {}}})
-        assert np.isnan(one.values()[MODULUS])
+        told = one.fit.data["parameters"][MODULUS] | {"value": None}
+        one.keep(one.fit.data | {MODULUS: told, "if_present": {"tension": {}}})
+        assert np.isnan(one.fit.values()[MODULUS])
     judge(rows, ["reduced_modulus > 1 kPa"], None)
     assert [one.accepted for one in rows] == [False, True, True]
     parts = {part["parameter"]: part for part in summary(rows)}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import re
 from html import unescape
 from pathlib import Path
@@ -14,6 +15,7 @@ import pytest
 
 import pellicle as pl
 from pellicle_fit.population.judgement import judge
+from pellicle_fit.record import Record
 from pellicle_fit.report import tables
 from pellicle_fit.report.contact_sheet import grid, sheets
 from pellicle_fit.report.figures import charts, panels, save_figure
@@ -21,7 +23,7 @@ from pellicle_fit.report.likelihood_map import likelihood_map
 from pellicle_fit.report.page import save_report
 from pellicle_fit.report.paper_table import save_tables
 from pellicle_fit.report.population import bars
-from pellicle_fit.words.story import story
+from pellicle_fit.words.story import story, told
 from tests.plugins.fit.conftest import ends_of
 from tests.plugins.fit.test_many import BEAD, MODULUS, RADIUS, curve
 from tests.plugins.fit.test_population import estimate, row
@@ -53,6 +55,16 @@ def test_page(single: pl.Fit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert drawn.stat().st_size > 10_000
     assert printed.name == "fit.pdf"
     assert b"/Type3" not in printed.read_bytes()
+
+
+@pytest.mark.slow
+def test_json_holds_all_that_is_told(single: pl.Fit) -> None:
+    """What a file keeps of a fit gives the sentences and tables of the fit."""
+    kept = Record(json.loads(single.to_json()))
+    assert told(kept) == told(single)
+    for table in (tables.estimates, tables.explanations, tables.curves, tables.correlations):
+        assert table(kept).records == table(single).records
+    assert kept.estimates() == single.estimates()
 
 
 @pytest.mark.slow

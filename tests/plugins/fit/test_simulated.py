@@ -147,7 +147,7 @@ def test_a_bonded_layer_is_an_effect(monkeypatch: pytest.MonkeyPatch) -> None:
             indenter=indenter, **fields, thickness=thick, poissons_ratio=ratio
         )
         curves = config.sources({"a": (depth, np.maximum(depth, 0) ** 1.5)})
-        return problem(config, [*curves]).question["common"]  # type: ignore[no-any-return]
+        return problem(config, [*curves]).arguments["common"]  # type: ignore[no-any-return]
 
     assert kept(0.3, "sphere", radius=RADIUS) == [Layer(thickness=thick, poissons_ratio=0.3)]
     assert kept(0.3, "flat_punch", radius=9 * thick)
@@ -169,7 +169,7 @@ def test_a_sharp_pyramid_is_known_and_a_rounded_one_simulated(
             indenter="pyramid", half_angle="70 degree", tip_radius=tip_radius
         )
         asked = problem(config, [*config.sources({"a": (depth, np.maximum(depth, 0) ** 2)})])
-        assert isinstance(asked.members[0].curve.indenter, str) is not is_known
+        assert isinstance(asked.curves[0].indenter, str) is not is_known
 
 
 def test_what_counts_against_the_modulus_is_refused() -> None:
