@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 from pellicle.checks import component_name, errors_attributed_to
 from pellicle.components import AnyTask, Executor, Outcome, Say
@@ -15,6 +15,8 @@ from pellicle.runs.lock import LockedError as LockedError
 from pellicle.runs.lock import locked as locked
 from pellicle.runs.progress import BatchProgress as BatchProgress
 from pellicle.runs.progress import status_line as status_line
+
+_Any = TypeVar("_Any")
 
 
 @dataclass(frozen=True)
@@ -37,7 +39,7 @@ class Part:
             return cls(int(match[1]), int(match[2]))
         raise ConfigError(f"{shown(text)} is neither any nor a part such as 3/40", "part")
 
-    def of(self, tasks: Sequence[AnyTask]) -> Sequence[AnyTask]:
+    def of(self, tasks: Sequence[_Any]) -> Sequence[_Any]:
         """Return the tasks of this part."""
         return tasks[self.number - 1 :: self.count]
 

@@ -10,7 +10,16 @@ import typer
 
 from pellicle.plugins.hooks import RegisterCommand, hookimpl
 
-from .printing import INTERRUPTED, NOT_CONVERGED, AsJSON, InPart, InSI, echo, print_json, print_table
+from .printing import (
+    INTERRUPTED,
+    NOT_CONVERGED,
+    AsJSON,
+    InPart,
+    InSI,
+    echo,
+    print_json,
+    print_table,
+)
 
 if TYPE_CHECKING:
     from pellicle.studies.part import PartSolved

@@ -1,4 +1,4 @@
-"""A part of a study: the runs that one of several processes solves, each under a lock of its own."""
+"""A part of a study: the runs that one of several processes solves, each under a lock."""
 
 from __future__ import annotations
 
