@@ -28,6 +28,7 @@ CEILINGS = {
     "outputs": 1200,
     "gradients": 580,
     "studies": 1200,
+    "parts": 500,
     "fits": 1700,
     "curves": 1665,
     "gallery": 550,
