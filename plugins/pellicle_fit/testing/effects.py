@@ -20,11 +20,20 @@ from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
 from pellicle.testing import check, rules_of
 from pellicle.units import quantity_of
-
-from .contact.contact import Contact
-from .contact.curve import Curve
-from .effect import Adds, Bends, Effect, Records, Responds, Sizes, Solid, Yields, quantities
-from .explanation import Explanation
+from pellicle_fit.contact.contact import Contact
+from pellicle_fit.contact.curve import Curve
+from pellicle_fit.effect import (
+    Adds,
+    Bends,
+    Effect,
+    Records,
+    Responds,
+    Sizes,
+    Solid,
+    Yields,
+    quantities,
+)
+from pellicle_fit.explanation import Explanation
 
 _PLACES = Bends, Responds, Adds, Yields, Records
 _MODULUS, _STIFFNESS, _SPEED = 2e3, 0.05, 1e-6
