@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from pellicle.arrays import Mask
 from pellicle.components import Component
-from pellicle.errors import PluginError
+from pellicle.errors import PluginError, StorageError
 
 from .columns import Calibration as Calibration
 from .columns import Column, from_columns, lacking, recalibrated
@@ -93,3 +93,10 @@ def curve_of(
         raise MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in lacks})
     curve = replace(from_columns(made, own), site=site, pause=pause, messages=messages)
     return recalibrated(curve, given, is_own=True)
+
+
+def refused(path: Path, kind: str, error: Exception) -> StorageError:
+    """Return the error of a file that cannot be read as ``kind``, with the reason in words."""
+    reason = getattr(error, "strerror", "") or " ".join(map(str, error.args))
+    lacks = "it has no " if isinstance(error, KeyError) else ""
+    return StorageError(f"{path}: cannot be read as {kind} ({lacks}{reason})")

@@ -35,17 +35,18 @@ def read(path: Path, calibration: Calibration | None = None) -> Readers:
     if os.path.exists(path) and not (is_file(path) or is_folder(path)):
         raise StorageError(f"{path}: is a pipe or a device; give a file")
     makers, others = _of_suffix(path)
-    if given.columns and makers and not others:
+    maker = None if given.columns and others else _sniffed(path, makers, others)
+    if maker and given.columns:
         raise ConfigError(f"{path} states what its columns are; leave columns out", "columns")
-    if not given.columns and (maker := _sniffed(path, makers, others)):
+    if maker:
         return maker.read(path, given)
-    if makers and not others:
-        if not is_file(path):
-            raise StorageError(f"{path}: cannot be read (no such file)")
-        kinds = " or ".join(reader.type_name for reader in makers)
-        raise StorageError(f"{path}: has the suffix of force curves ({kinds}), and holds none")
     table = registry().make(Reader, {"type": _TABLE})
-    return (others or [table])[0].read(path, given)
+    if others or not makers or not is_file(path):
+        return (others or [table])[0].read(path, given)
+    with suppress(StorageError):
+        return table.read(path, given)
+    kinds = " or ".join(reader.type_name for reader in makers)
+    raise StorageError(f"{path}: has the suffix of force curves ({kinds}), and holds none")
 
 
 def has_known_suffix(path: Path) -> bool:

@@ -150,7 +150,10 @@ class Exported(_AFM, title="export of afmformats"):
 
     def sniff(self, path: Path) -> bool:
         """Return whether a file names afmformats as its software."""
-        return bool(_exports(path))
+        # h5py raises a KeyError for damaged links.
+        with suppress(KeyError):
+            return bool(_exports(path))
+        return False
 
 
 class ExportedTable(_AFM, title="text export of afmformats"):
@@ -295,8 +298,9 @@ def _curve(
         # Files that were converted may hold a text with a unit.
         with suppress(ValueError):
             site = Site(*(Quantity("m")(metadata.get(f"position {letter}")) for letter in "xy"))
+        pause = _pause(data, metadata)
     origin = curve.origin._replace(sensitivity=metadata.get("sensitivity"), library="afmformats")
-    messages, pause = (_NT_MDT,) if is_nt_mdt else (), _pause(data, metadata)
+    messages = (_NT_MDT,) if is_nt_mdt else ()
     curve = replace(curve, origin=origin, site=site, messages=messages, pause=pause)
     return recalibrated(curve, given, is_own=True)
 
