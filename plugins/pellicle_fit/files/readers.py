@@ -78,7 +78,7 @@ def _readers() -> list[Reader]:
 def _sniffed(path: Path, makers: list[Reader], others: list[Reader]) -> Reader | None:
     """Return the reader of a file of an instrument, unless it is a table with known columns."""
     for maker in makers:
-        with suppress(OSError, RuntimeError):
+        with suppress(OSError):
             if maker.sniff(path):
                 is_known = path.suffix.lower() in TEXT and any(r.sniff(path) for r in others)
                 return None if is_known else maker

@@ -150,8 +150,8 @@ class Exported(_AFM, title="export of afmformats"):
 
     def sniff(self, path: Path) -> bool:
         """Return whether a file names afmformats as its software."""
-        # h5py raises a KeyError for damaged links.
-        with suppress(KeyError):
+        # h5py raises these for damaged links and attributes.
+        with suppress(OSError, RuntimeError, KeyError):
             return bool(_exports(path))
         return False
 
