@@ -45,7 +45,7 @@ def new(
             "--plugin",
             metavar="FAMILY",
             help="Write the package of a kernel, indenter, load, interaction, solver, correction, "
-            "output, executor or prescription, or of a plugin's family, such as effect.",
+            "output, executor or prescription, or of a plugin's family, such as effect or reader.",
         ),
     ] = None,
 ) -> None:

@@ -23,7 +23,7 @@ _TABLE = "table"
 
 def suffixes() -> tuple[str, ...]:
     """Return the suffixes of the files of a folder that are read."""
-    return tuple(dict.fromkeys(suffix for reader in _readers() for suffix in reader.suffixes))
+    return tuple(sorted({suffix for reader in _readers() for suffix in reader.suffixes}))
 
 
 def read(path: Path, calibration: Calibration | None = None) -> Readers:
