@@ -52,6 +52,8 @@ def components() -> str:
     """Return a section for each registered component, with a table of its fields."""
     parts = []
     for family, members in pl.registry().components.items():
+        if not pl.registry().families[family].place:
+            continue
         parts += [f"## {_HEADINGS[family]}\n"] if members else []
         for type_, component in ((type_, entry.component) for type_, entry in members.items()):
             parts += [f"### `{type_}`\n", f"{inspect.getdoc(component)}\n"]
@@ -200,6 +202,17 @@ def effects() -> str:
     return _table(("effect", "in words", "fitted"), cells)
 
 
+def readers() -> str:
+    """Return a table of the files of which curves are read."""
+    cells = []
+    for type_, entry in pl.registry().components["reader"].items():
+        reader: Any = entry.component
+        suffixes = ", ".join(f"`{suffix}`" for suffix in reader.suffixes)
+        needs = ", ".join(reader.libraries)
+        cells.append((suffixes, entry.summary.rstrip("."), f"`{type_}`", needs))
+    return _table(("files", "hold", "reader", "needs"), cells)
+
+
 def failed_checks() -> str:
     """Return a table of the checks of the residuals of a fit."""
     return _table(("code", "it says"), [(f"`{flaw.name.lower()}`", flaw.value) for flaw in Flaw])
@@ -242,6 +255,7 @@ PARTS = {
         functions,
         extras,
         effects,
+        readers,
         failed_checks,
         studies,
         rules_of_families,

@@ -1,17 +1,47 @@
-"""Many tasks by an executor: the lock of their folder, their progress, and the loop over them."""
+"""Many tasks by an executor: their locks, their parts, their progress, and the loop over them."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from contextlib import closing
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, TypeVar
 
 from pellicle.checks import component_name, errors_attributed_to
 from pellicle.components import AnyTask, Executor, Outcome, Say
-from pellicle.errors import PluginError, shown
+from pellicle.errors import ConfigError, PluginError, shown
+from pellicle.runs.lock import LockedError as LockedError
 from pellicle.runs.lock import locked as locked
 from pellicle.runs.progress import BatchProgress as BatchProgress
 from pellicle.runs.progress import status_line as status_line
+
+_Any = TypeVar("_Any")
+
+
+@dataclass(frozen=True)
+class Part:
+    """The share of many tasks that one of several processes does: every ``count``-th task.
+
+    All of them is a part too; each is left to whoever has locked it first.
+    """
+
+    number: int = 1
+    count: int = 1
+
+    @classmethod
+    def of_text(cls, text: str | None) -> Part | None:
+        """Return the part that a text such as 3/40 or any means, None for none."""
+        if text in (None, "any"):
+            return None if text is None else cls()
+        match = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text)
+        if match and 1 <= int(match[1]) <= int(match[2]):
+            return cls(int(match[1]), int(match[2]))
+        raise ConfigError(f"{shown(text)} is neither any nor a part such as 3/40", "part")
+
+    def of(self, tasks: Sequence[_Any]) -> Sequence[_Any]:
+        """Return the tasks of this part."""
+        return tasks[self.number - 1 :: self.count]
 
 
 def mapped(

@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 from itertools import chain, islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 from typer import Option
 
 import pellicle as pl
-from pellicle.cli import Format, echo, print_json
+from pellicle.cli import NOT_CONVERGED, Format, InPart, echo, print_json
 from pellicle.files import write_json
 
 Text = str | None
 Texts = list[str] | None
 if TYPE_CHECKING:
+    from pellicle.batch import Part
+
     from .config import FitConfig
+    from .files.sources import Source
     from .population.fits import ManyFits
     from .result import Fit
 
@@ -79,6 +82,7 @@ def fit(
     directory: Annotated[
         Path | None, Option("-o", "--output", metavar="DIR", help="Folder for JSON and figures.")
     ] = None,
+    part: InPart = None,
     formats: Annotated[
         list[Format] | None,
         Option("--format", metavar="FORMAT", help="Of figures: png (default), svg, pdf."),
@@ -93,6 +97,9 @@ def fit(
 
     Exit code 0 only if every curve was fitted, 1 if some could not be fitted.
     """
+    from pellicle.batch import Part
+    from pellicle.errors import ConfigError
+
     from .config import FitConfig
     from .population.fits import ManyFits
     from .print_fits import print_fit, print_fits
@@ -110,8 +117,13 @@ def fit(
         first, [*sets, *(set_ or ())], curves=curves or None, **_given(fields, context.params)
     )
     kinds = [str(kind) for kind in formats or [Format.PNG]]
-    result, name, title = _fit(config, directory, kinds, quiet=quiet)
+    share = Part.of_text(part)
+    if share and directory is None:
+        raise ConfigError("parts share a folder; name it (-o DIR)", "part")
+    result, name, title = _fit(config, directory, kinds, share, quiet=quiet)
     many = result if isinstance(result, ManyFits) else ManyFits([])
+    if many.left:
+        _exit_by_part(many, json=json, quiet=quiet)
     written = [*many.files]
     if json:
         print_json(result.to_dict())
@@ -156,18 +168,47 @@ def _given(fields: Set[str], options: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _fit(
-    config: FitConfig, directory: Path | None, formats: Sequence[str], *, quiet: bool
+    config: FitConfig,
+    directory: Path | None,
+    formats: Sequence[str],
+    part: Part | None,
+    *,
+    quiet: bool,
 ) -> tuple[Fit | ManyFits, str, str]:
     """Return the fit of the curves, the name of its files and the title of its page."""
+    from pellicle.errors import ConfigError
+
     from .many import fit_sources
     from .problem import problem
 
     progress, stream = not quiet and sys.stderr.isatty(), config.sources()
     first = [*islice(stream, None if config.pool else 2)]
     if config.pool or [source.name for source in first] == [str(config.curves[0])]:
+        if part:
+            raise ConfigError("a fit of one curve, or of a pool, has no parts", "part")
         fit = problem(config, first, progress=progress).fit(progress=progress)
         stem = config.curves[0].stem
         return (fit, "pool", "Pooled fit") if config.pool else (fit, f"{stem}-fit", stem)
-    sources = chain(first, stream)
-    fits = fit_sources(config, sources, directory, progress=not quiet, formats=formats)
+    sources: Iterable[Source] = chain(first, stream)
+    is_shown = not quiet
+    if part:
+        fits = fit_sources(config, sources, directory, progress=is_shown, part=part)
+        if fits.left:
+            return fits, "", ""
+        sources = config.sources()
+    fits = fit_sources(
+        config, sources, directory, progress=is_shown, formats=formats, wait=bool(part)
+    )
     return fits, "fits", f"Fits of {len(fits.rows)} curves"
+
+
+def _exit_by_part(fits: ManyFits, *, json: bool, quiet: bool) -> NoReturn:
+    """Print how many curves a part left and which it could not fit, and exit by these."""
+    failed = [row for row in fits.rows if row.failure]
+    if json:
+        print_json({"failed": [row.to_dict() for row in failed], "left": fits.left})
+    elif not quiet:
+        echo(f"curves left: {fits.left}; the last part, or no --part, writes the table")
+    for row in failed:
+        echo(f"{row.name}: {row.failure}", err=True)
+    raise typer.Exit(NOT_CONVERGED if failed else 0)

@@ -7,6 +7,7 @@ import pickle
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from importlib.metadata import version
 from itertools import islice
 from pathlib import Path
@@ -17,7 +18,7 @@ import numpy as np
 import pandas as pd
 
 from pellicle import registry, results
-from pellicle.batch import BatchProgress, locked, mapped
+from pellicle.batch import BatchProgress, LockedError, Part, locked, mapped
 from pellicle.components import Component, Executor, HasForceCurve, Indenter, Say
 from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.files import atomic_write, check_writable, is_file
@@ -28,6 +29,7 @@ from .config_input import described
 from .estimation.coordinates import MODULUS
 from .files.measurement import Measurement
 from .files.sources import Source
+from .part import FITTED_ELSEWHERE, passes
 from .population.fits import ManyFits, summary, table
 from .population.images import force_maps
 from .population.judgement import Names, group_of, judge
@@ -80,17 +82,23 @@ def fit_sources(
     *,
     progress: bool,
     formats: Sequence[str] = ("png",),
+    part: Part | None = None,
+    wait: bool = False,
 ) -> ManyFits:
     """Fit each curve that is not fitted yet, and write the files.
 
-    Curves are read in batches, so that a population does not have to fit in memory.
+    Curves are read in batches, so that a population does not have to fit in memory. Of a part
+    the fits alone are kept, and returned. One process at a time writes the files, for which others
+    ``wait`` or are refused.
     """
     directory = None if directory is None else Path(directory)
     rejected = None if config.rejected is None else Names(config.rejected)
     fits, began = ManyFits([], configuration=config.to_dict()), perf_counter()
-    with nullcontext() if directory is None else locked(directory, "fits"):
+    tried, keep = list[tuple[Row, Path | None]](), partial(_keep, writes=part is None)
+    with nullcontext() if directory is None or part else locked(directory, "fits", wait=wait):
         if directory is not None:
-            check_writable(directory / "fits.h5")
+            if part is None:
+                check_writable(directory / "fits.h5")
             check_writable(directory / _JOURNAL / "fit.json")
         with BatchProgress(0, 0, progress) as bar:
             curves = iter(sources)
@@ -99,13 +107,16 @@ def fit_sources(
                 bar.expect(len(fits.rows), made.count(None))
                 rows = fits.rows[-len(batch) :]
                 near = [()] * len(batch) if config.every_rival else alike(config, batch, rows)
-                for is_spared in (False, True):
+                for chosen, fit_one in passes(made, near, rows, part, work):
+                    like = {i: beside(rows, near[i]) for i in chosen}
                     tasks = [
-                        replace(task, like=beside(rows, others))
-                        for task, others in zip(made, near, strict=True)
-                        if task is not None and bool(others) is is_spared
+                        replace(t, like=like[i]) for i, t in enumerate(made) if t and i in like
                     ]
-                    mapped(config.executor, work, tasks, dict, _keep, bar)
+                    mapped(config.executor, fit_one, tasks, dict, keep, bar)
+                tried += [(task.row, task.path) for task in made if task]
+        if part is not None:
+            left = sum(row.is_open and not (path and is_file(path)) for row, path in tried)
+            return replace(fits, rows=[row for row, _ in tried if not row.is_open], left=left)
         notes = judge(fits.rows, config.accept, rejected)
         fits.maps, of_maps = force_maps(fits.rows)
         fits.notes += [*notes, *of_maps]
@@ -167,13 +178,15 @@ def _earlier(path: Path, row: Row, fits: ManyFits) -> dict[str, Any] | None:
         return None
 
 
-def _keep(task: FitTask, outcome: dict[str, Any] | Exception) -> tuple[str, bool]:
+def _keep(task: FitTask, outcome: dict[str, Any] | Exception, *, writes: bool) -> tuple[str, bool]:
     """Keep what came of a fit in its row and its file; return the status, and whether it failed."""
     row = task.row
+    if isinstance(outcome, LockedError):
+        return FITTED_ELSEWHERE, False
     if isinstance(outcome, Exception):
         row.failure = _failure(outcome, row.name)
     else:
-        if task.path is not None:
+        if writes and task.path is not None:
             write_sealed(outcome, task.path)
         row.keep(outcome)
     return row.status, not row.is_fitted

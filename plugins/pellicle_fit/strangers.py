@@ -22,7 +22,7 @@ def refuse_broken(effect: Effect) -> None:
     # The kit takes a second to import.
     from pellicle.testing import keep
 
-    from .testing import QUICK
+    from .testing.effects import QUICK
 
     try:
         keep(QUICK, effect)

@@ -26,7 +26,7 @@ from pellicle.errors import PellicleError
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.columns import Calibration
 from pellicle_fit.files.measurement import Measurement
-from pellicle_fit.files.readers import SUFFIXES
+from pellicle_fit.files.readers import has_known_suffix
 from pellicle_fit.files.sources import gather
 
 RADIUS, RATIO = 10e-6, 0.5
@@ -164,7 +164,7 @@ def main() -> None:
         "file | curves | fitted | slowest [s of CPU] | E over nanite's, largest change | not fitted"
     )
     print("--- | ---: | ---: | ---: | ---: | ---")
-    for path in sorted(path for path in folder.rglob("*") if path.suffix.lower() in SUFFIXES):
+    for path in sorted(path for path in folder.rglob("*") if has_known_suffix(path)):
         curves = curves_of(path)
         outcomes = {label: outcome(curve) for label, curve in curves.items()}
         fitted = {label: result for label, result in outcomes.items() if not result.error}

@@ -24,6 +24,7 @@ from pellicle.plugins.origins import GROUP, Origin
 from pellicle.plugins.registry import Registry
 from pellicle.plugins.registry import load as load_plugins
 from pellicle_fit.effect import Effect
+from pellicle_fit.files.reader import Reader
 from tests.installed import Installed, entry_point
 
 BUILT_INS = tuple(entry_points(group=GROUP, name="kernel.half_space"))
@@ -206,7 +207,7 @@ def test_a_plugin_may_bring_a_family(plugin: Plugin, install: Callable[..., Regi
     entry = plugin(ARTEFACT, name="artefact.drift", class_="Drift")
     installed = install(entry)
     stranger = import_module(entry.module)
-    families = {**FAMILIES, "artefact": stranger.Artefact, "effect": Effect}
+    families = {**FAMILIES, "artefact": stranger.Artefact, "effect": Effect, "reader": Reader}
     assert installed.families == families
     (drift,) = stranger.Fit(rivals=[{"type": "drift", "rate": "1 nm/s"}]).rivals
     assert (type(drift), drift.rate) == (stranger.Drift, 1e-9)

@@ -13,12 +13,12 @@ from pellicle.components.installed import FAMILIES
 from pellicle.plugins.registry import Registry
 
 
-@pytest.mark.parametrize("family", [*FAMILIES, "effect"])
+@pytest.mark.parametrize("family", [*FAMILIES, "effect", "reader"])
 def test_writes_a_package(family: str, tmp_path: Path) -> None:
     """A name with a dash is a type, a module and a distribution, each in its own spelling."""
     folder = write_plugin(family, "graded-solid2", tmp_path)
     assert folder == tmp_path / "pellicle-graded-solid2"
-    assert {path.name for path in folder.iterdir()} - {"curve.csv"} == {
+    assert {path.name for path in folder.iterdir()} - {"curve.csv", "curve.dat"} == {
         "README.md",
         "graded_solid2.toml",
         "pellicle_graded_solid2.py",
@@ -27,7 +27,7 @@ def test_writes_a_package(family: str, tmp_path: Path) -> None:
     }
     code = (folder / "pellicle_graded_solid2.py").read_text(encoding="utf-8")
     assert "class GradedSolid2(" in code
-    command = "fit" if family == "effect" else "run"
+    command = "fit" if family in ("effect", "reader") else "run"
     readme = (folder / "README.md").read_text(encoding="utf-8")
     assert f"$ pellicle {command} graded_solid2.toml" in readme
     assert 'type: Literal["graded_solid2"] = "graded_solid2"' in code

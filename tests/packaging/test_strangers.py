@@ -17,7 +17,7 @@ import pellicle as pl
 from pellicle.cli.new import write_plugin
 from pellicle.components.installed import FAMILIES as OWN
 
-FAMILIES = *OWN, "effect"
+FAMILIES = *OWN, "effect", "reader"
 HERE = Path(__file__).parent
 CELLS = HERE.parent / "data" / "kernel_cells.csv"
 GRADED, GEL, HOTTEST, RETRACT, SQUEEZE = (
@@ -416,11 +416,12 @@ def test_example_of_a_written_package_runs(
     family: str, written: dict[str, Path], pellicle: Command, tmp_path: Path
 ) -> None:
     """It converges, with the component in its place, and no placeholder is left in any file."""
-    command = "fit" if family == "effect" else "run"
+    command = "fit" if family in ("effect", "reader") else "run"
     done = pellicle(command, str(written[family] / f"my_{family}.toml"), "-o", str(tmp_path))
     assert any(tmp_path.iterdir())
-    assert command == "run" or "double-layer repulsion" in done.stdout
+    told = {"effect": "double-layer repulsion", "reader": "modulus"}.get(family, "")
+    assert told in done.stdout
     files = list(written[family].iterdir())
-    assert len(files) == 5 + (family == "effect")
+    assert len(files) == 5 + (command == "fit")
     for file in files:
         assert "$" not in file.read_text(encoding="utf-8").replace("\n$ ", "\n"), file

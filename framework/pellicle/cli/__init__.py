@@ -8,6 +8,7 @@ from .plot import Format as Format
 from .printing import BAD_INPUT as BAD_INPUT
 from .printing import INTERRUPTED as INTERRUPTED
 from .printing import NOT_CONVERGED as NOT_CONVERGED
+from .printing import InPart as InPart
 from .printing import echo as echo
 from .printing import print_json as print_json
 from .printing import print_table as print_table

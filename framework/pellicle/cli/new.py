@@ -45,7 +45,7 @@ def new(
             "--plugin",
             metavar="FAMILY",
             help="Write the package of a kernel, indenter, load, interaction, solver, correction, "
-            "output, executor or prescription, or of a plugin's family, such as effect.",
+            "output, executor or prescription, or of a plugin's family, such as effect or reader.",
         ),
     ] = None,
 ) -> None:
@@ -121,7 +121,7 @@ def write_plugin(family: str, name: str, parent: Path) -> Path:
         f"{names['module']}.py": template / "module",
         f"test_{names['module']}.py": template / "test",
         f"{names['type']}.toml": template / "example",
-        **{file.name: file for file in template.iterdir() if file.suffix == ".csv"},
+        **{file.name: file for file in template.iterdir() if file.suffix},
     }
     if folder.exists():
         raise StorageError(f"{folder} exists already; give another name")

@@ -28,6 +28,14 @@ Stored = Annotated[
 ]
 InSI = Annotated[bool, typer.Option("--si", help="Print numbers in SI units.")]
 AsJSON = Annotated[bool, typer.Option("--json", help="Print the result as JSON, in SI units.")]
+InPart = Annotated[
+    str | None,
+    typer.Option(
+        "--part",
+        metavar="K/N",
+        help="Do one of N parts of the work (3/40), or any that no other process does (any).",
+    ),
+]
 NOT_CONVERGED, BAD_INPUT, CRASHED, INTERRUPTED = 1, 2, 70, 130
 """70 is EX_SOFTWARE of sysexits.h; Python's own 1 for a traceback would mean NOT_CONVERGED."""
 _UNBOUNDED = 100_000

@@ -4,13 +4,25 @@ from __future__ import annotations
 
 from pathlib import Path
 from time import monotonic
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
 from pellicle.plugins.hooks import RegisterCommand, hookimpl
 
-from .printing import INTERRUPTED, AsJSON, InSI, echo, print_json, print_table
+from .printing import (
+    INTERRUPTED,
+    NOT_CONVERGED,
+    AsJSON,
+    InPart,
+    InSI,
+    echo,
+    print_json,
+    print_table,
+)
+
+if TYPE_CHECKING:
+    from pellicle.studies.part import PartSolved
 
 
 def run(
@@ -46,6 +58,7 @@ def run(
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Start over and replace an existing result.")
     ] = False,
+    part: InPart = None,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Print the planned runs without executing them.")
     ] = False,
@@ -56,24 +69,34 @@ def run(
 
     Exit code 0 only if every step converged.
     """
+    from pellicle.batch import Part
     from pellicle.config.study import Study, from_toml
     from pellicle.contact.caveats import Status
+    from pellicle.errors import ConfigError
     from pellicle.runs import runner
     from pellicle.runs.journal import Journal
     from pellicle.runs.outputs import standard_outputs
     from pellicle.runs.progress import RunProgress
     from pellicle.show import sentences, tables
     from pellicle.studies import runner as studies
+    from pellicle.studies.part import PartSolved, execute_part
 
     from .results import exit_by_outcome, print_outcome_json, print_tables
 
     began, configuration = monotonic(), from_toml(file, set_ or ())
-    folder = directory or Path(file.stem)
+    share, folder = Part.of_text(part), directory or Path(file.stem)
+    if share and (overwrite or not isinstance(configuration, Study)):
+        raise ConfigError(
+            "other parts may be at work, so nothing is overwritten; delete the folder to start over"
+            if overwrite
+            else f"{file} holds one run; parts are of a study, [study.vary] in the file",
+            "part",
+        )
     stem = folder / file.stem
     if dry_run:
         studies.warn_of_scale(configuration)
         tasks = studies.planned(configuration, stem, overwrite=overwrite)
-        table, sentence = tables.planned(tasks)
+        table, sentence = tables.planned(share.of(tasks) if share else tasks)
         if json:
             print_json({"runs": table.records})
         else:
@@ -84,9 +107,14 @@ def run(
     try:
         if isinstance(configuration, Study):
             whole = f"{len(configuration.points)} runs"
-            outcome, files, resumed = studies.execute(
-                configuration, folder, progress=not quiet, overwrite=overwrite, threads=threads
-            )
+            keep_on: Any = {"progress": not quiet, "threads": threads}
+            if share:
+                executed = execute_part(configuration, folder, share, **keep_on)
+            else:
+                executed = studies.execute(configuration, folder, overwrite=overwrite, **keep_on)
+            if isinstance(executed, PartSolved):
+                _exit_by_part(executed, whole, json=json, quiet=quiet)
+            outcome, files, resumed = executed
         else:
             steps = configuration.steps
             whole, bar = f"{steps} steps", RunProgress(steps, not quiet)
@@ -108,6 +136,17 @@ def run(
         for sentence in sentences.done(files, resumed, whole, monotonic() - began):
             echo(sentence)
     exit_by_outcome(outcome)
+
+
+def _exit_by_part(solved: PartSolved, whole: str, *, json: bool, quiet: bool) -> NoReturn:
+    """Print what a part left and which of its runs failed, and exit by these."""
+    if json:
+        print_json({"failed": solved.failed, "left": solved.left})
+    elif not quiet:
+        echo(f"{solved.left} of {whole} are left; the last part, or no --part, writes the table")
+    for sentence in solved.failed:
+        echo(sentence, err=True)
+    raise typer.Exit(NOT_CONVERGED if solved.failed else 0)
 
 
 @hookimpl

@@ -116,7 +116,7 @@ def _of_component(entry: Registered) -> Explanation:
     table: dict[str, Any] = {"type": entry.type}
     if issubclass(component, Prescription):
         fields, table = keys_of(component), {entry.type: [component.quantity().example]}
-    if entry.examples:
+    if entry.examples and component.place:
         name = component.place.replace("[]", "")
         # A line for each key, and inner tables on one.
         head = f"[[{name}]]" if component.place.endswith("[]") else f"[{name}]"

@@ -12,9 +12,13 @@ from pellicle.errors import StorageError
 from pellicle.files import storage_errors
 
 
+class LockedError(StorageError):
+    """Files that another process writes."""
+
+
 @contextmanager
-def locked(folder: Path, name: str) -> Iterator[None]:
-    """Lock the files in ``folder`` that begin with ``name``.
+def locked(folder: Path, name: str, *, wait: bool = False) -> Iterator[None]:
+    """Lock the files in ``folder`` that begin with ``name``; ``wait`` for another process or raise.
 
     The lock is one of the operating system, so it ends with the process; its file is removed.
     """
@@ -22,9 +26,9 @@ def locked(folder: Path, name: str) -> Iterator[None]:
     with storage_errors(folder / name):
         folder.mkdir(parents=True, exist_ok=True)
         try:
-            lock.acquire(timeout=0)
+            lock.acquire(timeout=-1 if wait else 0)
         except filelock.Timeout:
-            raise StorageError(
+            raise LockedError(
                 f"{folder / name} is locked by another process; wait until it has finished, or "
                 "choose another folder (-o DIR)"
             ) from None

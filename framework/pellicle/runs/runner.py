@@ -130,8 +130,8 @@ def execute(
     """Solve the load steps that ``journal`` lacks and write the outputs beside it.
 
     After an interruption the outputs still show the finished steps. Without a journal nothing is
-    written. No other process may write the same files meanwhile. For an ``inner`` run, such as one
-    of a study, the caller ensures that, and has warned of values out of scale.
+    written. Meanwhile another process that would write the same files is refused. The caller of an
+    ``inner`` run, such as one of a study, has warned of values out of scale.
     """
     if not inner:
         warn_of_scale(run)
@@ -149,8 +149,7 @@ def execute(
             composed = compose_load(run, run.load) if run.load else compose(run)
             solved = solve_steps(run, composed, steps, monitor_of)
             if journal:
-                if not inner:
-                    stack.enter_context(locked(journal.stem.parent, journal.stem.name))
+                stack.enter_context(locked(journal.stem.parent, journal.stem.name))
                 for step in journal.resume():
                     hand_over(steps.append(step), outputs, journal)
             resumed = len(steps)

@@ -37,6 +37,7 @@ from pellicle.results.runs import StoredRuns, progress_of
 from pellicle.results.soundness import check, sound
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
+from pellicle.runs.lock import LockedError
 from pellicle.runs.memory_estimate import memory_of
 from pellicle.runs.outputs import all_done, standard_outputs, writers
 from pellicle.runs.progress import reporting
@@ -46,7 +47,8 @@ from . import table
 
 _LONG = 10.0
 """Time [s] of the runs that are left, one after the other, from which processes share them."""
-_WARNINGS = "warnings"
+WARNINGS = "warnings"
+SOLVED_ELSEWHERE = "another process solves it"
 _recording = threading.Lock()
 
 
@@ -176,13 +178,15 @@ def execute(
     progress: bool = False,
     overwrite: bool = False,
     threads: int | None = None,
+    wait: bool = False,
 ) -> runner.Executed[xr.Dataset]:
-    """Solve the runs of a study that are not finished, in a folder that no other process uses.
+    """Solve the runs of a study that are not finished, and write its table and outputs.
 
-    After an interruption the table and the outputs show the finished steps.
+    After an interruption these show the finished steps. One process at a time writes the table, for
+    which others ``wait`` or are refused; a run that one of them solves is left to it.
     """
     warn_of_scale(study)
-    with locked(directory, "study"):
+    with locked(directory, "study", wait=wait):
         path, first = directory / "study.h5", study.points[0].run
         rows, unfinished = _begun(study, path, overwrite)
         resumed = len(study.points) - len(unfinished)
@@ -190,16 +194,15 @@ def execute(
         messages: dict[str, None] = {}
 
         def keep(task: RunTask, outcome: xr.Dataset | Exception) -> tuple[str, bool]:
+            if isinstance(outcome, LockedError):
+                return SOLVED_ELSEWHERE, False
             del unfinished[task.index]
             if isinstance(outcome, Exception):
                 _collect(task, rows)
-                reason = "; ".join(str(outcome).splitlines()) or "no reason given"
-                if not isinstance(outcome, (ConfigError, StorageError)):
-                    reason = f"{type(outcome).__name__}: {reason}"
-                verdict = rows.fail(task.index, reason)
+                verdict = rows.fail(task.index, reason_of(outcome))
             else:
                 rows.put(task.index, outcome)
-                messages.update(dict.fromkeys(outcome.attrs[_WARNINGS]))
+                messages.update(dict.fromkeys(outcome.attrs[WARNINGS]))
                 _, _, verdict = progress_of(outcome)
             # On a full disk all later runs would fail: writing the table at once detects that.
             rows.write(directory, at_once=isinstance(outcome, StorageError))
@@ -230,6 +233,13 @@ def execute(
     for message in (*messages, *caveats(whole)):
         warnings.warn(message, stacklevel=3)
     return runner.Executed(whole, (*rows.files, *chain(*of_outputs)), resumed)
+
+
+def reason_of(error: Exception) -> str:
+    """Return why a run failed, on one line."""
+    reason = "; ".join(str(error).splitlines()) or "no reason given"
+    kind = "" if isinstance(error, (ConfigError, StorageError)) else f"{type(error).__name__}: "
+    return f"{kind}{reason}"
 
 
 def _begun(
@@ -289,8 +299,12 @@ def _solve_all(
 def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
     """Solve a run in a worker, write its files, and return its numbers.
 
-    Warnings are stored in the attributes, so that a warning is shown once for all runs.
+    Warnings are stored in the attributes, so that a warning is shown once for all runs. Another
+    process may have finished the run since it was planned.
     """
+    numbers, count, _ = task.stored()
+    if numbers is not None and count == task.steps:
+        return with_events(numbers).assign_attrs({WARNINGS: []})
     bar = nullcontext(partial(reporting, steps=task.steps, show=say))
     with _recorded_warnings() as caught:
         executed = runner.execute(
@@ -298,7 +312,7 @@ def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
         )
     messages = [str(warning.message) for warning in caught]
     numbers = executed.result.dataset.drop_dims(["x", "y"])
-    return numbers.assign_attrs({_WARNINGS: messages})
+    return numbers.assign_attrs({WARNINGS: messages})
 
 
 @contextmanager

@@ -1,89 +1,85 @@
-"""Measured curves of one file, of any known format."""
+"""Measured curves of one file, by the installed reader of its kind."""
 
 from __future__ import annotations
 
-import csv
 import os
 from contextlib import suppress
-from functools import partial
+from fnmatch import fnmatchcase
 from pathlib import Path
 
-import numpy as np
-
+from pellicle import registry
 from pellicle.errors import ConfigError, StorageError
 from pellicle.files import is_file, is_folder
-from pellicle.units import readable
 
-from . import afm
-from .columns import (
-    EXAMPLE,
-    NAMES,
-    Calibration,
-    Columns,
-    from_columns,
-    is_curve,
-    lacking,
-    recalibrated,
-)
-from .measurement import Measurement, Readers
-from .missing import missing_in
-from .text_table import read_table
-from .tree import read_tree
+from .columns import Calibration
+from .measurement import Readers
+from .reader import Reader
 
 TEXT = (".csv", ".tsv", ".txt")
 """Suffixes of tables."""
-_TREES = (".h5", ".hdf5", ".nc", ".mat")
-SUFFIXES = (*TEXT, *_TREES, *afm.SUFFIXES)
-"""Suffixes of the files of a folder that are read."""
+_TABLE = "table"
+"""Type of the reader of files of unknown suffixes."""
+
+
+def suffixes() -> tuple[str, ...]:
+    """Return the suffixes of the files of a folder that are read."""
+    return tuple(sorted({suffix for reader in _readers() for suffix in reader.suffixes}))
 
 
 def read(path: Path, calibration: Calibration | None = None) -> Readers:
     """Return functions that read the curves of a file, and raise what this one does.
 
     The columns of the calibration name those of a table, and the arrays of an HDF5 or MATLAB file.
-    Files of instruments are read by afmformats, and so are three columns without names.
     """
-    calibration = calibration or Calibration()
-    suffix, mapped = path.suffix.lower(), calibration.columns or {}
+    given = calibration or Calibration()
     if os.path.exists(path) and not (is_file(path) or is_folder(path)):
         raise StorageError(f"{path}: is a pipe or a device; give a file")
-    if suffix not in TEXT and not mapped and afm.is_instrument(path):
-        return afm.read_instrument(path, calibration)
-    # The columns of a table can be named though it is an instrument's.
-    if suffix in afm.SUFFIXES and suffix != ".tab":
+    makers, others = _of_suffix(path)
+    maker = None if given.columns and others else _sniffed(path, makers, others)
+    if maker and given.columns:
         raise ConfigError(f"{path} states what its columns are; leave columns out", "columns")
-    try:
-        tables, heads, stated = (read_tree if suffix in _TREES else read_table)(path, mapped)
-    except csv.Error:
-        raise StorageError(
-            f"{path}: is neither text, nor HDF5, nor a readable file of an instrument; "
-            f"export it as a table (a sheet as CSV) with a header such as {EXAMPLE!r}"
-        ) from None
-    if suffix in TEXT and not mapped and not is_curve(tables[""].keys()):
-        if afm.is_instrument(path):
-            return afm.read_instrument(path, calibration)
-        if suffix == ".txt" and [head.text for head in heads] == [""] * 3:
-            with suppress(StorageError):
-                return afm.read_instrument(path, calibration)
-    names = [name for head in heads if (name := head.name.lower()) in NAMES]
-    found = {role for columns in tables.values() for role in columns}
-    wanted = mapped or dict(zip(names, names, strict=True))
-    wrong = [name for name, text in wanted.items() if text.split()[0] not in found]
-    known = Calibration(**{**stated, **calibration.model_dump(exclude_none=True)})
+    if maker:
+        return maker.read(path, given)
+    table = registry().make(Reader, {"type": _TABLE})
+    if others or not makers or not is_file(path):
+        return (others or [table])[0].read(path, given)
+    with suppress(StorageError):
+        return table.read(path, given)
+    kinds = " or ".join(reader.type_name for reader in makers)
+    raise StorageError(f"{path}: has the suffix of force curves ({kinds}), and holds none")
 
-    def curve(label: str, columns: Columns) -> Measurement:
-        if not wrong and not lacking(columns, known):
-            own = known.model_copy(update={**stated, "sensitivity": known.sensitivity})
-            measured, given = from_columns(columns, own), calibration.spring_constant
-            if given is None and own.spring_constant and measured.stiffness != own.spring_constant:
-                first, other = own.spring_constant, measured.stiffness or np.nan
-                raise ConfigError(
-                    f"{path}: states {readable(first, 'N/m')}, and its force is "
-                    f"{readable(other, 'N/m')} times its deflection; give the one that holds",
-                    "spring_constant",
-                )
-            return recalibrated(measured, calibration, is_own=bool(stated))
-        where = f"{path}: curve {label}" if label else str(path)
-        raise missing_in(f"{where}:", heads, wrong, columns, known)
 
-    return {label: partial(curve, label, columns) for label, columns in tables.items()}
+def has_known_suffix(path: Path) -> bool:
+    """Return whether a file has the suffix of one with curves."""
+    return any(fnmatchcase(path.suffix.lower(), pattern) for pattern in suffixes())
+
+
+def is_read(path: Path) -> bool:
+    """Return whether a file of a folder is taken for one with curves."""
+    makers, others = _of_suffix(path)
+    return bool(others or _sniffed(path, makers, others))
+
+
+def _of_suffix(path: Path) -> tuple[list[Reader], list[Reader]]:
+    """Return the readers of a suffix, strangers' first, and those whose columns can be named."""
+    suffix = path.suffix.lower()
+    readers = [r for r in _readers() if any(fnmatchcase(suffix, like) for like in r.suffixes)]
+    makers = [reader for reader in readers if not reader.takes_columns]
+    return makers, [reader for reader in readers if reader.takes_columns]
+
+
+def _readers() -> list[Reader]:
+    """Return a reader of each kind of file, strangers' first."""
+    entries = registry().components[Reader.family].values()
+    ordered = sorted(entries, key=lambda entry: entry.origin.is_own)
+    return [registry().make(Reader, {"type": entry.type}) for entry in ordered]
+
+
+def _sniffed(path: Path, makers: list[Reader], others: list[Reader]) -> Reader | None:
+    """Return the reader of a file of an instrument, unless it is a table with known columns."""
+    for maker in makers:
+        with suppress(OSError):
+            if maker.sniff(path):
+                is_known = path.suffix.lower() in TEXT and any(r.sniff(path) for r in others)
+                return None if is_known else maker
+    return None

@@ -20,7 +20,7 @@ from pellicle.units import Quantity
 
 from .columns import Calibration
 from .measurement import Measurement, Readers, Site
-from .readers import SUFFIXES, TEXT, read
+from .readers import TEXT, has_known_suffix, is_read, read, suffixes
 from .text_table import FILE, read_list
 
 PLACE = ("x", "y")
@@ -134,14 +134,14 @@ def _files(path: Path, mapped: Mapping[str, str]) -> list[tuple[Path, dict[str, 
     of whose files have the suffix of a curve; its empty cells are left out.
     """
     if is_folder(path):
-        files = [file for file in sorted(path.glob("[!.]*")) if file.suffix.lower() in SUFFIXES]
+        files = [file for file in sorted(path.glob("[!.]*")) if is_read(file)]
         if not files:
-            raise ConfigError(f"{path}: holds no file of a known kind ({', '.join(SUFFIXES)})")
+            raise ConfigError(f"{path}: holds no file of a known kind ({', '.join(suffixes())})")
         return [(file, {}, file) for file in files]
     is_table = path.suffix.lower() in TEXT and is_file(path)
     rows = read_list(path, mapped) if is_table else []
     files = [path.parent / name for row in rows if (name := row.pop(FILE, ""))]
-    is_list = bool(files) and all(file.suffix.lower() in SUFFIXES for file in files)
+    is_list = bool(files) and all(map(has_known_suffix, files))
     if not is_list and not any(map(is_file, files)):
         return [(path, {}, path)]
     if len(files) < len(rows):

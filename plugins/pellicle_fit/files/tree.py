@@ -43,7 +43,7 @@ def read_tree(
             return _curves(path, arrays, mapped, is_matlab=is_matlab), heads, {}
     except ConfigError:
         raise
-    except (OSError, RuntimeError, ValueError, MemoryError) as error:
+    except (OSError, RuntimeError, ValueError, LookupError, MemoryError) as error:
         reason = getattr(error, "strerror", "") or error
         kind = "a MATLAB" if is_matlab else "an HDF5"
         raise StorageError(f"{path}: cannot be read as {kind} file ({reason})") from None

@@ -29,6 +29,8 @@ class ManyFits:
 
     rows: list[Row]
     files: tuple[Path, ...] = ()
+    left: int = 0
+    """Number of curves that other parts have to fit before there is a table."""
     resumed: int = 0
     """Number of fits that an earlier call had finished."""
     notes: list[str] = field(default_factory=list)

@@ -68,6 +68,11 @@ class Row:
         return bool(self.fit)
 
     @property
+    def is_open(self) -> bool:
+        """Whether there is neither a fit nor a failure."""
+        return not (self.fit or self.failure)
+
+    @property
     def status(self) -> str:
         """`FITTED`, or why there is no fit."""
         return FITTED if self.is_fitted else f"failed: {self.failure}"

@@ -298,6 +298,68 @@ def nova(path: Path, recording: Recording, sensitivity: float) -> None:
     np.savetxt(path, np.column_stack(rows)[::-1], delimiter="\t", fmt="%.10g")
 
 
+def nid(path: Path, *recordings: Recording, cut: int = 0, bits: str = "32") -> None:
+    """Write what Nanosurf's software saves; the way back is stored from far to near."""
+    half = recordings[0].force.size // 2
+    channels = {"Deflection": "N", "Z-Axis Sensor": "m"}
+    keys, heads, data = [], [], b""
+    for group, frame in enumerate(("Spec forward", "Spec backward")):
+        keys += [f"Gr{group}-Name={frame}", f"Gr{group}-Count=8"]
+        for number, (name, unit) in enumerate(channels.items()):
+            values = np.stack([r.force if unit == "N" else -r.height for r in recordings])
+            values = values[:, half:][:, ::-1] if group else values[:, :half]
+            low, span = float(values.min()), float(np.ptp(values)) * (1 + 1e-9)
+            raw = np.floor((values - low) / span * 2**32 - 2**31).clip(-(2**31), 2**31 - 1)
+            data += raw.astype("<i4").tobytes()
+            keys.append(f"Gr{group}-Ch{7 * number}=DataSet-{group}:{7 * number}")
+            heads += [
+                f"[DataSet-{group}:{7 * number}]",
+                f"Points={values.shape[1]}\nLines={len(recordings)}\nFrame={frame}",
+                f"CurLine={len(recordings) - 1}\nDim0Name=Z-Axis\nDim0Unit=m",
+                f"Dim2Name={name}\nDim2Unit={unit}\nDim2Range={span!r}\nDim2Min={low!r}",
+                f"SaveMode=Binary\nSaveBits={bits}\nSaveSign=Signed\nSaveOrder=Intel",
+            ]
+    options = [f"{way}Mod{key}" for way in ("Fw", "Bw") for key in ("Time=D[1]*[s]",)]
+    options += [f"{way}ModDatapoints=L[{half}]*[]" for way in ("Fw", "Bw")]
+    stiffness = f"Prop0=D[{recordings[0].spring_constant}]*[N/m]"
+    lines = ["[DataSet]", "GroupCount=2", *keys, r"[DataSet\Parameters\Spectroscopy]", *options]
+    lines += [r"[DataSet\Calibration\Cantilever]", stiffness, *heads, "", ""]
+    content = "\n".join(lines).replace("\n", "\r\n").encode("latin-1") + b"#!" + data
+    path.write_bytes(content[: len(content) - cut])
+
+
+def nanoscope(path: Path, recording: Recording, context: str = "FOL", samples: int = 0) -> None:
+    """Write what NanoScope saves; rows of both passes are stored from contact on."""
+    half = recording.force.size // 2
+    there = slice(half - 1, None, -1), slice(half, None)
+    signals = {
+        "DeflSens": ("DeflectionError", "Deflection Error", recording.volts),
+        "ZsensSens": ("ZSensor", "Height Sensor", -recording.height / 100e-9),
+    }
+    images, data = [], b""
+    for sense, (name, title, volts) in signals.items():
+        step = float(np.abs(volts).max() / 2**30)
+        raw = np.round(np.concatenate([volts[of] for of in there]) / step).astype("<i4")
+        images += [
+            "*Ciao force image list",
+            f"Data offset: {4096 + len(data)}",
+            f"Data length: {raw.nbytes}",
+            "Bytes/pixel: 2",
+            f"Samps/line: {half} {half + samples}",
+            f"Spring Constant: {recording.spring_constant}",
+            f'@4:Image Data: S [{name}] "{title}"',
+            f"@4:Z scale: V [Sens. {sense}] ({step!r} V/LSB) 2.5 V",
+            "@4:Ramp size: V [Sens. Zsens] (0.0067 V/LSB) 10.0 V",
+        ]
+        data += raw.tobytes()
+    sensitivity = f"@Sens. DeflSens: V {recording.sensitivity * 1e9} nm/V"
+    lines = ["*Force file list", f"Start context: {context}", "*Ciao scan list", sensitivity]
+    lines += ["@Sens. Zsens: V 100.0 nm/V", "@Sens. ZsensSens: V 100.0 nm/V"]
+    lines += ["Forward vel.: 10.0", "Reverse vel.: 10.0", *images, "*File list end"]
+    header = "".join(f"\\{line}\r\n" for line in lines).encode("latin-1")
+    path.write_bytes(header.ljust(4096, b"\0") + data)
+
+
 WRITERS: dict[str, Callable[[Path, Recording], None]] = {
     "export.h5": hdf5,
     "export.tab": tab,
@@ -306,10 +368,14 @@ WRITERS: dict[str, Callable[[Path, Recording], None]] = {
     "chiaro.txt": chiaro,
     "export.txt": jpk_text,
     "stated.csv": stated,
+    "spectrum.nid": nid,
+    "curve.000": nanoscope,
+    "curve.spm": nanoscope,
 }
 """Files of one curve."""
 MAPS: dict[str, Callable[[Path, Sequence[Recording]], None]] = {
     "export.h5": lambda path, recording: hdf5(path, *recording),
     "map.jpk-force-map": lambda path, recording: jpk(path, *recording),
+    "map.nid": lambda path, recording: nid(path, *recording),
 }
 """Files of several."""

@@ -17,7 +17,6 @@ import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.testing import rules_of
 from pellicle_axisymmetric import Adhesion
-from pellicle_fit import testing
 from pellicle_fit.contact.contact import Contact
 from pellicle_fit.contact.curve import Curve
 from pellicle_fit.effect import (
@@ -36,6 +35,7 @@ from pellicle_fit.explanation import Explanation
 from pellicle_fit.selection.recipe import answer
 from pellicle_fit.selection.verdict import Verdict
 from pellicle_fit.testing import check_effect
+from pellicle_fit.testing import effects as testing
 
 R, E = 5e-6, 2e3
 DEPTH = np.linspace(-0.4e-6, 1.2e-6, 81)

@@ -16,7 +16,9 @@ import pellicle as pl
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.columns import Calibration
 from pellicle_fit.files.measurement import Measurement, Segment
+from pellicle_fit.files.reader import Reader
 from pellicle_fit.files.readers import read
+from pellicle_fit.testing import check_reader
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.plugins.fit import instruments
 from tests.plugins.fit.conftest import holds
@@ -107,7 +109,7 @@ def test_another_spring_constant_scales_the_force(
     np.testing.assert_allclose(changed.force, 1.2 * curve.force)
     (text,) = set(changed.messages) - set(curve.messages)
     assert "60 mN/m in place of the file's 50 mN/m: the force is scaled by 1.2" in text
-    if name != "curve.jpk-force":
+    if name not in ("curve.jpk-force", "curve.000", "curve.spm"):
         with pytest.raises(pl.ConfigError, match="sensitivity: is not used"):
             [reader() for reader in read(path, GIVEN).values()]
 
@@ -278,3 +280,101 @@ def test_noise_of_the_deflection_is_in_the_position_too() -> None:
     assert holds(fit.tension, MODULUS * LENGTH / 2)
     blind = pl.fit(*SEEN, indenter=BEAD)
     assert blind.warnings
+
+
+READERS: dict[str, tuple[str, Any]] = {
+    "spectrum.nid": ("nanosurf", None),
+    "curve.000": ("nanoscope", None),
+    "curve.jpk-force": ("jpk", None),
+    "export.h5": ("exported", None),
+    "export.tab": ("exported_table", None),
+    "chiaro.txt": ("chiaro", None),
+    "workshop.csv": ("workshop", GIVEN),
+    "stated.csv": ("table", None),
+}
+"""A reader for each of some files, and the calibration that it needs."""
+
+
+@pytest.mark.parametrize("name", READERS)
+def test_readers_keep_their_contract(
+    tmp_path: Path, recording: instruments.Recording, name: str
+) -> None:
+    """Files are told from others, and cut or damaged ones are errors in words."""
+    instruments.WRITERS[name](tmp_path / name, recording)
+    type_, given = READERS[name]
+    reader = pl.registry().make(Reader, {"type": type_})
+    check_reader(reader, tmp_path / name, given=given)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"cut": 9}, "it ends within channel DataSet-1:7"),
+        ({"bits": "64"}, "has the layout Binary, Signed, Intel, 64 bits"),
+        ({"bits": "x"}, "invalid literal"),
+    ],
+)
+def test_spectrum_that_cannot_be_read(
+    tmp_path: Path, recording: instruments.Recording, options: dict[str, Any], message: str
+) -> None:
+    """What is wrong with a file of Nanosurf is said."""
+    instruments.nid(tmp_path / "a.nid", recording, **options)
+    with pytest.raises(pl.StorageError, match=f"cannot be read as a spectrum .*{message}"):
+        only(tmp_path / "a.nid")
+
+
+def test_absurd_numbers_take_no_memory(tmp_path: Path, recording: instruments.Recording) -> None:
+    """Sizes in a header are compared with the file before anything is read."""
+    for name, old, new in (
+        ("a.nid", b"Points=300", b"Points=300000000000"),
+        ("a.nid", b"Lines=1\r", b"Lines=99999999999\r"),
+        ("a.000", b"Samps/line: 300 300", b"Samps/line: 3000000000 3000000000"),
+        ("a.000", b"Data length: 2400", b"Data length: 24000000000"),
+    ):
+        write = instruments.nid if name == "a.nid" else instruments.nanoscope
+        write(tmp_path / name, recording)
+        content = (tmp_path / name).read_bytes()
+        assert old in content
+        (tmp_path / name).write_bytes(content.replace(old, new))
+        with pytest.raises(pl.StorageError, match="cannot be read as"):
+            only(tmp_path / name)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [({"context": "FVOL"}, "single curves are read"), ({"samples": 7}, "with a hold are not")],
+)
+def test_nanoscope_that_is_not_read(
+    tmp_path: Path, recording: instruments.Recording, options: dict[str, Any], message: str
+) -> None:
+    """Force volumes and curves with a hold are refused, with what to do instead."""
+    instruments.nanoscope(tmp_path / "a.spm", recording, **options)
+    with pytest.raises(pl.StorageError, match=message):
+        only(tmp_path / "a.spm")
+
+
+def test_unmeasured_rows_and_units(tmp_path: Path, recording: instruments.Recording) -> None:
+    """The least integer is no row; a sensitivity in another unit than nm/V is refused."""
+    path = tmp_path / "a.000"
+    instruments.nanoscope(path, recording)
+    content = bytearray(path.read_bytes())
+    content[4096 + 4 * 299 : 4096 + 4 * 300] = np.array([-(2**31)], "<i4").tobytes()
+    path.write_bytes(content)
+    (curve,) = (reader() for reader in read(path).values())
+    assert curve.force.size == 599
+    path.write_bytes(bytes(content).replace(b" nm/V\r", b" pA/V\r"))
+    with pytest.raises(pl.StorageError, match="is in pA/V, not in nm/V"):
+        only(path)
+
+
+def test_files_of_images_are_passed_over(tmp_path: Path, recording: instruments.Recording) -> None:
+    """In a folder they are no curves; alone they are refused. A table may have their suffix."""
+    instruments.nanoscope(tmp_path / "a.000", recording)
+    (tmp_path / "b.000").write_bytes(b"\\*File list\r\n" + bytes(99))
+    (tmp_path / "c.nid").write_bytes(b"[DataSet]\r\n#!" + bytes(99))
+    assert [*pl.read_curves(tmp_path)] == [str(tmp_path / "a.000")]
+    for name in ("b.000", "c.nid"):
+        with pytest.raises(pl.StorageError, match=r"suffix of force curves .*, and holds none"):
+            read(tmp_path / name)
+    (tmp_path / "d.000").write_text("position [um],force [nN]\n1,2\n", encoding="utf-8")
+    assert list(read(tmp_path / "d.000")) == [""]

@@ -1,7 +1,9 @@
-"""Curves in the formats of instruments, through afmformats (extra ``afm``)."""
+"""Files of JPK, Asylum, AFM Workshop, Optics11 and NT-MDT, by afmformats (extra ``afm``)."""
 
 from __future__ import annotations
 
+import csv
+import re
 import warnings
 import zipfile
 from collections.abc import Iterator, Mapping
@@ -12,25 +14,32 @@ from importlib.util import find_spec
 from io import TextIOWrapper
 from itertools import chain, count
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from pellicle.arrays import Mask
 from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.units import Quantity
+from pellicle_fit.files.columns import (
+    UNITS,
+    Calibration,
+    Column,
+    check_signal,
+    from_columns,
+    lacking,
+    recalibrated,
+)
+from pellicle_fit.files.measurement import Measurement, Readers, Site
+from pellicle_fit.files.missing import OPTIONS, MissingInputError
+from pellicle_fit.files.reader import Reader
+from pellicle_fit.files.text_table import read_table
 
-from .columns import UNITS, Calibration, Column, check_signal, from_columns, lacking, recalibrated
-from .measurement import Measurement, Readers, Site
-from .missing import OPTIONS, MissingInputError
+from .tables import Table
 
 _JPK = (".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series")
-SUFFIXES = (*_JPK, ".ibw", ".tab", ".zip")
-"""Suffixes that only instrument files have; .h5, .csv and .txt may be an instrument's too."""
 _HDF5 = (".h5", ".hdf5")
 _WORKSHOP = b"Force-Distance Curve"
-_MARKS = {".csv": _WORKSHOP, ".txt": b"Device:\tChiaro", ".tab": b"# BEGIN METADATA"}
-"""What stands at the beginning of an instrument's text."""
 _BEGINNING = 1 << 16
 """Size of the beginning of a file [bytes]."""
 INSTALL = "such files are read by afmformats: install it with pip install 'pellicle[afm]'"
@@ -44,32 +53,128 @@ _NT_MDT = (
 )
 
 
-def is_instrument(path: Path) -> bool:
-    """Return whether a file is known to be an instrument's, from its suffix or from its content."""
-    suffix = path.suffix.lower()
-    with suppress(OSError, RuntimeError):
-        if suffix in _HDF5:
+class _AFM(Reader):
+    """Files that afmformats reads."""
+
+    libraries: ClassVar[tuple[str, ...]] = ("afmformats",)
+    mark: ClassVar[bytes] = b""
+    """What stands at the beginning of a text of the instrument."""
+
+    def sniff(self, path: Path) -> bool:
+        """Return whether the beginning of the file has the mark."""
+        if not self.mark:
+            return True
+        with path.open("rb") as file:
+            return self.mark in file.read(_BEGINNING)
+
+    def read(self, path: Path, given: Calibration) -> Readers:
+        """Return what reads each curve by its number."""
+        return _read(path, given)
+
+
+class JPK(_AFM, title="JPK"):
+    """Force curves, maps and QI images of JPK and of Bruker's BioAFMs."""
+
+    type: Literal["jpk"] = "jpk"
+    examples = ({},)
+    suffixes: ClassVar[tuple[str, ...]] = _JPK
+
+
+class Igor(_AFM, title="Asylum Research"):
+    """Force curves of Asylum Research, as Igor's binary waves."""
+
+    type: Literal["igor"] = "igor"
+    examples = ({},)
+    suffixes: ClassVar[tuple[str, ...]] = (".ibw",)
+
+
+class Workshop(_AFM, title="AFM Workshop"):
+    """Force curves of AFM Workshop, as text."""
+
+    type: Literal["workshop"] = "workshop"
+    examples = ({},)
+    suffixes: ClassVar[tuple[str, ...]] = (".csv",)
+    mark: ClassVar[bytes] = _WORKSHOP
+
+
+class WorkshopMap(_AFM, title="map of AFM Workshop"):
+    """Force maps of AFM Workshop, a zip of texts."""
+
+    type: Literal["workshop_map"] = "workshop_map"
+    examples = ({},)
+    suffixes: ClassVar[tuple[str, ...]] = (".zip",)
+
+
+class Chiaro(_AFM, title="Optics11"):
+    """Indentations of Optics11's Chiaro and Piuma, as text."""
+
+    type: Literal["chiaro"] = "chiaro"
+    examples = ({},)
+    suffixes: ClassVar[tuple[str, ...]] = (".txt",)
+    mark: ClassVar[bytes] = b"Device:\tChiaro"
+
+
+class Nova(_AFM, title="NT-MDT"):
+    """Three columns without names, as NT-MDT's Nova exports them."""
+
+    type: Literal["nova"] = "nova"
+    examples = ({},)
+    suffixes: ClassVar[tuple[str, ...]] = (".txt",)
+
+    def sniff(self, path: Path) -> bool:
+        """Return whether a text is three columns without names."""
+        with path.open("rb") as file:
+            lines = file.read(_BEGINNING).splitlines()
+        first = next((line for line in lines if line.strip() and line[:1] not in b"#%"), b"")
+        if not re.match(rb"\s*[-+.\d]", first):
+            return False
+        with suppress(csv.Error):
+            _, heads, _ = read_table(path, {})
+            return [head.text for head in heads] == [""] * 3
+        return False
+
+    def read(self, path: Path, given: Calibration) -> Readers:
+        """Return what reads the only curve; what afmformats cannot read is a table."""
+        try:
+            return _read(path, given, is_nt_mdt=True)
+        except StorageError:
+            return Table().read(path, given)
+
+
+class Exported(_AFM, title="export of afmformats"):
+    """Curves that afmformats, nanite or PyJibe exported as HDF5."""
+
+    type: Literal["exported"] = "exported"
+    examples = ({},)
+    suffixes: ClassVar[tuple[str, ...]] = _HDF5
+
+    def sniff(self, path: Path) -> bool:
+        """Return whether a file names afmformats as its software."""
+        # h5py raises these for damaged links and attributes.
+        with suppress(OSError, RuntimeError, KeyError):
             return bool(_exports(path))
-        if suffix in _MARKS:
-            with path.open("rb") as file:
-                return _MARKS[suffix] in file.read(_BEGINNING)
-    return suffix in SUFFIXES and suffix not in _MARKS
+        return False
+
+
+class ExportedTable(_AFM, title="text export of afmformats"):
+    """A curve that afmformats, nanite or PyJibe exported as text."""
+
+    type: Literal["exported_table"] = "exported_table"
+    examples = ({},)
+    suffixes: ClassVar[tuple[str, ...]] = (".tab",)
+    mark: ClassVar[bytes] = b"# BEGIN METADATA"
 
 
 _PAUSES = {3: (1,), 4: (0, 2)}
 """Places of the pauses among the segments of creep and of stress relaxation, by their number."""
 
 
-def read_instrument(path: Path, calibration: Calibration) -> Readers:
-    """Return what reads each curve, by its number, one at a time.
-
-    A text that is not `is_instrument` is read as an export of NT-MDT's Nova.
-    """
+def _read(path: Path, calibration: Calibration, *, is_nt_mdt: bool = False) -> Readers:
+    """Return what reads each curve, by its number, one at a time."""
     if find_spec("afmformats") is None:
         raise StorageError(f"{path}: is the file of an instrument; {INSTALL}")
     if not path.is_file():
         raise StorageError(f"{path}: cannot be read (no such file)")
-    is_nt_mdt = path.suffix.lower() == ".txt" and not is_instrument(path)
     with _errors(path, is_nt_mdt):
         recordings = _calibrated(path, calibration, is_nt_mdt)
         if not recordings:
@@ -193,8 +298,9 @@ def _curve(
         # Files that were converted may hold a text with a unit.
         with suppress(ValueError):
             site = Site(*(Quantity("m")(metadata.get(f"position {letter}")) for letter in "xy"))
+        pause = _pause(data, metadata)
     origin = curve.origin._replace(sensitivity=metadata.get("sensitivity"), library="afmformats")
-    messages, pause = (_NT_MDT,) if is_nt_mdt else (), _pause(data, metadata)
+    messages = (_NT_MDT,) if is_nt_mdt else ()
     curve = replace(curve, origin=origin, site=site, messages=messages, pause=pause)
     return recalibrated(curve, given, is_own=True)
 

@@ -12,11 +12,10 @@ import numpy as np
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.units import quantity_of
-
-from .contact.contact import Contact
-from .contact.curve import Curve
-from .effect import Adds, Bends, Effect, Records, Responds, Sizes, Solid, Yields
-from .explanation import Explanation
+from pellicle_fit.contact.contact import Contact
+from pellicle_fit.contact.curve import Curve
+from pellicle_fit.effect import Adds, Bends, Effect, Records, Responds, Sizes, Solid, Yields
+from pellicle_fit.explanation import Explanation
 
 _MODULUS, STIFFNESS, _SPEED = 2e3, 0.05, 1e-6
 DEPTHS = np.linspace(-0.5e-6, 1e-6, 61)

@@ -16,10 +16,10 @@ import numpy as np
 
 from pellicle.errors import ConvergenceError
 from pellicle.testing import check, rules_of
+from pellicle_fit.contact.curve import Curve
+from pellicle_fit.effect import Adds, Bends, Effect, Records, Responds, Sizes, Yields, quantities
 
-from .contact.curve import Curve
-from .effect import Adds, Bends, Effect, Records, Responds, Sizes, Yields, quantities
-from .kit_cases import DEPTHS, STIFFNESS, Case, curves
+from .cases import DEPTHS, STIFFNESS, Case, curves
 
 _PLACES = Bends, Responds, Adds, Yields, Records
 _VALUES = 2

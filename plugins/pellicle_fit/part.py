@@ -1,0 +1,69 @@
+"""A part of a population: the curves that one of several processes fits, each under a lock."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
+from typing import Any, Protocol
+
+from pellicle.batch import Part, locked
+from pellicle.components import Say, Task
+from pellicle.errors import StorageError
+
+from .alike import Near
+from .population.row import Row
+from .sealed import read_sealed, write_sealed
+
+FITTED_ELSEWHERE = "another process fits it"
+Work = Callable[[Any, Say], dict[str, Any]]
+"""The fit of a task, as JSON data."""
+
+
+class KeptTask(Task, Protocol):
+    """The fit of a curve with the file that keeps it."""
+
+    @property
+    def path(self) -> Any:
+        """The file."""
+
+
+def passes(
+    tasks: Sequence[KeptTask | None],
+    near: Sequence[Sequence[Near]],
+    rows: Sequence[Row],
+    part: Part | None,
+    work: Work,
+) -> Iterator[tuple[list[int], Work]]:
+    """Yield which curves of a batch are fitted one after the other, and the work on each.
+
+    Curves that speak for others come first. A part waits for those that its own curves need, if
+    another process fits them, so that each curve is fitted as by one process alone.
+    """
+    # Parts are counted over all curves, fitted or not, so that each curve stays in its part.
+    full, spared = (
+        [i for i, of in enumerate(near) if bool(of) is spared] for spared in (False, True)
+    )
+
+    def open_of(chosen: Iterable[int]) -> list[int]:
+        return [i for i in chosen if tasks[i] and rows[i].is_open]
+
+    if part is None:
+        yield open_of(full), work
+        yield open_of(spared), work
+        return
+    own = open_of(part.of(spared))
+    yield open_of(part.of(full)), partial(fit_alone, work=work, wait=False)
+    needed = {other.row for i in own for other in near[i]}
+    yield open_of(sorted(needed)), partial(fit_alone, work=work, wait=True)
+    yield own, partial(fit_alone, work=work, wait=False)
+
+
+def fit_alone(task: KeptTask, say: Say, *, work: Work, wait: bool) -> dict[str, Any]:
+    """Return the kept fit of a curve, or fit and keep it while no other process does."""
+    with locked(task.path.parent, task.path.stem, wait=wait):
+        try:
+            return read_sealed(task.path)
+        except StorageError:
+            fit = work(task, say)
+            write_sealed(fit, task.path)
+            return fit

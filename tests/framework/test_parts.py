@@ -1,0 +1,132 @@
+"""Parts of a study: each run under a lock, and the table by whoever finds all runs finished."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from typer.testing import CliRunner, Result
+
+import pellicle as pl
+from pellicle.batch import Part
+from pellicle.cli.app import app
+from pellicle.runs.lock import locked
+from pellicle.studies.runner import planned
+from tests.part_runs import run_parts
+from tests.small_run import run_file
+
+STUDY = run_file("""
+[study.vary]
+kernel.tension = ["0.1 N/m", "0.5 N/m", "1 N/m"]
+indenter.radius = ["1 mm", "1.2 mm"]
+""")
+FORTY = """
+[study.vary]
+kernel.tension = { start = "0.1 N/m", stop = "1 N/m", num = 20, spacing = "log" }
+indenter.radius = ["1 mm", "1.4 mm"]
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Return the folder of a study file, which is the current one."""
+    monkeypatch.chdir(tmp_path)
+    Path("s.toml").write_text(STUDY, encoding="utf-8")
+    return tmp_path
+
+
+def run(*options: str, code: int = 0) -> Result:
+    """Call ``pellicle run`` and check its exit code."""
+    result = CliRunner().invoke(app, ["run", "s.toml", *options])
+    assert result.exit_code == code, result.output
+    return result
+
+
+def require_same(table: xr.Dataset, other: xr.Dataset) -> None:
+    """Fail unless two tables are equal but for wall times."""
+    xr.testing.assert_equal(table.drop_vars("wall_time"), other.drop_vars("wall_time"))
+
+
+def table(out: str) -> xr.Dataset:
+    """Return the table in a folder."""
+    return xr.load_dataset(Path(out) / "study.h5", engine="h5netcdf")
+
+
+def test_last_part_writes_the_table(folder: Path) -> None:
+    """Parts share the runs; the table is that of one process, and no lock is left."""
+    assert "4 of 6 runs are left" in run("--part", "1/3").output
+    assert not (folder / "s" / "study.h5").exists()
+    assert len(list((folder / "s" / "runs").iterdir())) == 2
+    left = run("--part", "3/3", "--json", "--quiet").stdout
+    assert json.loads(left) == {"failed": [], "left": 2}
+    assert "wrote s/study.h5" in run("--part", "2/3").output.replace("\\", "/")
+    run("-o", "whole", "--quiet")
+    require_same(table("s"), table("whole"))
+    assert not list(folder.rglob("*.lock"))
+
+
+def test_runs_of_another_process_are_left_to_it(folder: Path) -> None:
+    """Any part passes over locked runs, and so does the whole study, which says so."""
+    first, *_ = planned(pl.Study.from_toml("s.toml"), folder / "s" / "study.h5")
+    with locked(first.journal.stem.parent, first.journal.stem.name):
+        printed = run("--part", "any")
+        assert f"{first.name}: another process solves it" in printed.stderr
+        assert "1 of 6 runs are left" in printed.stdout
+        assert "of 6 runs 1 were not finished" in run(code=1).stderr
+    assert "wrote" in run("--part", "any").stdout
+    assert pl.run_study("s.toml", "s", progress=False)["converged"].all()
+
+
+def test_part_that_fails_says_so(folder: Path) -> None:
+    """A run that fails does not stop the others, is told, and is left for the next call."""
+    Path("s.toml").write_text(STUDY.replace('"1.2 mm"', '"1.2 um"'), encoding="utf-8")
+    tasks = planned(pl.Study.from_toml("s.toml"), folder / "s" / "study.h5")
+    (folder / "s" / "runs").mkdir(parents=True)
+    tasks[0].journal.path.write_bytes(b"no result")
+    printed = run("--part", "1/6", code=1)
+    assert f"{tasks[0].name} (file runs/{tasks[0].journal.path.name}): failed" in printed.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--part", "4/3"], "'4/3' is neither any nor a part such as 3/40"),
+        (["--part", "some"], "'some' is neither any nor a part such as 3/40"),
+        (["--part", "1/2", "--overwrite"], "delete the folder to start over"),
+    ],
+)
+def test_is_refused(options: list[str], message: str, folder: Path) -> None:
+    """A part that is none, or that would delete what others did, ends before anything is solved."""
+    assert message in " ".join(run(*options, code=2).stderr.split())
+    assert [path.name for path in folder.iterdir()] == ["s.toml"]
+
+
+def test_run_has_no_parts(folder: Path) -> None:
+    """A single run is refused; a planned part lists its own runs."""
+    assert "1 run, 0 done" in run("--part", "1/6", "--dry-run").output
+    Path("s.toml").write_text(run_file(), encoding="utf-8")
+    assert "parts are of a study" in run("--part", "1/2", code=2).stderr
+
+
+def test_parts_hold_each_task_once() -> None:
+    """All parts together are all tasks."""
+    for count in (1, 3, 7, 12):
+        parts = [Part(number, count).of(range(10)) for number in range(1, count + 1)]
+        assert sorted(index for part in parts for index in part) == [*range(10)]
+
+
+@pytest.mark.slow
+def test_forty_parts_with_kills(tmp_path: Path) -> None:
+    """Of 40 parts on two processes some are killed; the table is that of one process."""
+    grid: dict[str, Any] = {"grid": {"points": 32, "size": "0.5 mm"}}
+    (tmp_path / "s.toml").write_text(run_file(FORTY, **grid), encoding="utf-8")
+    killed = run_parts(["run", "s.toml", "-o", "out", "--quiet"], 40, tmp_path, kills=12)
+    assert killed > 3
+    got = xr.load_dataset(tmp_path / "out" / "study.h5", engine="h5netcdf")
+    assert np.isfinite(got["force"]).all()
+    require_same(got, pl.run_study(tmp_path / "s.toml", progress=False, threads=1))
+    assert len(list((tmp_path / "out" / "runs").glob("*.h5"))) == 40
