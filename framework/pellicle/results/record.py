@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable
 from functools import lru_cache
 
 import numpy as np
@@ -15,8 +15,6 @@ from pellicle.contact.equilibrium import AdhesiveEquilibrium, Deformation, Equil
 from pellicle.contact.load_step import FinishedStep, LoadStep
 from pellicle.grid import Grid
 from pellicle.variables import CAVEATS, VARIABLES, Variable, names_of
-
-from . import storage
 
 
 def step_dataset(
@@ -98,37 +96,45 @@ class Steps:
 
     def __init__(self, number: int) -> None:
         self._number = number
-        self._fields: dict[str, xr.Variable] = {}
-        self._scalars: list[xr.Dataset] = []
+        self._fields: dict[Hashable, xr.Variable] = {}
+        self._numbers: list[dict[str, xr.Variable]] = []
+        self._attributes: dict[Hashable, object] = {}
         self.path: list[FinishedStep] = []
         """The finished steps, as later ones see them."""
 
     def __len__(self) -> int:
-        return len(self._scalars)
+        return len(self._numbers)
 
     def append(self, step: xr.Dataset) -> xr.Dataset:
-        """Copy a step of `step_dataset` into the arrays, and return it as views of them."""
-        index = slice(len(self), len(self) + 1)
-        fields = {}
+        """Copy a step of `step_dataset` into the arrays, whose views become its fields."""
+        fields, numbers = {}, {}
         for name, variable in step.variables.items():
             if variable.ndim > 1:
                 if name not in self._fields:
                     shape = (self._number, *variable.shape[1:])
                     array = np.empty(shape, variable.dtype)
-                    self._fields[str(name)] = xr.Variable(variable.dims, array, variable.attrs)
-                fields[str(name)] = self._fields[str(name)].isel(step=index)
-                fields[str(name)].values[:] = variable.values
-        self._scalars.append(step.drop_vars(fields))
-        numbers = {str(n): value.item() for n, value in self._scalars[-1].data_vars.items()}
-        self.path.append(FinishedStep.of({n: f.values[0] for n, f in fields.items()}, numbers))
-        return step.assign(fields)
+                    self._fields[name] = xr.Variable(variable.dims, array, variable.attrs)
+                view = self._fields[name].values[len(self) : len(self) + 1]
+                view[:] = variable.values
+                variable.data = view
+                fields[str(name)] = view[0]
+            else:
+                numbers[str(name)] = variable
+        self._numbers.append(numbers)
+        self._attributes = self._attributes or step.attrs
+        self.path.append(
+            FinishedStep.of(fields, {n: v.values.item() for n, v in numbers.items() if v.size == 1})
+        )
+        return step
 
     def joined(self) -> xr.Dataset:
         """Return all steps as one dataset; no step can be appended afterwards."""
-        done = slice(len(self))
-        fields = {name: field.isel(step=done) for name, field in self._fields.items()}
-        scalars = storage.joined(self._scalars)
-        return xr.Dataset({**fields, **scalars.data_vars}, scalars.coords, scalars.attrs)
+        columns = {name: field[: len(self)] for name, field in self._fields.items()}
+        for name, first in self._numbers[0].items():
+            steps = [numbers[name].values for numbers in self._numbers]
+            values = np.concatenate(steps) if first.dims == ("step",) else steps[0]
+            columns[name] = xr.Variable(first.dims, values, first.attrs)
+        return xr.Dataset(columns, attrs=self._attributes)
 
 
 _RESIDUALS = names_of("residual")

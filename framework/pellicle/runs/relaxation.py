@@ -28,8 +28,8 @@ from pellicle.surface import Operator, operator_of
 from pellicle.surface.few_waves import FewWaves, Span, sampled_waves
 
 Composed = TypeVar("Composed", Setting, Traction)
-# Lengths of steps whose operators are kept on a periodic boundary, and the size of what is kept of
-# one in arrays of the grid's shape.
+# Lengths of steps whose operators are kept, and the size of what is kept of one in arrays of the
+# grid's shape.
 _KEPT: Final = 4
 _OF_LENGTH: Final = 1.15
 # Arrays of a few waves on a free boundary: those of one on all grids, and of their sum.
@@ -159,14 +159,17 @@ class _Pressures:
 
     @staticmethod
     def arrays(run: Run) -> float:
-        waves = len(span_of(run.kernel, run.loading.durations, run.grid).waves)
-        return _OF_SUM + _OF_WAVE * waves + run.steps
+        durations = run.loading.durations
+        waves = len(span_of(run.kernel, durations, run.grid).waves)
+        kept = min(_KEPT, len({*map(_rounded, durations)}))
+        return _OF_SUM + _OF_WAVE * waves + run.steps + kept * _OF_LENGTH
 
     def __init__(self, run: Run, operator: Operator) -> None:
         durations = run.loading.durations
-        self._operator, self._durations = operator, durations
+        self._operator, self._durations, self._kernel = operator, durations, run.kernel
         span = span_of(run.kernel, durations, run.grid)
-        self._few = FewWaves(instantaneous(run.kernel), span, operator)
+        self._waves, self._few = span.waves, FewWaves(instantaneous(run.kernel), span, operator)
+        self._of_length = lru_cache(_KEPT)(self._make)
         self._responses = responses(run.kernel, durations, span.waves, range(len(durations)))
         self._done = -1
 
@@ -181,13 +184,17 @@ class _Pressures:
             values = next(self._responses)
             self._done += 1
         assert values is not None, "each step is taken once"
-        operator = self._operator
-        if self._durations[self._done]:
-            operator = self._few.interpolated(values[self._done])
+        operator = self._of_length(_rounded(self._durations[self._done]))
         if not path:
             return operator, None
         pressures = np.array([finished.state.pressure for finished in path])
         return operator, self._few.displacement(np.tensordot(values[: len(path)].T, pressures, 1))
+
+    def _make(self, duration: float) -> Operator:
+        if not duration:
+            return self._operator
+        stiffer = stiffened(self._kernel, duration).compliance(self._waves)
+        return self._few.interpolated(stiffer / self._kernel.compliance(self._waves))
 
 
 def _rounded(duration: float) -> float:

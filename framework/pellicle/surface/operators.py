@@ -51,6 +51,8 @@ class Operator:
         """Returns the operator of the same solid on another grid."""
         self.workspace = Workspace()
         """Memory of the transforms, shared with `scaled` copies and preconditioners."""
+        self.made: dict[object, Any] = {}
+        """What has been made from it for all load steps, shared with `scaled` copies."""
         # Shared with `scaled` copies.
         self._count = [0]
         self._factor = 1.0
@@ -131,9 +133,15 @@ class Operator:
         return scaled
 
     def coarsened(self) -> Operator:
-        """Return the operator of the same solid on `Grid.coarsened`, as `scaled` as this one."""
-        coarse = self.on(self.grid.coarsened()).scaled(self._factor)
-        return coarse.with_spring(self._spring_compliance)
+        """Return the operator of the same solid on `Grid.coarsened`, as `scaled` as this one.
+
+        It is made once, and uses the memory of the transforms of this one.
+        """
+        coarse: Operator | None = self.made.get("coarsened")
+        if coarse is None:
+            coarse = self.made["coarsened"] = self.on(self.grid.coarsened())
+            coarse.workspace = self.workspace
+        return coarse.scaled(self._factor).with_spring(self._spring_compliance)
 
     def symbol(self, qx: Array, qy: Array) -> Array:
         """Return G [m/Pa] of any waves but q = 0, `scaled` as the operator is."""

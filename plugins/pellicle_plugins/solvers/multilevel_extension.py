@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -24,6 +25,10 @@ _QUARTER: Final = np.float32(0.25)
 _TINY: Final = np.float32(1e-30)
 # Fine cells in a block, few enough for its intermediate arrays to fit in the cache.
 _BLOCK: Final = 2**17
+
+# Cells along the longer edge of a level up to which it is interpolated by matrices, which take a
+# tenth of the time at 20 cells and as long at 96.
+_FEW: Final = 96
 
 # Order of the stiffness above which the extension must not have kinks.
 _BENDS: Final = 2.5
@@ -222,6 +227,10 @@ def _interpolate(coarse: Field, free: Field | Mask, own: Field) -> Field:
 
     The sum is in ``own``.
     """
+    if own.ndim == 2 and max(own.shape) <= _FEW:
+        nx, ny = coarse.shape
+        own += free * (_interpolation(nx) @ coarse @ _interpolation(ny).T)
+        return own
     wide = wrapped(coarse)
     wide *= _QUARTER**coarse.ndim
     if coarse.ndim == 1:
@@ -248,6 +257,10 @@ def _transposed_interpolate(fine: Field, free: Field | Mask) -> Field:
     """Return the transpose of the map from ``coarse`` in `_interpolate`, applied to ``fine``."""
     if fine.ndim == 1:
         return _QUARTER * _transposed_refine(fine * free)
+    if max(fine.shape) <= _FEW:
+        nx, ny = (n // 2 for n in fine.shape)
+        summed = _interpolation(nx).T @ (fine * free) @ _interpolation(ny)
+        return np.asarray(summed, np.float32)
     coarse = np.empty([n // 2 for n in fine.shape], fine.dtype)
 
     def gather(rows: slice) -> None:
@@ -266,6 +279,17 @@ def _transposed_interpolate(fine: Field, free: Field | Mask) -> Field:
 
     shared(gather, _blocks(coarse.shape))
     return coarse
+
+
+@lru_cache
+def _interpolation(number: int) -> Field:
+    """Return the matrix of the linear interpolation from a periodic line to twice the cells."""
+    matrix = np.zeros((2 * number, number), np.float32)
+    cells = np.arange(number)
+    for side in (0, 1):
+        np.add.at(matrix, (2 * cells + side, cells), _THREE * _QUARTER)
+        np.add.at(matrix, (2 * cells + side, (cells + 2 * side - 1) % number), _QUARTER)
+    return matrix
 
 
 def _refine(wide: Field, fine: Field) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import scipy.fft
@@ -69,33 +69,20 @@ class Preconditioner:
     """
 
     def __init__(self, operator: Operator) -> None:
-        grid = operator.grid
         self._operator = operator
-        self._shape = grid.shape
-        # The shapes of the transform, and of the extension, whose pyramid needs even numbers.
-        if grid.boundary == "periodic":
-            self._plane = grid.shape
-            self._padded = _round_up(grid.shape)
-        else:
-            self._plane = self._padded = _free_shape(grid)
-        self._stiffness = CirculantStiffness(operator, self._plane)
+        self._shape = operator.grid.shape
+        scale, parts = operator.made.get(Preconditioner, (None, None))
+        if parts is None or scale != operator.greatest:
+            parts = _Parts.of(operator)
+            operator.made[Preconditioner] = operator.greatest, parts
+        self._plane, self._padded = parts.plane, parts.padded
+        self._stiffness = parts.stiffness
         self.stiffest = self._stiffness.greatest
         """Stiffness of the stiffest wave [Pa/m]."""
-        # How often the plane can be halved, leaving two or more whole cells per axis.
-        levels, halved = 0, [n for n in self._padded if n > 1]
-        while halved and all(n >= 4 and n % 2 == 0 for n in halved):
-            levels, halved = levels + 1, [n // 2 for n in halved]
-        # Those of the cell size of each level, the finest first.
-        orders = operator.orders(levels + 1)
-        self.bends = bends(orders[0])
-        """Whether bending dominates the stiffness at the size of a cell."""
-        self.is_bed = orders[0] < _BED
-        """Whether cells yield on their own, as on springs or a layer thinner than them."""
-        # A plate bends all the way from one contact to the next. On other surfaces, and near the
-        # edge of a free domain, an extension by 0 far from all contact is better.
-        all_levels = self.bends and grid.boundary == "periodic"
-        self._orders = orders[: levels if all_levels else min(levels, _halvings(grid.shape))]
-        self._stretch = stretch_of(*edges(grid))
+        self.bends, self.is_bed = bends(parts.order), parts.order < _BED
+        """Whether bending dominates at the size of a cell; whether cells yield on their own, as on
+        springs or a layer thinner than them."""
+        self._orders, self._stretch = parts.orders, parts.stretch
         self._lift = np.zeros(self._shape, dtype=np.float32)
 
     def lift(self, on_contact: OnContact) -> Array:
@@ -148,6 +135,40 @@ class Preconditioner:
                 sources.append(repeated)
                 copies.append(indices[repeated] + down * py + right)
         return np.concatenate(copies), np.concatenate(sources)
+
+
+class _Parts(NamedTuple):
+    """What the preconditioner of an operator consists of, made once for all load steps."""
+
+    plane: tuple[int, int]
+    """Shape of the transform."""
+    padded: tuple[int, int]
+    """Shape of the extension, whose pyramid needs even numbers."""
+    stiffness: CirculantStiffness
+    order: float
+    """Power of q with which the stiffness grows at the size of a cell."""
+    orders: list[float]
+    """The same at the cell size of each level of the extension, the finest first."""
+    stretch: tuple[float, float]
+
+    @classmethod
+    def of(cls, operator: Operator) -> _Parts:
+        grid = operator.grid
+        if grid.boundary == "periodic":
+            plane, padded = grid.shape, _round_up(grid.shape)
+        else:
+            plane = padded = _free_shape(grid)
+        # How often the plane can be halved, leaving two or more whole cells per axis.
+        levels, halved = 0, [n for n in padded if n > 1]
+        while halved and all(n >= 4 and n % 2 == 0 for n in halved):
+            levels, halved = levels + 1, [n // 2 for n in halved]
+        orders = operator.orders(levels + 1)
+        # A plate bends all the way from one contact to the next. On other surfaces, and near the
+        # edge of a free domain, an extension by 0 far from all contact is better.
+        all_levels = bends(orders[0]) and grid.boundary == "periodic"
+        used = orders[: levels if all_levels else min(levels, _halvings(grid.shape))]
+        stiffness, stretch = CirculantStiffness(operator, plane), stretch_of(*edges(grid))
+        return cls(plane, padded, stiffness, orders[0], used, stretch)
 
 
 class OnContact:
