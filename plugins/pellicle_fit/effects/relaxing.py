@@ -124,7 +124,7 @@ class Relaxing(Responds):
             first = ([], []) if row[0] <= 0 else (start[k], [0.0])
             path[k] = np.interp(nodes[k], np.append(first[0], time), np.append(first[1], row))
         area = np.broadcast_to(contact.area(path, 0.0), path.shape)
-        weights = self._weights(nodes[:, 1:], nodes)
+        weights = self._growing(contact, nodes, path)
         share = np.einsum("kat,kt->ka", weights, _rates(nodes, area))
         share = np.log(np.maximum(share / np.maximum(area[:, 1:], 1e-300), 1e-12))
         earliest = _EARLIEST * (nodes[:, -1:] - start)
@@ -178,6 +178,10 @@ class Relaxing(Responds):
         step = np.where(out[index + 1] > out[index], out[index + 1] - out[index], 1.0)
         part = np.clip((back[0] - out[index]) / step, 0.0, 1.0)
         return tuple(v[:, index] + part * (v[:, index + 1] - v[:, index]) for v in (share, equal))
+
+    def _growing(self, contact: Contact, nodes: Array, path: Array) -> Array:
+        """Return the weights at the nodes [s] but the first of a loading to depths ``path`` [m]."""
+        return self._weights(nodes[:, 1:], nodes)
 
     def _weights(self, at: Array, times: Array) -> Array:
         """Return ∫ E(t − t′) dt′ / E* [s] over intervals of times, of shape (k, at, intervals)."""
