@@ -1,7 +1,7 @@
 """A gel that drains: the force is carried by its liquid first, and by its solid at last."""
 
-from collections.abc import Iterable, Mapping
-from typing import Annotated, Literal
+from collections.abc import Callable, Iterable, Mapping
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -22,6 +22,8 @@ _MEANS = {
 }
 """Coefficients of the mean of g, and what each grows by with ν / (1 − ν), as
 tests/benchmarks/draining.py fits them."""
+_WIDER = {"open": 1.5, "sealed": 0.9}
+"""Growth of a² under a tension, over a s: what is pressed is wider than the contact."""
 _ROUND, _OTHER = 0.005, 0.015
 """Errors of the force for a round tip and for any other, against solutions of the whole problem."""
 
@@ -34,6 +36,7 @@ class Poroelastic(Relaxing, title="draining"):
     """
 
     type: Literal["poroelastic"] = "poroelastic"
+    sees_tension: ClassVar[bool] = True
     examples = ({}, {"drained_ratio": 0.2, "diffusivity": "100 um^2/s", "surface": "sealed"})
     drained_ratio: Annotated[float, Fitted("1", at_least=0, at_most=0.5)] = fitted(
         "Poisson's ratio ν of the drained solid"
@@ -71,11 +74,12 @@ class Poroelastic(Relaxing, title="draining"):
         """Return ∫ E(t) dt / E* [s] of a contact so wide that nothing drains."""
         return 2 * (1 - self.drained_ratio) * time
 
-    def _growing(self, contact: Contact, nodes: Array, path: Array) -> Array:
+    def _growing(self, nodes: Array, radius: Callable[[], Array], length: Array) -> Array:
         """Return ∫ 1 + (1 − 2ν) g(D (t − t′)/a²) dt′ [s] over intervals, a that at t."""
-        radius = np.broadcast_to(contact.radius(path), path.shape)[:, 1:, None]
+        a = np.broadcast_to(radius(), nodes.shape)[:, 1:, None]
+        squared = np.maximum(a * (a + _WIDER[self.surface] * length), 1e-300)
         passed = np.maximum(nodes[:, 1:, None] - nodes[:, None, :], 0.0)
-        of_root = self._mean(np.sqrt(self.diffusivity * passed) / np.maximum(radius, 1e-300))
+        of_root = self._mean(np.sqrt(self.diffusivity * passed / squared))
         return -np.diff(passed * (1 + (1 - 2 * self.drained_ratio) * of_root), axis=2)
 
     def _mean(self, root: Array) -> Array:
