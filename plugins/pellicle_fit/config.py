@@ -54,7 +54,7 @@ from .simulated.solid import solid
 
 DEFAULT_RIVALS: tuple[str | list[str], ...] = (
     *("offset", ["offset", "slope"], ["offset", "drift"], "drag"),
-    *("power_law", "standard_linear", "adhesion"),
+    *("power_law", "standard_linear", "poroelastic", "adhesion"),
     *("layer", "sphere", "cone", "worn_tip", "stiff_surface", "softening"),
     *("brush", "compliance", "rough_toe"),
 )

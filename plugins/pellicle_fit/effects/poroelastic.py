@@ -41,7 +41,7 @@ class Poroelastic(Relaxing, title="draining"):
     drained_ratio: Annotated[float, Fitted("1", at_least=0, at_most=0.5)] = fitted(
         "Poisson's ratio ν of the drained solid"
     )
-    diffusivity: Annotated[float, Fitted("m^2/s", above=0, log=True)] = fitted(
+    diffusivity: Annotated[float, Fitted("m2/s", above=0, log=True)] = fitted(
         "diffusivity D of the liquid [m²/s]"
     )
     surface: Literal["open", "sealed"] = Field(

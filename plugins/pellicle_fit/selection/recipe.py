@@ -23,7 +23,9 @@ from .neighbour import Neighbour
 from .rivals import Question, comparison
 from .verdict import MARGIN, SMALL, Decision, Verdict, choice, decision, doubtful, ties
 
-TENSION = "tension"
+TENSION, DRAINING = "tension", "poroelastic"
+_ALIKE = 1.5
+"""Ratio of times over depth and radius below which curves drain alike."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +62,20 @@ class Answer:
     def tension_needed(self) -> bool:
         """Whether the curves need a tension."""
         return self.question.of_target == {TENSION} and self.verdict is Verdict.NEEDED
+
+    @property
+    def at_one_speed(self) -> bool:
+        """Whether contacts grow alike, so that a solid that drains looks elastic, and may be one.
+
+        A round contact then drains by the same part at each size: the modulus is that at this
+        speed.
+        """
+        curves = self.selected.whole
+        if self.selected.known[0].of(Responds) or any(curve.rests.any() for curve in curves):
+            return False
+        paces = [c.loading_time / (c.span * (c.contact.tip_radius or c.span)) for c in curves]
+        alike = max(paces) < _ALIKE * min(paces)
+        return alike and any(DRAINING in fit.types for fit in self.explanations)
 
     @property
     def not_held(self) -> tuple[Candidate, ...]:

@@ -66,7 +66,8 @@ def numbers(fit: Record, *, si: bool = False) -> str:
     parts = [f"{words(name)} {in_figures(estimates[name], si=si)}" for name in names]
     if fit.verdict is Verdict.UNDESCRIBED:
         return f"not to be quoted: {', '.join(parts)}; {known}"
-    return f"{', '.join(parts)}, {100 * CONFIDENCE:.0f} %; {known}"
+    speed = ", at this speed" if fit.data["at_one_speed"] else ""
+    return f"{', '.join(parts)}, {100 * CONFIDENCE:.0f} %{speed}; {known}"
 
 
 def calibration(uncertainty: Mapping[Any, float]) -> str:
