@@ -24,6 +24,8 @@ _MEANS = {
 tests/benchmarks/draining.py fits them."""
 _WIDER = {"open": 1.5, "sealed": 0.9}
 """Growth of a² under a tension, over a s: what is pressed is wider than the contact."""
+_DRAINED = 1e-12
+"""a²/(Dt) below which nothing is left to drain."""
 _ROUND, _OTHER = 0.005, 0.015
 """Errors of the force for a round tip and for any other, against solutions of the whole problem."""
 
@@ -77,9 +79,11 @@ class Poroelastic(Relaxing, title="draining"):
     def _growing(self, nodes: Array, radius: Callable[[], Array], length: Array) -> Array:
         """Return ∫ 1 + (1 − 2ν) g(D (t − t′)/a²) dt′ [s] over intervals, a that at t."""
         a = np.broadcast_to(radius(), nodes.shape)[:, 1:, None]
-        squared = np.maximum(a * (a + _WIDER[self.surface] * length), 1e-300)
         passed = np.maximum(nodes[:, 1:, None] - nodes[:, None, :], 0.0)
-        of_root = self._mean(np.sqrt(self.diffusivity * passed / squared))
+        flowed = self.diffusivity * passed
+        # A contact of no size has drained.
+        squared = np.maximum(a * (a + _WIDER[self.surface] * length), _DRAINED * flowed)
+        of_root = self._mean(np.sqrt(flowed / np.maximum(squared, 1e-300)))
         return -np.diff(passed * (1 + (1 - 2 * self.drained_ratio) * of_root), axis=2)
 
     def _mean(self, root: Array) -> Array:
