@@ -1,7 +1,10 @@
 """Solids that relax: Lee & Radok (1960) while the contact grows, Ting (1966) while it shrinks."""
 
 from abc import abstractmethod
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
+from typing import ClassVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -28,6 +31,9 @@ _FROM_NODES = np.linalg.inv(chebyshev.chebvander(_POINTS, _MODULI - 1))
 
 class Relaxing(Responds):
     """Solid whose modulus falls; a tension does not, and acts with the effective modulus."""
+
+    sees_tension: ClassVar[bool] = False
+    """Whether a tension changes how fast the modulus falls."""
 
     @abstractmethod
     def primitive(self, time: Array) -> Array:
@@ -76,6 +82,7 @@ class Relaxing(Responds):
         """
         names = [*quantities(type(self))]
         columns = [np.reshape(getattr(self, name), (-1,)) for name in names]
+        columns.append(np.reshape(contact.length if self.sees_tension else 0.0, (-1,)))
         count = max(len(path) if path.ndim > 1 else 1, *(column.size for column in columns))
         paths = np.broadcast_to(path, (count, path.shape[-1]))
         values = np.array([np.broadcast_to(column, count) for column in columns]).T
@@ -88,19 +95,25 @@ class Relaxing(Responds):
         first = {key: row for row, key in reversed([*enumerate(keys)])}
         rows = np.array([*first.values()])
         numbers = {key: number for number, key in enumerate(first)}
-        bare, found = replace(contact, tension=0.0), []
+        found = []
         # Of another contact rows belong together, each with its own.
         for part in np.array_split(rows, -(-rows.size // _TOGETHER) if alone else 1):
-            own = dict(zip(names, values[part].T[:, :, None, None], strict=True))
-            found.append(self.model_copy(update=own)._course(bare, curve, paths[part]))
+            *own, length = values[part].T[:, :, None, None]
+            known = self.model_copy(update=dict(zip(names, own, strict=True)))
+            found.append(known._course(contact, length, curve, paths[part]))
         shares, depths = (np.concatenate(parts) for parts in zip(*found, strict=True))
         back = np.array([numbers[key] for key in keys])
         if path.ndim == 1 and count == 1:
             return shares[0], depths[0]
         return shares[back], depths[back]
 
-    def _course(self, contact: Contact, curve: Curve, depth: Array) -> tuple[Array, Array]:
-        """Return the same of paths of shape (k, n), with quantities of shape (k, 1, 1)."""
+    def _course(
+        self, contact: Contact, length: Array, curve: Curve, depth: Array
+    ) -> tuple[Array, Array]:
+        """Return the same of paths of shape (k, n), with quantities of shape (k, 1, 1).
+
+        ``length`` is one of them: the elastocapillary length [m].
+        """
         loading, clock = ~curve.moves_out, curve.clock
         time, whole = clock[loading], depth
         z = np.maximum.accumulate(depth[:, loading], axis=1)
@@ -124,7 +137,8 @@ class Relaxing(Responds):
             first = ([], []) if row[0] <= 0 else (start[k], [0.0])
             path[k] = np.interp(nodes[k], np.append(first[0], time), np.append(first[1], row))
         area = np.broadcast_to(contact.area(path, 0.0), path.shape)
-        weights = self._weights(nodes[:, 1:], nodes)
+        bare = replace(contact, modulus=1.0, tension=0.0)
+        weights = self._growing(nodes, partial(bare.radius, path), length)
         share = np.einsum("kat,kt->ka", weights, _rates(nodes, area))
         share = np.log(np.maximum(share / np.maximum(area[:, 1:], 1e-300), 1e-12))
         earliest = _EARLIEST * (nodes[:, -1:] - start)
@@ -178,6 +192,14 @@ class Relaxing(Responds):
         step = np.where(out[index + 1] > out[index], out[index + 1] - out[index], 1.0)
         part = np.clip((back[0] - out[index]) / step, 0.0, 1.0)
         return tuple(v[:, index] + part * (v[:, index + 1] - v[:, index]) for v in (share, equal))
+
+    def _growing(self, nodes: Array, radius: Callable[[], Array], length: Array) -> Array:
+        """Return the weights at the nodes [s] but the first of a loading.
+
+        ``radius`` gives that of the contact without tension at all nodes [m], and ``length`` is the
+        elastocapillary length [m].
+        """
+        return self._weights(nodes[:, 1:], nodes)
 
     def _weights(self, at: Array, times: Array) -> Array:
         """Return ∫ E(t − t′) dt′ / E* [s] over intervals of times, of shape (k, at, intervals)."""
