@@ -8,6 +8,7 @@ from __future__ import annotations
 import inspect
 import re
 import tomllib
+from collections import Counter
 from collections.abc import Iterable
 from importlib import import_module
 from pathlib import Path
@@ -39,6 +40,8 @@ _HEADINGS = {
 }
 
 
+_SEVERAL = 2
+"""Components from which on equal fields stand once."""
 ROOT = Path(__file__).parents[1]
 _PART = re.compile(r"(<!-- generated: (\w+) -->\n).*?(\n<!-- end -->)", re.DOTALL)
 
@@ -49,21 +52,57 @@ def fill_in(text: str) -> str:
 
 
 def components() -> str:
-    """Return a section for each registered component, with a table of its fields."""
+    """Return a section for each family and component; what several share stands once."""
     parts = []
     for family, members in pl.registry().components.items():
-        if not pl.registry().families[family].place:
+        if not pl.registry().families[family].place or not members:
             continue
-        parts += [f"## {_HEADINGS[family]}\n"] if members else []
-        for type_, component in ((type_, entry.component) for type_, entry in members.items()):
+        fields = {
+            type_: [*field_rows(entry.component.model_fields)] for type_, entry in members.items()
+        }
+        shared = _shared(fields.values())
+        parts += [f"## {_HEADINGS[family]}\n"]
+        parts += [f"Fields of several components:\n\n{_list(shared)}"] if shared else []
+        for type_, entry in members.items():
+            component = entry.component
             parts += [f"### `{type_}`\n", f"{inspect.getdoc(component)}\n"]
             if issubclass(component, pl.Prescription):
                 values = ", ".join([component.unit, *component.quantity().bounds])
                 pulls = "; with an `[interaction]` any" * component.may_pull
                 parts.append(f"Key of `[loading]`. Load steps: {values}{pulls}.\n")
-            rows = [*field_rows(component.model_fields)]
-            parts.append(_fields(rows) if rows else "No fields.\n")
+            common = [row.name for row in fields[type_] if row in shared]
+            own = [row for row in fields[type_] if row not in shared]
+            # The rows of a table follow that of the table.
+            names = ", ".join(f"`{name}`" for name in common if "." not in name)
+            parts += [f"As [above](#{_anchor(family)}): {names}.\n"] if common else []
+            parts += [_list(own)] if own else []
+            parts += [] if fields[type_] else ["No fields.\n"]
     return "\n".join(parts)
+
+
+def _shared(components: Iterable[list[FieldRow]]) -> list[FieldRow]:
+    """Return the fields that several components have alike, the most frequent one of each name."""
+    number = Counter(row for rows in components for row in rows)
+    frequent = {row.name: row for row, count in reversed(number.most_common()) if count >= _SEVERAL}
+    return [row for row in number if frequent.get(row.name) == row]
+
+
+def _list(rows: Iterable[FieldRow]) -> str:
+    """Return a list of fields: unit and range, default, meaning."""
+    lines = []
+    for row in rows:
+        default = {"none": "optional"}.get(row.default, _default(row))
+        lines.append(f"- `{row.name}` ({row.kind}; {default}): {_cell(row.meaning)}\n")
+    return "".join(lines)
+
+
+def _default(row: FieldRow) -> str:
+    in_words = re.fullmatch("none|fitted|required|see below|one of these|with .*", row.default)
+    return row.default if in_words else f"`{row.default}`"
+
+
+def _anchor(family: str) -> str:
+    return _HEADINGS[family].lower().replace(" ", "-")
 
 
 def tables() -> str:
@@ -84,11 +123,7 @@ def options_of_fits() -> str:
 
 def _fields(rows: Iterable[FieldRow]) -> str:
     """Return a table of fields: unit and range, default, meaning."""
-    cells = []
-    for row in rows:
-        in_words = re.fullmatch("none|fitted|required|see below|one of these|with .*", row.default)
-        default = row.default if in_words else f"`{row.default}`"
-        cells.append((f"`{row.name}`", row.kind, default, _cell(row.meaning)))
+    cells = [(f"`{row.name}`", row.kind, _default(row), _cell(row.meaning)) for row in rows]
     return _table(("field", "takes", "default", "meaning"), cells)
 
 

@@ -9,40 +9,48 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections import defaultdict
+from collections.abc import Callable, Generator, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from importlib.metadata import entry_points
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 
+from tests import durations
+
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
 
 
-LONGEST = (
-    "tests/docs/test_blocks.py",
-    "tests/plugins/solvers/test_active_set.py",
-    "tests/physics/test_adhesion.py",
-    "tests/plugins/fit/test_answers.py",
-    "tests/contracts/test_kit.py",
-    "tests/framework/broken/test_catalogue.py",
-    "tests/framework/test_study.py",
-    "tests/packaging/test_strangers.py",
-    "tests/physics/frozen/test_fits.py",
-    "tests/framework/sentences/test_sentences.py",
-    "tests/framework/test_memory.py",
-    "tests/plugins/executors/test_processes.py",
-    "tests/framework/test_study_killed.py",
-)
-"""The longest files, of the slow tests too; longest first."""
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the option that measures every test."""
+    parser.addoption(
+        "--store-durations",
+        action="store_true",
+        help="store the CPU seconds of all tests in tests/durations.csv",
+    )
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with the longest files, so that no process ends with one while the other is idle."""
-    ranks = {file: rank for rank, file in enumerate(LONGEST)}
-    items.sort(key=lambda item: ranks.get(item.nodeid.partition("::")[0], len(ranks)))
+@pytest.hookimpl(wrapper=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> Generator[None]:
+    """Mark the quick tests, then begin with the longest files of those that are left.
+
+    So no process ends with a long file while the other is idle. A test without a stored duration is
+    quick.
+    """
+    seconds = durations.stored()
+    for item in items:
+        is_long = seconds.get(durations.function_of(item.nodeid), 0.0) > durations.QUICK
+        if not is_long and item.get_closest_marker("slow") is None:
+            item.add_marker("quick")
+    yield
+    of_file: dict[Path, float] = defaultdict(float)
+    for item in items:
+        of_file[item.path] += seconds.get(durations.function_of(item.nodeid), 0.0)
+    items.sort(key=lambda item: -of_file[item.path])
 
 
 def pytest_collection_finish() -> None:
@@ -53,6 +61,8 @@ def pytest_collection_finish() -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Stop at once where there are no plugins: hundreds of failures would not say why."""
+    if config.option.store_durations:
+        config.pluginmanager.register(durations.Durations())
     # Collection only makes objects that stay; looking through them is a third of its time.
     gc.disable()
     # pytest-xdist would begin with the files of the most tests.

@@ -21,7 +21,11 @@ SCRIPTS = {
         1,
         {"needed": "0 of 1", "τ₀ held": "1 of 1"},
     ),
-    "kernels.py": (["--cases", "rough", "--points", "32"], 20, {"rough, N = 32": r"[1-4]?\d"}),
+    "operator_counts.py": (
+        ["--cases", "rough", "--points", "32"],
+        20,
+        {"rough, N = 32": r"[1-4]?\d"},
+    ),
     "next_step.py": (
         ["--cases", "rough", "--points", "32", "--number", "4"],
         3,

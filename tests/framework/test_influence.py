@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from pellicle.surface.influence import cell_coefficients
 from pellicle_plugins.kernels.half_spaces import TensedMembrane
-from tests.physics.tables import reference_rows
+from tests.physics.tables_of_runs import reference_rows
 
 Array = NDArray[np.float64]
 Radial = Callable[[Array], Array]

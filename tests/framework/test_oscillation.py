@@ -15,7 +15,7 @@ import pellicle as pl
 from pellicle.analysis import Oscillation, oscillations
 from pellicle.cli.app import app
 from pellicle.variables import names_of
-from tests.physics.tables import coated, half_space, heights, relaxing
+from tests.physics.tables_of_runs import coated, half_space, heights, relaxing
 
 K = 3.0 + 0.4j
 AMPLITUDE, FREQUENCY = 2e-6, 5.0

@@ -10,8 +10,9 @@ from typing import Any
 
 import pytest
 
+from tests import durations
+
 ROOT = Path(__file__).resolve().parents[2]
-OWNER = "https://example.org/OWNER/pellicle"
 CONDA_NAMES = {"matplotlib": "matplotlib-base"}
 
 
@@ -35,12 +36,14 @@ def test_versions_agree(project: dict[str, Any]) -> None:
     assert f'  version: "{version}"\n' in text(".conda/recipe.yaml")
 
 
-def test_keywords_and_licence_agree(project: dict[str, Any]) -> None:
-    """The licence is named alike, and every keyword of the package is one of codemeta.json."""
+def test_keywords_licence_and_requirements_agree(project: dict[str, Any]) -> None:
+    """Licence, keywords and requirements are those of the package."""
     meta = json.loads(text("codemeta.json"))
     assert meta["license"].endswith(f"/{project['license']}")
     assert f"\nlicense: {project['license']}\n" in text("CITATION.cff")
     assert {*project["keywords"]} <= {*meta["keywords"]}
+    required = [re.match(r"[\w-]+", dependency) for dependency in project["dependencies"]]
+    assert meta["softwareRequirements"] == [name[0] for name in required if name]
 
 
 def test_conda_recipe_has_the_dependencies(project: dict[str, Any]) -> None:
@@ -54,8 +57,25 @@ def test_conda_recipe_has_the_dependencies(project: dict[str, Any]) -> None:
     assert recipe == expected
 
 
-def test_the_files_that_tests_begin_with_exist() -> None:
-    """A file that is renamed or split keeps its place among the longest."""
-    listed = re.findall(r'^    "(tests/.*\.py)",$', text("tests/conftest.py"), re.MULTILINE)
-    assert len(listed) > 9
-    assert [name for name in listed if not (ROOT / name).exists()] == []
+def test_all_packages_are_imported_by_the_recipe() -> None:
+    """The recipe tries each package of the wheel."""
+    targets = tomllib.loads(text("pyproject.toml"))["tool"]["hatch"]["build"]["targets"]
+    packages = [Path(package).name for package in targets["wheel"]["packages"]]
+    assert f"imports: [{', '.join(packages)}]" in text(".conda/recipe.yaml")
+
+
+def test_workflows_do_what_the_script_does(project: dict[str, Any]) -> None:
+    """All that lands runs ``.ci/run``, and the README's tests on each Python that is announced."""
+    workflow = text(".github/workflows/tests.yml")
+    assert "- run: bash .ci/run\n" in workflow
+    pythons = re.findall(r"Python :: (3\.\d+)", "\n".join(project["classifiers"]))
+    assert f"python: {json.dumps(pythons)}\n" in workflow
+    (command,) = re.findall(r"python -m pytest .*", text("README.md"))
+    assert f"- run: {command}\n" in workflow
+
+
+def test_stored_durations_are_of_files_that_exist() -> None:
+    """A file that is renamed keeps its durations, or they are stored anew."""
+    files = {test.partition("::")[0] for test in durations.stored()}
+    assert len(files) > 9
+    assert [name for name in sorted(files) if not (ROOT / name).exists()] == []

@@ -142,4 +142,5 @@ def test_sdist_can_be_tested(sdist: set[str]) -> None:
         for path in (ROOT / "tests").rglob("*.*")
         if path.suffix in {".py", ".csv", ".txt", ".toml", ".md"}
     }
-    assert tests | {"LICENSE", "README.md", "pyproject.toml"} <= sdist
+    read_by_tests = {".ci/run", ".conda/recipe.yaml", ".github/workflows/tests.yml", "CITATION.cff"}
+    assert tests | read_by_tests | {"LICENSE", "README.md", "pyproject.toml"} <= sdist

@@ -20,7 +20,7 @@ from tests.adhesive_paths import (
     wave_pressure,
     wavy,
 )
-from tests.physics.tables import heights, paraboloid, tensed
+from tests.physics.tables_of_runs import heights, paraboloid, tensed
 from tests.random_adhesion import SAME, random_run, verdicts
 
 LINEAR = {"type": "linear", "work_of_adhesion": 1.0, "strength": 2.0}

@@ -12,8 +12,8 @@ import pytest
 
 from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Paraboloid
-from tests.physics.tables import paraboloid, tensed
-from tests.physics.tables import step as solved
+from tests.physics.tables_of_runs import paraboloid, tensed
+from tests.physics.tables_of_runs import step as solved
 
 POINTS = np.array([16, 32, 64, 128])
 A = 0.1

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from tests.physics.tables import heights, tensed
-from tests.physics.tables import step as solved
+from tests.physics.tables_of_runs import heights, tensed
+from tests.physics.tables_of_runs import step as solved
 
 
 @pytest.mark.parametrize("tension", [0.0, 0.05, 3.0])

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import pellicle as pl
 from pellicle.components import profile_of
-from tests.physics.tables import heights, step, steps, tensed
+from tests.physics.tables_of_runs import heights, step, steps, tensed
 
 TOLERANCE = 1e-9
 

@@ -9,7 +9,15 @@ import pytest
 from relaxation import triangle
 
 import pellicle as pl
-from tests.physics.tables import Table, coated, half_space, heights, paraboloid, relaxing, steps
+from tests.physics.tables_of_runs import (
+    Table,
+    coated,
+    half_space,
+    heights,
+    paraboloid,
+    relaxing,
+    steps,
+)
 
 MODULUS = 1e4
 ELASTIC = half_space(MODULUS)

@@ -10,7 +10,14 @@ import pytest
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.runs.relaxation import Relaxation
-from tests.physics.tables import coated, half_space, paraboloid, reference_rows, relaxing, tensed
+from tests.physics.tables_of_runs import (
+    coated,
+    half_space,
+    paraboloid,
+    reference_rows,
+    relaxing,
+    tensed,
+)
 
 MODULUS, TENSION = 5.0, 0.5
 

@@ -10,7 +10,7 @@ import pytest
 
 from pellicle.arrays import Array
 from tests.adhesive_paths import solved
-from tests.physics.tables import heights
+from tests.physics.tables_of_runs import heights
 
 # A rough punch has few cells in its zone of attraction.
 pytestmark = pytest.mark.filterwarnings("ignore::pellicle.errors.ConvergenceWarning")

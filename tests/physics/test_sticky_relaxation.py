@@ -10,7 +10,7 @@ import pytest
 import pellicle as pl
 from pellicle.results.path import path_variables
 from tests.adhesive_paths import FORCE, PARABOLOID, pulled_off, relaxing, solved
-from tests.physics.tables import coated, half_space, heights
+from tests.physics.tables_of_runs import coated, half_space, heights
 
 # The units E* = R = w = 1 have slopes beyond the theory.
 pytestmark = pytest.mark.filterwarnings("ignore::pellicle.errors.ConvergenceWarning")

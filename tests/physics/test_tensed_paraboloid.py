@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from tests.physics.tables import paraboloid, reference_rows, tensed
-from tests.physics.tables import step as solved
+from tests.physics.tables_of_runs import paraboloid, reference_rows, tensed
+from tests.physics.tables_of_runs import step as solved
 
 CONTACT_RADIUS = 0.1
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from tests.physics.tables import coated, half_space, paraboloid, relaxing, steps
+from tests.physics.tables_of_runs import coated, half_space, paraboloid, relaxing, steps
 
 MODULUS, SHARE, TIME = 1e4, 0.75, 2.0
 JUMP = {"to": "1 um", "time": 0, "num": 1}

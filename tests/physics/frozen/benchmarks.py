@@ -7,7 +7,7 @@ from functools import partial
 from itertools import product
 from typing import NamedTuple
 
-from kernels import KERNELS
+from operator_counts import KERNELS
 
 from tests.physics.frozen import reader
 

@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Any, ClassVar, Literal
 
 import cost
-import kernels
 import numpy as np
+import operator_counts
 import xarray as xr
 from numpy.typing import NDArray
 
@@ -109,9 +109,9 @@ def cost_applications(case: str, tension: float, points: int) -> int:
 
 
 def kernel_applications(case: str, kernel: str, points: int) -> int:
-    """Return the applications of a case of `kernels`."""
+    """Return the applications of a case of `operator_counts`."""
     with _caveats_hidden():
-        step = kernels.solve(case, kernels.KERNELS[kernel], points)
+        step = operator_counts.solve(case, operator_counts.KERNELS[kernel], points)
     return int(step["operator_applications"])
 
 

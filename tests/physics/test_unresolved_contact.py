@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from tests.physics.tables import half_space, heights, paraboloid
+from tests.physics.tables_of_runs import half_space, heights, paraboloid
 
 RADIUS, MODULUS = 1e-3, 1e4
 POINTS, SIZE = 32, 5e-4

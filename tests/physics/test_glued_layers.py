@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.physics.punch_on_layers import punch_factor
-from tests.physics.tables import heights, paraboloid, step
+from tests.physics.tables_of_runs import heights, paraboloid, step
 from tests.plugins.kernels.elastic_stack import HalfSpace, Layer, stack_compliance
 
 YOUNGS, LENGTH = 1e4, 1e-3

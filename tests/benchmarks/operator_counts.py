@@ -1,7 +1,7 @@
 """Operator applications of active_set on every built-in kernel.
 
-    python tests/benchmarks/kernels.py --points 64 128 256 512
-    python tests/benchmarks/kernels.py --cases free
+    python tests/benchmarks/operator_counts.py --points 64 128 256 512
+    python tests/benchmarks/operator_counts.py --cases free
 
 Domain L = 1 mm, E* = 10 kPa, to 1e-8; a row that did not converge says so:
 rough   periodic, self-affine (H = 0.8, rms 0.01 L, eight waves along the edge), 300 Pa

@@ -1,0 +1,76 @@
+"""Stored CPU seconds of each test: they say which tests are quick and which file is the longest."""
+
+from __future__ import annotations
+
+import csv
+import os
+import time
+from collections import defaultdict
+from collections.abc import Generator
+from pathlib import Path
+
+import pytest
+
+STORED = Path(__file__).with_suffix(".csv")
+QUICK = 0.05
+"""Mean CPU seconds of a case up to which a test is quick: with this, three quarters are."""
+_STORED_FROM = 0.005
+"""Mean CPU seconds of a case below which a test is not stored."""
+
+
+def function_of(nodeid: str) -> str:
+    """Return the node id of a test without its case."""
+    return nodeid.partition("[")[0]
+
+
+def stored() -> dict[str, float]:
+    """Return the mean CPU seconds of a case of each stored test function."""
+    with STORED.open(encoding="utf-8", newline="") as file:
+        return {row["test"]: float(row["seconds"]) for row in csv.DictReader(file)}
+
+
+class Durations:
+    """A plugin of pytest that stores the CPU seconds of tests that passed and of their children."""
+
+    def __init__(self) -> None:
+        self.before = _cpu_seconds()
+        self.seconds: dict[str, dict[str, float]] = defaultdict(lambda: defaultdict(float))
+
+    def pytest_runtest_logstart(self) -> None:
+        """Begin to count: what came before is no test's."""
+        self.before = _cpu_seconds()
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_makereport(
+        self,
+    ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+        """Note in the report of a phase the CPU seconds since the last phase."""
+        report = yield
+        now = _cpu_seconds()
+        report.cpu_seconds = now - self.before  # type: ignore[attr-defined]
+        self.before = now
+        return report
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Add up the phases of a test; pytest-xdist calls this in the process that started it."""
+        if report.passed:
+            cases = self.seconds[function_of(report.nodeid)]
+            cases[report.nodeid] += report.cpu_seconds
+
+    def pytest_sessionfinish(self, session: pytest.Session) -> None:
+        """Write the file anew, where tests that have not run keep what they had."""
+        if hasattr(session.config, "workerinput"):
+            return
+        measured = {test: sum(c.values()) / len(c) for test, c in self.seconds.items()}
+        means = stored() | measured
+        with STORED.open("w", encoding="utf-8", newline="") as file:
+            rows = csv.writer(file, lineterminator="\n")
+            rows.writerow(["test", "seconds"])
+            for test, mean in sorted(means.items()):
+                if mean >= _STORED_FROM:
+                    rows.writerow([test, f"{mean:.3f}"])
+
+
+def _cpu_seconds() -> float:
+    children = os.times()[2:4]
+    return time.process_time() + sum(children)
