@@ -7,6 +7,7 @@ from collections.abc import Hashable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
 from pellicle.errors import PellicleError
@@ -27,6 +28,9 @@ _CLASS = 0.25
 _LEAST = 0.5
 """Least information of a curve over that of another whose exclusions hold for it."""
 
+_RISE = 0.05, 0.9
+"""Shares of the range of the force between which a curve has its shape."""
+
 
 class Near(NamedTuple):
     """A curve beside another."""
@@ -41,18 +45,18 @@ def alike(
 ) -> list[tuple[Near, ...]]:
     """Return for each curve those that speak for it, the nearest first; none for these."""
     kinds: list[Hashable] = []
-    known = np.zeros(len(rows))
+    known, rises = np.zeros(len(rows)), [(np.zeros(0), np.zeros(0))] * len(rows)
     for i, (source, row) in enumerate(zip(sources, rows, strict=True)):
         curve = source.curve
         if isinstance(curve, PellicleError) or row.failure:
             kinds.append(row)
             continue
-        known[i] = _information(curve.force)
+        known[i], rises[i] = _information(curve.force), (curve.position, curve.force)
         of_instrument = curve.stiffness, curve.speed, curve.time is None, curve.is_depth
         kinds.append(kind_of(row.group, described(config.indenter_of(source)), *of_instrument))
     return [
         tuple(Near(j, bool(own >= _LEAST * known[j])) for j in near)
-        for own, near in zip(known, neighbours(kinds), strict=True)
+        for own, near in zip(known, neighbours(kinds, order_of(rises)), strict=True)
     ]
 
 
@@ -80,22 +84,58 @@ def kind_of(*properties: object) -> Hashable:
     return tuple(map(key, properties))
 
 
-def neighbours(kinds: Sequence[Hashable]) -> list[list[int]]:
-    """Return for each curve the nearest of its kind that speak for it, before and after it.
+def neighbours(kinds: Sequence[Hashable], order: ArrayLike = 0.0) -> list[list[int]]:
+    """Return for each curve those of its kind that speak for it, the nearest in order first.
 
-    These are one in 16, and have none; nor have curves of which there are few.
+    These are one in 16 in their order, and have none; nor have curves of which there are few.  So
+    each material of a map has some, wherever its regions lie.
     """
+    at = np.broadcast_to(np.asarray(order, dtype=float), len(kinds))
     found: list[list[int]] = [[] for _ in kinds]
     groups: dict[Hashable, list[int]] = defaultdict(list)
     for i, kind in enumerate(kinds):
         groups[kind].append(i)
-    for some in groups.values():
+    for members in groups.values():
+        some = sorted(members, key=lambda i: float(at[i]))
         for number, i in enumerate(some if len(some) >= _FEW else ()):
             first = number - number % _EVERY
             if number > first:
                 around = some[first], *some[first + _EVERY : first + _EVERY + 1]
-                found[i] = sorted(around, key=lambda j: abs(j - i))
+                # What another material rules out may be what this one is.
+                own = [j for j in around if int(at[j]) == int(at[i])] or around
+                found[i] = sorted(own, key=lambda j: (abs(at[j] - at[i]), abs(j - i)))
     return found
+
+
+def order_of(curves: Sequence[tuple[Array, Array]]) -> Array:
+    """Return a number for each curve by its position and force, by which curves alike are together.
+
+    Its whole part counts strata of stiffness with a gap below each, its fraction is the shape: the
+    mean force over the way on which it rises, over the rise.  Both are those of materials, where
+    contact points and places are not.
+    """
+    traits = np.array([_traits(*curve) for curve in curves]).reshape(-1, 2)
+    stiffness, shape = traits.T
+    order, strata = np.argsort(stiffness, kind="stable"), np.zeros(len(traits))
+    strata[order[1:]] = np.cumsum(np.diff(stiffness[order]) > _CLASS)
+    return np.asarray(strata + np.clip(shape, 0.0, 0.99))
+
+
+def _traits(position: Array, force: Array) -> tuple[float, float]:
+    """Return the logarithm of the stiffness of a curve, and its shape; 0 if it does not rise."""
+    rows = np.isfinite(position) & np.isfinite(force)
+    position, force = position[rows], force[rows]
+    if not force.size or not np.ptp(force):
+        return 0.0, 0.0
+    bottom, top = float(np.quantile(force, 0.1)), float(force.max())
+    share = (force[: np.argmax(force) + 1] - bottom) / (top - bottom)
+    first = int(np.flatnonzero(share <= _RISE[0])[-1:].sum())
+    last = first + int(np.argmax(share[first:] >= _RISE[1]))
+    way = abs(float(position[last] - position[first]))
+    if not way:
+        return 0.0, 0.0
+    shape = np.trapezoid(share[first : last + 1], position[first : last + 1]) / way
+    return float(np.log((top - bottom) / way)), abs(float(shape))
 
 
 def _information(force: Array) -> float:

@@ -53,7 +53,8 @@ def panels(fit: Fit | ManyFits) -> dict[str, Drawing]:
     found: dict[str, Drawing] = {caption: figure_of(of) for caption, of in beside.items() if of}
     for name, images in fit.maps.items():
         title = Path(name).name
-        caption = f"{title}: grey where there is no accepted fit, or an interval is open."
+        caption = f"{title}: grey where there is no accepted fit or no value, hatched where one "
+        caption += "end of the interval is open."
         found[caption] = map_figure(images, title)
     pages = sheets(fit.rows)
     for number, draw in enumerate(pages[:_PAGES], 1):

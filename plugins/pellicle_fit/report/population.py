@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellicle.arrays import Array, Dataset
+from pellicle.arrays import Array, Dataset, Mask
 from pellicle.components import Axis, Chart, Look, Series
 from pellicle.files import atomic_write
 from pellicle.results import header
@@ -24,6 +24,7 @@ from pellicle_fit.words.names import words
 from .contact_sheet import PAGE, sheets
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _DRAWN = {MODULUS: "Pa", TENSION: "N/m"}
@@ -35,6 +36,8 @@ _BINS = 5, 40
 """Least and greatest number of bins."""
 _DECADE = 10.0
 """Greatest over least value beyond which an axis is logarithmic."""
+_SQUARE = (0, 0), (1, 0), (1, 1), (0, 1), (0, 0)
+"""Corners of a pixel."""
 _WIDTH, _AROUND = 3.7, 0.75
 """Width of a panel, and its height beside that of the image [inch]."""
 
@@ -122,7 +125,7 @@ def _histogram(
 def map_figure(images: Dataset, title: str) -> tuple[Callable[[Figure], None], tuple[float, float]]:
     """Return what draws each parameter beside the width of its interval, and its size [inch].
 
-    It is grey where there is no value.
+    It is grey where there is no value, and hatched where one end of its interval is open.
     """
     names = [name for name in (*SHOWN, CONTACT_HEIGHT) if name in images]
     across, along = _pitches(images)
@@ -135,6 +138,7 @@ def map_figure(images: Dataset, title: str) -> tuple[Callable[[Figure], None], t
         for name, pair in zip(names, panels, strict=True):
             width = images[f"{name}_high"] - images[f"{name}_low"]
             heads = {name.replace("_", " "): images[name], "width of its 95 % interval": width}
+            is_open = images[f"{name}_low"].isnull() != images[f"{name}_high"].isnull()
             for axes, (head, image) in zip(pair, heads.items(), strict=True):
                 scale, unit = axis_unit(image.values, images[name].attrs["units"])
                 beside = {"label": unit, "shrink": 0.8}
@@ -142,6 +146,7 @@ def map_figure(images: Dataset, title: str) -> tuple[Callable[[Figure], None], t
                 robust: dict[str, Any] = {"robust": True, "center": False, "extend": "both"}
                 shown = (image * scale).assign_coords(sides)
                 shown.plot.imshow(ax=axes, cbar_kwargs=beside, **robust)
+                _hatch(axes, is_open.values)
                 # Pixels of a line of curves have no height.
                 axes.set(facecolor="0.8", aspect="equal" if min(image.shape) > 1 else "auto")
                 axes.set_title(head, fontsize="medium")
@@ -149,6 +154,25 @@ def map_figure(images: Dataset, title: str) -> tuple[Callable[[Figure], None], t
     ratio = np.clip(images["y"].size * along / (images["x"].size * across), 0.2, 3.0)
     height = (_WIDTH - 1.3) * float(ratio) + _AROUND
     return draw, (2 * _WIDTH, height * len(names) + 0.4)
+
+
+def _hatch(axes: Axes, pixels: Mask) -> None:
+    """Hatch pixels of the image of an axes, whose rows are along y."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path as Outline
+
+    if not pixels.any():
+        return
+    (image,) = axes.images
+    left, right, low, high = image.get_extent()
+    rows, columns = np.nonzero(pixels)
+    if image.origin == "upper":
+        low, high = high, low
+    size = (right - left) / pixels.shape[1], (high - low) / pixels.shape[0]
+    corners = np.column_stack([left + columns * size[0], low + rows * size[1]])
+    squares = corners[:, None] + np.array(_SQUARE) * size
+    outline = Outline.make_compound_path(*(Outline(square, closed=True) for square in squares))
+    axes.add_patch(PathPatch(outline, fill=False, hatch="////", edgecolor="0.5", linewidth=0))
 
 
 def _pitches(images: Dataset) -> tuple[float, float]:

@@ -20,6 +20,8 @@ _OPEN = {End.LIMIT, End.RANGE, End.STEPS, End.LACKING}
 """What an end is that needs a reason."""
 _CORRELATED = 0.3
 """Least size of a correlation that tables show."""
+_MANY = 200
+"""Most curves whose table a page shows before a click, as it stays quick."""
 _SI_DIGITS = 6
 """Significant digits of numbers in SI."""
 _SEARCHES = {"converged": "", "given_up": "given up"}
@@ -140,7 +142,8 @@ def rows(of: Sequence[Row], *, si: bool = False) -> Table:
         Column("curve", [row.name for row in of]),
         Column("verdict", [r.fit.headline for r in of]),
     ]
-    return Table([*first, *columns], "Each curve on its own, with its 95 % intervals.")
+    caption = "Each curve on its own, with its 95 % intervals."
+    return Table([*first, *columns], caption, folded=len(of) > _MANY)
 
 
 def groups(of: Sequence[Row], *, si: bool = False) -> Table:

@@ -14,6 +14,7 @@ import h5py
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
 
@@ -22,10 +23,11 @@ from pellicle.errors import ConfigError
 from pellicle_fit.files.measurement import Site
 from pellicle_fit.population.images import force_maps
 from pellicle_fit.population.row import Row
+from pellicle_fit.report.population import map_figure
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.plugins.fit import instruments
 from tests.plugins.fit.test_many import ALONE, BEAD, curve, save
-from tests.plugins.fit.test_population import row
+from tests.plugins.fit.test_population import CLOSED, estimate, row
 
 COLUMNS, ROWS, BROKEN, EMPTY = 4, 3, 5, 10
 OPTIONS = BEAD | ALONE
@@ -188,3 +190,27 @@ def test_no_grid(tmp_path: Path) -> None:
     save(tmp_path / "a.csv", *curve(1))
     with pytest.raises(ConfigError, match="hold 0 force maps"):
         pl.fit_map(tmp_path / "a.csv", fix={"tension": 0}, **OPTIONS)
+
+
+def test_open_pixels_are_hatched() -> None:
+    """Those with one open end are, in both images of the quantity; all others are not."""
+    rows = [
+        row(f"{n}", 2e3, tension=estimate(1e-3, "N/m", (None, 2.0) if n in (1, 4) else CLOSED))
+        for n in range(6)
+    ]
+    for number, one in enumerate(rows):
+        one.map, one.accepted = "map", True
+        one.site = Site(1e-6 * (number % 3), 2e-6 * (number // 3))
+    (images,) = force_maps(rows)[0].values()
+    fill, size = map_figure(images, "map")
+    figure = Figure(size)
+    fill(figure)
+    drawn = {
+        axes.get_title(): np.asarray(axes.patches[0].get_path().vertices, dtype=float)
+        for axes in figure.axes
+        if axes.images and axes.patches
+    }
+    assert len(drawn) == 2
+    for corners in drawn.values():
+        centres = corners.reshape(-1, 5, 2)[:, :4].mean(axis=1)
+        np.testing.assert_allclose(centres, [[1.0, 0.0], [1.0, 2.0]], atol=1e-9)

@@ -129,6 +129,12 @@ def test_pages_are_filled() -> None:
     assert [len(sheets([row("a")] * count)) for count in (28, 29, 57)] == [1, 2, 3]
 
 
+def test_long_tables_of_curves_are_shown_on_demand() -> None:
+    """A page of many curves begins with their table folded."""
+    assert not tables.rows([row("a")] * 200).folded
+    assert tables.rows([row("a")] * 201).folded
+
+
 def test_table_for_a_paper(tmp_path: Path) -> None:
     """It has kPa and mN/m in all three formats; a value that cannot be quoted has its interval."""
     none = estimate(0.0, "N/m") | {"low": None, "high": None, "held": True}
