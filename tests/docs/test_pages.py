@@ -24,7 +24,7 @@ CEILINGS = {
     "loading": 1250,
     "adhesion": 1370,
     "time": 950,
-    "flow-or-drain": 955,
+    "flow-or-drain": 995,
     "results": 930,
     "outputs": 1200,
     "gradients": 580,

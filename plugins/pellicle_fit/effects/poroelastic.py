@@ -26,8 +26,9 @@ _WIDER = {"open": 1.5, "sealed": 0.9}
 """Growth of a² under a tension, over a s: what is pressed is wider than the contact."""
 _DRAINED = 1e-12
 """a²/(Dt) below which nothing is left to drain."""
-_ROUND, _OTHER = 0.005, 0.015
-"""Errors of the force for a round tip and for any other, against solutions of the whole problem."""
+_ROUND, _OTHER, _TENSED = 0.007, 0.015, 0.045
+"""Errors of the force for a round tip, for any other and under a tension, against solutions of the
+whole problem."""
 
 
 class Poroelastic(Relaxing, title="draining"):
@@ -58,8 +59,9 @@ class Poroelastic(Relaxing, title="draining"):
 
     def accuracy(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> float:
         """Return the error of the force over the largest one."""
-        own = _ROUND if contact.tip_radius else _OTHER
-        return max(own, super().accuracy(contact, curve, beside))
+        if np.any(contact.tension):
+            return _TENSED
+        return _ROUND if contact.tip_radius else _OTHER
 
     def limits(self, sizes: Sizes) -> Mapping[str, tuple[float, float]]:
         """Return diffusivities by which a hundredth of the force drains, or all but that."""
