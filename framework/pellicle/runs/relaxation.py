@@ -161,15 +161,14 @@ class _Pressures:
     def arrays(run: Run) -> float:
         durations = run.loading.durations
         waves = len(span_of(run.kernel, durations, run.grid).waves)
-        kept = min(_KEPT, len({*map(_rounded, durations)}))
-        return _OF_SUM + _OF_WAVE * waves + run.steps + kept * _OF_LENGTH
+        return _OF_SUM + _OF_WAVE * waves + run.steps
 
     def __init__(self, run: Run, operator: Operator) -> None:
         durations = run.loading.durations
         self._operator, self._durations, self._kernel = operator, durations, run.kernel
         span = span_of(run.kernel, durations, run.grid)
         self._waves, self._few = span.waves, FewWaves(instantaneous(run.kernel), span, operator)
-        self._of_length = lru_cache(_KEPT)(self._make)
+        self._of_length: tuple[float, Operator] | None = None
         self._responses = responses(run.kernel, durations, span.waves, range(len(durations)))
         self._done = -1
 
@@ -184,17 +183,23 @@ class _Pressures:
             values = next(self._responses)
             self._done += 1
         assert values is not None, "each step is taken once"
-        operator = self._of_length(_rounded(self._durations[self._done]))
+        operator = self._stepping(_rounded(self._durations[self._done]))
         if not path:
             return operator, None
         pressures = np.array([finished.state.pressure for finished in path])
         return operator, self._few.displacement(np.tensordot(values[: len(path)].T, pressures, 1))
 
-    def _make(self, duration: float) -> Operator:
+    def _stepping(self, duration: float) -> Operator:
+        """Return the operator of a step, which equal steps in a row share."""
         if not duration:
             return self._operator
-        stiffer = stiffened(self._kernel, duration).compliance(self._waves)
-        return self._few.interpolated(stiffer / self._kernel.compliance(self._waves))
+        if self._of_length is None or self._of_length[0] != duration:
+            # The last one goes before the next is made.
+            self._of_length = None
+            stiffer = stiffened(self._kernel, duration).compliance(self._waves)
+            operator = self._few.interpolated(stiffer / self._kernel.compliance(self._waves))
+            self._of_length = duration, operator
+        return self._of_length[1]
 
 
 def _rounded(duration: float) -> float:

@@ -23,6 +23,9 @@ from .convolution import Float, Workspace, convolve
 Symbol = Callable[[Array, Array], Array]
 """G [m/Pa] of the waves q_x, q_y [rad/m], two arrays of one shape; real and even."""
 
+_SMALL = 2**16
+"""Cells of a grid up to which what is made from its operator is kept."""
+
 
 class Operator:
     """The linear map from pressure [Pa] to displacement [m], both of the grid's shape.
@@ -52,7 +55,7 @@ class Operator:
         self.workspace = Workspace()
         """Memory of the transforms, shared with `scaled` copies and preconditioners."""
         self.made: dict[object, Any] = {}
-        """What has been made from it for all load steps, shared with `scaled` copies."""
+        """What `keep` has kept, shared with `scaled` copies."""
         # Shared with `scaled` copies.
         self._count = [0]
         self._factor = 1.0
@@ -132,15 +135,24 @@ class Operator:
         scaled._spring_compliance = self._spring_compliance * factor
         return scaled
 
+    def keep(self, key: object, made: object) -> None:
+        """Keep what is made from it for all load steps, in the place of what was at this key.
+
+        On a large grid it is not kept: making it takes little of the time, and keeping it memory.
+        """
+        if math.prod(self.grid.shape) <= _SMALL:
+            self.made[key] = made
+
     def coarsened(self) -> Operator:
         """Return the operator of the same solid on `Grid.coarsened`, as `scaled` as this one.
 
-        It is made once, and uses the memory of the transforms of this one.
+        It uses the memory of the transforms of this one.
         """
         coarse: Operator | None = self.made.get("coarsened")
         if coarse is None:
-            coarse = self.made["coarsened"] = self.on(self.grid.coarsened())
+            coarse = self.on(self.grid.coarsened())
             coarse.workspace = self.workspace
+            self.keep("coarsened", coarse)
         return coarse.scaled(self._factor).with_spring(self._spring_compliance)
 
     def symbol(self, qx: Array, qy: Array) -> Array:

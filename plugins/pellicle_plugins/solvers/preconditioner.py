@@ -74,7 +74,7 @@ class Preconditioner:
         scale, parts = operator.made.get(Preconditioner, (None, None))
         if parts is None or scale != operator.greatest:
             parts = _Parts.of(operator)
-            operator.made[Preconditioner] = operator.greatest, parts
+            operator.keep(Preconditioner, (operator.greatest, parts))
         self._plane, self._padded = parts.plane, parts.padded
         self._stiffness = parts.stiffness
         self.stiffest = self._stiffness.greatest
