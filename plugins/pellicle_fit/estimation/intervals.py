@@ -205,6 +205,11 @@ class _Way:
                 return
         bracketed = np.isfinite(self.above[0])
         one, other = (self.below, self.above) if bracketed else (last, self.below)
+        if other[0] <= one[0]:
+            # χ² jumps here: from another start a search has found another minimum.
+            self.stop()
+            self.ended = True
+            return
         slope = (other[1] - one[1]) / (other[0] - one[0])
         new = one[0] - one[1] / slope if slope > 0 else np.inf
         is_close = abs(excess) <= _SMALL * self.rise
