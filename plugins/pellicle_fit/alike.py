@@ -125,9 +125,11 @@ def _traits(position: Array, force: Array) -> tuple[float, float]:
     """Return the logarithm of the stiffness of a curve, and its shape; 0 if it does not rise."""
     rows = np.isfinite(position) & np.isfinite(force)
     position, force = position[rows], force[rows]
-    if not force.size or not np.ptp(force):
+    if not force.size:
         return 0.0, 0.0
     bottom, top = float(np.quantile(force, 0.1)), float(force.max())
+    if not bottom < top:
+        return 0.0, 0.0
     share = (force[: np.argmax(force) + 1] - bottom) / (top - bottom)
     first = int(np.flatnonzero(share <= _RISE[0])[-1:].sum())
     last = first + int(np.argmax(share[first:] >= _RISE[1]))
