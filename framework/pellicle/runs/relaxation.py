@@ -28,8 +28,8 @@ from pellicle.surface import Operator, operator_of
 from pellicle.surface.few_waves import FewWaves, Span, sampled_waves
 
 Composed = TypeVar("Composed", Setting, Traction)
-# Lengths of steps whose operators are kept, and the size of what is kept of one in arrays of the
-# grid's shape.
+# Lengths of steps whose operators are kept on a periodic boundary, and the size of what is kept of
+# one in arrays of the grid's shape.
 _KEPT: Final = 4
 _OF_LENGTH: Final = 1.15
 # Arrays of a few waves on a free boundary: those of one on all grids, and of their sum.

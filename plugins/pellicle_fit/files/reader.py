@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import replace
@@ -93,6 +94,23 @@ def curve_of(
         raise MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in lacks})
     curve = replace(from_columns(made, own), site=site, pause=pause, messages=messages)
     return recalibrated(curve, given, is_own=True)
+
+
+def sections_of(
+    path: Path, section: re.Pattern[str], end: bytes, longest: int
+) -> tuple[int, list[tuple[str, str]]]:
+    """Return where a header ends, and name and text of its sections in order.
+
+    Titles are what ``section`` matches, a name its only group. A header that does not ``end``
+    within so many bytes is a ValueError.
+    """
+    with path.open("rb") as file:
+        beginning = file.read(longest)
+    length = beginning.find(end)
+    if length < 0:
+        raise ValueError("its header does not end")
+    parts = section.split(beginning[:length].decode("latin-1").replace("\r\n", "\n"))
+    return length, [*zip(parts[1::2], parts[2::2], strict=True)]
 
 
 def refused(path: Path, kind: str, error: Exception) -> StorageError:

@@ -18,7 +18,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle_fit.files.measurement import Measurement, Readers
-from pellicle_fit.files.reader import Calibration, Reader, curve_of, refused
+from pellicle_fit.files.reader import Calibration, Reader, curve_of, refused, sections_of
 
 _MARK, _END = rb"\*Force file list", rb"\*File list end"
 _LONGEST = 1 << 20
@@ -93,16 +93,8 @@ def _curve(path: Path, given: Calibration) -> Measurement:
 
 def _sections(path: Path) -> list[tuple[str, Section]]:
     """Return the sections of a header with their names, which may be the same."""
-    with path.open("rb") as file:
-        beginning = file.read(_LONGEST)
-    end = beginning.find(_END)
-    if end < 0:
-        raise ValueError("its header does not end")
-    parts = _SECTION.split(beginning[:end].decode("latin-1").replace("\r\n", "\n"))
-    return [
-        (name, dict(_ENTRY.findall(text)))
-        for name, text in zip(parts[1::2], parts[2::2], strict=True)
-    ]
+    _, sections = sections_of(path, _SECTION, _END, _LONGEST)
+    return [(name, dict(_ENTRY.findall(text))) for name, text in sections]
 
 
 def _rows(path: Path, channel: Section) -> tuple[Array, Array]:

@@ -16,7 +16,7 @@ import numpy as np
 
 from pellicle.arrays import Array, Mask
 from pellicle_fit.files.measurement import Measurement, Readers
-from pellicle_fit.files.reader import Calibration, Reader, curve_of, refused
+from pellicle_fit.files.reader import Calibration, Reader, curve_of, refused, sections_of
 
 _END = b"\r\n#!"
 _LONGEST = 1 << 26
@@ -77,15 +77,10 @@ class Nanosurf(Reader, title="Nanosurf"):
 
 def _content(path: Path) -> tuple[Sections, dict[str, dict[str, Channel]]]:
     """Return the sections of a header, and the channels of each frame by what they measure."""
-    with path.open("rb") as file:
-        beginning = file.read(_LONGEST)
-    end = beginning.find(_END)
-    if end < 0:
-        raise ValueError("its header does not end")
-    parts = _SECTION.split(beginning[:end].decode("latin-1").replace("\r\n", "\n"))
+    end, texts = sections_of(path, _SECTION, _END, _LONGEST)
     sections = {
         name: dict(line.split("=", 1) for line in text.splitlines() if "=" in line)
-        for name, text in zip(parts[1::2], parts[2::2], strict=True)
+        for name, text in texts
     }
     offset, size, channels = end + len(_END), path.stat().st_size, dict[str, dict[str, Channel]]()
     groups = sections["DataSet"]
