@@ -14,6 +14,7 @@ from .body import BodyOfRevolution as BodyOfRevolution
 from .depth_curves import spread as spread
 from .depth_curves import stretched as stretched
 from .depth_curves import touching as touching
+from .dynamic_punch import dynamic_punch_stiffness as dynamic_punch_stiffness
 from .equation import kinks_of as kinks_of
 from .indentation import AxisymmetricContact as AxisymmetricContact
 from .indentation import indent as indent

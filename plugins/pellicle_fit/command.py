@@ -60,7 +60,13 @@ def fit(
         Option(metavar="NAME=VALUE", help="Of spring_constant, sensitivity, radius: radius=5%."),
     ] = None,
     baseline: Annotated[Text, Option(help="To fit: none (default), offset, slope.")] = None,
-    segment: Annotated[Text, Option(help="Pass to fit: approach (default), retract, both.")] = None,
+    segment: Annotated[
+        Text, Option(help="To fit: approach (default), approach+hold, retract, both.")
+    ] = None,
+    frequencies: Annotated[
+        Texts, Option(metavar="F", help='Of sines in a hold: "10 Hz"; repeat it.')
+    ] = None,
+    lag: Annotated[Text, Option(help='Of the force behind the position: "0.2 ms".')] = None,
     spring_constant: Annotated[Text, Option(help='Of the cantilever: "0.05 N/m".')] = None,
     sensitivity: Annotated[Text, Option(help='Deflection over volts: "50 nm/V".')] = None,
     columns: Annotated[

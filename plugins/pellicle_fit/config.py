@@ -133,7 +133,18 @@ class FitConfig(FromFile, Calibration):
     baseline: Literal["none", "offset", "slope"] = Field(
         "none", description="force before contact that is fitted: offset, or offset and slope"
     )
-    segment: Segment = Field("approach", description="the pass that is fitted")
+    segment: Segment = Field(
+        "approach", description="what is fitted: a pass, the approach and its hold, or both passes"
+    )
+    frequencies: Annotated[
+        tuple[Annotated[float, Quantity("Hz", above=0)], ...],
+        list_or_entry(list[float | str] | float | str),
+    ] = Field(
+        (), description="frequencies at which the indenter oscillates in a hold; told as K′ and K″"
+    )
+    lag: Annotated[float, Quantity("s")] = Field(
+        0.0, description="time by which the force is read after the position"
+    )
     per_file: dict[str, tuple[Any, ...]] = Field(
         default_factory=dict,
         description="fields of the indenter, spring_constant or sensitivity, each with a list of "

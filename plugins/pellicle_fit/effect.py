@@ -17,6 +17,8 @@ from functools import cache
 from itertools import product
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import core_schema
@@ -28,6 +30,8 @@ from pellicle.units import Quantity, quantity_of
 from .contact.contact import Contact as Contact
 from .contact.curve import Curve as Curve
 
+ComplexArray = NDArray[np.complex128]
+"""Complex numbers."""
 Values = Mapping[str, float]
 """Values [SI] of quantities by name."""
 
@@ -252,6 +256,15 @@ class Responds(Effect):
     def relaxed(self, time: float) -> float:
         """Return the modulus after a time [s] over E*."""
         return 1.0
+
+    def complex_modulus(
+        self, frequency: Array, radius: Array, length: Array | float
+    ) -> ComplexArray | None:
+        """Return E*(ω)/E* of a contact that stays at frequencies [Hz]; None if it has none.
+
+        Its radii [m] are those without tension, and ``length`` is s = 2τ₀/E* [m].
+        """
+        return None
 
 
 class Adds(Effect):

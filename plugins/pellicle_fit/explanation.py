@@ -91,12 +91,19 @@ class Explanation:
         if any(effect.balances for effect in responds) and self.of(Yields):
             return "nothing may be in series with what balances the cantilever itself"
         for curve in curves:
-            contact = curve.contact
+            contact, sizes = curve.contact, Sizes.of_curve(curve)
+            one = np.ones(1)
+            if curve.sines and any(
+                effect.known(sizes).complex_modulus(one, one, 0.0) is None for effect in responds
+            ):
+                return "what a sine tells beside it is not known"
             for effect in (*bends, *(e for e in self.effects if e not in bends)):
                 if excuse := effect.excuse(contact, curve, self.types - {effect.type_name}):
                     return excuse
                 if isinstance(effect, Bends):
-                    contact = effect.known(Sizes.of_curve(curve)).contact(contact)
+                    contact = effect.known(sizes).contact(contact)
+            if curve.sines and "tension" in names and not contact.is_own:
+                return "what a sine tells under a tension is known of a bare half-space alone"
         return ""
 
     def accuracy(self, curve: Curve) -> float:

@@ -20,6 +20,8 @@ def print_fit(fit: Record, *, quiet: bool, details: bool, si: bool) -> None:
     """Print numbers, verdict and next step, then warnings; in detail what they rest on."""
     for line in () if quiet else told(fit, si=si):
         echo(line)
+    if fit.sines and not quiet:
+        print_table(tables.sines(fit, si=si), si=si)
     if details and not quiet:
         for table in (tables.estimates, tables.explanations, tables.curves):
             print_table(table(fit, si=si), si=si)

@@ -80,7 +80,7 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
             indenters.append(config.indenter_of(source))
             if isinstance(source.curve, PellicleError):
                 raise source.curve
-            measured.append(clean(source.curve, config.segment))
+            measured.append(clean(source.curve, config.segment, config.frequencies, config.lag))
         except ConfigError as error:
             if len(sources) == 1 or isinstance(error, MissingInputError):
                 raise
@@ -109,6 +109,7 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
             unloading=one.unloading,
             stiffness=one.stiffness,
             touch=point,
+            sines=one.sines,
         )
         for one, body in zip(measured, bodies, strict=True)
     )

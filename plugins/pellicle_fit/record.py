@@ -99,6 +99,16 @@ class Record:
         return self.curves[0] if self else {}
 
     @property
+    def sines(self) -> list[dict[str, Estimate]]:
+        """What each sine tells: frequency, storage and loss stiffness and modulus, phase.
+
+        The moduli are the parts of the complex reduced modulus.  Of several curves it is those of
+        each in order.
+        """
+        of = (sine for curve in self.curves for sine in curve.get("sines", ()))
+        return [{name: Estimate.of_dict(e) for name, e in sine.items()} for sine in of]
+
+    @property
     def messages(self) -> list[str]:
         """Warnings, and notes of what was done; those of one of several curves with its name."""
         return list(self.data.get("messages", ()))
@@ -131,9 +141,14 @@ class Record:
         counts = {"failed_checks": len(self.failed_checks), "messages": len(self.messages)}
         noise = {"points": self.curve["points"], "noise": self.curve["noise"]["value"]}
         known = self.data | noise | counts
+        sines = {
+            f"sine_{number}_{name}": estimate
+            for number, sine in enumerate(self.sines, 1)
+            for name, estimate in sine.items()
+        }
         found = {
             f"{name}{end}": number
-            for name, e in self.estimates().items()
+            for name, e in (self.estimates() | sines).items()
             for end, number in zip(ENDS, (e.value, e.low, e.high), strict=True)
         } | {name: known.get(name) for name in NUMBERS}
         return {name: np.nan if value is None else float(value) for name, value in found.items()}

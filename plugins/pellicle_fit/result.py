@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from pellicle.arrays import Array
@@ -13,6 +12,7 @@ from .config_input import described
 from .estimation.candidate import Candidate
 from .estimation.coordinates import MODULUS
 from .estimation.intervals import CONFIDENCE, Estimate
+from .estimation.moduli import of_sines
 from .files.measurement import Measurement, Note
 from .record import Record
 from .selection.advice import Advice
@@ -99,7 +99,7 @@ def data_of_fit(
     if_present = dict(answer.if_present)
     if poissons_ratio is not None:
         for moduli in filter(None, (over_tied, if_present)):
-            moduli["youngs_modulus"] = _youngs(moduli[MODULUS], poissons_ratio)
+            moduli["youngs_modulus"] = moduli[MODULUS].times(1 - poissons_ratio**2)
     parameters = {**answer.if_present, **selected.sought}
     of_all = [*remarks(answer)]
     messages = [*_messages(answer, curves), *of_all]
@@ -145,13 +145,6 @@ def data_of_fit(
     }
 
 
-def _youngs(modulus: Estimate, ratio: float) -> Estimate:
-    """Return E = (1 − ν²) E* [Pa]."""
-    factor = 1 - ratio**2
-    low, high = (end and end * factor for end in (modulus.low, modulus.high))
-    return replace(modulus, value=modulus.value * factor, low=low, high=high)
-
-
 def _messages(answer: Answer, curves: Sequence[tuple[str, Measurement]]) -> list[str]:
     """Return what is said of each curve; of one of several with its name."""
     found = list[str]()
@@ -193,6 +186,10 @@ def _curve(
         ],
         "messages": list(measured.messages),
         "quantities": [slot.full_name for slot in slots],
+        "sines": [
+            {quantity: e.to_dict() for quantity, e in sine.items()}
+            for sine in of_sines(answer.selected, i)
+        ],
         **{s.name: sought[s.full_name].to_dict() for s in slots if s.full_name in sought},
         "data": data_of(measured, config),
     }

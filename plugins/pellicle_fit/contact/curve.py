@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pellicle.arrays import Array, Mask
 from pellicle.components import HasForceCurve
 from pellicle.errors import ConfigError
+from pellicle_fit.sine import Sine
 
 from .contact import Contact
 
@@ -52,6 +53,8 @@ class Curve:
     """How many measured rows each row is the mean of; None if one."""
     is_rough: bool = False
     """Whether it only has to tell where a minimum is."""
+    sines: tuple[Sine, ...] = ()
+    """What oscillates beside the rows."""
 
     @cached_property
     def base(self) -> Array:
@@ -114,6 +117,22 @@ class Curve:
             if rows.any() and np.ptp(self.clock[rows]) > 0:
                 velocity[rows] = np.polyfit(self.clock[rows], self.base[rows], 1)[0]
         return velocity
+
+    def at_velocity(self, velocity: float) -> Curve:
+        """Return the same rows with one velocity of the base [m/s]."""
+        curve = replace(self)
+        curve.__dict__["velocity"] = np.full_like(self.position, velocity)
+        return curve
+
+    @cached_property
+    def held(self) -> Curve:
+        """The states about which sines oscillate, a row each."""
+        position, force, time = np.array([(s.position, s.force, s.time) for s in self.sines]).T
+        still = np.zeros(force.size, dtype=bool)
+        at_rest = replace(
+            self, position=position, force=force, time=time, unloading=still, counts=None, sines=()
+        )
+        return at_rest.at_velocity(0.0)
 
     @cached_property
     def smoothed(self) -> Array:

@@ -82,11 +82,15 @@ class Poroelastic(Relaxing, title="draining"):
         """Return ∫ 1 + (1 − 2ν) g(D (t − t′)/a²) dt′ [s] over intervals, a that at t."""
         a = np.broadcast_to(radius(), nodes.shape)[:, 1:, None]
         passed = np.maximum(nodes[:, 1:, None] - nodes[:, None, :], 0.0)
-        flowed = self.diffusivity * passed
+        return -np.diff(self.held(passed, a, length), axis=2)
+
+    def held(self, time: Array, radius: Array, length: Array | float) -> Array:
+        """Return ∫ 1 + (1 − 2ν) g(Dt/a²) dt [s]."""
+        flowed = self.diffusivity * time
         # A contact of no size has drained.
-        squared = np.maximum(a * (a + _WIDER[self.surface] * length), _DRAINED * flowed)
+        squared = np.maximum(radius * (radius + _WIDER[self.surface] * length), _DRAINED * flowed)
         of_root = self._mean(np.sqrt(flowed / np.maximum(squared, 1e-300)))
-        return -np.diff(passed * (1 + (1 - 2 * self.drained_ratio) * of_root), axis=2)
+        return time * (1 + (1 - 2 * self.drained_ratio) * of_root)
 
     def _mean(self, root: Array) -> Array:
         """Return the mean of g from 0 to Dt/a², given its root."""

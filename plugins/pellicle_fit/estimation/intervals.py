@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from itertools import permutations
 from typing import Any
@@ -70,6 +70,11 @@ class Estimate:
             return False
         low, high = sorted((abs(self.low), abs(self.high)))
         return self.low * self.high > 0 and high <= _WIDE * low
+
+    def times(self, factor: float) -> Estimate:
+        """Return the estimate of a multiple, by a factor > 0."""
+        low, high = (end and end * factor for end in (self.low, self.high))
+        return replace(self, value=self.value * factor, low=low, high=high)
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as JSON data, in which a value that is not quoted is null."""

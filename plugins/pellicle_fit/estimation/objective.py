@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array
+from pellicle_fit.dynamic import recorded_stiffness
 from pellicle_fit.effect import Records, Responds, Weighed
 from pellicle_fit.explanation import Balance, columns_are_rows
 from pellicle_fit.strangers import is_own
@@ -21,6 +22,8 @@ from .search import Minimum, descend
 
 _STEP = 1e-6
 """Step of derivatives by differences, in coordinates of the order of 1."""
+OF_SINES = 0.01
+"""Error of the stiffness of a sine over itself, as instruments oscillate."""
 
 
 class Trials(NamedTuple):
@@ -28,6 +31,8 @@ class Trials(NamedTuple):
 
     terms: Array
     """(recorded − measured)/noise of all curves, then the terms of what is weighed, (k, terms).
+
+    These are those of quantities that are given with a deviation, and of sines.
 
     NaN where forces do not balance.
     """
@@ -79,6 +84,7 @@ class Objective(Coordinates):
         for k, slot, given in self._weighed:
             values = np.array([slot.value(coordinate) for coordinate in at[:, k]])
             terms.append((values[:, None] - given) / given.deviation)
+        terms.append(self._of_sines(at))
         return Trials(np.concatenate(terms, axis=1), tuple(balances))
 
     def _term(self, difference: Array, i: int) -> Array:
@@ -87,6 +93,23 @@ class Objective(Coordinates):
         if self.memory and self.memory[i]:
             term = differenced(term.T, self.memory[i]).T
         return np.asarray(term)
+
+    def _of_sines(self, at: Array) -> Array:
+        """Return terms of sines of all curves, two of each, of shape (k, terms)."""
+        found = [np.empty((len(at), 0))]
+        for i, curve in enumerate(self.curves):
+            if not curve.sines:
+                continue
+            measured = np.array([sine.stiffness for sine in curve.sines])
+            noise = np.array([sine.deviation for sine in curve.sines])
+            deviation = np.hypot(noise, OF_SINES * np.abs(measured))
+            if self.takes_columns:
+                own = recorded_stiffness(self.known(at, i), curve)
+            else:
+                own = np.array([recorded_stiffness(self.known(row, i), curve) for row in at])
+            off = (np.broadcast_to(own, (len(at), measured.size)) - measured) / deviation
+            found += [off.real, off.imag]
+        return np.concatenate(found, axis=1)
 
     @cached_property
     def _weighed(self) -> list[tuple[int, Slot, Weighed]]:
@@ -122,6 +145,11 @@ class Objective(Coordinates):
         for number, (k, slot, given) in enumerate(self._weighed):
             move = [slot.value(x + _STEP) - slot.value(x - _STEP) for x in at[:, k]]
             found[:, k, end + number] = np.array(move) / (2 * _STEP * given.deviation)
+        if any(curve.sines for curve in self.curves):
+            here, end = self._of_sines(at), end + len(self._weighed)
+            for k in range(at.shape[1]):
+                moved = at + steps[:, [k]] * np.eye(at.shape[1])[k]
+                found[:, k, end:] = (self._of_sines(moved) - here) / steps[:, [k]]
         return found
 
     @cached_property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 
@@ -11,9 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError, shown
 from pellicle.units import readable
+from pellicle_fit.sine import Sine
 
 from .measurement import Measurement, Note, Segment
 from .passes import order_of_time, passes, rows_of
+from .sines import separate
 
 _FEWEST, _FEW = 8, 30
 """Least number of points of a fit, and the least that need no warning."""
@@ -25,8 +28,15 @@ _LARGEST = 1e30
 """Largest size of what is measured, in SI; its inverse bounds how little it varies."""
 
 
-def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
+def clean(
+    curve: Measurement,
+    segment: Segment = "approach",
+    frequencies: Sequence[float] = (),
+    lag: float = 0.0,
+) -> Measurement:
     """Return the rows of one pass into the solid (or out of it), or of both, in order of time.
+
+    Sines of some ``frequencies`` [Hz], whose force may ``lag`` [s], are read apart.
 
     A speed is replaced by the time that follows from it.  Where the spring constant is known, the
     passes are told apart by the position of the cantilever's base, which has no noise.
@@ -50,29 +60,40 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
         number = number[order]
         messages.append(Note("the rows were put in order of time"))
     z, f, t = z[number], f[number], None if t is None else t[number]
-    pause = None
-    if curve.pause is not None:
-        pause = np.asarray(curve.pause)[number]
-        _check_count(int(np.sum(~pause)), "the curve without its pauses")
     if t is not None and not (np.isfinite(t).all() and np.all(np.diff(t) >= 0) and np.ptp(t)):
         reason = "falls, stands still or has a row without a number"
         messages.append(f"the time {reason}, so the curve is taken as one without time")
         t = None
+    sines: tuple[Sine, ...] = ()
+    if frequencies:
+        found = separate(z, f, t, curve.stiffness, frequencies, lag)
+        rows_of_file = [number[[sine.first, sine.last]] + 1 for sine in found.sines]
+        sines = tuple(
+            sine._replace(first=int(ends[0]), last=int(ends[1]))
+            for sine, ends in zip(found.sines, rows_of_file, strict=True)
+        )
+        z, f, number = found.position, found.force, number[found.rows]
+        t = None if t is None else t[found.rows]
+        messages += found.notes
+    pause = None
+    if curve.pause is not None:
+        pause = np.asarray(curve.pause)[number]
+        _check_count(int(np.sum(~pause)), "the curve without its pauses")
     if not np.ptp(z):
         raise ConfigError(f"is {z[0]:g} m in every row; give a curve that moves", "position")
     base = z if curve.stiffness is None else z + f / curve.stiffness
     _check_rise(base, f)
     if t is None and curve.speed is not None:
         t = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(base)))]) / curve.speed
-    found = passes(base, pause)
-    first, last, unloading = rows_of(base, found, segment)
+    ways = passes(base, pause)
+    first, last, unloading = rows_of(base, ways, segment)
     rows = np.arange(first, last + 1)
-    if pause is not None and segment != "both":
+    if pause is not None and segment in ("approach", "retract"):
         rows = rows[~pause[rows]]
-    elif pause is not None and len(found) > 1:
-        unloading = found[1].first
+    elif pause is not None and segment == "both" and len(ways) > 1:
+        unloading = ways[1].first
     if left := z.size - rows.size:
-        which = "both passes" if segment == "both" else f"the {segment}"
+        which = "both passes" if segment == "both" else f"the {segment.replace('+', ' and ')}"
         of = f"rows {_spans(number, rows)} are {which}"
         others = np.delete(np.arange(z.size), rows)
         messages.append(Note(f"{of}; the other {left} ({_spans(number, others)}) were left out"))
@@ -81,8 +102,8 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
     if segment != "both" and back > _MODULATED * np.ptp(base):
         text = f"the position moves back by up to {readable(back, 'm', 2)} within the {segment}"
         messages.append(Note(f"{text}, which is fitted as one pass"))
-    is_later = segment == "approach" and found[-1].first >= last
-    later = number[found[-1].first : found[-1].last + 1]
+    is_later = segment in ("approach", "approach+hold") and ways[-1].first >= last
+    later = number[ways[-1].first : ways[-1].last + 1]
     if segment == "retract":
         messages.append("a retract is fitted as if nothing adhered: compare with the approach")
     _check_count(rows.size, "it" if segment == "both" else f"its {segment}")
@@ -94,6 +115,7 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
         force=f[rows],
         time=None if t is None else t[rows],
         speed=None,
+        sines=sines,
         messages=tuple(messages),
         left_out=(int(later.min()) + 1, int(later.max()) + 1) if is_later else None,
         unloading=rows >= unloading,

@@ -10,12 +10,13 @@ import numpy as np
 
 from pellicle.arrays import Array, Mask
 from pellicle.units import axis_unit
+from pellicle_fit.sine import Sine
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Segment = Literal["approach", "retract", "both"]
-"""The pass that is fitted; both: approach, dwell and retract in order of time."""
+Segment = Literal["approach", "approach+hold", "retract", "both"]
+"""What is fitted; both: approach, dwell and retract in order of time."""
 
 
 class Note(str):
@@ -68,6 +69,8 @@ class Measurement:
     """Which rows are of a pause, if the file states its segments."""
     left_out: tuple[int, int] | None = None
     """First and last row of a retraction that was left out of a fit of the approach, from 1."""
+    sines: tuple[Sine, ...] = ()
+    """What oscillated beside the rows."""
     unloading: Mask | None = None
     """Which rows were taken while the indenter moved out; None until the curve is cleaned."""
 

@@ -84,9 +84,13 @@ def rows_of(base: Array, found: Sequence[Pass], segment: Segment) -> tuple[int, 
         deepest = int(np.flatnonzero(base >= base.max() - _WILD * noise)[-1])
         out = max(found[1].first, deepest) + 1 if len(found) > 1 else base.size
         return found[0].first, base.size - 1, out
-    is_approach = segment == "approach"
-    for first, last, inward in found:
+    is_approach = segment != "retract"
+    for number, (first, last, inward) in enumerate(found):
         if inward == is_approach:
+            if segment == "approach+hold":
+                # A hold of the tip moves the base by what a cantilever bends.
+                far = (f for f in found[number + 1 :] if _leaves(base, f))
+                last = next((f.first - 1 for f in far), base.size - 1)
             return first, last, base.size if is_approach else first
     way, other = ("out of", "a retract") if is_approach else ("into", "an approach")
     raise ConfigError(
@@ -94,6 +98,10 @@ def rows_of(base: Array, found: Sequence[Pass], segment: Segment) -> tuple[int, 
         f"{segment}, or set segment to {other.split()[1]!r}",
         "position",
     )
+
+
+def _leaves(base: Array, found: Pass) -> bool:
+    return bool(abs(base[found.last] - base[found.first]) > _CYCLE * np.ptp(base))
 
 
 def passes(base: Array, pause: Mask | None = None) -> list[Pass]:

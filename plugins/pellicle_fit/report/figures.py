@@ -23,6 +23,7 @@ from pellicle_fit.words.names import words_of
 
 from .contact_sheet import PAGE, sheets
 from .likelihood_map import likelihood_map
+from .moduli import chart_of_sines
 from .population import bars, distributions, guide, map_figure
 
 if TYPE_CHECKING:
@@ -75,6 +76,9 @@ def charts(fit: Fit) -> dict[str, list[Chart]]:
         beside = f", and {words_of(rival)}" if rival else ""
         caption = f"Data, the fit, by {words_of(selected)}{beside}; below, residuals."
     found = {caption: [_curves(fit, rival)]}
+    if fit.sines:
+        caption = "Storage and loss modulus of the sines, with 95 % intervals; lines, by "
+        found |= {f"{caption}{words_of(selected)}.": [chart_of_sines(fit)]}
     for one in (selected, *answer.tied):
         if {MODULUS, TENSION} <= {slot.name for slot in one.objective.slots}:
             caption = f"The pairs of modulus and tension that describe the data by {words_of(one)}."

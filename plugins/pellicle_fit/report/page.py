@@ -86,6 +86,7 @@ def _one(fit: Record) -> list[Block]:
         agree = fit.data["widening"] == 1
         blocks.append(Notice(_sentence(fit.agreement), good=agree))
     blocks += [tables.estimates(fit), *_told(fit.warnings, fit.notes)]
+    blocks += [tables.sines(fit)] if fit.sines else []
     return [*blocks, tables.explanations(fit), tables.curves(fit), tables.correlations(fit)]
 
 

@@ -95,6 +95,38 @@ def explanations(fit: Record, *, si: bool = False) -> Table:
     return Table(columns, f"What describes the data, best first; {tie}.", folded=True)
 
 
+def sines(fit: Record, *, si: bool = False) -> Table:
+    """Return a row for each sine of a fit; none if there are no sines."""
+    of, ratio = fit.sines, fit.data["poissons_ratio"]
+    factor, modulus = (1.0, "reduced") if ratio is None else (1 - ratio**2, "Young's")
+    columns = [Column("frequency", [sine["frequency"].value for sine in of], "Hz", digits=FEW)]
+    if len(fit.curves) > 1:
+        names = [curve["name"] for curve in fit.curves for _ in curve["sines"]]
+        columns.insert(0, Column("curve", names))
+    for storage, loss, symbol in (("stiffness", "stiffness", "K"), ("modulus", "modulus", "E")):
+        scale = factor if symbol == "E" else 1.0
+        both = [
+            [sine[f"{kind}_{name}"].times(scale) for sine in of]
+            for kind, name in (("storage", storage), ("loss", loss))
+        ]
+        unit = unit_of([e.value for e in both[0]] or [0.0], both[0][0].unit if of else "", si=si)
+        for prime, estimates_of in zip("′″", both, strict=True):
+            columns += _quantity_of(f"{symbol}{prime} [{unit.unit}]", unit, estimates_of)
+    degrees = [np.rad2deg(sine["phase"].value) for sine in of]
+    columns.append(Column("phase [°]", [f"{phase:.1f}" for phase in degrees]))
+    caption = (
+        f"Sines at a fixed contact: K′ and K″ as measured, E′ and E″ of the {modulus} modulus for "
+        "the contact of the model that was chosen; with 95 % intervals."
+    )
+    return Table(columns if of else [], caption)
+
+
+def _quantity_of(head: str, unit: Scale, of: Sequence[Estimate]) -> list[Column]:
+    """Return the column of measured values with intervals, also of those that may be 0."""
+    texts = [f"{unit.number(e.value, FEW)} ({interval(e, unit, FEW)})" for e in of]
+    return [Column(head, texts, meaning="with its 95 % interval")]
+
+
 def curves(fit: Record, *, si: bool = False) -> Table:
     """Return a row for each curve of a fit."""
     of, own = fit.curves, fit.estimates()

@@ -13,6 +13,7 @@ from pellicle.units import decimal, readable
 from pellicle_fit.estimation.candidate import NONE, Candidate
 from pellicle_fit.estimation.coordinates import MODULUS
 from pellicle_fit.estimation.intervals import CONFIDENCE
+from pellicle_fit.estimation.moduli import misfit
 from pellicle_fit.estimation.noise import Flaw
 from pellicle_fit.files.measurement import Note
 from pellicle_fit.record import Record
@@ -165,6 +166,11 @@ def remarks(answer: Answer) -> Iterator[str]:
     for fit in answer.not_held:
         modulus = readable(fit.estimates[MODULUS].value, "Pa", 3)
         yield f"the modulus is not held: with {words_of(fit)} one of {modulus} would do as well"
+    for number in range(len(answer.selected.whole)):
+        if far := misfit(answer.selected, number):
+            frequency, off = far
+            size = f"{100 * abs(off):.2g} % off that of {words_of(answer.selected)}"
+            yield f"the stiffness of the sine of {frequency:.4g} Hz is {size}"
     reasons: dict[str, list[str]] = {}
     question = answer.question
     for types, reason in answer.excused.items():

@@ -1,0 +1,257 @@
+"""The sines of a measured curve, read apart from its slow course."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+from pellicle.arrays import Array
+from pellicle.errors import ConfigError
+from pellicle.units import decimal, readable
+from pellicle_fit.sine import Sine
+
+from .measurement import Note
+
+_FINE = 16
+"""Points of a cycle at which a sine is sought."""
+_WIDTH = 2.0
+"""Cycles of a frequency, and of its distance to the nearest other, that are seen at once."""
+_STEADY = 0.2
+"""Change over a cycle, over itself, of an amplitude that is one of a sine."""
+_EDGE = 0.75
+"""Share of what is seen at once by which the middle of a sine is longer than where it is steady."""
+_FEWEST_CYCLES, _FEWEST_ROWS = 3.0, 5.0
+"""Least number of whole cycles of a sine, and of rows in a cycle."""
+_LEAVES = 0.3
+"""Distance from a sine that goes on, over its amplitude, at which it has ended."""
+_DEGREE = 6
+"""Greatest degree of the slow course beside a sine, which has fewer than there are cycles."""
+_NEAR, _NEIGHBOURS = 2, 20
+"""Lines of the spectrum beside a sine that may hold some of it; those from which its noise is told,
+on each side."""
+
+
+class _Harmonics(NamedTuple):
+    """A sine of base and force where it is steady."""
+
+    base: complex
+    force: complex
+    deviations: tuple[float, float]
+    """Standard deviation of the parts of both."""
+    sines: Array
+    """What oscillates in base and force, of shape (2, rows)."""
+    levels: tuple[float, float]
+    """The slow course of the base at the first and at the last row."""
+
+
+class Separated(NamedTuple):
+    """A curve without its sines, and these."""
+
+    position: Array
+    """Of the rows that are left [m]."""
+    force: Array
+    """Of the same [N]."""
+    rows: NDArray[np.intp]
+    """Which rows are left."""
+    sines: tuple[Sine, ...]
+    notes: tuple[Note, ...]
+
+
+def separate(
+    position: Array,
+    force: Array,
+    time: Array | None,
+    stiffness: float | None,
+    frequencies: Sequence[float],
+    lag: float,
+) -> Separated:
+    """Return a curve without its sines of some frequencies [Hz], and these beside it.
+
+    The rows are in order of time.  The force may be read a ``lag`` [s] after the position.  What is
+    left of a hold is its slow course; rows in which a sine begins or ends are left out.
+
+    Raises
+    ------
+    ConfigError
+        The curve has no time, or a sine is not found.
+    """
+    if time is None:
+        raise ConfigError("need the time of each row; give a column of time", "frequencies")
+    softness = 1 / stiffness if stiffness else 0.0
+    base = position + softness * force
+    spans = [_steady(time, base, f, frequencies) for f in frequencies]
+    measured = np.array([base, force])
+    slow, inside, partly = measured.copy(), np.zeros(time.size, bool), np.zeros(time.size, bool)
+    sines = list[Sine]()
+    for frequency, (exact, first, last, reach) in zip(frequencies, spans, strict=True):
+        steady = (time >= first) & (time <= last)
+        rows = np.flatnonzero(steady)
+        if rows.size < _FEWEST_ROWS * exact * (last - first):
+            most = rows.size / (last - first) / _FEWEST_ROWS
+            reason = f"{frequency:g} Hz has fewer than {_FEWEST_ROWS:g} rows in a cycle"
+            raise ConfigError(f"{reason}; give those up to {most:.3g} Hz", "frequencies")
+        beside = [s[0] for s in spans if s[1] < last and s[2] > first and s[0] != exact]
+        found = _harmonics(time[rows], measured[:, rows], exact, beside)
+        slow[:, rows] -= found.sines
+        turn = np.exp(2j * np.pi * exact * lag)
+        told, deviation, amplitude = _stiffness(found, turn, softness)
+        z, f, t = (float(np.mean(values[rows])) for values in (position, force, time))
+        ends = int(rows[0]), int(rows[-1])
+        sines.append(Sine(exact, amplitude, told, deviation, z, f, t, *ends))
+        inside |= steady
+        begin, end = _ends(time, base, rows, found, exact, reach)
+        partly[begin : end + 1] = True
+    left = np.flatnonzero(inside | ~partly)
+    listed = ", ".join(f"{s.frequency:.4g}" for s in sines)
+    lagging = f"; a lag of the force of {readable(lag, 's', 3)} is taken off" if lag else ""
+    notes = (
+        Note(f"sines of {listed} Hz were read apart from the curve{lagging}"),
+        _of_a_row(sines, time),
+    )
+    load = slow[1, left]
+    return Separated(slow[0, left] - softness * load, load, left, tuple(sines), notes)
+
+
+def _steady(
+    time: Array, base: Array, frequency: float, frequencies: Sequence[float]
+) -> tuple[float, float, float, float]:
+    """Return the exact frequency [Hz] of a sine, when it is steady from and to, and a reach [s].
+
+    Half the difference of a position and the mean of those half a cycle before and after has the
+    sine and no ramp.  Its amplitude is steady where the sine is, and nowhere else for long.
+    """
+    others = [abs(f - frequency) for f in frequencies if f != frequency]
+    reach = _WIDTH / min([frequency, *others])
+    at = np.arange(time[0], time[-1], 1 / (_FINE * frequency))
+    half, size = _FINE // 2, 2 * (int(reach * frequency * _FINE) // 2) + 1
+    if at.size < size + 2 * _FINE:
+        raise ConfigError(_absent(frequency, "the curve is too short for it"), "frequencies")
+    z = np.interp(at, time, base)
+    rest = (z[half:-half] - (z[: -2 * half] + z[2 * half :]) / 2) / 2
+    at = at[half:-half]
+    window = np.hanning(size + 2)[1:-1]
+    seen = rest * np.exp(-2j * np.pi * frequency * at)
+    amplitude = 2 * np.convolve(seen, window / window.sum(), "valid")
+    at = at[size // 2 : size // 2 + amplitude.size]
+    change = np.abs(amplitude[_FINE:] - amplitude[:-_FINE])
+    is_steady = change < _STEADY * np.abs(amplitude[_FINE:])
+    ends = np.flatnonzero(np.diff(np.concatenate([[False], is_steady, [False]])))
+    runs = [
+        (first, last + _FINE)
+        for first, last in zip(ends[::2], ends[1::2], strict=True)
+        if (last - first) / _FINE >= 1
+    ]
+    if not runs:
+        raise ConfigError(_absent(frequency, "nothing oscillates steadily"), "frequencies")
+    first, last = max(runs, key=lambda run: float(np.sum(np.abs(amplitude[run[0] : run[1]]))))
+    # Of an amplitude that is steady but small beside the largest of its run it is the edge.
+    of_run = np.abs(amplitude[first:last])
+    inside = first + np.flatnonzero(of_run > of_run.max() / 2)
+    first, last = inside[0], inside[-1]
+    phase = np.unwrap(np.angle(amplitude[first : last + 1]))
+    slope = float(np.polyfit(at[first : last + 1], phase, 1)[0]) if last > first else 0.0
+    exact = frequency + slope / (2 * np.pi)
+    longer = max(_EDGE * reach / 2 - 1 / frequency, 0.0)
+    begin, end = float(at[first] - longer), float(at[last] + longer)
+    begin, end = max(begin, float(time[0])), min(end, float(time[-1]))
+    if (end - begin) * frequency < _FEWEST_CYCLES:
+        raise ConfigError(_absent(frequency, "it has fewer than three cycles"), "frequencies")
+    return exact, begin, end, reach
+
+
+def _absent(frequency: float, reason: str) -> str:
+    return (
+        f"no sine of {frequency:g} Hz was found in the position: {reason}; give the frequencies at "
+        "which the instrument oscillates, or leave them out"
+    )
+
+
+def _ends(
+    time: Array,
+    base: Array,
+    rows: NDArray[np.intp],
+    found: _Harmonics,
+    frequency: float,
+    reach: float,
+) -> tuple[int, int]:
+    """Return the first and the last row in which a sine may stand, which is steady in ``rows``.
+
+    Beyond them the base leaves the sine that goes on.
+    """
+    middle, size = (time[rows[0]] + time[rows[-1]]) / 2, abs(found.base)
+    ends = []
+    for row, level, way in zip((rows[0], rows[-1]), found.levels, (-1, 1), strict=True):
+        beyond = np.arange(row, -1 if way < 0 else time.size, way)
+        beyond = beyond[np.abs(time[beyond] - time[row]) < reach]
+        turn = np.exp(2j * np.pi * frequency * (time[beyond] - middle))
+        off = base[beyond] - level - (found.base * turn).real
+        leaves = np.flatnonzero(np.abs(off) > _LEAVES * size)
+        ends.append(int(beyond[leaves[0]] - way if leaves.size else beyond[-1]))
+    return ends[0], ends[1]
+
+
+def _harmonics(
+    time: Array, measured: Array, frequency: float, beside: Sequence[float]
+) -> _Harmonics:
+    """Return a sine of base and force, of shape (2, rows), beside others and a slow course."""
+    middle, half = (time[0] + time[-1]) / 2, (time[-1] - time[0]) / 2
+    cycles = 2 * half * frequency
+    degree = int(min(_DEGREE, cycles // 2))
+    course = legendre.legvander((time - middle) / half, degree)
+    turns = [np.exp(2j * np.pi * f * (time - middle)) for f in (frequency, 2 * frequency, *beside)]
+    waves = np.column_stack([part for turn in turns for part in (turn.real, turn.imag)])
+    design = np.column_stack([waves, course])
+    weights, *_ = np.linalg.lstsq(design, measured.T, rcond=None)
+    residual = measured.T - design @ weights
+    freedom = time.size / max(time.size - design.shape[1], 1)
+    base, force = (complex(w[0], -w[1]) for w in weights.T)
+    deviations = [_deviation(time, r, frequency, beside) * freedom**0.5 for r in residual.T]
+    oscillates = (waves[:, :4] @ weights[:4]).T
+    course_of_base = course @ weights[waves.shape[1] :, 0]
+    levels = float(course_of_base[0]), float(course_of_base[-1])
+    return _Harmonics(base, force, (deviations[0], deviations[1]), oscillates, levels)
+
+
+def _deviation(time: Array, residual: Array, frequency: float, beside: Sequence[float]) -> float:
+    """Return the standard deviation of the parts of a sine, from the spectrum beside it.
+
+    It is at least that of white noise, of which few lines tell less.
+    """
+    line = 1 / (time[-1] - time[0])
+    steps = np.arange(_NEAR, _NEAR + _NEIGHBOURS)
+    near = frequency + line * np.concatenate([-steps, steps])
+    others = np.array([2 * frequency, *beside])
+    free = np.all(np.abs(near[:, None] - others) > _NEAR * line, axis=1)
+    fastest = 0.5 * time.size * line
+    near = near[free & (near > _NEAR * line) & (near < fastest)]
+    turns = np.exp(-2j * np.pi * near[:, None] * time)
+    parts = 2 / time.size * (turns @ residual)
+    of_white = float(np.sqrt(2 * np.mean(residual**2) / time.size))
+    return max(float(np.sqrt(np.mean(np.abs(parts) ** 2) / 2)), of_white) if near.size else of_white
+
+
+def _stiffness(found: _Harmonics, turn: complex, softness: float) -> tuple[complex, float, float]:
+    """Return the stiffness [N/m] of a sine, the deviation of its parts, and the amplitude [m].
+
+    The force is turned by ``turn`` for its lag.
+    """
+    load = found.force * turn
+    way = found.base - softness * load
+    stiffness = load / way
+    # ∂K/∂F = (1 + K/k)/δ and ∂K/∂z = −K/δ.
+    of_base, of_force = found.deviations
+    deviation = np.hypot(abs(1 + softness * stiffness) * of_force, abs(stiffness) * of_base)
+    return stiffness, float(deviation) / abs(way), abs(way)
+
+
+def _of_a_row(sines: Sequence[Sine], time: Array) -> Note:
+    """Return what a lag of a row would change."""
+    fastest = max(sines, key=lambda sine: sine.frequency)
+    step = (time[fastest.last] - time[fastest.first]) / (fastest.last - fastest.first)
+    turn = decimal(360 * fastest.frequency * float(step), 2)
+    text = f"a force that is read one row late turns the phase at {fastest.frequency:.4g} Hz by"
+    return Note(f"{text} {turn} degrees: give the lag, if there is one")
