@@ -212,6 +212,10 @@ class FitConfig(FromFile, Calibration):
                 "it, such as 0.5 for a gel",
                 "poissons_ratio",
             )
+        if len({*self.frequencies}) < len(self.frequencies):
+            raise ConfigError("names a frequency twice; give each once", "frequencies")
+        if self.lag and not self.frequencies:
+            raise ConfigError("is that of sines; give their frequencies, or leave it out", "lag")
         if self.kernel is not None:
             solid(self.kernel, self.poissons_ratio)
         return self

@@ -81,6 +81,11 @@ def complex_moduli(explanation: Explanation, curve: Curve) -> ComplexArray:
     return np.asarray(modulus)
 
 
+def depths(explanation: Explanation, curve: Curve) -> Array:
+    """Return the depth [m] of the contact of each sine of a curve."""
+    return _held(explanation, curve).depth
+
+
 def explained_moduli(explanation: Explanation, curve: Curve) -> ComplexArray:
     """Return the complex moduli E*(ω) [Pa] of an explanation at the sines of a curve."""
     return _explained(explanation, curve, _held(explanation, curve))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.special import ndtri
@@ -58,11 +59,19 @@ def of_sines(fit: Candidate, number: int) -> list[dict[str, Estimate]]:
     return found
 
 
-def misfit(fit: Candidate, number: int) -> tuple[float, complex] | None:
-    """Return the frequency [Hz] of the sine of a curve that is furthest from an explanation.
+class Misfit(NamedTuple):
+    """A sine that an explanation misses."""
 
-    With it comes its stiffness over the explained one, less 1.  None if all are as near as their
-    noise lets them be.
+    frequency: float
+    """In Hz."""
+    off: complex
+    """Its stiffness over the explained one, less 1."""
+
+
+def misfit(fit: Candidate, number: int) -> Misfit | None:
+    """Return the sine of a curve that is furthest from an explanation.
+
+    None if all are as near as noise and instrument let them be.
     """
     curve = fit.whole[number]
     if not curve.sines:
@@ -73,11 +82,9 @@ def misfit(fit: Candidate, number: int) -> tuple[float, complex] | None:
     k = int(np.argmax(far))
     # χ² of two degrees of freedom, of the furthest of some.
     limit = np.sqrt(-2 * np.log(CHANCE / far.size))
-    return (
-        (curve.sines[k].frequency, complex(stiffness[k] / explained[k] - 1))
-        if far[k] > limit
-        else None
-    )
+    if far[k] < limit:
+        return None
+    return Misfit(curve.sines[k].frequency, complex(stiffness[k] / explained[k] - 1))
 
 
 def _measured(curve: Curve) -> tuple[ComplexArray, Array]:

@@ -26,6 +26,9 @@ _EDGE = 0.75
 """Share of what is seen at once by which the middle of a sine is longer than where it is steady."""
 _FEWEST_CYCLES, _FEWEST_ROWS = 3.0, 5.0
 """Least number of whole cycles of a sine, and of rows in a cycle."""
+_DENSEST, _OFF, _CLEAR = 0.01, 0.1, 10.0
+"""Quantile of the steps of time that is the shortest; a frequency off by more is another; amplitude
+over its noise that is one."""
 _LEAVES = 0.3
 """Distance from a sine that goes on, over its amplitude, at which it has ended."""
 _DEGREE = 6
@@ -81,6 +84,9 @@ def separate(
     """
     if time is None:
         raise ConfigError("need the time of each row; give a column of time", "frequencies")
+    most = 1 / (_FEWEST_ROWS * float(np.quantile(np.diff(time), _DENSEST)))
+    if (fastest := max(frequencies)) > most:
+        raise ConfigError(_too_fast(fastest, most), "frequencies")
     softness = 1 / stiffness if stiffness else 0.0
     base = position + softness * force
     spans = [_steady(time, base, f, frequencies) for f in frequencies]
@@ -92,10 +98,12 @@ def separate(
         rows = np.flatnonzero(steady)
         if rows.size < _FEWEST_ROWS * exact * (last - first):
             most = rows.size / (last - first) / _FEWEST_ROWS
-            reason = f"{frequency:g} Hz has fewer than {_FEWEST_ROWS:g} rows in a cycle"
-            raise ConfigError(f"{reason}; give those up to {most:.3g} Hz", "frequencies")
+            raise ConfigError(_too_fast(frequency, most), "frequencies")
         beside = [s[0] for s in spans if s[1] < last and s[2] > first and s[0] != exact]
         found = _harmonics(time[rows], measured[:, rows], exact, beside)
+        if abs(found.base) < _CLEAR * found.deviations[0]:
+            reason = "what oscillates is no more than noise"
+            raise ConfigError(_absent(frequency, reason), "frequencies")
         slow[:, rows] -= found.sines
         turn = np.exp(2j * np.pi * exact * lag)
         told, deviation, amplitude = _stiffness(found, turn, softness)
@@ -112,8 +120,9 @@ def separate(
         Note(f"sines of {listed} Hz were read apart from the curve{lagging}"),
         _of_a_row(sines, time),
     )
-    load = slow[1, left]
-    return Separated(slow[0, left] - softness * load, load, left, tuple(sines), notes)
+    # The base has no noise, so it is what is shifted.
+    load, way = slow[1, left], np.interp(time - lag, time, slow[0])[left]
+    return Separated(way - softness * load, load, left, tuple(sines), notes)
 
 
 def _steady(
@@ -158,9 +167,18 @@ def _steady(
     longer = max(_EDGE * reach / 2 - 1 / frequency, 0.0)
     begin, end = float(at[first] - longer), float(at[last] + longer)
     begin, end = max(begin, float(time[0])), min(end, float(time[-1]))
+    if abs(exact - frequency) > _OFF * frequency:
+        raise ConfigError(_absent(frequency, "nothing oscillates steadily"), "frequencies")
     if (end - begin) * frequency < _FEWEST_CYCLES:
         raise ConfigError(_absent(frequency, "it has fewer than three cycles"), "frequencies")
     return exact, begin, end, reach
+
+
+def _too_fast(frequency: float, most: float) -> str:
+    return (
+        f"{frequency:g} Hz has fewer than {_FEWEST_ROWS:g} rows in a cycle; give those up to "
+        f"{most:.3g} Hz"
+    )
 
 
 def _absent(frequency: float, reason: str) -> str:

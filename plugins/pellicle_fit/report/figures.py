@@ -22,6 +22,7 @@ from pellicle_fit.selection.recipe import TENSION
 from pellicle_fit.words.names import words_of
 
 from .contact_sheet import PAGE, sheets
+from .course import chart_over_time, has_hold
 from .likelihood_map import likelihood_map
 from .moduli import chart_of_sines
 from .population import bars, distributions, guide, map_figure
@@ -76,6 +77,8 @@ def charts(fit: Fit) -> dict[str, list[Chart]]:
         beside = f", and {words_of(rival)}" if rival else ""
         caption = f"Data, the fit, by {words_of(selected)}{beside}; below, residuals."
     found = {caption: [_curves(fit, rival)]}
+    if any(has_hold(curve) for curve in selected.whole):
+        found |= {"Force over time, with its hold; line, the fit.": [chart_over_time(fit)]}
     if fit.sines:
         caption = "Storage and loss modulus of the sines, with 95 % intervals; lines, by "
         found |= {f"{caption}{words_of(selected)}.": [chart_of_sines(fit)]}

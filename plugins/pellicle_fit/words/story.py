@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from pellicle.units import decimal, readable
+from pellicle_fit.dynamic import depths
 from pellicle_fit.estimation.candidate import NONE, Candidate
 from pellicle_fit.estimation.coordinates import MODULUS
 from pellicle_fit.estimation.intervals import CONFIDENCE
@@ -24,6 +25,8 @@ from .names import in_figures, in_words, listed, words, words_of, words_of_types
 
 _WIDTH = 100
 _WRAPPED: dict[str, Any] = {"subsequent_indent": "    ", "break_on_hyphens": False}
+_LARGE = 0.5
+"""Amplitude of a sine over its depth beyond which the stiffness is off by 1 %."""
 _RIVALS = 3
 """Rivals that a verdict names."""
 NOT_WEIGHED = (
@@ -161,16 +164,27 @@ def agreement(answer: Answer, names: Sequence[str]) -> str:
     )
 
 
+def _remarks_of_sines(answer: Answer) -> Iterator[str]:
+    """Yield a warning of the sine that is explained worst, and of those that are not small."""
+    selected = answer.selected
+    for number, (known, curve) in enumerate(zip(selected.known, selected.whole, strict=True)):
+        if far := misfit(selected, number):
+            size = f"{100 * abs(far.off):.2g} % off that of {words_of(selected)}"
+            yield f"the stiffness of the sine of {far.frequency:.4g} Hz is {size}"
+        if curve.sines:
+            for sine, depth in zip(curve.sines, depths(known, curve), strict=True):
+                if sine.amplitude > _LARGE * depth:
+                    share = f"{100 * sine.amplitude / depth:.2g} % of its depth"
+                    way = f"the sine of {sine.frequency:.4g} Hz moves by {share}"
+                    yield f"{way}: its contact does not stay, as K′ and K″ suppose"
+
+
 def remarks(answer: Answer) -> Iterator[str]:
     """Yield a warning of a modulus that is not held, and notes of what was not compared."""
     for fit in answer.not_held:
         modulus = readable(fit.estimates[MODULUS].value, "Pa", 3)
         yield f"the modulus is not held: with {words_of(fit)} one of {modulus} would do as well"
-    for number in range(len(answer.selected.whole)):
-        if far := misfit(answer.selected, number):
-            frequency, off = far
-            size = f"{100 * abs(off):.2g} % off that of {words_of(answer.selected)}"
-            yield f"the stiffness of the sine of {frequency:.4g} Hz is {size}"
+    yield from _remarks_of_sines(answer)
     reasons: dict[str, list[str]] = {}
     question = answer.question
     for types, reason in answer.excused.items():
