@@ -163,11 +163,10 @@ def _tensed_radius(contact: Contact, depth: Array, load: Array) -> Array:
     modulus: Any = column(contact.modulus)
     tension: Any = column(contact.tension)
     assert isinstance(area, OwnArea)
-    width, height = (
-        size if isinstance(size, float) else column(size) for size in (area.width, area.height)
-    )
+    stretch = area.width, area.height, contact.depth_limit
+    width, height, limit = (s if isinstance(s, float) else column(s) for s in stretch)
     area = replace(area, width=width, height=height)
-    flat = replace(contact, tension=tension, size=width, area=area)
+    flat = replace(contact, tension=tension, size=width, area=area, depth_limit=limit)
 
     def of(log: Array) -> Contact:
         return replace(flat, modulus=modulus * np.exp(log))

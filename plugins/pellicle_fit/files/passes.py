@@ -186,7 +186,10 @@ def _rest(rows: Array) -> int:
         return 0
     blocks = np.median(rows[rows.size - size * _BLOCKS :].reshape(_BLOCKS, size), axis=1)
     speed = np.abs(np.diff(blocks))
-    slow = speed < _SLOW * np.quantile(speed, _FAST_QUANTILE)
+    # Where nearly all rows rest, the speed of half of the way is that of the approach.
+    fastest = np.sort(speed)[::-1]
+    of_half = fastest[np.searchsorted(np.cumsum(fastest), fastest.sum() / 2)]
+    slow = speed < _SLOW * max(np.quantile(speed, _FAST_QUANTILE), of_half)
     count = int(np.argmin(slow[::-1])) + 1 if not slow.all() else 0
     if count < _PAUSE_BLOCKS:
         return 0

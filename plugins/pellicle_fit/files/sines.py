@@ -29,6 +29,8 @@ _FEWEST_CYCLES, _FEWEST_ROWS = 3.0, 5.0
 _DENSEST, _OFF, _CLEAR = 0.01, 0.1, 10.0
 """Quantile of the steps of time that is the shortest; a frequency off by more is another; amplitude
 over its noise that is one."""
+_REFINED = 2
+"""Steps towards the exact frequency of a sine, each of which leaves the square of the error."""
 _LEAVES = 0.3
 """Distance from a sine that goes on, over its amplitude, at which it has ended."""
 _DEGREE = 6
@@ -100,6 +102,7 @@ def separate(
             most = rows.size / (last - first) / _FEWEST_ROWS
             raise ConfigError(_too_fast(frequency, most), "frequencies")
         beside = [s[0] for s in spans if s[1] < last and s[2] > first and s[0] != exact]
+        exact = _refined(time[rows], base[rows], exact)
         found = _harmonics(time[rows], measured[:, rows], exact, beside)
         if abs(found.base) < _CLEAR * found.deviations[0]:
             reason = "what oscillates is no more than noise"
@@ -186,6 +189,20 @@ def _absent(frequency: float, reason: str) -> str:
         f"no sine of {frequency:g} Hz was found in the position: {reason}; give the frequencies at "
         "which the instrument oscillates, or leave them out"
     )
+
+
+def _refined(time: Array, base: Array, frequency: float) -> float:
+    """Return a frequency [Hz] whose sine keeps its phase along the base."""
+    t = time - (time[0] + time[-1]) / 2
+    for _ in range(_REFINED):
+        turn = np.exp(2j * np.pi * frequency * t)
+        waves = np.column_stack([turn.real, turn.imag, t * turn.real, t * turn.imag])
+        design = np.column_stack([waves, legendre.legvander(t / t[-1], 2)])
+        weights, *_ = np.linalg.lstsq(design / abs(design).max(axis=0), base, rcond=None)
+        weights = weights / abs(design).max(axis=0)
+        size, rate = complex(weights[0], -weights[1]), complex(weights[2], -weights[3])
+        frequency += (rate / size).imag / (2 * np.pi)
+    return frequency
 
 
 def _ends(
