@@ -25,6 +25,7 @@ CEILINGS = {
     "adhesion": 1370,
     "time": 950,
     "flow-or-drain": 995,
+    "sines": 860,
     "results": 930,
     "outputs": 1200,
     "gradients": 580,

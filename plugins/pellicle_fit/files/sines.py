@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
+from scipy.special import ndtri, stdtrit
 
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
@@ -29,6 +30,8 @@ _FEWEST_CYCLES, _FEWEST_ROWS = 3.0, 5.0
 _DENSEST, _OFF, _CLEAR = 0.01, 0.1, 10.0
 """Quantile of the steps of time that is the shortest; a frequency off by more is another; amplitude
 over its noise that is one."""
+_TAIL = 0.975
+"""Below which probability the upper end of an interval lies."""
 _REFINED = 2
 """Steps towards the exact frequency of a sine, each of which leaves the square of the error."""
 _LEAVES = 0.3
@@ -254,7 +257,8 @@ def _harmonics(
 def _deviation(time: Array, residual: Array, frequency: float, beside: Sequence[float]) -> float:
     """Return the standard deviation of the parts of a sine, from the spectrum beside it.
 
-    It is at least that of white noise, of which few lines tell less.
+    It is at least that of white noise, of which few lines tell less, and wider by Student's t, as
+    the lines are few.
     """
     line = 1 / (time[-1] - time[0])
     steps = np.arange(_NEAR, _NEAR + _NEIGHBOURS)
@@ -266,7 +270,10 @@ def _deviation(time: Array, residual: Array, frequency: float, beside: Sequence[
     turns = np.exp(-2j * np.pi * near[:, None] * time)
     parts = 2 / time.size * (turns @ residual)
     of_white = float(np.sqrt(2 * np.mean(residual**2) / time.size))
-    return max(float(np.sqrt(np.mean(np.abs(parts) ** 2) / 2)), of_white) if near.size else of_white
+    if not near.size:
+        return of_white
+    wider = float(stdtrit(2 * near.size, _TAIL) / ndtri(_TAIL))
+    return wider * max(float(np.sqrt(np.mean(np.abs(parts) ** 2) / 2)), of_white)
 
 
 def _stiffness(found: _Harmonics, turn: complex, softness: float) -> tuple[complex, float, float]:

@@ -201,16 +201,29 @@ def jumps_are_told(case: Case) -> str:
 
 @_in_each_case
 def what_it_says_is_valid(case: Case) -> str:
-    """accuracy() is a share, searched() a whole number ≥ 0; relaxed() and stiffness() are > 0."""
+    """accuracy() is a share, searched() a whole number ≥ 0; relaxed() and stiffness() are > 0.
+
+    complex_modulus() is None or one number for each frequency, that of a solid without a source.
+    """
     known = case.effect
     says = {
         "accuracy()": 0 <= known.accuracy(case.contact, case.curve, frozenset()) < 1,
         "searched()": known.searched(case.curve) in range(100),
         "relaxed()": not isinstance(known, Responds) or 0 < known.relaxed(1.0) < np.inf,
         "stiffness()": not isinstance(known, Records) or 0 < known.stiffness(STIFFNESS) < np.inf,
+        "complex_modulus()": not isinstance(known, Responds) or _is_passive(known),
     }
     wrong = [name for name, is_valid in says.items() if not is_valid]
     return f"{' and '.join(wrong)} is not" if wrong else ""
+
+
+def _is_passive(effect: Responds) -> bool:
+    frequency = np.array([0.1, 1.0, 10.0])
+    found = effect.complex_modulus(frequency, np.full(3, DEPTHS[-1]), 0.0)
+    if found is None:
+        return True
+    valid = found.shape == frequency.shape and np.isfinite(found).all()
+    return bool(valid and np.all(found.real > 0) and np.all(found.imag > -_LIMIT * found.real))
 
 
 def _excuse(effect: Effect, curve: Curve) -> str:
