@@ -42,6 +42,7 @@ class End(Enum):
     RANGE = "sought up to a factor of 100"
     STEPS = "not found"
     LACKING = "what lacks it describes the data as well"
+    ANOTHER = "beside what describes the data it is not that of the solid"
     NOT_SOUGHT = "not sought"
 
 

@@ -16,7 +16,7 @@ from pellicle_fit.record import OVER_TIED, Record
 from pellicle_fit.selection.recipe import TENSION
 from pellicle_fit.words.names import FEW, interval, quoted, unit_of, unit_of_one, words
 
-_OPEN = {End.LIMIT, End.RANGE, End.STEPS, End.LACKING}
+_OPEN = {*End} - {End.CLOSED, End.NOT_SOUGHT}
 """What an end is that needs a reason."""
 _CORRELATED = 0.3
 """Least size of a correlation that tables show."""

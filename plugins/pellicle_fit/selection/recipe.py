@@ -132,7 +132,8 @@ class Answer:
         none = Estimate(0.0, None, None, "N/m", held=True)
         own = self.selected.parameters.get(name, none)
         if not found:
-            return own if tied or own.held else replace(own, low=None, high=None)
+            another = (End.ANOTHER, End.ANOTHER)
+            return own if tied or own.held else replace(own, low=None, high=None, ends=another)
         lows = [e.low for e in found if e.low is not None]
         highs = [e.high for e in found if e.high is not None]
         low = min(lows) if len(lows) == len(tied) else None

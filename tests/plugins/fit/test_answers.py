@@ -373,6 +373,7 @@ def test_a_cone_s_modulus_is_not_that_of_the_solid() -> None:
     found = fit(position, force, rivals=["cone"])
     assert found.answer.selected.types == {"cone"}
     assert found.reduced_modulus.low is found.reduced_modulus.high is None
+    assert found.reduced_modulus.ends == (End.ANOTHER, End.ANOTHER)
 
 
 def test_relaxation_beside_a_tension_has_no_model_of_retraction() -> None:
