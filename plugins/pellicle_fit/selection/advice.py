@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from enum import Enum
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from pellicle_fit.estimation.candidate import Candidate
 from pellicle_fit.estimation.coordinates import CONTACT_POINT
 from pellicle_fit.estimation.noise import FEWEST, Flaw
 
 from .forecast import telling
-from .recipe import Answer
+from .recipe import DRAINING, Answer
 from .verdict import Verdict
 
 if TYPE_CHECKING:
@@ -63,8 +64,14 @@ def advise(
     First and last row are those of a retraction that was ``left_out``.
     """
     first = *_of_input(answer), *_of_options(answer, left_out, config)
-    is_open = answer.verdict is Verdict.CANNOT_TELL
-    return (_measurement(answer),) if is_open and not first else first
+    if first:
+        return first
+    if answer.verdict is Verdict.CANNOT_TELL:
+        return (_measurement(answer.target, answer.tied_without) or Advice(Remedy.LESS_NOISE),)
+    drains = [fit for fit in answer.tied if DRAINING in fit.types]
+    flows = [fit for fit in answer.tied if fit not in drains]
+    found = _measurement(drains[0], flows) if drains and flows else None
+    return (found,) if found else ()
 
 
 def _of_input(answer: Answer) -> Iterator[Advice]:
@@ -111,9 +118,8 @@ def _of_options(
         yield Advice(Remedy.FIT_APPROACH)
 
 
-def _measurement(answer: Answer) -> Advice:
-    """Return what to measure, so that explanations can be told apart."""
-    proposal, curves = telling(answer.target, answer.tied_without)
-    if proposal is None:
-        return Advice(Remedy.LESS_NOISE)
-    return Advice(Remedy.MEASURE, {"proposal": proposal, "curves": curves})
+def _measurement(target: Candidate, others: Sequence[Candidate]) -> Advice | None:
+    """Return what to measure, so that explanations can be told apart; None if nothing would do."""
+    proposal, curves = telling(target, others)
+    known = {"proposal": proposal, "curves": curves}
+    return Advice(Remedy.MEASURE, known) if proposal else None

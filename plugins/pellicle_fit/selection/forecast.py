@@ -69,7 +69,8 @@ def telling(target: Candidate, others: Sequence[Candidate]) -> tuple[Proposal | 
             with suppress(PellicleError):
                 if truth not in made:
                     made[truth] = _foretold(truth, measurement)
-                least = _misfit(guess, made[truth], truth.objective.noise, useless)
+                if not guess.objective.explanation.excuse(made[truth]):
+                    least = _misfit(guess, made[truth], truth.objective.noise, useless)
             worth = min(worth, least)
             if worth < useless:
                 break

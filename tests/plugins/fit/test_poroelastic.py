@@ -149,3 +149,20 @@ def test_pools_tell(pool: str) -> None:
     fit = pl.fit_pooled(curves, indenter="paraboloid", radius=radii)
     assert fit.answer.selected.types == {"poroelastic"}
     assert holds(fit.reduced_modulus, MODULUS)
+
+
+def test_draining_that_ties_with_relaxation_asks_for_another_radius() -> None:
+    """Times of draining go as a², those of relaxation do not; of a retraction nothing is known."""
+    time = np.linspace(-0.3, 1.5, 400)
+    depth = DEPTH * np.minimum(time, 1)
+    bead: Any = pl.indenter("paraboloid", radius=RADIUS)
+    gel = pl.registry().make(
+        Effect, {"type": "poroelastic", "drained_ratio": 0.2, "diffusivity": 2e-11}
+    )
+    curve = Curve(depth, depth, bead, time, np.zeros(400, bool))
+    pushes = Explanation(Solid(reduced_modulus=MODULUS, contact_point=0.0), (gel,)).force(curve)
+    noise = 0.03 * pushes.max() * np.random.default_rng(1).standard_normal(400)
+    found = pl.fit(depth, pushes + noise, time=time, indenter=bead, segment="approach+hold")
+    assert {"poroelastic"} in [fit.types for fit in found.answer.tied]
+    (step,) = found.steps
+    assert step["kind"] == "measure_radius"
