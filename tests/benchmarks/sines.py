@@ -73,14 +73,14 @@ def course(law: Law, tension: float, hold: str, time: Any) -> tuple[Any, Any, An
         # Under a constant force the area grows so that its history carries it.
         force = MODULUS * weights @ np.diff(area) / step
         last = int(np.searchsorted(time, RAMP))
-        for k in range(last, time.size):
+        for k in range(last, int(time.size)):
             rest = weights[k, : k - 1] @ np.diff(area[:k]) / step
             area[k] = area[k - 1] + (force[last] / MODULUS - rest) * step / weights[k, k - 1]
         depth = (area / (4 / 3 * np.sqrt(RADIUS))) ** (2 / 3)
     carried = weights @ np.diff(area) / step
     share = np.where(area > 0, carried / np.maximum(area, 1e-300), 1.0)
     force = np.zeros_like(time)
-    for k in np.flatnonzero((depth > 0) & (share > 0)):
+    for k in np.flatnonzero((depth > 0) & (share > 0)).tolist():
         modulus = share[k] * MODULUS
         length = 2 * tension / modulus
         force[k] = modulus * BEAD.force_curve(depth[[k]], length).force[0]

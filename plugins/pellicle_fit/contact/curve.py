@@ -183,7 +183,8 @@ class Curve:
         """Return groups of neighbouring rows of each pass, at most ``bins`` for each.
 
         They are even in rows and, where force and position say that it touches, in the position: a
-        long path may touch in its last hundredth.
+        long path may touch in its last hundredth.  In a hold they are even in the logarithm of the
+        time, too, as solids relax.
         """
         found = []
         for rows in self.passes:
@@ -194,8 +195,11 @@ class Curve:
             force, way = self.smoothed[inward], np.maximum.accumulate(self.position[inward])
             clear = way[np.argmax(force > force.min() + _CLEAR * float(np.ptp(force)))]
             near = np.maximum(way - way[-1] + _WAYS * (way[-1] - clear), 0.0)
-            along = np.arange(rows.size) / rows.size + near / (near[-1] or 1.0)
-            ends = np.unique(np.searchsorted(along, np.arange(1, bins) * (2 / bins)))
+            along, parts = np.arange(rows.size) / rows.size + near / (near[-1] or 1.0), 2
+            if self.time is not None and self.rests[inward].any():
+                resting = np.cumsum(self.rests[inward])
+                along, parts = along + np.log1p(resting) / np.log1p(resting[-1]), 3
+            ends = np.unique(np.searchsorted(along, np.arange(1, bins) * (parts / bins)))
             found += sorted(
                 (np.sort(part) for part in np.split(inward, ends) if part.size), key=min
             )

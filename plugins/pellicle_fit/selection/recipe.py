@@ -170,10 +170,13 @@ class Agreement(NamedTuple):
 
 def agreement_of(fit: Candidate) -> Agreement:
     """Return whether curves agree on the quantities that they share."""
-    objective, count = fit.of_rows, len(fit.whole)
-    shared = sum(slot.curve is None for slot in objective.slots)
+    count = len(fit.whole)
+    shared = sum(slot.curve is None for slot in fit.objective.slots)
     if count == 1 or not shared:
         return Agreement(0.0, 0, 0)
+    # What is weighed beside the rows does not scale with their noise.
+    fit = fit.polished()
+    objective = fit.of_rows
     values, rises = objective.values(fit.minimum.at), []
     for i in range(count):
         names = ("curves", "noise", "memory")

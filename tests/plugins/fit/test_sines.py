@@ -302,6 +302,40 @@ def test_a_fit_tells_tension_from_relaxation_by_sines() -> None:
     assert with_sines.values()["sine_1_loss_modulus"] == with_sines.sines[0]["loss_modulus"].value
 
 
+def test_a_pool_of_one_curve_twice_agrees() -> None:
+    """Curves with sines agree on what they share, if they do."""
+    time = np.arange(-0.5, 18.0, 1 / RATE)
+    tip = DEPTH * np.minimum(time, RAMP) + TOUCH
+    force = explained(ZENER).force(Curve(tip, tip, BEAD, time, np.zeros(time.size, bool)))
+    moduli = MODULUS * modulus_of(ZENER, FREQUENCIES)
+    for frequency, start, modulus in zip(FREQUENCIES, (3.0, 13.5, 17.0), moduli, strict=True):
+        at = (time >= start) & (time < start + CYCLES / frequency)
+        turn = AMPLITUDE * np.exp(2j * np.pi * frequency * (time[at] - start))
+        tip[at] += turn.imag
+        force[at] += 2 * np.sqrt(RADIUS * DEPTH) * (modulus * turn).imag
+    noise = 0.003 * force.max() * np.random.default_rng(2).standard_normal(time.size)
+    twice = dict.fromkeys("ab", (tip, force + noise, time))
+    options: dict[str, Any] = {"segment": "approach+hold", "rivals": ["standard_linear"]}
+    found = pl.fit_pooled(twice, indenter=BEAD, frequencies=[*FREQUENCIES], **options)
+    assert found.answer.selected.types == {"standard_linear"}
+    assert found.answer.agreement.chi_squared < 1
+    assert len(found.sines) == 2 * len(FREQUENCIES)
+
+
+def test_means_of_a_hold_are_least_where_its_rows_are() -> None:
+    """A solid that relaxes within the first hundredth of a hold is followed by its means."""
+    time = np.linspace(-0.5, 29, 5900)
+    depth = DEPTH * np.minimum(time, 1) + TOUCH
+    curve = Curve(depth, depth, BEAD, time, np.zeros(time.size, bool))
+    force = explained(ZENER).force(curve)
+    noise = 0.003 * force.max() * np.random.default_rng(3).standard_normal(time.size)
+    options: dict[str, Any] = {"segment": "approach+hold", "rivals": ["standard_linear"]}
+    found = pl.fit(depth, force + noise, time=time, indenter=BEAD, **options).answer.selected
+    assert found.types == {"standard_linear"}
+    of_rows = found.of_rows
+    assert found.chi_squared - of_rows.minimise(found.minimum.at).chi_squared < 0.1
+
+
 def test_sines_beside_what_is_not_known_are_excused() -> None:
     """Adhesion, and a tension on a layer, have no stiffness of sines."""
     sine = Sine(1.0, AMPLITUDE, 1e-3 + 1e-4j, 1e-5, TOUCH + DEPTH, 1e-9, 2.0, 1, 100)
