@@ -167,11 +167,13 @@ def _check_rise(z: Array, f: Array) -> None:
     """Raise unless the force is higher at the largest positions than at the smallest."""
     order = np.argsort(z, kind="stable")
     tenth = max(z.size // 10, 2)
-    low, high = f[order[:tenth]], f[order[-tenth:]]
+    # Where nearly all rows rest in a hold, few are of the approach.
+    below = int(np.sum(z < (z.min() + z.max()) / 2))
+    low, high = f[order[: min(tenth, below)]], f[order[-min(tenth, z.size - below) :]]
     rise = float(high.mean() - low.mean())
     # Neighbours differ by the noise and by the slope, so this is an upper bound of the noise.
     noise = float(np.sqrt(np.mean(np.diff(f[order]) ** 2) / 2))
-    least = _SIGNIFICANT * noise * np.sqrt(2 / tenth)
+    least = _SIGNIFICANT * noise * np.sqrt(1 / low.size + 1 / high.size)
     if rise < -least:
         raise ConfigError(
             f"falls by {readable(-rise, 'N', 3)} as the position grows: a negative stiffness; "

@@ -30,6 +30,8 @@ _FAR, _NEAR, _LEADS, _BESIDE = RULED_OUT, 4.0, 2.0, 1.0
 digits; of a pair to its parts, and to the best."""
 _STARTS, _STEPS, _KEPT = 6, 4, 2
 """Starts from which searches go, their rough steps, and how many are sought to the end."""
+_LOUD = 0.1
+"""Noise of the best over that at which it was sought below which all are sought again."""
 _LOWER = 0.1
 """Fall of χ² that is worth another search."""
 _COMPARED = 2e-2
@@ -107,19 +109,44 @@ def comparison(
             checked.memory for checked in other.without_memory.judgements
         ):
             return fits
-    # Another noise only scales χ²; at last it is that of the best.
-    fits = _sought(candidates, of_target, simple, best.of_rows, means, like)
-    if like is None:
-        fits = {types: _restarted(fit, of_target, fits) for types, fit in fits.items()}
-    ends = {t: _end(t, of_target, fits, _NEAR) for t in fits}
-    fits = {t: f.polished() if f.aic < ends[t] else f for t, f in fits.items()}
-    fits = at_common_noise(_nearest_sought(fits, of_target))
+    fits = _compared(candidates, of_target, simple, means, like)
+    # Beside so much noise a search ends far from the least χ² at that of the best.
+    while _falls(best_of(simple.values()), best := best_of(fits.values())):
+        simple = {types: fits[types] for types in (NONE, of_target, best.types)}
+        simple[best.types] = best.polished()
+        fits = _compared(candidates, of_target, simple, means, like)
     # The modulus of the end of the loading is that after the time since the best first touch.
     best = best_of(fits.values())
     pairs = zip(best.whole, best.contact_points, strict=True)
     times = [curve.time_in_contact(point) for curve, point in pairs]
     time = float(np.exp(np.mean(np.log(times))))
     return {types: fit.relaxed_for(time) for types, fit in fits.items()}
+
+
+def _falls(before: Candidate, best: Candidate) -> bool:
+    """Return whether the noise of a curve is a small part of what it was."""
+    pairs = zip(before.objective.noise, best.objective.noise, strict=True)
+    return any(now < _LOUD * then for then, now in pairs)
+
+
+def _compared(
+    candidates: Explanations,
+    of_target: Types,
+    simple: Fits,
+    means: tuple[Curve, ...],
+    like: Neighbour | None,
+) -> Fits:
+    """Return all explanations at the noise of the best, sought at that of the best simple one.
+
+    Another noise only scales χ².
+    """
+    of = best_of(simple.values()).of_rows
+    fits = _sought(candidates, of_target, simple, of, means, like)
+    if like is None:
+        fits = {types: _restarted(fit, of_target, fits) for types, fit in fits.items()}
+    ends = {t: _end(t, of_target, fits, _NEAR) for t in fits}
+    fits = {t: f.polished() if f.aic < ends[t] else f for t, f in fits.items()}
+    return at_common_noise(_nearest_sought(fits, of_target))
 
 
 def _sought(

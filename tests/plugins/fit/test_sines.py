@@ -302,17 +302,23 @@ def test_a_fit_tells_tension_from_relaxation_by_sines() -> None:
     assert with_sines.values()["sine_1_loss_modulus"] == with_sines.sines[0]["loss_modulus"].value
 
 
-def test_a_pool_of_one_curve_twice_agrees() -> None:
-    """Curves with sines agree on what they share, if they do."""
+def held(law: Any) -> tuple[Any, Any, Any]:
+    """Return times, positions and forces of a ramp, a hold that relaxes and sines in it."""
     time = np.arange(-0.5, 18.0, 1 / RATE)
     tip = DEPTH * np.minimum(time, RAMP) + TOUCH
-    force = explained(ZENER).force(Curve(tip, tip, BEAD, time, np.zeros(time.size, bool)))
-    moduli = MODULUS * modulus_of(ZENER, FREQUENCIES)
+    force = explained(law).force(Curve(tip, tip, BEAD, time, np.zeros(time.size, bool)))
+    moduli = MODULUS * modulus_of(law, FREQUENCIES)
     for frequency, start, modulus in zip(FREQUENCIES, (3.0, 13.5, 17.0), moduli, strict=True):
         at = (time >= start) & (time < start + CYCLES / frequency)
         turn = AMPLITUDE * np.exp(2j * np.pi * frequency * (time[at] - start))
         tip[at] += turn.imag
         force[at] += 2 * np.sqrt(RADIUS * DEPTH) * (modulus * turn).imag
+    return time, tip, force
+
+
+def test_a_pool_of_one_curve_twice_agrees() -> None:
+    """Curves with sines agree on what they share, if they do."""
+    time, tip, force = held(ZENER)
     noise = 0.003 * force.max() * np.random.default_rng(2).standard_normal(time.size)
     twice = dict.fromkeys("ab", (tip, force + noise, time))
     options: dict[str, Any] = {"segment": "approach+hold", "rivals": ["standard_linear"]}
@@ -334,6 +340,20 @@ def test_means_of_a_hold_are_least_where_its_rows_are() -> None:
     assert found.types == {"standard_linear"}
     of_rows = found.of_rows
     assert found.chi_squared - of_rows.minimise(found.minimum.at).chi_squared < 0.1
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_a_pair_explains_a_hold_no_worse_than_its_part(seed: int) -> None:
+    """Beside what simple explanations leave of a hold, no search ends at the least χ²."""
+    time, tip, force = held(POWER)
+    noise = 0.01 * force.max() * np.random.default_rng(seed).standard_normal(time.size)
+    options: dict[str, Any] = {"segment": "approach+hold", "rivals": ["power_law"]}
+    options |= {"indenter": BEAD, "frequencies": [*FREQUENCIES]}
+    found = pl.fit(tip, force + noise, time=time, **options)
+    fits = {fit.types: fit for fit in found.answer.explanations}
+    alone, pair = fits[frozenset({"power_law"})], fits[frozenset({"power_law", "tension"})]
+    assert pair.chi_squared <= alone.chi_squared + 0.1
+    assert not found.tension_needed
 
 
 def test_sines_beside_what_is_not_known_are_excused() -> None:
