@@ -12,7 +12,6 @@ from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import nnls
 
 from pellicle.arrays import Array
 
@@ -40,6 +39,8 @@ def dynamic_punch_stiffness(
 @cache
 def _function() -> tuple[float, Array, Array]:
     """Return α, the pⱼ and the cⱼ."""
+    from scipy.optimize import nnls
+
     x, poles = np.geomspace(*_RATIOS, _COUNT), np.geomspace(*_POLES, _POLE_COUNT)
     ratio = np.exp(punch_stiffness(x)[0])
     # Columns of the order of 1 at their poles.

@@ -152,8 +152,10 @@ class Relaxing(Responds):
         before = time[0] - z[:, 0] * np.ptp(time) / np.maximum(np.ptp(z, axis=1), 1e-300)
         crossing = np.array([np.interp(0.0, row, time) for row in z])
         start, end = np.where(z[:, 0] <= 0, crossing, before)[:, None], time[-1]
-        # Dense after first touch, and after the start of a dwell.
-        top = time[np.argmax(z >= 0.98 * z[:, -1:], axis=1)][:, None]
+        # Dense after first touch, and after the start of a dwell, where the path bends most.
+        way = z / np.maximum(z[:, -1:], 1e-300) - (time - start) / np.maximum(end - start, 1e-300)
+        top = time[np.argmax(np.where(time > start, way, -np.inf), axis=1)][:, None]
+        top = np.where(top > start, top, end)
         dwells = end - top >= 0.1 * (top - start)
         top = np.where(dwells, top, end)
         ramp = np.linspace(0, 1, _FEW_NODES if curve.is_rough else _NODES)

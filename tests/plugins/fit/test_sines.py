@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.special import beta, gamma
+from scipy.special import beta, betainc, gamma
 
 import pellicle as pl
 from pellicle.errors import ConfigError
@@ -328,6 +328,22 @@ def test_a_pool_of_one_curve_twice_agrees() -> None:
     assert len(found.sines) == 2 * len(FREQUENCIES)
 
 
+@pytest.mark.parametrize("exponent", [0.15, 0.3])
+def test_force_of_a_hold_in_closed_form(exponent: float) -> None:
+    """From the ramp on, at its turn too, a power law gives an incomplete beta function."""
+    time = np.linspace(-0.5, 9.5, 1001)
+    depth = DEPTH * np.minimum(time, 1) + TOUCH
+    curve = Curve(depth, depth, BEAD, time, np.zeros(time.size, bool))
+    law = effect("power_law", relaxation_exponent=exponent)
+    touches = time > 0.1
+    since = np.maximum(time[touches], 1.0)
+    before = betainc(1.5, 1 - exponent, np.minimum(1.0, 1 / since))
+    exact = 1.5 * beta(1.5, 1 - exponent) * time[touches] ** (1.5 - exponent) * before
+    exact *= 4 / 3 * MODULUS * np.sqrt(RADIUS) * DEPTH**1.5
+    force = explained(law).force(curve)[touches]
+    np.testing.assert_allclose(force, exact, atol=1e-3 * exact.max())
+
+
 def test_means_of_a_hold_are_least_where_its_rows_are() -> None:
     """A solid that relaxes within the first hundredth of a hold is followed by its means."""
     time = np.linspace(-0.5, 29, 5900)
@@ -352,7 +368,9 @@ def test_a_pair_explains_a_hold_no_worse_than_its_part(seed: int) -> None:
     found = pl.fit(tip, force + noise, time=time, **options)
     fits = {fit.types: fit for fit in found.answer.explanations}
     alone, pair = fits[frozenset({"power_law"})], fits[frozenset({"power_law", "tension"})]
-    assert pair.chi_squared <= alone.chi_squared + 0.1
+    # What leads nowhere is given up within 4 in AIC.
+    assert pair.chi_squared <= alone.chi_squared + 4
+    assert pair.polished().chi_squared <= alone.chi_squared + 0.1
     assert not found.tension_needed
 
 
