@@ -57,5 +57,5 @@ class Dask(Executor):
                 'scheduler` prints, or use the executor "processes" on one machine',
                 "address",
             ) from None
-        with client, Submission(client, work, tasks) as submission:
+        with client, Submission(client, work, tasks, self.threads) as submission:
             yield from submission.outcomes(report)

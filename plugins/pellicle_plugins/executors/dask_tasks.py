@@ -1,73 +1,98 @@
-"""The tasks of one study on a dask scheduler."""
+"""The tasks of one study on a dask scheduler: which worker gets which task, and when."""
 
 from __future__ import annotations
 
-import ctypes
 import pickle
 import time
 import warnings
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
 from contextlib import suppress
 from importlib.metadata import version
 from math import inf
 from queue import Empty, SimpleQueue
-from typing import Any, Generic, Self
+from typing import Any, Generic, NamedTuple, Self
 from uuid import uuid4
 
-import cloudpickle
-from distributed import Client, Future, KilledWorker, get_worker
+import dask
+from distributed import Client, Future, KilledWorker
 
 from pellicle import ConfigError, PellicleError, memory
 from pellicle.components import AnyTask, Report, Work
 
-from .execution import execute_remotely, pack
+from .execution import pack
 
 _CHECK_INTERVAL = 2.0
-"""Time without events after which the scheduler is asked whether it has workers [s]."""
+"""Time without events after which the scheduler is asked whether a worker is free [s]."""
 _END_TIMEOUT = 10.0
-"""Largest time to wait for running tasks to end at their next report [s]."""
+"""Largest time to wait for a result, and for running tasks to end at their next report [s]."""
 _POLL_INTERVAL = 0.05
-_WORKERS = {"add-worker": "a worker joined", "remove-worker": "a worker was lost"}
-"""Words for the events of workers of which the scheduler tells."""
-_KEPT = {-1: 2**30, -3: 2**25}
-"""Options of mallopt of glibc: freed bytes that are kept, bytes of an array of its own."""
+_DISCONNECTED = "the connection to the scheduler was lost"
+_MESSAGE, _DONE, _JOINED, _LOST = "message", "done", "add-worker", "remove-worker"
+
+
+class _Room(NamedTuple):
+    """What a worker has, and what the tasks of other clients leave of it."""
+
+    threads: int
+    free_threads: int
+    memory: float
+    """Limit of its memory [bytes], infinite if it has none."""
+    free_memory: float
+
+
+class _Placed(NamedTuple):
+    """A task on a worker."""
+
+    index: int
+    address: str
+    future: Future[bytes]
 
 
 class Submission(Generic[AnyTask]):
-    """Tasks that are submitted on entry; unfinished tasks are withdrawn on exit."""
+    """Tasks that go to workers with room for them; unfinished tasks are withdrawn on exit.
 
-    def __init__(self, client: Client, work: Work[AnyTask, Any], tasks: Sequence[AnyTask]) -> None:
+    dask counts the threads of a worker but not the memory of its tasks, and attributes its death to
+    tasks that only wait there. So a task waits here until a worker has the threads and the memory.
+    A task whose worker died is alone on the next ones, and abandoned after as many deaths as the
+    scheduler counts. A worker at the end of its lifetime leaves; that is not a death.
+    """
+
+    def __init__(
+        self, client: Client, work: Work[AnyTask, Any], tasks: Sequence[AnyTask], threads: int
+    ) -> None:
         self._client = client
         self._work = work
         self._tasks = list(tasks)
+        self._memory = [task.memory for task in tasks]
+        self._threads = threads
         self._name = f"pellicle-{uuid4().hex}"
-        self._futures: dict[int, Future[bytes]] = {}
-        self._events: SimpleQueue[tuple[int, bytes | str | None]] = SimpleQueue()
-        self._refused: list[tuple[AnyTask, Exception]] = []
+        self._waiting = list(range(len(tasks)))
+        self._placed: dict[str, _Placed] = {}
+        self._begun: set[int] = set()
+        self._deaths: dict[int, int] = {}
+        """Deaths that a task caused, of each task that was on a worker when it died."""
+        self._allowed_deaths = 0
+        self._workers: dict[str, _Room] = {}
+        self._largest = 0.0
+        """Memory of the largest worker until now [bytes]."""
+        self._events: SimpleQueue[tuple[str, Any]] = SimpleQueue()
 
     def __enter__(self) -> Self:
-        self._client.subscribe_topic(self._name, lambda event: self._events.put(event[1]))
-        self._client.subscribe_topic("all", self._tell_of_worker)
-        workers = self._client.scheduler_info()["workers"].values()
-        limits = [worker["memory_limit"] for worker in workers]
-        # A worker without a limit has 0.
-        largest = max(limits) if limits and all(limits) else inf
-        for index, task in enumerate(self._tasks):
-            try:
-                if task.memory > largest:
-                    raise ConfigError(
-                        f"{task.name} needs about {memory.shortage(task.memory, largest)} on the "
-                        "largest worker; use fewer points or fewer steps, or larger workers"
-                    )
-                self._submit(index)
-            except PellicleError as error:
-                self._refused.append((task, error))
+        put = self._events.put
+        self._client.subscribe_topic(self._name, lambda event: put((_MESSAGE, event[1])))
+
+        def tell_of_worker(event: tuple[float, Any]) -> None:
+            if isinstance(event[1], dict) and event[1].get("action") in (_JOINED, _LOST):
+                put((event[1]["action"], event[1]))
+
+        self._client.subscribe_topic("all", tell_of_worker)
         return self
 
     def __exit__(self, *_error: object) -> None:
         client, name = self._client, self._name
-        client.cancel(list(self._futures.values()), force=True)
+        client.cancel([placed.future for placed in self._placed.values()], force=True)
         client.unsubscribe_topic(name)
         client.unsubscribe_topic("all")
 
@@ -75,76 +100,183 @@ class Submission(Generic[AnyTask]):
             return any(str(key).startswith(name) for key in dask_worker.state.tasks)
 
         end = time.monotonic() + _END_TIMEOUT
-        while self._futures and client.status == "running" and time.monotonic() < end:
+        while self._placed and client.status == "running" and time.monotonic() < end:
             # Withdrawn tasks are those of their workers until they end.
             if not any(client.run(runs_ours, on_error="ignore").values()):
                 break
             time.sleep(_POLL_INTERVAL)
 
     def outcomes(self, report: Report[AnyTask]) -> Iterator[tuple[AnyTask, Any]]:
-        """Yield each task with its outcome, as they finish.
-
-        dask attributes the death of a worker to all its tasks, including waiting ones. So the tasks
-        that it abandons are submitted once more after the others, one at a time.
-        """
-        yield from self._refused
-        suspects: list[int] = []
-        for index, outcome in self._finished(report):
-            if isinstance(outcome, KilledWorker):
-                suspects.append(index)
-            else:
-                yield self._tasks[index], outcome
-        for suspect in suspects:
-            self._submit(suspect)
-            for index, outcome in self._finished(report):
-                if isinstance(outcome, KilledWorker):
-                    deaths = outcome.allowed_failures + 1
-                    outcome = PellicleError(
-                        f"{deaths} worker{'s' * (deaths > 1)} died of it, as when the system is "
-                        "out of memory; the other runs went on"
-                    )
-                yield self._tasks[index], outcome
-
-    def _tell_of_worker(self, event: tuple[float, dict[str, Any]]) -> None:
-        if words := _WORKERS.get(event[1]["action"]):
-            self._events.put((0, words))
-
-    def _submit(self, index: int) -> None:
-        future = self._client.submit(
-            _bootstrap(),
-            pack(self._work, self._tasks[index]),
-            version("pellicle"),
-            self._name,
-            index,
-            key=f"{self._name}-{uuid4().hex}",
-            pure=False,
-        )
-        self._futures[index] = future
-        future.add_done_callback(lambda _: self._events.put((index, None)))
-
-    def _finished(self, report: Report[AnyTask]) -> Iterator[tuple[int, Any]]:
-        """Yield the outcome of each submitted task, and report messages meanwhile."""
-        warned = False
-        while self._futures:
-            try:
-                # Without a timeout Windows would not let Ctrl-C through.
-                index, message = self._events.get(timeout=_CHECK_INTERVAL)
-            except Empty:
-                if not warned and not self._client.scheduler_info()["workers"]:
-                    warned = True
-                    warnings.warn(
-                        "the dask scheduler has no workers; runs wait until there are some: start "
-                        "them with `dask worker ADDRESS`",
-                        stacklevel=2,
-                    )
-                continue
-            if isinstance(message, str):
-                report(self._tasks[0], f"{message}; there are {len(self._client.nthreads())} now")
-            elif message is not None:
+        """Yield each task with its outcome, as they finish."""
+        place, warned = True, False
+        while True:
+            if place and self._events.empty():
+                yield from self._place()
+                place = False
+            if not (self._waiting or self._placed):
+                return
+            kind, event = "", None
+            # Without a timeout Windows would not let Ctrl-C through.
+            with suppress(Empty):
+                kind, event = self._events.get(timeout=_CHECK_INTERVAL)
+            if kind == _MESSAGE:
+                index, message = event
                 report(self._tasks[index], pickle.loads(message))
-            elif index in self._futures:
-                # Dropping the future keeps dask from computing the result again if its worker dies.
-                yield index, _outcome(self._futures.pop(index))
+                continue
+            place = True
+            if kind == _DONE:
+                yield from self._finish(event)
+            elif kind:
+                expected = event.get("expected")
+                words = "joined" if kind == _JOINED else "has ended" if expected else "was lost"
+                workers = len(self._client.nthreads())
+                report(self._tasks[0], f"a worker {words}; there are {workers} now")
+                if kind == _LOST:
+                    yield from self._lose(event["worker"], expected)
+            elif not (self._placed or warned):
+                warned = True
+                warnings.warn(self._shortage(), stacklevel=2)
+
+    def _place(self) -> Iterator[tuple[AnyTask, Exception]]:
+        """Send waiting tasks to workers with room; yield those that cannot be sent, and why."""
+        if not self._waiting:
+            return
+        if self._client.status != "running":
+            error = PellicleError(_DISCONNECTED)
+            yield from ((self._tasks[index], error) for index in self._waiting)
+            self._waiting.clear()
+            return
+        self._allowed_deaths, rooms = self._client.run_on_scheduler(_rooms(), self._name)
+        self._workers = {address: _Room(*room) for address, room in rooms.items()}
+        self._largest = max([self._largest, *(room.memory for room in self._workers.values())])
+        tasks_of = defaultdict(list)
+        for placed in self._placed.values():
+            tasks_of[placed.address].append(placed.index)
+        unplaced = inf
+        for index in list(self._waiting):
+            # What does not fit in this pass does not fit later in it.
+            if self._memory[index] >= unplaced:
+                continue
+            fitting = [
+                a for a, room in self._workers.items() if self._fits(index, room, tasks_of[a])
+            ]
+            if fitting:
+                address = min(fitting, key=lambda a: len(tasks_of[a]))
+                tasks_of[address].append(index)
+                self._waiting.remove(index)
+                try:
+                    self._submit(index, address)
+                except PellicleError as error:
+                    tasks_of[address].remove(index)
+                    yield self._tasks[index], error
+            elif self._memory[index] > self._largest > 0 and not self._placed:
+                self._waiting.remove(index)
+                yield self._tasks[index], self._too_large(index)
+            elif index not in self._deaths:
+                unplaced = self._memory[index]
+
+    def _fits(self, index: int, room: _Room, others: list[int]) -> bool:
+        """Return whether a worker can execute a task beside the others that it has of us."""
+        if others and not self._deaths.keys().isdisjoint([index, *others]):
+            return False
+        threads = min(self._threads, room.threads) * (len(others) + 1)
+        needed = self._memory[index] + sum(self._memory[other] for other in others)
+        return threads <= room.free_threads and needed <= room.free_memory
+
+    def _submit(self, index: int, address: str) -> None:
+        payload = pack(self._work, self._tasks[index])
+        share = {"threads": self._threads, "memory": self._memory[index]}
+        with dask.annotate(pellicle=share):
+            future = self._client.submit(
+                _bootstrap(),
+                payload,
+                version("pellicle"),
+                self._name,
+                index,
+                index in self._begun,
+                key=f"{self._name}-{uuid4().hex}",
+                workers=[address],
+                pure=False,
+            )
+        self._begun.add(index)
+        self._placed[future.key] = _Placed(index, address, future)
+        future.add_done_callback(lambda done: self._events.put((_DONE, done.key)))
+
+    def _finish(self, key: str) -> Iterator[tuple[AnyTask, Any]]:
+        """Yield a finished task with its outcome, unless its worker died first."""
+        if not (placed := self._placed.get(key)):
+            return
+        outcome = _outcome(placed.future)
+        # The end of its worker is an event of its own.
+        if not isinstance(outcome, KilledWorker):
+            # Dropping the future keeps dask from computing the result again if its worker dies.
+            del self._placed[key]
+            if outcome is None:
+                self._waiting.insert(0, placed.index)
+            else:
+                yield self._tasks[placed.index], outcome
+
+    def _lose(self, address: str, expected: bool) -> Iterator[tuple[AnyTask, Any]]:
+        """Let the tasks of a worker that is gone wait again; yield those that were its death."""
+        lost = {key: task for key, task in self._placed.items() if task.address == address}
+        for key, (index, _, _) in lost.items():
+            del self._placed[key]
+            if not expected:
+                self._deaths[index] = self._deaths.get(index, 0) + (len(lost) == 1)
+            deaths = self._deaths.get(index, 0)
+            if deaths <= self._allowed_deaths:
+                self._waiting.insert(0 if expected else len(self._waiting), index)
+                continue
+            yield (
+                self._tasks[index],
+                PellicleError(
+                    f"{deaths} worker{'s' * (deaths > 1)} died of it, as when the system is out of "
+                    "memory; the other runs went on"
+                ),
+            )
+
+    def _too_large(self, index: int) -> ConfigError:
+        shortage = memory.shortage(self._memory[index], self._largest)
+        return ConfigError(
+            f"{self._tasks[index].name} needs about {shortage} on the largest worker; use fewer "
+            "points or fewer steps, or larger workers"
+        )
+
+    def _shortage(self) -> str:
+        if not self._workers:
+            return (
+                "the dask scheduler has no workers; runs wait until there are some: start them "
+                "with `dask worker ADDRESS`"
+            )
+        index = self._waiting[0]
+        return (
+            f"no worker is free for {self._tasks[index].name}, which needs "
+            f"{self._memory[index] / 1e9:.3g} GB; it waits for one"
+        )
+
+
+def _rooms() -> Callable[..., tuple[int, dict[str, tuple[float, ...]]]]:
+    """Return the function that reads workers on the scheduler; see `_bootstrap`."""
+
+    def rooms(name: str, dask_scheduler: Any) -> tuple[int, dict[str, tuple[float, ...]]]:
+        workers = {}
+        for worker in dask_scheduler.running:
+            shares = [
+                (task.annotations or {}).get("pellicle", {})
+                for task in worker.processing
+                if not str(task.key).startswith(name) and task not in worker.long_running
+            ]
+            # A worker without a limit has 0.
+            limit = worker.memory_limit or float("inf")
+            workers[worker.address] = (
+                worker.nthreads,
+                worker.nthreads - sum(share.get("threads", 1) for share in shares),
+                limit,
+                limit - sum(share.get("memory", 0) for share in shares),
+            )
+        return dask_scheduler.allowed_failures, workers
+
+    return rooms
 
 
 def _bootstrap() -> Callable[..., bytes]:
@@ -155,40 +287,21 @@ def _bootstrap() -> Callable[..., bytes]:
     """
 
     def start(*arguments: Any) -> bytes:
-        from pellicle_plugins.executors.dask_tasks import execute_on_worker
+        from pellicle_plugins.executors.dask_worker import execute_on_worker
 
         return execute_on_worker(*arguments)
 
     return start
 
 
-def execute_on_worker(payload: bytes, our_version: str, topic: str, index: int) -> bytes:
-    """Return the pickled outcome of a packed task, on a worker."""
-    if (installed := version("pellicle")) != our_version:
-        error = f"the worker has pellicle {installed}, not {our_version} as here; install the same"
-        return pickle.dumps(PellicleError(error))
-    # dask has freed memory given back at once, which makes a solve take twice as long.
-    with suppress(AttributeError, OSError, TypeError):
-        for option, value in _KEPT.items():
-            ctypes.CDLL(None).mallopt(option, value)
-    worker = get_worker()
-    key = worker.get_current_task()
-
-    def say(message: Any) -> None:
-        # dask cannot stop a running task, but changes its state when its result is not needed.
-        task = worker.state.tasks.get(key)
-        if task is None or task.state != "executing":
-            raise CancelledError(f"{key} was withdrawn")
-        worker.log_event(topic, (index, cloudpickle.dumps(message)))
-
-    return execute_remotely(payload, say)
-
-
 def _outcome(future: Future[bytes]) -> Any:
+    """Return the outcome of a finished task; None if it was lost with its worker."""
     try:
-        return pickle.loads(future.result())
+        return pickle.loads(future.result(timeout=_END_TIMEOUT))
     except CancelledError:
-        return PellicleError("the connection to the scheduler was lost")
+        return PellicleError(_DISCONNECTED)
+    except TimeoutError:
+        return None
     except Exception as error:
         cause: BaseException | None = error
         while cause is not None and not isinstance(cause, ModuleNotFoundError):
