@@ -146,7 +146,11 @@ class Submission(Generic[AnyTask]):
             yield from ((self._tasks[index], error) for index in self._waiting)
             self._waiting.clear()
             return
-        self._allowed_deaths, rooms = self._client.run_on_scheduler(_rooms(), self._name)
+        try:
+            self._allowed_deaths, rooms = self._client.run_on_scheduler(_rooms(), self._name)
+        except OSError:
+            # The client needs a moment to see that its scheduler is gone.
+            return
         self._workers = {address: _Room(*room) for address, room in rooms.items()}
         self._largest = max([self._largest, *(room.memory for room in self._workers.values())])
         tasks_of = defaultdict(list)
@@ -169,11 +173,13 @@ class Submission(Generic[AnyTask]):
                 except PellicleError as error:
                     tasks_of[address].remove(index)
                     yield self._tasks[index], error
-            elif self._memory[index] > self._largest > 0 and not self._placed:
-                self._waiting.remove(index)
-                yield self._tasks[index], self._too_large(index)
             elif index not in self._deaths:
                 unplaced = self._memory[index]
+        if self._workers and not self._placed:
+            # Larger workers may join as long as something else is done.
+            for index in [i for i in self._waiting if self._memory[i] > self._largest]:
+                self._waiting.remove(index)
+                yield self._tasks[index], self._too_large(index)
 
     def _fits(self, index: int, room: _Room, others: list[int]) -> bool:
         """Return whether a worker can execute a task beside the others that it has of us."""
