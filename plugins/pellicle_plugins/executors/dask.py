@@ -3,31 +3,78 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import Literal, Self
 
-from pydantic import Field
+from pydantic import ConfigDict, Field, model_validator
 
 from pellicle import ConfigError
-from pellicle.components import AnyTask, Executor, Outcome, Outcomes, Report, Threads, Work
+from pellicle.components import AnyTask, Executor, Outcome, Outcomes, Report, Threads, Work, Workers
+from pellicle.schema import InputPath, Model
+
+_SOURCES = "address", "scheduler_file", "cluster"
+
+
+class Certificates(Model):
+    """Files (PEM) with which this process and a scheduler with TLS know each other."""
+
+    ca_file: InputPath = Field(description="certificate of the authority that signed all others")
+    cert: InputPath = Field(description="own certificate")
+    key: InputPath = Field(description="own private key")
 
 
 class Dask(Executor):
     """Runs on the workers of a dask scheduler, on this machine or on a cluster.
 
-    A run whose worker dies starts again on another. After four deaths (dask's
-    ``allowed-failures`` and one more) it is tried once more, alone, and abandoned after four more.
+    A run starts where its threads and its memory are free. If its worker dies, it goes on on
+    another, from then on alone there; after four such deaths (dask's ``allowed-failures`` and one
+    more) it is abandoned. A worker at the end of its ``--lifetime`` does not die of its run.
     This needs the extra ``cluster``, the same version of pellicle on all workers, and a study
     folder with the same path on all of them.
     """
 
+    model_config = ConfigDict(
+        json_schema_extra={"oneOf": [{"required": [source]} for source in _SOURCES]}
+    )
+
     type: Literal["dask"] = "dask"
     examples = ({"address": "tcp://127.0.0.1:8786"},)
-    address: str = Field(
+    address: str | None = Field(
+        None,
         description='address of the scheduler, such as "tcp://node1:8786"; start one with '
         "`dask scheduler`, its workers with `dask worker ADDRESS`, or use the executor "
-        '"processes" on one machine'
+        '"processes" on one machine',
     )
-    threads: Threads = Field(1, description="threads of each run's arrays and transforms")
+    scheduler_file: InputPath | None = Field(
+        None, description="file that `dask scheduler --scheduler-file` writes, instead of address"
+    )
+    security: Certificates | None = Field(
+        None, description="certificates for a scheduler with TLS (tls://)"
+    )
+    cluster: Literal["slurm", "pbs", "sge", "lsf", "htcondor", "oar"] | None = Field(
+        None,
+        description="batch system that starts the workers as jobs (extra `queue`), instead of "
+        "address; cores, memory, walltime, queue of a job are those of "
+        "~/.config/dask/jobqueue.yaml",
+    )
+    jobs: Workers | None = Field(None, description="number of jobs at once, with cluster")
+    threads: Threads = Field(
+        1, description="threads of each run's arrays and transforms, of those of its worker"
+    )
+
+    @model_validator(mode="after")
+    def _check_sources(self) -> Self:
+        given = [source for source in _SOURCES if getattr(self, source) is not None]
+        if not given:
+            words = type(self).model_fields["address"].description
+            message = f"is missing; give it, scheduler_file or cluster: {words}"
+            raise ConfigError(message, "address")
+        if len(given) > 1:
+            raise ValueError(f"{' and '.join(given)} are given; give one of them")
+        if (self.cluster is None) != (self.jobs is None):
+            raise ValueError("cluster and jobs belong together; give both or neither")
+        if self.cluster and self.security:
+            raise ValueError("a cluster makes its own certificates; leave out security")
+        return self
 
     def map(
         self, work: Work[AnyTask, Outcome], tasks: Sequence[AnyTask], report: Report[AnyTask]
@@ -40,22 +87,26 @@ class Dask(Executor):
         if not tasks:
             return
         try:
-            from distributed import Client
-
+            from .dask_client import address_in, client_of_jobs, client_of_scheduler
             from .dask_tasks import Submission
+
+            if self.cluster and self.jobs:
+                connection = client_of_jobs(self.cluster, min(self.jobs, len(tasks)))
+            else:
+                address = self.address or address_in(self.scheduler_file)
+                connection = client_of_scheduler(address, self.security)
         except ImportError as error:
+            extra = "queue" if self.cluster else "cluster"
             raise ConfigError(
                 f"'dask' needs {error.name}, which is not installed; pip install "
-                "'pellicle[cluster]'",
+                f"'pellicle[{extra}]'",
                 "type",
             ) from None
-        try:
-            client = Client(self.address, set_as_default=False)
-        except (OSError, ValueError) as error:
-            raise ConfigError(
-                f"no scheduler answers at {self.address!r} ({error}); give the address that `dask "
-                'scheduler` prints, or use the executor "processes" on one machine',
-                "address",
-            ) from None
-        with client, Submission(client, work, tasks, self.threads) as submission:
+        advice = "start them with `dask worker ADDRESS`"
+        if self.cluster:
+            advice = "their jobs are in the queue"
+        with (
+            connection as client,
+            Submission(client, work, tasks, self.threads, advice) as submission,
+        ):
             yield from submission.outcomes(report)

@@ -9,13 +9,14 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
 from contextlib import suppress
+from dataclasses import dataclass
 from importlib.metadata import version
 from math import inf
 from queue import Empty, SimpleQueue
 from typing import Any, Generic, NamedTuple, Self
 from uuid import uuid4
 
-import dask
+from dask.base import annotate
 from distributed import Client, Future, KilledWorker
 
 from pellicle import ConfigError, PellicleError, memory
@@ -42,7 +43,8 @@ class _Room(NamedTuple):
     free_memory: float
 
 
-class _Placed(NamedTuple):
+@dataclass(frozen=True)
+class _Placed:
     """A task on a worker."""
 
     index: int
@@ -60,13 +62,20 @@ class Submission(Generic[AnyTask]):
     """
 
     def __init__(
-        self, client: Client, work: Work[AnyTask, Any], tasks: Sequence[AnyTask], threads: int
+        self,
+        client: Client,
+        work: Work[AnyTask, Any],
+        tasks: Sequence[AnyTask],
+        threads: int,
+        advice: str,
     ) -> None:
+        """Take tasks of so many ``threads``, and what to tell a user who has no workers."""
         self._client = client
         self._work = work
         self._tasks = list(tasks)
         self._memory = [task.memory for task in tasks]
         self._threads = threads
+        self._advice = advice
         self._name = f"pellicle-{uuid4().hex}"
         self._waiting = list(range(len(tasks)))
         self._placed: dict[str, _Placed] = {}
@@ -115,7 +124,8 @@ class Submission(Generic[AnyTask]):
                 place = False
             if not (self._waiting or self._placed):
                 return
-            kind, event = "", None
+            kind: str = ""
+            event: Any = None
             # Without a timeout Windows would not let Ctrl-C through.
             with suppress(Empty):
                 kind, event = self._events.get(timeout=_CHECK_INTERVAL)
@@ -191,8 +201,9 @@ class Submission(Generic[AnyTask]):
 
     def _submit(self, index: int, address: str) -> None:
         payload = pack(self._work, self._tasks[index])
+        key = f"{self._name}-{uuid4().hex}"
         share = {"threads": self._threads, "memory": self._memory[index]}
-        with dask.annotate(pellicle=share):
+        with annotate(pellicle=share):
             future = self._client.submit(
                 _bootstrap(),
                 payload,
@@ -200,13 +211,13 @@ class Submission(Generic[AnyTask]):
                 self._name,
                 index,
                 index in self._begun,
-                key=f"{self._name}-{uuid4().hex}",
+                key=key,
                 workers=[address],
                 pure=False,
             )
         self._begun.add(index)
-        self._placed[future.key] = _Placed(index, address, future)
-        future.add_done_callback(lambda done: self._events.put((_DONE, done.key)))
+        self._placed[key] = _Placed(index, address, future)
+        future.add_done_callback(lambda _: self._events.put((_DONE, key)))
 
     def _finish(self, key: str) -> Iterator[tuple[AnyTask, Any]]:
         """Yield a finished task with its outcome, unless its worker died first."""
@@ -225,7 +236,8 @@ class Submission(Generic[AnyTask]):
     def _lose(self, address: str, expected: bool) -> Iterator[tuple[AnyTask, Any]]:
         """Let the tasks of a worker that is gone wait again; yield those that were its death."""
         lost = {key: task for key, task in self._placed.items() if task.address == address}
-        for key, (index, _, _) in lost.items():
+        for key, placed in lost.items():
+            index = placed.index
             del self._placed[key]
             if not expected:
                 self._deaths[index] = self._deaths.get(index, 0) + (len(lost) == 1)
@@ -250,10 +262,8 @@ class Submission(Generic[AnyTask]):
 
     def _shortage(self) -> str:
         if not self._workers:
-            return (
-                "the dask scheduler has no workers; runs wait until there are some: start them "
-                "with `dask worker ADDRESS`"
-            )
+            none = "the dask scheduler has no workers; runs wait until there are some"
+            return f"{none}: {self._advice}"
         index = self._waiting[0]
         return (
             f"no worker is free for {self._tasks[index].name}, which needs "
@@ -261,10 +271,10 @@ class Submission(Generic[AnyTask]):
         )
 
 
-def _rooms() -> Callable[..., tuple[int, dict[str, tuple[float, ...]]]]:
-    """Return the function that reads workers on the scheduler; see `_bootstrap`."""
+def _rooms() -> Callable[..., Any]:
+    """Return the function that asks a scheduler for its workers, pickled as in `_bootstrap`."""
 
-    def rooms(name: str, dask_scheduler: Any) -> tuple[int, dict[str, tuple[float, ...]]]:
+    def rooms(name: str, dask_scheduler: Any) -> Any:
         workers = {}
         for worker in dask_scheduler.running:
             shares = [
