@@ -58,7 +58,7 @@ class Submission(Generic[AnyTask]):
     dask counts the threads of a worker but not the memory of its tasks, and attributes its death to
     tasks that only wait there. So a task waits here until a worker has the threads and the memory.
     A task whose worker died is alone on the next ones, and abandoned after as many deaths as the
-    scheduler counts. A worker at the end of its lifetime leaves; that is not a death.
+    scheduler counts. A worker that ends by its lifetime, or because it is asked to, does not die.
     """
 
     def __init__(
@@ -137,12 +137,12 @@ class Submission(Generic[AnyTask]):
             if kind == _DONE:
                 yield from self._finish(event)
             elif kind:
-                expected = event.get("expected")
-                words = "joined" if kind == _JOINED else "has ended" if expected else "was lost"
+                ended = kind == _LOST and self._has_ended(event)
+                words = "joined" if kind == _JOINED else "has ended" if ended else "was lost"
                 workers = len(self._client.nthreads())
                 report(self._tasks[0], f"a worker {words}; there are {workers} now")
                 if kind == _LOST:
-                    yield from self._lose(event["worker"], expected)
+                    yield from self._lose(event["worker"], ended)
             elif not (self._placed or warned):
                 warned = True
                 warnings.warn(self._shortage(), stacklevel=2)
@@ -233,17 +233,30 @@ class Submission(Generic[AnyTask]):
             else:
                 yield self._tasks[placed.index], outcome
 
-    def _lose(self, address: str, expected: bool) -> Iterator[tuple[AnyTask, Any]]:
+    def _has_ended(self, removal: dict[str, Any]) -> bool:
+        """Return whether a worker ended by itself or was asked to, rather than died.
+
+        The scheduler expects the end of a lifetime, but not that of a job whose batch system sends
+        SIGTERM; the worker tells of both if it has a nanny.
+        """
+        address = removal["worker"]
+        log = [event for _, event in self._client.get_events(address) if isinstance(event, dict)]
+        actions = [event.get("action") for event in reversed(log)]
+        # Another worker may have had the address before.
+        latest = actions[: actions.index(_JOINED)] if _JOINED in actions else actions
+        return bool(removal["expected"]) or "closing-worker" in latest
+
+    def _lose(self, address: str, ended: bool) -> Iterator[tuple[AnyTask, Any]]:
         """Let the tasks of a worker that is gone wait again; yield those that were its death."""
         lost = {key: task for key, task in self._placed.items() if task.address == address}
         for key, placed in lost.items():
             index = placed.index
             del self._placed[key]
-            if not expected:
+            if not ended:
                 self._deaths[index] = self._deaths.get(index, 0) + (len(lost) == 1)
             deaths = self._deaths.get(index, 0)
             if deaths <= self._allowed_deaths:
-                self._waiting.insert(0 if expected else len(self._waiting), index)
+                self._waiting.insert(0 if ended else len(self._waiting), index)
                 continue
             yield (
                 self._tasks[index],

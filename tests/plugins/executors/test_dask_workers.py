@@ -43,7 +43,7 @@ def dask(**fields: Any) -> pl.Executor:
 
 
 @contextmanager
-def worker_of(address: str, folder: Path, *options: str) -> Iterator[None]:
+def worker_of(address: str, folder: Path, *options: str) -> Iterator[subprocess.Popen[bytes]]:
     """Start a worker process of its own, wait until its scheduler knows it, and end it."""
     command = [sys.executable, "-m", "distributed.cli.dask_worker", address, "--no-dashboard"]
     command += ["--host", "127.0.0.1", "--local-directory", str(folder), *options]
@@ -52,7 +52,7 @@ def worker_of(address: str, folder: Path, *options: str) -> Iterator[None]:
         worker = subprocess.Popen(command, stderr=subprocess.DEVNULL)
         try:
             client.wait_for_workers(before + 1, timeout=PATIENCE)
-            yield
+            yield worker
         finally:
             end(worker)
 
@@ -222,16 +222,22 @@ def test_run_that_kills_its_worker_is_found_among_others(start_dask: Any) -> Non
     assert outcomes == {jobs[0]: 0, jobs[2]: 2}
 
 
-def test_worker_at_the_end_of_its_lifetime(start_dask: Any, tmp_path: Path) -> None:
+@pytest.mark.parametrize("lifetime", [["--lifetime", "3s"], []], ids=["lifetime", "SIGTERM"])
+def test_worker_that_ends(start_dask: Any, tmp_path: Path, lifetime: list[str]) -> None:
     """Its run goes on elsewhere, once its files are free, and no death is counted."""
     jobs = [Job(i, tmp_path) for i in range(2)]
     lines: list[str] = []
-    ending = ("--nthreads", "1", "--lifetime", "3s")
+
+    def report(job: Job, line: str) -> None:
+        lines.append(line)
+        if not lifetime and lines.count("a piece") == 3:
+            worker.terminate()
+
     with (
         start_dask(1, "--nthreads", "2", **STRICT) as address,
-        worker_of(address, tmp_path, *ending),
+        worker_of(address, tmp_path, "--nthreads", "1", *lifetime) as worker,
     ):
-        outcomes = dict(dask(address=address).map(go_on, jobs, lambda _, line: lines.append(line)))
+        outcomes = dict(dask(address=address).map(go_on, jobs, report))
     assert any(line.startswith("a worker has ended") for line in lines)
     assert {outcomes[job] for job in jobs} == {1, 2}
     assert all((tmp_path / f"{job.number}.done").stat().st_size == 6 for job in jobs)
