@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal, Self
+from contextlib import AbstractContextManager
+from typing import TYPE_CHECKING, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
 from pellicle import ConfigError
 from pellicle.components import AnyTask, Executor, Outcome, Outcomes, Report, Threads, Work, Workers
 from pellicle.schema import InputPath, Model
+
+if TYPE_CHECKING:
+    from distributed import Client
 
 _SOURCES = "address", "scheduler_file", "cluster"
 
@@ -87,10 +91,13 @@ class Dask(Executor):
         if not tasks:
             return
         try:
-            from .dask_client import address_in, client_of_jobs, client_of_scheduler
+            from .dask_client import address_in, client_of_scheduler
             from .dask_tasks import Submission
 
+            connection: AbstractContextManager[Client]
             if self.cluster and self.jobs:
+                from .dask_jobs import client_of_jobs
+
                 connection = client_of_jobs(self.cluster, min(self.jobs, len(tasks)))
             else:
                 address = self.address or address_in(self.scheduler_file)

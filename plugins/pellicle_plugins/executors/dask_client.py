@@ -1,29 +1,14 @@
-"""Clients of a dask scheduler: one that is there, or one whose workers are jobs of a queue."""
+"""Clients of a dask scheduler that is there."""
 
 from __future__ import annotations
 
 import json
-import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-import dask
 from distributed import Client, Security
 
 from pellicle import ConfigError
-
-_CLASSES = {
-    "slurm": "SLURMCluster",
-    "pbs": "PBSCluster",
-    "sge": "SGECluster",
-    "lsf": "LSFCluster",
-    "htcondor": "HTCondorCluster",
-    "oar": "OARCluster",
-}
-"""Classes of dask_jobqueue by the names of their batch systems there."""
 
 
 def address_in(scheduler_file: Path | None) -> str:
@@ -65,43 +50,3 @@ def client_of_scheduler(address: str, certificates: Any) -> Client:
             'scheduler` prints, or use the executor "processes" on one machine',
             "address",
         ) from None
-
-
-@contextmanager
-def _client_of(cluster: Any, jobs: int) -> Iterator[Client]:
-    with cluster, Client(cluster, set_as_default=False) as client:
-        # Unlike scale(), this replaces jobs that end at their walltime.
-        cluster.adapt(minimum_jobs=jobs, maximum_jobs=jobs)
-        yield client
-
-
-def client_of_jobs(queue: str, jobs: int) -> Any:
-    """Return a context: a client of an own scheduler, and so many jobs of a queue for its workers.
-
-    All else about the jobs is in the configuration of dask-jobqueue, which is the user's own, not
-    in a run file, which may be a stranger's: it may hold commands. The scheduler listens to other
-    nodes, so it lets only those in that have its certificate, which is made for this run.
-    """
-    # Security.temporary() does not name it as the module that is missing.
-    import_module("cryptography")
-    jobqueue = import_module("dask_jobqueue")
-    options = dask.config.get(f"jobqueue.{queue}.scheduler-options", None) or {}
-    shared = dask.config.get(f"jobqueue.{queue}.shared-temp-directory", None)
-    cluster_class = getattr(jobqueue, _CLASSES[queue])
-    command = cluster_class.job_cls.submit_command.split()[0]
-    if not shutil.which(command):
-        raise ConfigError(
-            f"there is no {command} here; start on a login node of the cluster", "cluster"
-        )
-    try:
-        cluster = cluster_class(
-            security=True,
-            scheduler_options=options | {"dashboard": False},
-            shared_temp_directory=shared or str(Path.home()),
-        )
-    except (OSError, ValueError, TypeError, RuntimeError) as error:
-        raise ConfigError(
-            f"{error}; settings of jobs are in ~/.config/dask/jobqueue.yaml, jobqueue: {queue}:",
-            "cluster",
-        ) from None
-    return _client_of(cluster, jobs)
