@@ -29,9 +29,9 @@ class Certificates(Model):
 class Dask(Executor):
     """Runs on the workers of a dask scheduler, on this machine or on a cluster.
 
-    A run starts where its threads and its memory are free. If its worker dies, it goes on on
-    another, from then on alone there; after four such deaths (dask's ``allowed-failures`` and one
-    more) it is abandoned. A worker at the end of its ``--lifetime`` does not die of its run.
+    A run starts on a worker with threads and memory for it. If that dies, the run continues on
+    another, where it is alone; it is abandoned after four such deaths (dask's ``allowed-failures``
+    and one more). A worker at the end of its ``--lifetime`` has not died.
     This needs the extra ``cluster``, the same version of pellicle on all workers, and a study
     folder with the same path on all of them.
     """
@@ -56,13 +56,12 @@ class Dask(Executor):
     )
     cluster: Literal["slurm", "pbs", "sge", "lsf", "htcondor", "oar"] | None = Field(
         None,
-        description="batch system that starts the workers as jobs (extra `queue`), instead of "
-        "address; cores, memory, walltime, queue of a job are those of "
-        "~/.config/dask/jobqueue.yaml",
+        description="batch system that starts the workers as jobs, instead of address (extra "
+        "`queue`); ~/.config/dask/jobqueue.yaml sets their cores, memory, walltime and queue",
     )
     jobs: Workers | None = Field(None, description="number of jobs at once, with cluster")
     threads: Threads = Field(
-        1, description="threads of each run's arrays and transforms, of those of its worker"
+        1, description="threads of each run's arrays and transforms, out of those of its worker"
     )
 
     @model_validator(mode="after")

@@ -96,6 +96,7 @@ def test_tls(start_dask: Any, certificates: dict[str, str]) -> None:
             squares(address=address)
 
 
+@pytest.mark.slow
 def test_no_tls(dask_address: str, certificates: dict[str, str]) -> None:
     """What is to be encrypted is not sent as it is, and files that are no certificates are told."""
     with pytest.raises(pl.ConfigError, match=r"security: .* has no TLS; leave out security"):
