@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import AbstractContextManager
-from typing import TYPE_CHECKING, Literal, Self
+from typing import Literal, Self
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
 from pellicle import ConfigError
 from pellicle.components import AnyTask, Executor, Outcome, Outcomes, Report, Threads, Work, Workers
 from pellicle.schema import InputPath, Model
-
-if TYPE_CHECKING:
-    from distributed import Client
-
-_SOURCES = "address", "scheduler_file", "cluster"
 
 
 class Certificates(Model):
@@ -35,10 +29,6 @@ class Dask(Executor):
     This needs the extra ``cluster``, the same version of pellicle on all workers, and a study
     folder with the same path on all of them.
     """
-
-    model_config = ConfigDict(
-        json_schema_extra={"oneOf": [{"required": [source]} for source in _SOURCES]}
-    )
 
     type: Literal["dask"] = "dask"
     examples = ({"address": "tcp://127.0.0.1:8786"},)
@@ -66,15 +56,15 @@ class Dask(Executor):
 
     @model_validator(mode="after")
     def _check_sources(self) -> Self:
-        given = [source for source in _SOURCES if getattr(self, source) is not None]
+        given = [
+            n for n in ("address", "scheduler_file", "cluster") if getattr(self, n) is not None
+        ]
         if not given:
             words = type(self).model_fields["address"].description
             message = f"is missing; give it, scheduler_file or cluster: {words}"
             raise ConfigError(message, "address")
-        if len(given) > 1:
-            raise ValueError(f"{' and '.join(given)} are given; give one of them")
-        if (self.cluster is None) != (self.jobs is None):
-            raise ValueError("cluster and jobs belong together; give both or neither")
+        if len(given) > 1 or bool(self.cluster) != bool(self.jobs):
+            raise ValueError("give one of address, scheduler_file, and cluster together with jobs")
         if self.cluster and self.security:
             raise ValueError("a cluster makes its own certificates; leave out security")
         return self
@@ -90,17 +80,14 @@ class Dask(Executor):
         if not tasks:
             return
         try:
-            from .dask_client import address_in, client_of_scheduler
+            from .dask_client import client_of, client_of_jobs
             from .dask_tasks import Submission
 
-            connection: AbstractContextManager[Client]
-            if self.cluster and self.jobs:
-                from .dask_jobs import client_of_jobs
-
-                connection = client_of_jobs(self.cluster, min(self.jobs, len(tasks)))
-            else:
-                address = self.address or address_in(self.scheduler_file)
-                connection = client_of_scheduler(address, self.security)
+            connection = (
+                client_of_jobs(self.cluster, min(self.jobs, len(tasks)))
+                if self.cluster and self.jobs
+                else client_of(self.address, self.scheduler_file, self.security)
+            )
         except ImportError as error:
             extra = "queue" if self.cluster else "cluster"
             raise ConfigError(
@@ -108,11 +95,5 @@ class Dask(Executor):
                 f"'pellicle[{extra}]'",
                 "type",
             ) from None
-        advice = "start them with `dask worker ADDRESS`"
-        if self.cluster:
-            advice = "their jobs are in the queue"
-        with (
-            connection as client,
-            Submission(client, work, tasks, self.threads, advice) as submission,
-        ):
+        with connection as client, Submission(client, work, tasks, self.threads) as submission:
             yield from submission.outcomes(report)
