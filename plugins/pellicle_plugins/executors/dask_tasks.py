@@ -38,6 +38,7 @@ _LOCK_TIMEOUT, _LOCK_INTERVAL = 60.0, 1.0
 _DISCONNECTED = "the connection to the scheduler was lost"
 _MESSAGE, _DONE, _JOINED, _LOST = "message", "done", "add-worker", "remove-worker"
 _Room = tuple[int, float, int, float]
+"""Threads and memory [bytes] of a worker, and what other clients leave of them."""
 
 
 class Submission(Generic[AnyTask]):
@@ -105,7 +106,7 @@ class Submission(Generic[AnyTask]):
                 kind, event = self._events.get(timeout=_CHECK_INTERVAL)
             except Empty:
                 place = True
-                if not (self._placed or warned):
+                if not (self._placed or warned) and self._client.status == "running":
                     warned = True
                     warnings.warn(self._shortage(), stacklevel=2)
                 continue
@@ -116,14 +117,14 @@ class Submission(Generic[AnyTask]):
             if kind == _DONE:
                 yield from self._finish(event)
             elif kind in (_JOINED, _LOST):
+                ended = kind == _LOST and self._has_ended(event)
+                words = "joined" if kind == _JOINED else "has ended" if ended else "was lost"
                 # If the scheduler is gone, too, futures tell of it.
                 with suppress(OSError):
-                    ended = kind == _LOST and self._has_ended(event)
-                    words = "joined" if kind == _JOINED else "has ended" if ended else "was lost"
                     there = len(self._client.nthreads())
                     report(self._tasks[0], f"a worker {words}; there are {there} now")
-                    if kind == _LOST:
-                        yield from self._lose(event["worker"], ended)
+                if kind == _LOST:
+                    yield from self._lose(event["worker"], ended)
 
     def _place(self) -> Iterator[tuple[AnyTask, Exception]]:
         """Send waiting tasks to workers with room; yield those that cannot be sent, and why."""
@@ -161,15 +162,11 @@ class Submission(Generic[AnyTask]):
         for number in [one for one in self._waiting if self._memory[one] > largest]:
             self._waiting.remove(number)
             shortage = memory.shortage(self._memory[number], largest)
-            yield (
-                self._tasks[number],
-                ConfigError(
-                    f"{self._tasks[number].name} needs about {shortage} on the largest worker; use "
-                    "fewer points or fewer steps, or larger workers"
-                ),
-            )
+            wrong = f"{self._tasks[number].name} needs about {shortage} on the largest worker"
+            remedy = "use fewer points or fewer steps, or larger workers"
+            yield self._tasks[number], ConfigError(f"{wrong}; {remedy}")
 
-    def _fits(self, number: int, room: tuple[int, float, int, float], others: list[int]) -> bool:
+    def _fits(self, number: int, room: _Room, others: list[int]) -> bool:
         """Return whether a worker can execute a task beside the others that it has of us."""
         threads, _, free_threads, free_memory = room
         if others and not self._deaths.keys().isdisjoint([number, *others]):
@@ -206,8 +203,10 @@ class Submission(Generic[AnyTask]):
 
         The scheduler expects the first. A worker with a nanny tells of both.
         """
-        log = [event for _, event in self._client.get_events(removal["worker"])]
-        actions = [event.get("action") for event in log if isinstance(event, dict)]
+        log: Any = ()
+        with suppress(OSError):
+            log = self._client.get_events(removal["worker"])
+        actions = [event.get("action") for _, event in log if isinstance(event, dict)]
         # Another worker may have had the address before.
         since = max((i for i, action in enumerate(actions) if action == _JOINED), default=0)
         return bool(removal["expected"]) or "closing-worker" in actions[since:]
