@@ -145,7 +145,7 @@ def start_dask(tmp_path_factory: pytest.TempPathFactory) -> StartDask:
                 if workers:
                     client.wait_for_workers(workers, timeout=60)
                 address = client.scheduler.address
-            assert address.startswith("tcp://127.0.0.1:")
+            assert address.startswith(("tcp://127.0.0.1:", "tls://127.0.0.1:"))
             yield address
 
     return start

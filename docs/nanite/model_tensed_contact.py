@@ -17,11 +17,26 @@ def get_parameter_defaults():
     params.add("E", value=3e3, min=1e-3)
     params.add("R", value=10e-6, min=0, vary=False)
     params.add("nu", value=0.5, min=0, max=0.5, vary=False)
-    params.add("tension", value=1e-4, min=0)
+    # lmfit resolves a value with one bound only to 1e-16, which is coarse for its derivatives.
+    params.add("tension", value=1e-4, min=0, max=10)
     params.add("thickness", value=0, min=0, vary=False)
     params.add("contact_point", value=0)
     params.add("baseline", value=0)
     return params
+
+
+def compute_ancillaries(idnt):
+    """Return initial values: the fit without tension, since a search from afar sticks at it."""
+    tip, force = (np.asarray(idnt.appr[name]) for name in ("tip position", "force"))
+    few = slice(None, None, max(1, tip.size // 500))
+
+    def residuals(params):
+        return tensed_contact(tip[few], **params.valuesdict()) - force[few]
+
+    params = get_parameter_defaults()
+    params["tension"].set(value=0, vary=False)
+    fitted = lmfit.minimize(residuals, params).params
+    return {key: fitted[key].value for key in parameter_anc_keys}
 
 
 def tensed_contact(delta, E, R, nu, tension, thickness=0, contact_point=0, baseline=0):  # noqa: N803
@@ -92,5 +107,12 @@ parameter_names = [
     "Force Baseline",
 ]
 parameter_units = ["Pa", "m", "", "N/m", "m", "m", "N"]
+parameter_anc_keys = ["E", "contact_point", "baseline"]
+parameter_anc_names = [
+    "Young's Modulus without Tension",
+    "Contact Point without Tension",
+    "Force Baseline without Tension",
+]
+parameter_anc_units = ["Pa", "m", "N"]
 valid_axes_x = ["tip position"]
 valid_axes_y = ["force"]

@@ -44,7 +44,7 @@ CEILINGS = {
     "validation": 1050,
     "performance": 870,
     "paper": 650,
-    "compare": 520,
+    "compare": 645,
     "plugin": 1405,
     "families": 1915,
     "architecture": 820,

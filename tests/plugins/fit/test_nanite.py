@@ -76,3 +76,23 @@ def test_nanite_finds_modulus_and_tension(model: Any) -> None:
     assert values["tensed_contact"]["E"].value == pytest.approx(TRUTH["E"], rel=0.05)
     assert values["tensed_contact"]["tension"].value == pytest.approx(5e-3, rel=0.05)
     assert values["hertz_para"]["E"].value > 1.5 * TRUTH["E"]
+
+
+def test_search_begins_with_the_fit_without_tension(model: Any) -> None:
+    """Of a deep curve that drifts, no fit with a tension is worse than that of Hertz, inside it.
+
+    From where nanite looks for the contact, 5 µm above it, the search ended at the bound of the
+    tension with 10 Pa for 700 Pa.
+    """
+    tip = np.linspace(1.8e-6, -4.8e-6, 2000)
+    drift = 1.2e-10 * np.minimum((1.8e-6 - tip) / 2e-6, 1)
+    hertz = models.models_available["hertz_para"].module.model_func
+    force = hertz(tip, E=700.0, R=10e-6, nu=0.5, contact_point=-4.2e-6) + drift
+    data = {"tip position": tip, "force": force, "segment": np.zeros(tip.size, dtype=np.uint8)}
+    metadata = {"path": Path("curve"), "enum": 0, "imaging mode": "force-distance"}
+    chi_squares = {}
+    for key in ("hertz_para", "tensed_contact"):
+        curve = nanite.Indentation(data, metadata)
+        curve.fit_model(model_key=key, preprocessing=[], segment=0)
+        chi_squares[key] = curve.fit_properties["chi_sqr"]
+    assert chi_squares["tensed_contact"] < 1.0001 * chi_squares["hertz_para"]
