@@ -55,6 +55,8 @@ _BYTES_PER_POINT = 2000
 """Memory of a fit, approximately."""
 _BATCH = 500
 """Curves that are in memory at once."""
+_PAGES = 20
+"""Most pages of the contact sheet, a curve of which takes 0.04 s."""
 
 
 @dataclass(frozen=True)
@@ -114,6 +116,8 @@ def fit_sources(
                     ]
                     mapped(config.executor, fit_one, tasks, dict, keep, bar)
                 tried += [(task.row, task.path) for task in made if task]
+                for row in rows:
+                    row.pack()
         if part is not None:
             left = sum(row.is_open and not (path and is_file(path)) for row, path in tried)
             return replace(fits, rows=[row for row, _ in tried if not row.is_open], left=left)
@@ -122,7 +126,7 @@ def fit_sources(
         fits.notes += [*notes, *of_maps]
         if directory is not None:
             tables = _write(fits, config, began, directory)
-            fits.files = (*tables, *save_population(fits, directory, formats))
+            fits.files = (*tables, *save_population(fits, directory, formats, _PAGES))
     return fits
 
 
@@ -150,6 +154,7 @@ def _task(
         if directory is not None:
             identity = _identity(config, indenter, curve, [*common])
             path = directory / _JOURNAL / f"{identity[:16]}.json"
+            row.kept = f"{_JOURNAL}/{path.name}"
             if is_file(path) and (earlier := _earlier(path, row, fits)):
                 # The file may have another name now.
                 earlier["curves"][0] |= {"name": source.name, "data": data_of(curve, config)}
@@ -245,7 +250,7 @@ def _failure(error: Exception, name: str) -> str:
 
 def _write(fits: ManyFits, config: FitConfig, began: float, directory: Path) -> tuple[Path, ...]:
     """Write the tables of the curves and of the groups, and return their paths."""
-    record = record_of(config, [row.fit.curve["data"] for row in fits.rows if row.is_fitted], began)
+    record = record_of(config, (row.fit.curve["data"] for row in fits.rows if row.is_fitted), began)
     attributes = {
         "configuration": config.to_json(),
         "versions": ", ".join(f"{name} {number}" for name, number in record["versions"].items()),
@@ -256,12 +261,12 @@ def _write(fits: ManyFits, config: FitConfig, began: float, directory: Path) -> 
     results.write(dataset.assign_attrs(command="fit"), hdf5)
     heads = {name: results.header(str(name), of) for name, of in dataset.data_vars.items()}
     frame = dataset.to_dataframe().rename(columns=heads).assign(**attributes)
-    for path, content in ((text, frame.reset_index()), (groups, pd.DataFrame(summary(fits.rows)))):
+    lines = summary(fits.rows)
+    for path, content in ((text, frame.reset_index()), (groups, pd.DataFrame(lines))):
         with atomic_write(path) as part:
             content.to_csv(part, index=False, na_rep="nan")
-    whole = fits.to_dict() | {"configuration": fits.configuration} | record
-    # What is drawn again has no other source.
-    for one, row in zip(whole["curves"], fits.rows, strict=True):
-        one["sketch"] = as_json(row.sketch)
     paper = save_tables(fits.rows, directory / "fits-table")
-    return hdf5, text, groups, *paper, write_sealed(whole, directory / "fits.json")
+    whole = {"groups": lines, "notes": fits.notes, "configuration": fits.configuration} | record
+    # What is drawn again has no other source.
+    curves = (row.to_dict() | {"sketch": as_json(row.sketch)} for row in fits.rows)
+    return hdf5, text, groups, *paper, write_sealed(whole, directory / "fits.json", curves)

@@ -21,7 +21,7 @@ from pellicle_fit.population.row import SHOWN, Row, counted
 from pellicle_fit.selection.recipe import TENSION
 from pellicle_fit.words.names import words
 
-from .contact_sheet import PAGE, sheets
+from .contact_sheet import PAGE, chosen, sheets
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -55,6 +55,8 @@ def bars(rows: Sequence[Row]) -> list[Chart]:
     curves are hollow.
     """
     series, axes = list[Series](), list[Axis]()
+    if len(rows) > _BARS:
+        return []
     for name, unit in _DRAWN.items():
         fitted = [
             (number, row.accepted, e.value, e.low, e.high)
@@ -75,7 +77,7 @@ def bars(rows: Sequence[Row]) -> list[Chart]:
                 series.append(Series(x[which], y[which], look=look, panel=panel))
         axes.append(Axis(words(name), unit, limits=(0, None)))
     across = Axis("curve, in the order of the table")
-    return [Chart(across, axes, series)] if axes and len(rows) <= _BARS else []
+    return [Chart(across, axes, series)] if axes else []
 
 
 def distributions(rows: Sequence[Row]) -> list[Chart]:
@@ -90,7 +92,8 @@ def distributions(rows: Sequence[Row]) -> list[Chart]:
             kinds = np.array([groups.index(label(row.group)) for row in found])
             # One legend is enough.
             legends = groups if len(groups) > 1 and not charts else [""] * len(groups)
-            error, axis = common_error(found, name), Axis(words(name), unit, log=is_wide)
+            error = common_error(row.fit.common_errors(name) for row in found)
+            axis = Axis(words(name), unit, log=is_wide)
             charts.append(_histogram(axis, values, kinds, legends, *error.values()))
     return charts
 
@@ -182,11 +185,17 @@ def _pitches(images: Dataset) -> tuple[float, float]:
     return x or y, y or x
 
 
-def save_population(fits: ManyFits, directory: Path, formats: Sequence[str]) -> tuple[Path, ...]:
-    """Write contact sheet, distributions and the images in ``maps``, and return the files."""
+def save_population(
+    fits: ManyFits, directory: Path, formats: Sequence[str], pages: int | None = None
+) -> tuple[Path, ...]:
+    """Write contact sheet, distributions and the images in ``maps``, and return the files.
+
+    The sheet has at most so many ``pages``, or all curves.
+    """
     from PIL import Image
 
-    files = [save_pages(sheets(fits.rows), directory / "fits-curves.pdf", PAGE)]
+    rows, words = (fits.rows, "") if pages is None else chosen(fits.rows, pages)
+    files = [save_pages(sheets(rows, words), directory / "fits-curves.pdf", PAGE)]
     if charts := distributions(fits.rows):
         draw, size = figure_of(charts)
         files += save_figure(draw, directory / "fits", formats, size)
