@@ -102,11 +102,11 @@ def fit_sources(
             if part is None:
                 check_writable(directory / "fits.h5")
             check_writable(directory / _JOURNAL / "fit.json")
-        with BatchProgress(0, 0, progress) as bar:
+        with BatchProgress(0, 0, progress, "curves") as bar:
             curves = iter(sources)
             while batch := [*islice(curves, _BATCH)]:
                 made = [_task(config, source, directory, fits, progress) for source in batch]
-                bar.expect(len(fits.rows), made.count(None))
+                bar.expect(max(len(fits.rows), *(s.total for s in batch)), made.count(None))
                 rows = fits.rows[-len(batch) :]
                 near = [()] * len(batch) if config.every_rival else alike(config, batch, rows)
                 for chosen, fit_one in passes(made, near, rows, part, work):
