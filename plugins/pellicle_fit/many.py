@@ -165,7 +165,7 @@ def _task(
         config = config.model_copy(update={"uncertainty": weighed})
         ready = problem(config, [source], progress=progress)
     except PellicleError as error:
-        row.failure = _failure(error, row.name)
+        row.failure = _in_a_line(source.reason(error))
         return None
     # An executor need not pickle.
     serial = registry().make(Executor, {"type": "serial"})
@@ -189,7 +189,8 @@ def _keep(task: FitTask, outcome: dict[str, Any] | Exception, *, writes: bool) -
     if isinstance(outcome, LockedError):
         return FITTED_ELSEWHERE, False
     if isinstance(outcome, Exception):
-        row.failure = _failure(outcome, row.name)
+        kind = "" if isinstance(outcome, PellicleError) else f"{type(outcome).__name__}: "
+        row.failure = f"{kind}{_in_a_line(str(outcome))}"
     else:
         if writes and task.path is not None:
             write_sealed(outcome, task.path)
@@ -239,13 +240,8 @@ def _identity(
     return digest.hexdigest()
 
 
-def _failure(error: Exception, name: str) -> str:
-    file, _, label = name.rpartition(":")
-    text = str(error).removeprefix(f"{name}: ").removeprefix(f"{file}: ")
-    text = text.removeprefix(f"curve {label}: ").replace(":\n  ", ": ")
-    reason = "; ".join(text.splitlines()) or "no reason given"
-    kind = "" if isinstance(error, PellicleError) else f"{type(error).__name__}: "
-    return f"{kind}{reason}"
+def _in_a_line(reason: str) -> str:
+    return "; ".join(reason.replace(":\n  ", ": ").splitlines()) or "no reason given"
 
 
 def _write(fits: ManyFits, config: FitConfig, began: float, directory: Path) -> tuple[Path, ...]:

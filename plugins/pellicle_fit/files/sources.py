@@ -41,6 +41,8 @@ class Source(NamedTuple):
     """What ``per_file`` or its row of a table of files says of it, by name."""
     file: str = ""
     """The file, or the name of a curve that was given by its numbers."""
+    label: str = ""
+    """What tells it from others in the file."""
     map: str = ""
     """File of the force map that the curve belongs to: its own, or the table of files."""
     total: int = 0
@@ -48,7 +50,12 @@ class Source(NamedTuple):
 
     def named(self, error: PellicleError, hint: str = "") -> ConfigError:
         """Return an error with the name of the source in front, once, and a hint at the end."""
-        return ConfigError(f"{self.name}: {str(error).removeprefix(f'{self.name}: ')}{hint}")
+        return ConfigError(f"{self.name}: {self.reason(error)}{hint}")
+
+    def reason(self, error: Exception) -> str:
+        """Return what an error says, without file and curve, with which readers begin."""
+        text = str(error).removeprefix(f"{self.file}: ").removeprefix(f"curve {self.label}: ")
+        return text.removeprefix(f"{self.name}: ")
 
 
 def gather(
@@ -94,7 +101,7 @@ def gather(
                 curve = error
             name = f"{file}:{label}" if label else str(file)
             total = opened + len(listed) - number
-            yield source(name, curve, map=str(table if site else file), total=total)
+            yield source(name, curve, label=label, map=str(table if site else file), total=total)
 
 
 def _listed(
