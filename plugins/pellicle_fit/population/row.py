@@ -123,7 +123,7 @@ class Row:
         row |= {"failure": self.failure, "group": self.group}
         if self.site is not None:
             row["site"] = {"map": self.map, **self.site._asdict()}
-        row |= {"kept": self.kept} if self.kept else {}
+        row |= {"kept": self.kept} if self.kept and self.is_fitted else {}
         judgement = {"accepted": self.accepted, "reason": self.reason, "outlier": self.outlier}
         return row | judgement | self.fit.data
 

@@ -146,6 +146,19 @@ def test_sheet_of_very_many_curves() -> None:
     assert caption.startswith("Some curves with their fits, page 1 of 6; 168 of 300 curves")
 
 
+def test_long_lists_of_curves_are_shown_on_demand(tmp_path: Path) -> None:
+    """A page begins with what was found, not with hundreds of reasons."""
+    for count in (30, 31):
+        rows = [row("a"), *(row(f"b{n}", None) for n in range(count))]
+        for number, one in enumerate(rows[1:]):
+            one.failure = f"no contact: {number} nN"
+        page = save_report(ManyFits(rows), tmp_path / "fits.html", "fits").read_text("utf-8")
+        assert f"<p>{count} of {count + 1} curves could not be fitted:" in page
+        assert f"b{count - 1}: failed: no contact: {count - 1} nN" in page
+        folded = f"<summary>{count} of {count + 1} curves could not be fitted.</summary>"
+        assert (folded in page) == (count == 31)
+
+
 def test_long_tables_of_curves_are_shown_on_demand() -> None:
     """A page of many curves begins with their table folded."""
     assert not tables.rows([row("a")] * 200).folded
